@@ -51,5 +51,5 @@ def test_every_dataset_is_named(datasets: set[str]):
 def test_every_dataset_that_is_named_with_its_group_is_there(datasets: set[str]):
     whole = {name for names in named().values() for name in names if "/" in name.lstrip("/")}
     paths = datasets | {path.split("/", 1)[1] for path in datasets}
-    optional = {"joints/meshings", "simulation/request", "simulation/initial"}
+    optional = {"joints/meshings", "simulation/request", "simulation/initial", "simulation/sensors"}
     assert sorted(whole - paths - optional) == []

@@ -64,7 +64,7 @@ def _drives(run: Simulation) -> list[RenderableType]:
     if not run.drives:
         return []
     slides = dict(zip(run.joint_names, run.joint_types, strict=True))
-    columns = ("peak", "RMS", "peak power", "work")
+    columns = ("peak", "RMS", "top speed", "peak power", "work")
     rows = Rows("drive on", "kind", *columns, title="\ndrives", right=columns, names=["drive on"])
     for use in run.drives:
         unit = "N" if use.slides or slides.get(use.joint) == "prismatic" else "N·m"
@@ -72,7 +72,9 @@ def _drives(run: Simulation) -> list[RenderableType]:
         # what goes in and comes out again leaves rounding, which differs between machines
         rest = REST * use.peak_power * float(run.time[-1] - run.time[0])
         work = use.work if abs(use.work) > rest else 0.0
-        rows.add(use.joint, use.kind.replace("_", " "), *efforts, quantity(use.peak_power, "W"), quantity(work, "J"))
+        power = quantity(use.peak_power, "W"), quantity(work, "J")
+        speed = quantity(use.peak_speed, "m/s" if unit == "N" else "rad/s")
+        rows.add(use.joint, use.kind.replace("_", " "), *efforts, speed, *power)
     return [rows]
 
 

@@ -1,4 +1,4 @@
-"""csv: the motion as two tables, `bodies.csv` and `joints.csv`, SI and radians."""
+"""csv: the motion as tables, SI and radians: bodies and joints, and where there are any reactions, drives, sensors."""
 
 from __future__ import annotations
 
@@ -20,13 +20,58 @@ def export(model: ExportModel) -> Exported:
     """`bodies.csv`: time, then NAME.x … NAME.qz. `joints.csv`: time, then NAME.position, .velocity, .effort.
 
     Joints have the names and the sense that the function gives them. One with several coordinates has them as
-    NAME.angle.position and so on. Raises ExportError without a motion.
+    NAME.angle.position and so on. `reactions.csv`: NAME on BODY.force.x … .torque.z, about the joint's point in world
+    axes, on the second body. `drives.csv`: N JOINT KIND.effort, .speed, .power. `sensors.csv`: NAME.position.x and so
+    on. What redundancy leaves open is called "(not determined)". Raises ExportError without a motion.
     """
     run = model.simulation
     if run is None:
         raise ExportError("there is no motion to export: nothing was simulated; see `kinform show F.h5 simulation`")
     known = designers_joints(model.assembly, model.kinematics)
-    return Exported({"bodies.csv": _table(*_bodies(run)), "joints.csv": _table(*_joints(as_intended(run, known)))})
+    seen = as_intended(run, known)
+    files = {"bodies.csv": _table(*_bodies(run)), "joints.csv": _table(*_joints(seen))}
+    if len(run.F_B):
+        files["reactions.csv"] = _table(*_reactions(model, seen))
+    if run.drives and len(run.drive_effort):
+        files["drives.csv"] = _table(*_drives(seen))
+    if run.readings:
+        files["sensors.csv"] = _table(*_sensors(run))
+    return Exported(files)
+
+
+_OPEN = " (not determined)"
+"""After the name of a column that redundancy leaves open."""
+
+
+def _reactions(model: ExportModel, run: Simulation) -> tuple[list[str], Array]:
+    """On the second body of each derived joint; `run` has the designer's names of joints."""
+    second = {joint.subject: model.system.body_at(joint.name, "b").subject for joint in model.system.joints}
+    derived = [] if model.simulation is None else model.simulation.joint_names
+    header, columns = ["time"], [run.time[:, None]]
+    for k, (name, own) in enumerate(zip(run.joint_names, derived, strict=True)):
+        loose = run.undetermined[k]
+        for quantity, first in (("force", 3), ("torque", 0)):
+            for n, axis in enumerate("xyz", start=first):
+                header.append(f"{name} on {second[own]}.{quantity}.{axis}{_OPEN if loose[n] else ''}")
+                columns.append(run.F_B[:, k, n, None])
+    return header, np.hstack(columns)
+
+
+def _drives(run: Simulation) -> tuple[list[str], Array]:
+    header, columns = ["time"], [run.time[:, None]]
+    for k, use in enumerate(run.drives):
+        effort, speed = run.drive_effort[:, k, None], run.drive_speed[:, k, None]
+        header += [f"{k + 1} {use.joint} {use.kind}.{what}" for what in ("effort", "speed", "power")]
+        columns += [effort, speed, effort * speed]
+    return header, np.hstack(columns)
+
+
+def _sensors(run: Simulation) -> tuple[list[str], Array]:
+    header = ["time"]
+    for reading in run.readings:
+        name = ".".join(filter(None, (reading.sensor, reading.quantity.replace(" ", "_"), reading.component)))
+        header.append(name if reading.known else name + _OPEN)
+    return header, np.hstack([run.time[:, None], run.sensed])
 
 
 def _bodies(run: Simulation) -> tuple[list[str], Array]:

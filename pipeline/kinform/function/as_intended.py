@@ -55,8 +55,11 @@ def as_intended(run: Simulation, known: Mapping[str, DesignersJoint]) -> Simulat
     def turned(values: Array) -> Array:
         return values * signs + 0.0 if values.size and values.shape[1] == len(signs) else values
 
+    of_drive = np.array([known[use.joint].sign if use.joint in known else 1 for use in run.drives], dtype=np.int64)
     return replace(
         run,
+        drive_effort=run.drive_effort * of_drive + 0.0 if run.drive_effort.size else run.drive_effort,
+        drive_speed=run.drive_speed * of_drive + 0.0 if run.drive_speed.size else run.drive_speed,
         joint_names=tuple(named.get(name, name) for name in run.joint_names),
         joint_position=turned(run.joint_position),
         joint_velocity=turned(run.joint_velocity),

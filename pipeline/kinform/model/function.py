@@ -11,6 +11,7 @@ import numpy as np
 
 from kinform.model.arrays import Array
 from kinform.model.quantities import XYZ, Direction, Metres, Place, Ratio, columns
+from kinform.model.sensors import Sensor
 
 Stated = Annotated[float, "unit of the manifest"]
 """Where only the joint says whether it is an angle or a length."""
@@ -205,3 +206,4 @@ class SimulationRequest:
     """Of these stops: the share of the speed that an impact leaves."""
     assumed: tuple[str, ...] = ()
     """Which of duration, step and gravity the manifest does not state, sorted."""
+    sensors: tuple[Sensor, ...] = ()

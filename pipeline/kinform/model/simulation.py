@@ -10,6 +10,7 @@ import numpy as np
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.collisions import Collision, JointRange
 from kinform.model.quantities import Reason, columns
+from kinform.model.sensors import Reading
 
 Effort = Annotated[float, "N·m or N"]
 
@@ -33,6 +34,10 @@ class DriveUse:
     """Which of the joint's rates it acts on."""
     slides: bool = False
     """Whether that is a slide: efforts in N."""
+    peak_speed: Annotated[float, "rad/s or m/s"] = 0.0
+    """Greatest speed, without sign."""
+    rms_power: Annotated[float, "W"] = 0.0
+    """Root of the mean square of the power over time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,6 +95,14 @@ class Simulation:
     """(T, G) N between the teeth, at half of their width and without friction; nan where not known."""
     drives: tuple[DriveUse, ...] = ()
     """What acts on the shafts of joints, in order."""
+    drive_effort: Annotated[Array, "N·m or N"] = field(default_factory=lambda: np.zeros((0, 0)))
+    """(T, drives) effort of each drive on its freedom; no times below dynamic."""
+    drive_speed: Annotated[Array, "rad/s or m/s"] = field(default_factory=lambda: np.zeros((0, 0)))
+    """(T, drives) rate of the freedom that it acts on."""
+    readings: tuple[Reading, ...] = ()
+    """R columns of what sensors read, in the order of the sensors."""
+    sensed: Annotated[Array, "of its reading"] = field(default_factory=lambda: np.zeros((0, 0)))
+    """(T, R); nan where unknown."""
     balance: Annotated[Array, "1"] = field(default_factory=lambda: np.zeros(0))
     """(T,) greatest error of the balance of a body or a node over the greatest wrench then."""
     balance_bodies: Annotated[Array, "1"] = field(default_factory=lambda: np.zeros((0, 0)))

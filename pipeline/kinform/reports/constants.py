@@ -147,6 +147,8 @@ MOST_COLUMNS = 300
 """Columns of a curve; in each the least and the greatest value are kept."""
 MOST_PLOTS = 48
 """Plots of one group."""
+MOST_POINTS = 600
+"""Points of an effort over its speed: twice the columns of a curve over time, as it may pass each twice."""
 MOST_EVENTS = 40
 """Collisions that are marked in a plot."""
 TICKS = 4.0

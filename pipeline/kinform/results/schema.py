@@ -39,6 +39,7 @@ class Form:
 
 TIME, BODIES, JOINTS = "simulation/time", "simulation/body_names", "simulation/joint_names"
 COORDINATES, GEARS = Last("simulation/joint_offset"), "simulation/gear_names"
+_OF_DRIVES = Form("f", ("simulation/time", "simulation/drives"), or_none=True)
 _OF_COORDINATES = Form("f", (TIME, COORDINATES), or_none=True)
 _WRENCHES = Form("f", (TIME, JOINTS, 6), or_none=True)
 ARRAYS: dict[str, Form] = {
@@ -64,6 +65,9 @@ ARRAYS: dict[str, Form] = {
     "simulation/gear_effort": Form("f", (TIME, GEARS, 2), or_none=True),
     "simulation/gear_force": Form("f", (TIME, GEARS), or_none=True),
     "simulation/energy": Form("f", (TIME, 3), or_none=True),
+    "simulation/drive_effort": _OF_DRIVES,
+    "simulation/drive_speed": _OF_DRIVES,
+    "simulation/sensed": Form("f", (TIME, "simulation/readings"), or_none=True),
 }
 """Arrays by name."""
 
@@ -171,6 +175,8 @@ UNKNOWN: tuple[str, ...] = (
     "simulation/energy",
     "simulation/joint_acceleration",
     "simulation/joint_effort",
+    "simulation/sensed",
+    "simulation/drive",
     "simulation/gear_force",
     "simulation/monitors.balance",
     "simulation/balance_",

@@ -119,4 +119,5 @@ def _bare_law(law: Law | None) -> Law | None:
 
 def _bare_request(request: SimulationRequest) -> SimulationRequest:
     initial = tuple(replace(value, file="", line=None) for value in request.initial)
-    return replace(request, initial=initial, file=None, line=None)
+    sensors = tuple(replace(sensor, file="", line=None) for sensor in request.sensors)
+    return replace(request, initial=initial, sensors=sensors, file=None, line=None)

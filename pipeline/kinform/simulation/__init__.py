@@ -15,9 +15,10 @@ from kinform.simulation.subject import port_model
 
 if TYPE_CHECKING:
     from kinform.simulation.of_system import Course, simulate_system
+    from kinform.simulation.outcome.sensing import Probe
 
-__all__ = ["CODE_VERSION", "Course", "SolverSettings", "port_model", "simulate", "simulate_system"]
+__all__ = ["CODE_VERSION", "Course", "Probe", "SolverSettings", "port_model", "simulate", "simulate_system"]
 
 CODE_VERSION: int = 17
 
-__getattr__ = first_used(__name__, {"Course": "of_system", "simulate_system": "of_system"})
+__getattr__ = first_used(__name__, {"Course": "of_system", "Probe": "outcome.sensing", "simulate_system": "of_system"})

@@ -304,3 +304,5 @@ VANISHING_WRENCH = 1e-6
 """Share of the greatest wrench of the run below which wrenches are no measure of errors."""
 DEPENDENT_GEARS = 1e-12
 """Share of the greatest singular value of the gears' rows below which one depends on the others."""
+NO_TURN = 1e-12
+"""Half of an angle (rad) below which a turn has no axis."""

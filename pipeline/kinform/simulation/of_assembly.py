@@ -26,6 +26,7 @@ from kinform.simulation.mechanism.construction import assemble
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.uncertainty import loop_uncertainty
 from kinform.simulation.of_system import Course, run_course
+from kinform.simulation.probes import probes_of
 from kinform.simulation.settings import Conduct
 from kinform.simulation.solver.start import Stated
 from kinform.simulation.subject import Failures, are_gears_ideal, refuse, simulated_joints
@@ -76,7 +77,8 @@ def simulate_assembly(
     if failures:
         return refuse("the drives or the initial values cannot be applied", failures)
     course = Course(request.duration, request.step, np.asarray(request.gravity, dtype=np.float64), choice.level)
-    run = run_course(system, mechanism, course, stated, notes, conduct)
+    probes, silent = probes_of(assembly, kinematics, mass, joints, choice.level)
+    run = run_course(system, mechanism, course, stated, (*notes, *silent), conduct, probes)
     return _partial(run, behaviour.held) if behaviour.held else run
 
 

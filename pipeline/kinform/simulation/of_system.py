@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -19,6 +19,7 @@ from kinform.simulation.mechanism.construction import assemble
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.outcome.results import publish, publish_dynamic, while_in_mesh
+from kinform.simulation.outcome.sensing import Probe, with_readings
 from kinform.simulation.settings import Conduct, SolverSettings
 from kinform.simulation.solver.dynamic import run_dynamic
 from kinform.simulation.solver.kinematic import notes_of_rest, run_kinematic
@@ -59,12 +60,14 @@ def simulate_system(
     settings: SolverSettings | None = None,
     progress: Progress | None = None,
     say: Say | None = None,
+    probes: Sequence[Probe] = (),
 ) -> Simulation:
     """Simulates a port model made by hand, of any depth; SI and radians.
 
     `initial`: (position, velocity) of joints with one freedom by what they are called; 0 is the pose in
-    which the model is written. Refusals are in `failures` of what is returned, with the component.
-    ValueError for initial values of joints that the system does not have, or that are no numbers.
+    which the model is written. `probes`: what to follow; their columns are `readings` and `sensed`. Refusals are in
+    `failures` of what is returned, with the component. ValueError for initial values of joints that the system does not
+    have, or that are no numbers, and for probes on what it does not have.
     """
     system = flat(system)
     wrong = faults(system)
@@ -80,13 +83,29 @@ def simulate_system(
         if not np.all(np.isfinite([position, velocity])):
             raise ValueError(f'the initial value of "{name}" is not a finite number')
         stated.append(Stated(name, slots[name].q.start, slots[name].v.start, position, velocity))
+    _check_probes(probes, mechanism)
     failures = tuple((name, "no joints connect this body with the ground") for name in adrift)
     if course.level == "dynamic":
         failures += _unfit(system, mechanism)
     if failures:
         return refuse("the model is not complete", failures)
     conduct = Conduct(settings or SolverSettings(), progress, say)
-    return run_course(system, mechanism, course, tuple(stated), (), conduct)
+    return run_course(system, mechanism, course, tuple(stated), (), conduct, tuple(probes))
+
+
+def _check_probes(probes: Sequence[Probe], mechanism: Mechanism) -> None:
+    """Raise ValueError for probes on bodies or joints that are not there."""
+    joints = [slot.name for slot in mechanism.slots]
+    for probe in probes:
+        needed = [] if probe.kind == "reaction" else [probe.body]
+        needed += [name for name in (probe.other, probe.frame) if name]
+        for name in needed:
+            if name not in mechanism.bodies:
+                raise ValueError(
+                    f'probe "{probe.name}": there is no body "{name}": there are {", ".join(mechanism.bodies)}'
+                )
+        if probe.kind == "reaction" and probe.joint not in joints:
+            raise ValueError(f'probe "{probe.name}": there is no joint "{probe.joint}": there are {", ".join(joints)}')
 
 
 def _unfit(system: System, mechanism: Mechanism) -> Failures:
@@ -121,6 +140,7 @@ def run_course(
     stated: tuple[Stated, ...],
     notes: tuple[str, ...],
     conduct: Conduct,
+    probes: tuple[Probe, ...] = (),
 ) -> Simulation:
     """Start and run the system; `notes` are what is assumed already."""
     dynamic, settings = course.level == "dynamic", conduct.settings
@@ -141,7 +161,8 @@ def run_course(
     if not dynamic:
         notes = (*notes, *notes_of_rest(mechanism, actuation, start, settings))
         record = while_in_mesh(mechanism, system, run_kinematic(mechanism, actuation, start, times, conduct))
-        return publish(mechanism, record, course.level, notes, settings.free)[0]
+        run, states = publish(mechanism, record, course.level, notes, settings.free)
+        return with_readings(run, states, mechanism, probes)
     stuck = torn_at_start(mechanism, actuation, start, rank, settings)
     if stuck:
         why = (
@@ -158,7 +179,8 @@ def run_course(
         why = "its motion moves no mass: the acceleration is not determined"
         return refuse("a free motion has no inertia", tuple((name, why) for name in weightless))
     record = while_in_mesh(mechanism, system, run_dynamic(dynamics, start, times, conduct))
-    return publish_dynamic(dynamics, record, course.level, notes, settings)
+    run, states = publish_dynamic(dynamics, record, course.level, notes, settings)
+    return with_readings(run, states, mechanism, probes)
 
 
 def _excess(mechanism: Mechanism, course: Course) -> str:

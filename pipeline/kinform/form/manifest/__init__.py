@@ -20,6 +20,7 @@ from kinform.form.manifest.parts import (
     Subassembly,
     TolerancesTable,
 )
+from kinform.form.manifest.sensors import Sensor
 
 __all__ = [
     "Initial",
@@ -62,6 +63,7 @@ class SimulationTable(Table):
         0.0, description="of these stops: share of the speed that an impact leaves"
     )
     initial: dict[str, Initial] = Field({}, description="by name of a function.joint, or as kinform names it")
+    sensor: list[Sensor] = Field([], description="points, bodies and joints to follow")
 
 
 class Manifest(Table):

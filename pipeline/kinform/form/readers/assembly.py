@@ -25,6 +25,7 @@ from kinform.form.readers.grounds import grounds_of
 from kinform.form.readers.open_manifest import Parsed, Scope, parse
 from kinform.form.readers.poses import pose, shift, unit_error
 from kinform.form.readers.requirements import requirements_of
+from kinform.form.readers.sensors import sensors_of
 from kinform.form.sources import AS_IT_IS, Reading, is_source
 from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.foundation.regular import AS_A_FILE, not_a_file
@@ -32,7 +33,7 @@ from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Group, MassOverride, Part, Subassembly
 from kinform.model.descriptions import Description
-from kinform.model.function import Function
+from kinform.model.function import Function, SimulationRequest
 from kinform.model.names import PartName
 from kinform.model.tolerances import Tolerances
 
@@ -179,7 +180,7 @@ class _AssemblyReader:
             tolerances=tolerances,
             infer_fasteners=top.manifest.fasteners.infer,
             function=function,
-            simulation=readers[0].simulation(),
+            simulation=_request(readers[0]),
             subassemblies=tuple(sorted(self.subassemblies, key=lambda s: s.name)),
             source=top.source("assembly"),
             files=tuple(sorted(self.files.names)),
@@ -317,6 +318,12 @@ class _AssemblyReader:
             scale=np.array(scale),
             colour=None if table.colour is None else table.colour.lower(),
         )
+
+
+def _request(reader: FunctionReader) -> SimulationRequest | None:
+    """`[simulation]` with its sensors."""
+    request = reader.simulation()
+    return None if request is None else replace(request, sensors=tuple(sensors_of(reader)))
 
 
 def _complete(scope: Scope) -> bool:

@@ -10,6 +10,7 @@ import numpy as np
 from kinform.behaviour.joints import KINDS
 from kinform.design import Design
 from kinform.function import as_intended, designers_joints
+from kinform.model.arrays import Array
 from kinform.model.collisions import JointRange
 from kinform.model.simulation import Simulation
 from kinform.reports.values.plain import fields
@@ -49,7 +50,11 @@ def simulation_values(design: Design) -> dict[str, Any]:
         "joints": _courses(design, run) if ran else [],
         "residual": run.residual.max() if len(run.residual) else None,
         "balance": run.balance.max() if run.level == "dynamic" and len(run.balance) else None,
-        "drives": [fields(use, "joint", "freedom", "kind", "peak", "rms", "peak_power", "work") for use in run.drives],
+        "drives": [fields(use, *_OF_DRIVE) for use in run.drives],
+        "sensors": [
+            fields(reading, "sensor", "quantity", "component", "unit", "known") | _extremes(run.sensed[:, k])
+            for k, reading in enumerate(run.readings)
+        ],
         "gears": [
             {
                 "joint": name,
@@ -70,6 +75,17 @@ def simulation_values(design: Design) -> dict[str, Any]:
         else [fields(item, "parts", "time", "place", "depth") for item in run.collisions],
         "collisions_unknown": [{"parts": [a, b], "reason": why} for a, b, why in run.uncollided],
     }
+
+
+_OF_DRIVE = ("joint", "freedom", "kind", "peak", "rms", "peak_power", "work", "peak_speed", "rms_power")
+
+
+def _extremes(values: Array) -> dict[str, Any]:
+    """Of what a sensor read where it is known; null where it never is."""
+    known = values[np.isfinite(values)]
+    ends = {"start": values[0], "end": values[-1]} if len(values) else {"start": None, "end": None}
+    ends = {key: value if value is not None and np.isfinite(value) else None for key, value in ends.items()}
+    return ends | {"lowest": known.min() if len(known) else None, "highest": known.max() if len(known) else None}
 
 
 _COMPONENTS = ("tau_x", "tau_y", "tau_z", "f_x", "f_y", "f_z")

@@ -61,4 +61,5 @@ REQUEST = Layout(
         "request", "level", "duration", "step", "gravity", "file", "line", "partial", "stops", "restitution", "assumed"
     ),
     Table("initial"),
+    Table("sensors"),
 )

@@ -16,7 +16,7 @@ import numpy as np
 
 from kinform.design import Design
 from kinform.function import DesignersJoint, designers_joints
-from kinform.model.arrays import Array, Ints
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.simulation import Simulation
 from kinform.results.groups.collisions import COLLISIONS
 from kinform.results.held import HeldGroup
@@ -50,6 +50,10 @@ LAYOUT = Layout(
     Numbers("undetermined"),
     Texts("gear_names"),
     Table("drives"),
+    Numbers("drive_effort"),
+    Numbers("drive_speed"),
+    Table("readings"),
+    Numbers("sensed"),
     Texts("assumptions"),
     Table("failures"),
     *COLLISIONS,
@@ -106,8 +110,9 @@ def _called(run: Simulation, known: dict[str, DesignersJoint]) -> Simulation:
     named = {name: one.name for name, one in known.items()}
     of_joint = [name in known and known[name].sign < 0 for name in run.joint_names]
     turned = np.repeat(of_joint, np.diff(run.joint_offset))
+    against = np.array([use.joint in known and known[use.joint].sign < 0 for use in run.drives], dtype=np.bool_)
 
-    def signed(values: Array) -> Array:
+    def signed(values: Array, turned: Flags = turned) -> Array:
         return np.where(turned, -values, values) if values.ndim == 2 and values.shape[1] == len(turned) else values
 
     return replace(
@@ -117,5 +122,7 @@ def _called(run: Simulation, known: dict[str, DesignersJoint]) -> Simulation:
         joint_velocity=signed(run.joint_velocity),
         joint_effort=signed(run.joint_effort),
         joint_acceleration=signed(run.joint_acceleration),
+        drive_effort=signed(run.drive_effort, against),
+        drive_speed=signed(run.drive_speed, against),
         drives=tuple(replace(use, joint=named.get(use.joint, use.joint)) for use in run.drives),
     )

@@ -3,6 +3,9 @@ the inverse dynamics: what a motor must give."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import Any
+
 import numpy as np
 
 from kinform.model.arrays import Array
@@ -19,25 +22,31 @@ _KINDS = {
 }  # fmt: skip
 
 
-def drive_uses(dynamics: Dynamics, record: Record) -> tuple[DriveUse, ...]:
-    """What the drives did at the output times, prescribed motions first."""
+def drive_fields(dynamics: Dynamics, record: Record) -> dict[str, Any]:
+    """What the drives did at the output times, prescribed motions first, as fields of the results."""
     if not len(record.time):
-        return ()
-    actuation, on = dynamics.actuation, _rates(dynamics.mechanism)
-    out = []
+        return {}
+    acted = list(_acted(dynamics, record))
+    on = _rates(dynamics.mechanism)
+    uses = tuple(_use(record.time, on[v], kind, effort, record.v[:, v]) for v, kind, effort in acted)
+    efforts = np.array([effort for _, _, effort in acted]).reshape(len(acted), len(record.time)).T
+    return {"drives": uses, "drive_effort": efforts, "drive_speed": record.v[:, [v for v, _, _ in acted]]}
+
+
+def _acted(dynamics: Dynamics, record: Record) -> Iterator[tuple[int, str, Array]]:
+    """The rate, kind and (T,) effort of each drive."""
+    actuation = dynamics.actuation
     stops = {stop.v for stop in actuation.stops}
     for v in sorted({*actuation.led.tolist(), *stops}):
         kind = "stop" if v in stops and v not in actuation.led else "motion"
-        out.append(_use(record.time, on[v], kind, record.needed[:, v], record.v[:, v]))
+        yield v, kind, record.needed[:, v]
     states = 0
     for actor in actuation.actors:
         columns = [
             record.extra[:, states + sum(actor.states[:k])] if has else None for k, has in enumerate(actor.states)
         ]
         states += sum(actor.states)
-        effort = _effort(actor, record, columns)
-        out.append(_use(record.time, on[actor.v], _KINDS[actor.does], effort, record.v[:, actor.v]))
-    return tuple(out)
+        yield actor.v, _KINDS[actor.does], _effort(actor, record, columns)
 
 
 def _rates(mechanism: Mechanism) -> dict[int, tuple[str, int, bool]]:
@@ -52,11 +61,15 @@ def _rates(mechanism: Mechanism) -> dict[int, tuple[str, int, bool]]:
 def _use(time: Array, on: tuple[str, int, bool], kind: str, effort: Array, rate: Array) -> DriveUse:
     power = effort * rate
     span = float(time[-1] - time[0])
-    with np.errstate(over="ignore"):  # of a run that overflows
-        mean = float(np.trapezoid(effort**2, time)) / span if span > 0.0 else float(effort[0] ** 2)
+
+    def rms(values: Array) -> float:
+        with np.errstate(over="ignore"):  # of a run that overflows
+            mean = float(np.trapezoid(values**2, time)) / span if span > 0.0 else float(values[0] ** 2)
+        return float(np.sqrt(mean))
+
     return DriveUse(
-        on[0], kind, float(np.abs(effort).max()), float(np.sqrt(mean)), float(power.max()),
-        float(np.trapezoid(power, time)), on[1], on[2],
+        on[0], kind, float(np.abs(effort).max()), rms(effort), float(power.max()), float(np.trapezoid(power, time)),
+        on[1], on[2], float(np.abs(rate).max()), rms(power),
     )  # fmt: skip
 
 

@@ -17,7 +17,7 @@ from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.states import States, states_at
 from kinform.simulation.outcome.balances import imbalance
-from kinform.simulation.outcome.drives import drive_uses
+from kinform.simulation.outcome.drives import drive_fields
 from kinform.simulation.outcome.reactions import Reactions, reactions
 from kinform.simulation.settings import SolverSettings
 from kinform.simulation.solver.record import Record
@@ -43,14 +43,14 @@ def while_in_mesh(mechanism: Mechanism, system: System, record: Record) -> Recor
 
 def publish_dynamic(
     dynamics: Dynamics, record: Record, level: str, notes: tuple[str, ...], settings: SolverSettings
-) -> Simulation:
-    """The results with energy, reactions, their balance, and what the drives did."""
+) -> tuple[Simulation, States]:
+    """The results with energy, reactions, their balance, and what the drives did; and the states of the links."""
     run, states = publish(dynamics.mechanism, record, level, notes, settings.free)
     kinetic, potential = dynamics.energy(record.q, states)
     wrenches = reactions(dynamics, states, record.effort, settings.free)
     balance = imbalance(dynamics, states, wrenches, record.effort)
     energy = np.column_stack([kinetic, potential, record.work])
-    return replace(
+    whole = replace(
         run,
         assumptions=(*run.assumptions, *_notes_of_gaps(run.residual), *_notes_of_energy(run.time, energy)),
         energy=energy,
@@ -61,8 +61,9 @@ def publish_dynamic(
         balance=balance.greatest,
         balance_bodies=balance.bodies,
         balance_shafts=_in_columns(dynamics.mechanism, balance.shafts),
-        drives=drive_uses(dynamics, record),
+        **drive_fields(dynamics, record),
     )
+    return whole, states
 
 
 def _gear_fields(dynamics: Dynamics, wrenches: Reactions) -> dict[str, Any]:
