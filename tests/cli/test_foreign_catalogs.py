@@ -65,3 +65,20 @@ def test_text_that_is_none(catalog):
     edited(catalog, DESIGN.format(name="CAST(x'ff41' AS TEXT)", bodies=2, mass=9, z=1.0))
     with pytest.raises(InputError, match="the catalog is damaged"):
         read(catalog)
+
+
+@pytest.mark.parametrize("at", ["sqlite_master", "FROM designs"])
+def test_sizes_beyond_all_memory_are_damage(catalog, monkeypatch, at):
+    """As SQLite answers where a length in the file was overwritten by bytes 0xff."""
+
+    class Hungry(sqlite3.Connection):
+        def execute(self, sql, *more):
+            if at in sql:
+                raise MemoryError
+            return super().execute(sql, *more)
+
+    connect = sqlite3.connect
+    read(catalog)  # what is expected of a catalogue is known from here on
+    monkeypatch.setattr(sqlite3, "connect", lambda *words, **more: connect(*words, **more, factory=Hungry))
+    with pytest.raises(InputError, match=r"not a catalog|beyond all memory"):
+        read(catalog)

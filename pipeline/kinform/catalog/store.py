@@ -78,14 +78,19 @@ def write(catalog: Catalog, path: str | Path) -> None:
     replace_file(path, _bytes(catalog))
 
 
+_DAMAGE = (sqlite3.DatabaseError, UnicodeDecodeError, MemoryError)
+"""What is raised for a file whose bytes make no sense; SQLite asks for as much memory as they say."""
+
+
 @contextlib.contextmanager
 def open_catalog(path: str | Path) -> Iterator[sqlite3.Connection]:
     """The database, open for reading. Raises InputError when there is none, or it is no catalog."""
     database = _connection(Path(path))
     try:
         yield database
-    except (sqlite3.DatabaseError, UnicodeDecodeError) as error:
-        raise _refuse(path, f"the catalog is damaged: {error}", "delete it, and add the designs again") from error
+    except _DAMAGE as error:
+        why = str(error) or "a size in it is beyond all memory"
+        raise _refuse(path, f"the catalog is damaged: {why}", "delete it, and add the designs again") from error
     finally:
         database.close()
 
@@ -111,7 +116,7 @@ def _connection(path: Path) -> sqlite3.Connection:
         # views and triggers of strangers could do anything, and for ever: there are none in a catalog
         made = _definitions(database)
         schemas = database.execute("SELECT schema FROM catalog").fetchall() if ("table", "catalog") in made else None
-    except (sqlite3.DatabaseError, UnicodeDecodeError):
+    except _DAMAGE:
         schemas = None
     if schemas is None:
         database.close()
