@@ -10,11 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.assemblies import HERE, assembly
+from support.patches import patch
 from support.solids import box, part, random_pose, rod
 
 from kinform import contacts, kinematics, surfaces
 from kinform.kinematics.partition import partition
 from kinform.kinematics.partition.labelling import Edge, label_all, margins
+from kinform.kinematics.partition.parting import joint_twists, prices
 from kinform.model.function import Function, IntendedJoint
 
 PRICES = st.sampled_from([1.0, 30.0, 300.0])
@@ -200,3 +202,26 @@ def test_a_horn_may_go_either_way_and_a_plate_that_is_screwed_on_beside_the_axis
     assert placed["horn"].unclear
     assert placed["horn"].margin > 100.0  # screws speak for the arm
     assert not placed["high"].unclear
+
+
+def test_a_block_that_a_joint_names_stays_on_what_turns():
+    """Parting the block, one flat, costs less than the arm on its pivot among screw holes, where the joint is."""
+    solids = stack()
+    solids = {"base": solids["base"], "low": solids["low"], "block": box(-25, -15, -25, -15, 0, 8)}
+    for x, y in ((0, 8), (0, -8), (8, 0), (-8, 0)):
+        hole = rod(1, -20, 20, 24).translate((x, y, 0))
+        solids = {n: s - hole for n, s in solids.items()}
+    whole = assembly(*(part(name, solid, np.eye(4)) for name, solid in solids.items()))
+    found = {p.mesh.digest: surfaces.recover(p.mesh, whole.tolerances) for p in whole.parts}
+    joints = [moved(joint("turn", ("block", "low")), np.eye(4), 1e-3)]
+    cut = partition(whole, contacts.find(whole, found), joints)
+    assert sorted(cut.parts) == [("base", "block"), ("low",)]
+
+
+@pytest.mark.parametrize(("gap", "price"), [(0.0, 300.0), (1e-4, 300.0), (3e-4, 50.0)])
+def test_a_flat_with_a_gap_that_is_wide_by_its_size_holds_little(gap, price):
+    """4 mm across: 0.2 mm is the limit. The axis is 50 mm beside it."""
+    corners = 2e-3 * np.array([[x, y, 0.0] for x in (-1, 0, 1) for y in (-1, 0, 1)])
+    flat = patch(corners, (0, 0, 1), "plane", area=16e-6, gap=gap)
+    turn = joint("turn", ("a", "b"), point=(0.05, 0, 0))
+    assert prices([turn], [joint_twists(turn)], [flat], ()).by_joint == {("a", "b"): {0: price}}

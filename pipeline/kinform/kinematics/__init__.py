@@ -49,7 +49,7 @@ __all__ = [
     "stated_proposals",
 ]
 
-CODE_VERSION = 31
+CODE_VERSION = 32
 """Bumped when the results of this stage change for the same input."""
 
 __getattr__ = first_used(

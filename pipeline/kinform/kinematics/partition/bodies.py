@@ -15,6 +15,7 @@ from kinform.foundation.words import counted, quoted
 from kinform.kinematics.partition import constants
 from kinform.kinematics.partition.graph import Graph, graph_of, stated_merger
 from kinform.kinematics.partition.labelling import Labelling, Margin, label_all, margins
+from kinform.kinematics.partition.on_axis import cut_on_axes
 from kinform.kinematics.partition.standard_parts import StandardPart, standard_parts
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
@@ -83,7 +84,8 @@ def partition(
     merger = stated_merger(assembly, joints)
     moving = [joint for joint in joints if joint.type != "fixed"]
     graph = graph_of(assembly, contacts, moving, merger)
-    labelling = label_all(graph.nodes, graph.seeds, graph.edges)
+    cut = graph, label_all(graph.nodes, graph.seeds, graph.edges)
+    graph, labelling = cut_on_axes(assembly, contacts, moving, merger, cut)
     placed = _placed(assembly, graph, labelling)
     doubtful = _doubtful(graph, labelling)
     placed = {name: replace(p, either=p.either or p.body in doubtful) for name, p in placed.items()}

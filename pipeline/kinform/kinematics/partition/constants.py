@@ -27,6 +27,10 @@ SERRATED = 100.0
 """Price of parting serrations about the axis: those of a servo's output turn with what they drive."""
 FLAT_BESIDE = 300.0
 """Price of parting a flat beside the axis."""
+FLAT_APART = 50.0
+"""The same of one that does not touch: the tip of a screw over the face of a motor."""
+APART = 0.05
+"""Gap of a flat from which it does not touch, as a share of the root of its area."""
 JOURNAL_OFF = 0.7
 """Share of its reach by which the middle of a round patch may lie beside the axis that it goes round: half of one."""
 COAXIAL = np.radians(1.0)

@@ -209,7 +209,7 @@ class Contact:
 
     def _round(self, joint: IntendedJoint, opposed: Flags) -> float:
         """The price along a turn: do patches go round its axis, or its centre?"""
-        journal, firm, farthest = False, False, 0.0
+        journal, firm, apart, farthest = False, False, True, 0.0
         total = float(self.weights.sum())
         for k, patch in enumerate(self.patches):
             rows = slice(int(self.start[k]), int(self.start[k + 1]))
@@ -220,10 +220,13 @@ class Contact:
             journal |= here
             firm |= here and not _loose(patch)
             farthest = max(farthest, off)
+            apart &= _apart(self.patches[k])
         round_it = farthest < constants.FACE_OFF
         if journal and round_it:
             return constants.JOURNAL if firm else constants.LOOSE_JOURNAL
-        return constants.FACE_ROUND if journal or round_it else constants.FLAT_BESIDE
+        if journal or round_it:
+            return constants.FACE_ROUND
+        return constants.FLAT_APART if apart else constants.FLAT_BESIDE
 
     def journal(self, joint: IntendedJoint) -> bool:
         """Whether any of it goes round the joint's axis, or its centre."""
@@ -252,6 +255,11 @@ class Contact:
         axis = joint.axis / np.linalg.norm(joint.axis)
         gap = widest_gap(self.normals[~opposed], axis)
         return constants.JOURNAL if gap < constants.GUIDED_ROUND else constants.FLAT_BESIDE
+
+
+def _apart(patch: Patch) -> bool:
+    """Whether a flat has a gap that is wide by its own size."""
+    return patch.kind == "plane" and patch.gap > patch.chord + constants.APART * patch.area**0.5
 
 
 def _loose(patch: Patch) -> bool:
