@@ -156,7 +156,9 @@ def simulate(
     def move(view: Assembly) -> Result:
         from kinform import simulation
 
-        behaviour = simulation.port_model(view, kinematics, masses, level=level)
+        behaviour = simulation.port_model(
+            view, kinematics, masses, level=level, contacts=design.contacts, surfaces=design.surfaces
+        )
 
         def run(view: Assembly, progress: Progress | None = None) -> Simulation:
             return simulation.simulate(

@@ -15,6 +15,7 @@ from kinform.behaviour import (
     DcMotor,
     EffortDrive,
     EndStop,
+    Friction,
     Gear,
     Ground,
     JointComponent,
@@ -136,6 +137,10 @@ _PARAMETERS: dict[type[Component], Callable[[Any, Lengths], str]] = {
     EffortDrive: lambda c, u: f"{_signal(c.signal)} N·m or N",
     Spring: lambda c, u: f"{number(c.stiffness)} N·m/rad or N/m, rest {number(c.rest)} rad or m",
     Damper: lambda c, u: f"{number(c.damping)} N·m·s/rad or N·s/m",
+    Friction: lambda c, u: (
+        f"coefficient {number(c.kinetic)}, {number(c.static)} at rest; {number(c.effort)} N·m or N without load, "
+        f"{number(c.static_effort)} at rest"
+    ),
     EndStop: lambda c, u: f"{number(c.lower)} to {number(c.upper)} rad or m, restitution {number(c.restitution)}",
     Servo: lambda c, u: f"target {_signal(c.target)} rad or m, {_controller(c.controller)}",
     DcMotor: lambda c, u: (

@@ -16,6 +16,7 @@ from kinform.behaviour.model import Model
 from kinform.behaviour.nested import flat, nest, placed
 from kinform.behaviour.of_design import Behaviour, build
 from kinform.behaviour.ports import Component, Node, Port
+from kinform.behaviour.rubbing import Rubs
 from kinform.behaviour.shafts import (
     Actor,
     Controller,
@@ -23,6 +24,7 @@ from kinform.behaviour.shafts import (
     DcMotor,
     EffortDrive,
     EndStop,
+    Friction,
     MotionDrive,
     Servo,
     Spring,
@@ -43,6 +45,7 @@ __all__ = [
     "DcMotor",
     "EffortDrive",
     "EndStop",
+    "Friction",
     "Gear",
     "Ground",
     "JointComponent",
@@ -53,6 +56,7 @@ __all__ = [
     "Port",
     "Ramp",
     "RigidBody",
+    "Rubs",
     "Servo",
     "Signal",
     "Sine",
@@ -74,4 +78,4 @@ __all__ = [
     "smooth",
 ]
 
-CODE_VERSION: int = 7
+CODE_VERSION: int = 8

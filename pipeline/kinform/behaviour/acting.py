@@ -4,14 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from kinform.behaviour.components import Gear, JointComponent, LoadComponent
 from kinform.behaviour.ports import Component
-from kinform.behaviour.shafts import Controller, Damper, DcMotor, EffortDrive, MotionDrive, Servo, Spring, VoltageSource
+from kinform.behaviour.shafts import (
+    Controller,
+    Damper,
+    DcMotor,
+    EffortDrive,
+    Friction,
+    MotionDrive,
+    Servo,
+    Spring,
+    VoltageSource,
+)
 from kinform.behaviour.signals import Constant, Signal, signal
+from kinform.behaviour.sliding import Sliding
 from kinform.function import acted_freedom
 from kinform.model.assembly import Assembly
 from kinform.model.function import Coupling, Drive, Load
@@ -62,7 +73,12 @@ def one_freedom(
 
 
 def make_drive(
-    assembly: Assembly, kinematics: Kinematics, joints: Joints, drive: Drive, number: int
+    assembly: Assembly,
+    kinematics: Kinematics,
+    joints: Joints,
+    drive: Drive,
+    number: int,
+    sliding: Mapping[str, Sliding],
 ) -> tuple[tuple[Component, ...], str, str, bool]:
     """(components, joint, why there are none, whether they would act by force only)."""
     by_force = drive.kind != "motion"
@@ -70,12 +86,12 @@ def make_drive(
     if isinstance(on, str):
         return (), "", on, False
     try:
-        return _actors(drive, on, f"drive {number} {drive.joint}"), on.joint.subject, "", by_force
+        return _actors(drive, on, f"drive {number} {drive.joint}", sliding), on.joint.subject, "", by_force
     except ValueError as error:
         return (), on.joint.subject, f"{drive.kind} drive: {error}", by_force
 
 
-def _actors(drive: Drive, on: OneFreedom, name: str) -> tuple[Component, ...]:
+def _actors(drive: Drive, on: OneFreedom, name: str, found: Mapping[str, Sliding]) -> tuple[Component, ...]:
     """The drive on the shaft first, then what supplies it. Raises ValueError with what is missing."""
     sign, scale, at = on.sign, drive.scale(on.turns), on.fields
     if not on.valued and drive.kind not in ("effort", "damper"):
@@ -89,6 +105,8 @@ def _actors(drive: Drive, on: OneFreedom, name: str) -> tuple[Component, ...]:
         return (Spring(name, drive.joint, _number(drive, "stiffness"), rest, **at),)
     if drive.kind == "damper":
         return (Damper(name, drive.joint, _number(drive, "damping"), **at),)
+    if drive.kind == "friction":
+        return (_friction(drive, on, name, found),)
     if drive.kind == "servo":
         gains = {key: _number(drive, key, 0.0) for key in ("ki", "kd")}
         controller = Controller(_number(drive, "kp"), **gains, limit=_limit(drive))
@@ -96,6 +114,25 @@ def _actors(drive: Drive, on: OneFreedom, name: str) -> tuple[Component, ...]:
     if drive.kind == "dc_motor":
         return _motor(drive, on, name)
     raise ValueError("this kind is not simulated")
+
+
+def _friction(drive: Drive, on: OneFreedom, name: str, found: Mapping[str, Sliding]) -> Friction:
+    """Friction as stated, with what contact says where nothing is."""
+    stated, joint = drive.parameters, on.joint
+    sliding = found.get(joint.subject, Sliding())
+    kinetic, static = stated.get("coefficient"), stated.get("static")
+    effort = stated.get("effort", 0.0)
+    rest = stated.get("static_effort", effort)
+    if kinetic is None and static is None and "effort" not in stated and "static_effort" not in stated:
+        kinetic, static = sliding.coefficients()
+    kinetic = kinetic if kinetic is not None else static if static is not None else 0.0
+    static = kinetic if static is None else static
+    if static < kinetic or rest < effort:
+        raise ValueError("friction at rest cannot be less than that in motion")
+    friction = Friction(name, drive.joint, kinetic, static, effort, rest, freedom=on.freedom, rates=joint.kind.rates)
+    if static == 0.0:
+        return friction
+    return replace(friction, **sliding.stated(drive).levers(joint.kind, joint.geometry, on.freedom))
 
 
 def _signal(drive: Drive, scale: float) -> Signal:

@@ -283,6 +283,7 @@ COMPONENTS: dict[str, type[Component]] = {
     "effort": shafts.EffortDrive,
     "spring": shafts.Spring,
     "damper": shafts.Damper,
+    "friction": shafts.Friction,
     "end_stop": shafts.EndStop,
     "servo": shafts.Servo,
     "dc_motor": shafts.DcMotor,

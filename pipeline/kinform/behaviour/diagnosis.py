@@ -12,7 +12,7 @@ import numpy as np
 from kinform.behaviour.components import Gear, Ground, JointComponent, LoadComponent, RigidBody, SpringDamper, System
 from kinform.behaviour.constants import UNIT_LENGTH
 from kinform.behaviour.ports import Component
-from kinform.behaviour.shafts import Actor, Controller, DcMotor, EndStop, VoltageController, VoltageSource
+from kinform.behaviour.shafts import Actor, Controller, DcMotor, EndStop, Friction, VoltageController, VoltageSource
 from kinform.behaviour.signals import LAWS, Table
 
 _SIGNALS = tuple(LAWS.values())
@@ -53,12 +53,22 @@ def _faults_of_values(component: Component) -> Iterator[str]:
             yield from _number(field.name, value, "its ")
     if isinstance(component, EndStop) and not 0.0 <= component.restitution <= 1.0:
         yield f"its restitution is {component.restitution:g}: a share of the speed is between 0 and 1"
+    if isinstance(component, Friction):
+        yield from _faults_of_friction(component)
     if isinstance(component, EndStop) and component.lower > component.upper:
         yield f"its lower limit {component.lower:g} is above the upper {component.upper:g}"
     if isinstance(component, DcMotor) and (component.resistance <= 0.0 or component.inductance < 0.0):
         yield "its resistance must be positive, its inductance not negative"
     if isinstance(component, JointComponent):
         yield from _faults_of_geometry(component)
+
+
+def _faults_of_friction(friction: Friction) -> Iterator[str]:
+    for name in ("kinetic", "static", "effort", "static_effort", "radial"):
+        if getattr(friction, name) < 0.0:
+            yield f"its {name.replace('_', ' ')} is negative"
+    if friction.static < friction.kinetic or friction.static_effort < friction.effort:
+        yield "its friction at rest is less than that in motion"
 
 
 def _faults_of_geometry(joint: JointComponent) -> Iterator[str]:

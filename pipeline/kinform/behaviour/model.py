@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,6 +24,7 @@ from kinform.behaviour.components import Gear, Ground, JointComponent, LoadCompo
 from kinform.behaviour.joints import KINDS, JointGeometry
 from kinform.behaviour.nested import placed
 from kinform.behaviour.ports import Component, Node
+from kinform.behaviour.rubbing import Rubs
 from kinform.behaviour.signals import Signal
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.model.arrays import Array
@@ -165,6 +167,33 @@ class Model:
     def damper(self, name: str, joint: Where, damping: float, *, freedom: int | None = None) -> None:
         """N·m·s/rad or N·s/m."""
         self.add(shafts.Damper(name, name, damping, **self._on(joint, freedom)), shaft=joint)
+
+    def friction(
+        self,
+        name: str,
+        joint: Where,
+        coefficient: float = 0.0,
+        *,
+        static: float | None = None,
+        effort: float = 0.0,
+        static_effort: float | None = None,
+        surfaces: Rubs | None = None,
+        freedom: int | None = None,
+    ) -> None:
+        """Coulomb friction: the coefficient in motion, and that at rest where it is greater; `effort` (N·m or N) that
+        there is without load. `surfaces`: what rubs, needed for joints that turn; a slide takes loads at its point.
+        """
+        on = self._on(joint, freedom)
+        component = self.components.get(joint if isinstance(joint, str) else joint[0])
+        static = coefficient if static is None else static
+        rest = effort if static_effort is None else static_effort
+        friction = shafts.Friction(
+            name, name, coefficient, static, effort, rest, freedom=on.get("freedom", 0), rates=on.get("rates", 1)
+        )
+        if static and isinstance(component, JointComponent):
+            levers = (surfaces or Rubs()).levers(component.kind, component.geometry, friction.freedom)
+            friction = replace(friction, **levers)
+        self.add(friction, shaft=joint)
 
     def stop(
         self,

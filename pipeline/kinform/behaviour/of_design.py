@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,11 +15,14 @@ from kinform.behaviour.joints import KINDS, JointGeometry
 from kinform.behaviour.nested import nest
 from kinform.behaviour.ports import Component, Node
 from kinform.behaviour.shafts import EndStop
+from kinform.behaviour.sliding import sliding_joints
 from kinform.function import resolve_joint, stated_ranges
 from kinform.model.assembly import Assembly
+from kinform.model.contacts import Contacts
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.mass import MassReport
 from kinform.model.quantities import Reason
+from kinform.model.surfaces import MeshSurfaces
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,12 +63,21 @@ class _Builder:
         return System(tuple(self.components), nodes)
 
 
-def build(assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, *, gears: bool = False) -> Behaviour:
+def build(
+    assembly: Assembly,
+    kinematics: Kinematics,
+    mass: MassReport | None,
+    *,
+    gears: bool = False,
+    contacts: Contacts | None = None,
+    surfaces: Mapping[str, MeshSurfaces] | None = None,
+) -> Behaviour:
     """The port model: bodies and ground, joints, drives, loads, and with `gears` the couplings of
     `[function]`, which geometry does not show.
 
     Joints that are ambiguous or general are failures, as are drives on freedoms that do not exist; where `[simulation]`
-    is partial such joints are rigid instead, and what acts on them is left out.
+    is partial such joints are rigid instead, and what acts on them is left out. From `contacts` and `surfaces`
+    friction has its radii and its materials.
     """
     builder = _Builder()
     partial = assembly.simulation is not None and assembly.simulation.partial
@@ -108,8 +120,9 @@ def build(assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, *
             (held if partial else failures).append((name, teeth))
         else:
             builder.add(teeth, **{port: f"shaft {joint}" for port, joint in zip("ab", coupling.joints, strict=True)})
+    rubbing = sliding_joints(assembly, kinematics, contacts, surfaces or {})
     for number, drive in enumerate(assembly.function.drives, start=1):
-        actors, joint_name, why, by_force = make_drive(assembly, kinematics, modelled, drive, number)
+        actors, joint_name, why, by_force = make_drive(assembly, kinematics, modelled, drive, number, rubbing)
         for component in actors:
             builder.add(component, shaft=f"shaft {joint_name}", terminals=f"terminals {number}")
         if not actors:

@@ -6,9 +6,12 @@ import math
 from dataclasses import dataclass, field
 from typing import Annotated, ClassVar
 
+import numpy as np
+
 from kinform.behaviour.ports import Component, Port
 from kinform.behaviour.signals import Signal
-from kinform.model.quantities import JointValue, Ratio
+from kinform.model.arrays import Array
+from kinform.model.quantities import XYZ, Direction, JointValue, Metres, Ratio
 
 
 @dataclass(frozen=True)
@@ -67,6 +70,46 @@ class EndStop(OnShaft):
     lower: JointValue = -math.inf
     upper: JointValue = math.inf
     restitution: Ratio = 0.0
+
+
+def _round() -> Array:
+    """No direction: what is loaded is round."""
+    return np.zeros(3)
+
+
+@dataclass(frozen=True, eq=False)
+class Friction(OnShaft):
+    """Coulomb friction: at rest any effort up to a limit, in motion the effort `kinetic · grip + effort` against it.
+
+    The limit at rest is `static · grip + static_effort`. The grip follows from the wrench in the joint; with its force
+    f and its torque τ about the joint's point, along the axis and across it (`mechanism.rubbing`):
+    grip = radial · (|F₁| + |F₂|) + |axial · f∥ + torsion · τ∥|, where F₁ and F₂ are the forces across the axis, at
+    `lower` and `upper` along it, that make f⊥ and τ⊥. Where both are equal τ⊥ does not count.
+    """
+
+    kinetic: Ratio
+    """Coefficient in motion."""
+    static: Ratio
+    """Coefficient at rest."""
+    effort: Annotated[float, "N·m or N"] = 0.0
+    """What there is without load, in motion."""
+    static_effort: Annotated[float, "N·m or N"] = 0.0
+    """The same at rest."""
+    radial: Annotated[float, "m or 1"] = 0.0
+    """Arm of the friction of a journal; 1 for slides."""
+    lower: Metres = 0.0
+    """From the joint's point along its axis to one end of what carries loads across it."""
+    upper: Metres = 0.0
+    axial: Annotated[float, "m or 1"] = 0.0
+    """Arm of the friction of a thrust ring; of a thread with `torsion`."""
+    torsion: Annotated[float, "1 or 1/m"] = 0.0
+    faces_u: Direction = field(default_factory=_round)
+    """(3,) with `faces_v`, of a guide between flat faces: |F| is |F·u| + |F·v|. Zero where it is round."""
+    faces_v: Direction = field(default_factory=_round)
+    offset: Annotated[Array, "m", XYZ] = field(default_factory=_round)
+    """(3,) from the joint's point, at the zero pose, to the point that all of this is about."""
+    riding: bool = False
+    """Whether the ends go along with the second body as it slides."""
 
 
 @dataclass(frozen=True)
@@ -131,5 +174,5 @@ class VoltageController(OnShaftAndTerminals):
     controller: Controller
 
 
-Actor = MotionDrive | EffortDrive | Spring | Damper | EndStop | Servo | DcMotor
+Actor = MotionDrive | EffortDrive | Spring | Damper | Friction | EndStop | Servo | DcMotor
 """What gives a shaft effort, or holds it."""

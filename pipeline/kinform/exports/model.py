@@ -13,7 +13,7 @@ import numpy as np
 
 from kinform.behaviour import Behaviour, Component, JointComponent, RigidBody, System, build
 from kinform.behaviour.components import SpringDamper
-from kinform.behaviour.shafts import EndStop
+from kinform.behaviour.shafts import EndStop, Friction
 from kinform.design import Design
 from kinform.errors import StageError
 from kinform.foundation.algebra.spatial import quaternions
@@ -124,7 +124,9 @@ def export_model(design: Design) -> ExportModel:
         kinematics, gears = functional(assembly), True
     behaviour = design.behaviour
     if behaviour is None or run is None:
-        behaviour = build(assembly, kinematics, design.mass, gears=gears)
+        behaviour = build(
+            assembly, kinematics, design.mass, gears=gears, contacts=design.contacts, surfaces=design.surfaces
+        )
     mechanism, adrift = assemble(behaviour.system)
     q, v = _initial(mechanism, run)
     request = assembly.simulation or SimulationRequest()
@@ -194,6 +196,7 @@ def _ranges(
 
 _ELSEWHERE: dict[type[Component], str] = {
     EndStop: "end stops with impacts",
+    Friction: "Coulomb friction",
     SpringDamper: "a spring between two points",
 }
 """What the equations of the other formats are not written for."""

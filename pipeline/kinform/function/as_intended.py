@@ -66,9 +66,19 @@ def as_intended(run: Simulation, known: Mapping[str, DesignersJoint]) -> Simulat
         joint_effort=turned(run.joint_effort),
         joint_acceleration=turned(run.joint_acceleration),
         drives=tuple(replace(use, joint=named.get(use.joint, use.joint)) for use in run.drives),
+        friction_joints=tuple(named.get(name, name) for name in run.friction_joints),
+        friction_effort=_frictions(run, known),
         gear_names=tuple(named.get(name, name) for name in run.gear_names),
         ranges=None if run.ranges is None else tuple(_range(item, known) for item in run.ranges),
     )
+
+
+def _frictions(run: Simulation, known: Mapping[str, DesignersJoint]) -> Array:
+    """(T, M) what the frictions give, in the designer's senses."""
+    if not run.friction_joints:
+        return run.friction_effort
+    signs = np.array([known[name].sign if name in known else 1 for name in run.friction_joints])
+    return np.asarray(run.friction_effort * signs + 0.0)
 
 
 def _range(item: JointRange, known: Mapping[str, DesignersJoint]) -> JointRange:

@@ -15,7 +15,7 @@ from kinform.model.sensors import Sensor
 
 Stated = Annotated[float, "unit of the manifest"]
 """Where only the joint says whether it is an angle or a length."""
-PASSIVE = ("spring", "damper")
+PASSIVE = ("spring", "damper", "friction")
 """Kinds of drives that only answer to motion."""
 StatedRate = Annotated[float, "unit of the manifest a second"]
 
@@ -90,7 +90,7 @@ class Drive:
 
     joint: str
     kind: str
-    """motion, effort, spring, damper, servo, dc_motor."""
+    """motion, effort, spring, damper, friction, servo, dc_motor."""
     law: Law | None
     parameters: dict[str, float]
     """Further numbers of the kind (stiffness, damping, rest, kp, …, gear) that are stated, in manifest units."""
@@ -103,6 +103,19 @@ class Drive:
     def scale(self, rotational: bool) -> float:
         """Factor from the manifest's values of a motion (degrees or lengths) to SI."""
         return math.pi / 180.0 if rotational else self.metres_per_unit
+
+
+@dataclass(frozen=True)
+class MaterialFriction:
+    """Coulomb friction between two materials."""
+
+    materials: Annotated[tuple[str, str], columns("material_a", "material_b")]
+    coefficient: Ratio
+    """In motion."""
+    static: Ratio
+    """At rest."""
+    file: str
+    line: int | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,6 +160,8 @@ class Function:
     drives: tuple[Drive, ...] = ()
     loads: tuple[Load, ...] = ()
     requirements: tuple[Requirement, ...] = ()
+    frictions: tuple[MaterialFriction, ...] = ()
+    """Of `[[friction]]`."""
     complete: tuple[str, ...] = ()
     """Prefixes of the manifests whose joints are all that are meant to move; "" for the top one."""
 

@@ -21,7 +21,7 @@ class DriveUse:
 
     joint: str
     kind: str
-    """motion, effort, spring, damper, servo, dc_motor, stop."""
+    """motion, effort, spring, damper, friction, servo, dc_motor, stop."""
     peak: Effort
     """Greatest effort at an output time, N·m or N."""
     rms: Effort
@@ -93,6 +93,14 @@ class Simulation:
     """(T, G, 2) N·m or N that each gives the shafts of its two joints; no times below dynamic."""
     gear_force: Annotated[Array, "N"] = field(default_factory=lambda: np.zeros((0, 0)))
     """(T, G) N between the teeth, at half of their width and without friction; nan where not known."""
+    friction_joints: tuple[str, ...] = ()
+    """M frictions: the joints that they are in."""
+    friction_effort: Annotated[Array, "N·m or N"] = field(default_factory=lambda: np.zeros((0, 0)))
+    """(T, M) N·m or N that each gives its shaft; of joints that stick by one motion one stands for all."""
+    friction_limit: Annotated[Array, "N·m or N"] = field(default_factory=lambda: np.zeros((0, 0)))
+    """(T, M) what each would take at most at rest, under the load then."""
+    friction_sticks: Flags = field(default_factory=lambda: np.zeros((0, 0), dtype=np.bool_))
+    """(T, M) whether it sticks."""
     drives: tuple[DriveUse, ...] = ()
     """What acts on the shafts of joints, in order."""
     drive_effort: Annotated[Array, "N·m or N"] = field(default_factory=lambda: np.zeros((0, 0)))

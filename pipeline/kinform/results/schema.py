@@ -38,7 +38,7 @@ class Form:
 
 
 TIME, BODIES, JOINTS = "simulation/time", "simulation/body_names", "simulation/joint_names"
-COORDINATES, GEARS = Last("simulation/joint_offset"), "simulation/gear_names"
+COORDINATES, GEARS, FRICTIONS = Last("simulation/joint_offset"), "simulation/gear_names", "simulation/friction_joints"
 _OF_DRIVES = Form("f", ("simulation/time", "simulation/drives"), or_none=True)
 _OF_COORDINATES = Form("f", (TIME, COORDINATES), or_none=True)
 _WRENCHES = Form("f", (TIME, JOINTS, 6), or_none=True)
@@ -64,6 +64,9 @@ ARRAYS: dict[str, Form] = {
     "simulation/joint_signs": Form("i", (JOINTS,)),
     "simulation/gear_effort": Form("f", (TIME, GEARS, 2), or_none=True),
     "simulation/gear_force": Form("f", (TIME, GEARS), or_none=True),
+    "simulation/friction_effort": Form("f", (TIME, FRICTIONS), or_none=True),
+    "simulation/friction_limit": Form("f", (TIME, FRICTIONS), or_none=True),
+    "simulation/friction_sticks": Form("u", (TIME, FRICTIONS), or_none=True),
     "simulation/energy": Form("f", (TIME, 3), or_none=True),
     "simulation/drive_effort": _OF_DRIVES,
     "simulation/drive_speed": _OF_DRIVES,

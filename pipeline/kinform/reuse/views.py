@@ -67,7 +67,12 @@ def for_motion(assembly: Assembly) -> Assembly:
     """Everything but requirements and the intended mobility."""
     function = replace(_bare_function(assembly.function), mobility=None, requirements=())
     request = None if assembly.simulation is None else _bare_request(assembly.simulation)
-    return replace(_bare(assembly), function=function, simulation=request)
+    out = replace(_bare(assembly), function=function, simulation=request)
+    if any(drive.kind == "friction" for drive in function.drives):
+        # Materials say how much there is.
+        named = zip(out.parts, assembly.parts, strict=True)
+        out = replace(out, parts=tuple(replace(part, material=own.material) for part, own in named))
+    return out
 
 
 def everything(assembly: Assembly) -> Assembly:
@@ -109,6 +114,7 @@ def _bare_function(function: Function) -> Function:
         drives=tuple(replace(drive, file="", line=None, law=_bare_law(drive.law)) for drive in function.drives),
         loads=tuple(replace(load, file="", line=None) for load in function.loads),
         requirements=function.requirements,
+        frictions=tuple(replace(one, file="", line=None) for one in function.frictions),
         complete=function.complete,
     )
 

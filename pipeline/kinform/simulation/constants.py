@@ -306,3 +306,26 @@ DEPENDENT_GEARS = 1e-12
 """Share of the greatest singular value of the gears' rows below which one depends on the others."""
 NO_TURN = 1e-12
 """Half of an angle (rad) below which a turn has no axis."""
+
+# solver.slip and solver.stick_slip: friction.
+
+SLIP_STEEPEST = 1.0 - 1e-9
+"""Growth of friction with itself, by the loads that it causes, from which on its answer is not unique (theory: 1)."""
+SLIP_ROUNDS = 2000
+"""Rounds of the fixed point: with a growth of 0.98 so many reach rounding; ordinary joints take under ten."""
+SLIP_SETTLED = 1e-15
+"""Change of a round over the friction at which it is settled: rounding."""
+SLIP_PARTS = 8
+"""Parts of a step at which rates are looked at for a reversal: more often than a polynomial of order 7 turns."""
+STICK_PARTS = 4
+"""Parts of a step at which what sticks is looked at; laws that swing shorten the steps (`Contact.longest`)."""
+STICK_ROUNDING = 1e-12
+"""Share of the limit by which what holds may exceed it and still sticks: a block at exactly atan μ stays."""
+SAME_MOTION = 1e-9
+"""Sine of the angle between the ways in which two frictions depend on the free motions, below which it is one."""
+DEAD_CENTRE = 1e-6
+"""Share of a free motion below which a joint takes no part in it, as at a dead centre: its rate turns."""
+MOST_SWITCHES = 100_000
+"""Changes between sticking and slipping before a run gives up."""
+SWITCHES_AT_ONCE = 8
+"""Changes at one and the same time, for each friction, before a run gives up: three are ordinary."""

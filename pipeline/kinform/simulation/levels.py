@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from kinform.behaviour import Behaviour, RigidBody
+from kinform.behaviour import Behaviour, Friction, RigidBody, System
 from kinform.function import FREEDOMS, acted_freedom, resolve_joint
 from kinform.model.assembly import Assembly
 from kinform.model.function import Drive
@@ -79,6 +79,28 @@ def notes_of_drives(drives: Iterable[Drive]) -> Iterator[str]:
         taken = [said for key, said in _DEFAULTS.get(drive.kind, {}).items() if key not in drive.parameters]
         if taken:
             yield f"the {drive.kind.replace('_', ' ')} on {drive.joint} does not state: {', '.join(taken)}"
+
+
+def notes_of_friction(system: System) -> Iterator[str]:
+    """Which coefficients, arms and ends friction was taken to have."""
+    for one in (c for c in system.components if isinstance(c, Friction)):
+        words = [f"{one.kinetic:g} in motion, {one.static:g} at rest"] if one.static else []
+        if one.static_effort:
+            words.append(f"{one.effort:g} and {one.static_effort:g} N·m or N without load")
+        if one.static and one.radial:
+            arm = f"journal of radius {1e3 * one.radial:.4g} mm" if one.radial != 1.0 else "guide"
+            span = one.upper - one.lower
+            ends = (
+                f"{1e3 * span:.4g} mm long" if span > 0.0 else "whose length is not known: moments across it do not rub"
+            )
+            words.append(f"{arm}, {ends}")
+            if one.torsion:
+                words.append(f"a torque about the slide on an arm of {1e3 / one.torsion:.4g} mm, added")
+        elif one.static and one.torsion:
+            words.append(f"thread of tan λ / cos α {-one.torsion:.4g}")
+        if one.static and one.axial and not one.torsion:
+            words.append(f"thrust ring of mean radius {1e3 * one.axial:.4g} mm")
+        yield f"friction on {one.subject}: {'; '.join(words)}"
 
 
 def notes_of_freedoms(assembly: Assembly, kinematics: Kinematics) -> Iterator[str]:

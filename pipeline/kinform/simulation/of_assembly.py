@@ -18,6 +18,7 @@ from kinform.simulation.levels import (
     choose,
     notes_of_drives,
     notes_of_freedoms,
+    notes_of_friction,
     notes_of_joints,
     notes_of_level,
     notes_of_teeth,
@@ -69,6 +70,7 @@ def simulate_assembly(
         *notes_of_teeth(kinematics),
         *notes_of_freedoms(assembly, kinematics),
         *(notes_of_drives(assembly.function.drives) if choice.level == "dynamic" else ()),
+        *(notes_of_friction(behaviour.system) if choice.level == "dynamic" else ()),
         *notes_of_level(assembly, kinematics, choice.level, adrift, gears),
     )
     request, system = assembly.simulation or SimulationRequest(), behaviour.system

@@ -22,8 +22,10 @@ from kinform.simulation.outcome.results import publish, publish_dynamic, while_i
 from kinform.simulation.outcome.sensing import Probe, with_readings
 from kinform.simulation.settings import Conduct, SolverSettings
 from kinform.simulation.solver.dynamic import run_dynamic
+from kinform.simulation.solver.friction_known import friction_not_determined
 from kinform.simulation.solver.kinematic import notes_of_rest, run_kinematic
 from kinform.simulation.solver.start import Stated, begin, loop_rank, torn_at_start
+from kinform.simulation.solver.stick_slip import run_with_friction
 from kinform.simulation.solver.stops import beyond
 from kinform.simulation.subject import Failures, refuse
 
@@ -174,11 +176,15 @@ def run_course(
     if outside:
         return refuse("the mechanism cannot start", outside)
     dynamics = Dynamics(mechanism, system, course.gravity, actuation, rank)
+    unclear = friction_not_determined(dynamics, start.q, settings)
+    if unclear:
+        return refuse("the friction is not determined", unclear)
     weightless = dynamics.weightless(start.q)
     if weightless:
         why = "its motion moves no mass: the acceleration is not determined"
         return refuse("a free motion has no inertia", tuple((name, why) for name in weightless))
-    record = while_in_mesh(mechanism, system, run_dynamic(dynamics, start, times, conduct))
+    solve = run_with_friction if actuation.frictions else run_dynamic
+    record = while_in_mesh(mechanism, system, solve(dynamics, start, times, conduct))
     run, states = publish_dynamic(dynamics, record, course.level, notes, settings)
     return with_readings(run, states, mechanism, probes)
 

@@ -2,25 +2,36 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from kinform.behaviour import Behaviour, build
 from kinform.model.assembly import Assembly
+from kinform.model.contacts import Contacts
 from kinform.model.kinematics import Kinematics
 from kinform.model.mass import MassReport
 from kinform.model.simulation import Simulation
+from kinform.model.surfaces import MeshSurfaces
 
 Failures = tuple[tuple[str, str], ...]
 """(subject, why)."""
 
 
 def port_model(
-    assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, *, level: str | None = None
+    assembly: Assembly,
+    kinematics: Kinematics,
+    mass: MassReport | None,
+    *,
+    level: str | None = None,
+    contacts: Contacts | None = None,
+    surfaces: Mapping[str, MeshSurfaces] | None = None,
 ) -> Behaviour:
     """The port model that `simulate` solves at that level, whatever is wrong with it."""
     asked = asked_level(assembly, level)
     joints = simulated_joints(assembly, kinematics, asked)
-    return build(assembly, joints, mass, gears=are_gears_ideal(assembly, asked))
+    gears = are_gears_ideal(assembly, asked)
+    return build(assembly, joints, mass, gears=gears, contacts=contacts, surfaces=surfaces)
 
 
 def asked_level(assembly: Assembly, level: str | None) -> str | None:

@@ -14,6 +14,7 @@ from kinform.form.manifest.parts import (
     AssemblyTable,
     Assume,
     Fasteners,
+    FrictionTable,
     Group,
     Material,
     Part,
@@ -72,6 +73,7 @@ class Manifest(Table):
     schema_: int = Field(alias="schema", ge=1, le=1, description="version of this format: 1")
     assembly: AssemblyTable = Field(description="name, units and ground")
     materials: dict[str, Material] = Field({}, description="materials by name")
+    friction: list[FrictionTable] = Field([], description="Coulomb friction between materials")
     part: list[Part] = Field([], description="the parts")
     group: list[Group] = Field([], description="parts that are fastened together")
     subassembly: list[Subassembly] = Field([], description="other manifests, placed as a whole")

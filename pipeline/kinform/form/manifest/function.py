@@ -116,6 +116,32 @@ class Damper(_Drive):
     damping: Positive = Field(description="N·m·s/rad or N·s/m, whatever the units of the file")
 
 
+class Friction(_Drive):
+    """Coulomb friction: the coefficient by what presses in the joint, and what there is without load."""
+
+    kind: Literal["friction"]
+    coefficient: NonNegative | None = Field(
+        None, description="in motion; default that of the materials in contact, where no effort is stated"
+    )
+    static: NonNegative | None = Field(None, description="coefficient at rest; default that in motion")
+    effort: NonNegative | None = Field(None, description="N·m or N without load, in motion")
+    static_effort: NonNegative | None = Field(None, description="N·m or N without load, at rest; default as in motion")
+    radius: NonNegative | None = Field(
+        None, description="of the journal, mean of a thread; default from the contact; 0: no journal rubs"
+    )
+    thrust_radius: NonNegative | None = Field(
+        None, description="mean radius of the ring that carries thrust; default from the contact; 0: none rubs"
+    )
+    length: NonNegative | None = Field(
+        None,
+        description="of journal or guide, about the joint's point; default from the contact; 0: moments across "
+        "the axis are carried without friction",
+    )
+    flank: Annotated[float, Field(ge=0.0, lt=90.0)] | None = Field(
+        None, description="degrees: half the angle of a thread; default from the contact"
+    )
+
+
 class Servo(_Drive):
     """A position controller with limited effort."""
 
@@ -139,7 +165,7 @@ class DcMotor(_Drive):
     law: LawTable | None = Field(None, description="volt over time; in place of voltage")
 
 
-Drive = Annotated[Motion | Effort | Spring | Damper | Servo | DcMotor, Field(discriminator="kind")]
+Drive = Annotated[Motion | Effort | Spring | Damper | Friction | Servo | DcMotor, Field(discriminator="kind")]
 
 
 class Load(Table):

@@ -46,6 +46,16 @@ class Material(Table):
     density: Positive = Field(description="kg/m³, whatever the units of the file")
 
 
+class FrictionTable(Table):
+    """`[[friction]]`: Coulomb friction between two materials, for frictions that state no coefficient."""
+
+    materials: Annotated[list[Name], Field(min_length=2, max_length=2)] = Field(
+        description="two materials, the same twice where it rubs on itself"
+    )
+    coefficient: NonNegative = Field(description="in motion")
+    static: NonNegative | None = Field(None, description="at rest; default as in motion")
+
+
 class BoxShape(Table):
     """A box about the origin of the part."""
 

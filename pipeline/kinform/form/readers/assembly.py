@@ -161,6 +161,7 @@ class _AssemblyReader:
             joints=tuple(joint for reader in readers for joint in reader.intended()),
             couplings=tuple(coupling for reader in readers for coupling in reader.couplings()),
             drives=tuple(drive for reader in readers for drive in reader.drives()),
+            frictions=tuple(pair for reader in readers for pair in reader.frictions()),
             loads=tuple(load for reader in readers for load in reader.loads()),
             requirements=tuple(requirement for reader in readers for requirement in requirements_of(reader)),
             complete=tuple(scope.prefix for scope in self.scopes if _complete(scope)),

@@ -19,7 +19,16 @@ from kinform.form.readers.open_manifest import Scope
 from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.model.assembly import Assumption
 from kinform.model.checks import CheckSettings, Ignore
-from kinform.model.function import Coupling, Drive, InitialValue, IntendedJoint, Law, Load, SimulationRequest
+from kinform.model.function import (
+    Coupling,
+    Drive,
+    InitialValue,
+    IntendedJoint,
+    Law,
+    Load,
+    MaterialFriction,
+    SimulationRequest,
+)
 
 NEEDED = {
     "axis": ("revolute", "prismatic", "cylindrical", "planar", "screw", "universal"),
@@ -179,6 +188,18 @@ class FunctionReader:
             parameters = {key: float(value) for key, value in stated.items()}
             where = self.scope.where(*path)
             yield Drive(joint, table.kind, law, parameters, self.scope.metres, *where, table.freedom or "")
+
+    def frictions(self) -> Iterator[MaterialFriction]:
+        """`[[friction]]`."""
+        for path, table in self.scope.tables("friction"):
+            static = table.coefficient if table.static is None else table.static
+            if static < table.coefficient:
+                wrong = "friction at rest cannot be less than that in motion"
+                self.scope.complain(
+                    f"[[friction]] {path[1] + 1}: {wrong}", "give static ≥ coefficient", *path, "static"
+                )
+            first, second = table.materials
+            yield MaterialFriction((first, second), table.coefficient, static, *self.scope.where(*path))
 
     def _law(self, table: Any, *path: str | int) -> Law | None:
         if table is None:

@@ -53,6 +53,7 @@ FUNCTION = Layout(
     _Drives(),
     Table("loads"),
     Table("requirements"),
+    Table("frictions"),
     Texts("complete"),
 )
 REQUEST = Layout(

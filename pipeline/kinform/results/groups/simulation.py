@@ -49,6 +49,10 @@ LAYOUT = Layout(
     WholeColumns("monitors", "residual", "rank", "balance"),
     Numbers("undetermined"),
     Texts("gear_names"),
+    Numbers("friction_effort"),
+    Numbers("friction_limit"),
+    Numbers("friction_sticks"),
+    Texts("friction_joints"),
     Table("drives"),
     Numbers("drive_effort"),
     Numbers("drive_speed"),
@@ -109,6 +113,7 @@ def _called(run: Simulation, known: dict[str, DesignersJoint]) -> Simulation:
         return run
     named = {name: one.name for name, one in known.items()}
     of_joint = [name in known and known[name].sign < 0 for name in run.joint_names]
+    rubbing = np.array([name in known and known[name].sign < 0 for name in run.friction_joints], dtype=np.bool_)
     turned = np.repeat(of_joint, np.diff(run.joint_offset))
     against = np.array([use.joint in known and known[use.joint].sign < 0 for use in run.drives], dtype=np.bool_)
 
@@ -124,5 +129,7 @@ def _called(run: Simulation, known: dict[str, DesignersJoint]) -> Simulation:
         joint_acceleration=signed(run.joint_acceleration),
         drive_effort=signed(run.drive_effort, against),
         drive_speed=signed(run.drive_speed, against),
+        friction_joints=tuple(named.get(name, name) for name in run.friction_joints),
+        friction_effort=signed(run.friction_effort, rubbing),
         drives=tuple(replace(use, joint=named.get(use.joint, use.joint)) for use in run.drives),
     )

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import copy
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from kinform.behaviour import shafts
 from kinform.behaviour.components import System
-from kinform.behaviour.signals import Signal, Spline, smooth
+from kinform.behaviour.signals import Constant, Signal, Spline, smooth
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.kernel import layout
 from kinform.simulation.mechanism.mechanism import Mechanism, Slot
+from kinform.simulation.mechanism.rubbing import Rubbing, rubbing_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +31,8 @@ class Acts:
     """In the order of the kernel; see `kernel.forces.drive`."""
     states: tuple[bool, bool] = (False, False)
     """Whether it has a first and a second state: current, integral."""
+    friction: int = -1
+    """Which of the frictions it stands for, whose effort the solver finds; −1: none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,13 +81,17 @@ class Actuation:
         self.conflicts: list[tuple[str, str]] = []
         self.actors: list[Acts] = []
         self.stops: list[Stop] = []
+        self.frictions: list[Rubbing] = []
         self._led: list[tuple[int, int, Signal, str]] = []
         self.springs: list[Between] = []
         self._with_mass = with_mass
         slots = {slot.name: slot for slot in mechanism.slots}
         for joint in system.joints:
             for actor in system.actors(joint.name):
-                self._take(system, slots[joint.subject], actor)
+                if isinstance(actor, shafts.Friction):
+                    self._rub(rubbing_of(mechanism, system, joint, actor), slots[joint.subject])
+                else:
+                    self._take(system, slots[joint.subject], actor)
         self._lead(self._led, mechanism.rates)
         link_of = dict(zip(mechanism.bodies, mechanism.link_of, strict=True))
         self.loads = [
@@ -119,6 +126,16 @@ class Actuation:
                     self.stops.append(Stop(slot.name, q, v, sense, limit, actor.restitution))
         else:
             self.actors.append(_acts(system, slot.name, q, v, actor))
+
+    def _rub(self, rubbing: Rubbing, slot: Slot) -> None:
+        """Add friction, as an effort that the solver finds."""
+        if slot.has_ball:
+            self.conflicts.append((slot.name, "friction acts on turns about one axis and on slides, not on a ball"))
+            return
+        name, number = rubbing.friction.name, len(self.frictions)
+        acts = Acts(name, slot.name, rubbing.q, rubbing.v, layout.EFFORT, Constant(0.0), (), friction=number)
+        self.frictions.append(replace(rubbing, actor=len(self.actors)))
+        self.actors.append(acts)
 
     def _followed(self, actor: shafts.MotionDrive, turns: bool) -> Signal:
         """The signal as a body with mass can follow it."""

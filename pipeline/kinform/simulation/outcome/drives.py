@@ -46,7 +46,10 @@ def _acted(dynamics: Dynamics, record: Record) -> Iterator[tuple[int, str, Array
             record.extra[:, states + sum(actor.states[:k])] if has else None for k, has in enumerate(actor.states)
         ]
         states += sum(actor.states)
-        yield actor.v, _KINDS[actor.does], _effort(actor, record, columns)
+        if actor.friction >= 0 and record.friction is not None:
+            yield actor.v, "friction", record.friction.effort[:, actor.friction]
+        else:
+            yield actor.v, _KINDS[actor.does], _effort(actor, record, columns)
 
 
 def _rates(mechanism: Mechanism) -> dict[int, tuple[str, int, bool]]:

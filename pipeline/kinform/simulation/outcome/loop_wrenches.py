@@ -68,8 +68,9 @@ class _Conditions:
 
 def add_loops(
     carried: Array, shares: Shares, screws: Array, points: Array, effort: Array, rank: int
-) -> tuple[Array, Flags]:  # fmt: skip
-    """(T, J, 6) wrenches on the second bodies about the joints' points, and (J, 6) what is not determined.
+) -> tuple[Array, Flags, Array]:  # fmt: skip
+    """(T, J, 6) wrenches on the second bodies about the joints' points, (J, 6) what is not determined, and (z, J, 6)
+    wrenches that could be added at the first time, torques of about the length and forces of about 1 at most.
 
     `carried` (T, J, 6) is what the tree alone carries, about the centre; `screws` (T, n, 6) of the rates, as the
     second bodies have them, and `effort` (T, n), both as they are; `rank` is that of the loops and the gears.
@@ -83,11 +84,16 @@ def add_loops(
     counted = rank - len(shares.gears)
     every = np.concatenate([one.values.reshape(len(carried), -1) for one in solved], axis=1)
     least = np.full(len(every), np.inf) if counted <= 0 else -np.sort(-every, axis=1)[:, counted - 1]
+    stresses = [np.zeros((0, *loose.shape))]
     for one in solved:
-        added, free = _added(shares, one, whole, points, unit, one.values >= least[:, None, None])
+        added, free, open_ = _added(shares, one, whole, points, unit, one.values >= least[:, None, None])
         whole[:, one.stack.joints] = added
         loose[one.stack.joints] = free
-    return whole * unit, loose
+        for joints, columns in zip(one.stack.joints, open_, strict=True):
+            stress = np.zeros((columns.shape[1], *loose.shape))
+            stress[:, joints] = columns.T.reshape(-1, len(joints), 6)
+            stresses.append(stress[np.abs(stress).max(axis=(1, 2)) > 0.0])
+    return whole * unit, loose, np.concatenate(stresses) * unit
 
 
 def about(wrenches: Array, points: Array) -> Array:
@@ -138,8 +144,9 @@ def _conditions(shares: Shares, stack: _Stack, S: Array, points: Array, rest: Ar
 
 def _added(
     shares: Shares, one: _Conditions, whole: Array, points: Array, unit: Array, counts: Flags
-) -> tuple[Array, Flags]:  # fmt: skip
-    """The wrenches (T, G, j, 6) of the joints of a stack, torques over the length, and which are not determined.
+) -> tuple[Array, Flags, Array]:  # fmt: skip
+    """The wrenches (T, G, j, 6) of the joints of a stack, torques over the length, which are not determined, and
+    (G, 6j, z) what could be added at the first time.
 
     `counts` (T, G, 6c): which singular values do; the directions of the others are free.
     """
@@ -154,6 +161,7 @@ def _added(
     adds = (adds / unit[:, None]).reshape(count, systems, -1, 6 * loops)
     out: Array = whole[:, stack.joints].reshape(count, systems, -1) + np.einsum("tgml,tgl->tgm", adds, special)
     loose = np.zeros((*stack.joints.shape, 6), dtype=np.bool_)
+    open_ = np.zeros((systems, stack.joints.shape[1] * 6, 0))
     first = int(counts.sum(axis=2).min())
     free = ~counts[..., first:]
     if free.any():
@@ -162,4 +170,5 @@ def _added(
         answer = np.linalg.solve(inner, np.einsum("tgmz,tgm->tgz", freedom, out)[..., None])
         out = out - (freedom @ answer)[..., 0]
         loose = (np.abs(freedom).max(axis=(0, 3)) > UNDETERMINED_SHARE).reshape(loose.shape)
-    return out.reshape(count, systems, -1, 6), loose
+        open_ = freedom[0]
+    return out.reshape(count, systems, -1, 6), loose, open_

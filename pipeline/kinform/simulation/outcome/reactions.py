@@ -8,7 +8,7 @@ Kinematics and Dynamics, 1989, section 6.6, for the reactions; the choice is tha
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -35,11 +35,17 @@ class Reactions:
     """(J, 6)."""
     gears: Transmitted | None = None
     """What gears pass on; None without any."""
+    stresses: Array = field(default_factory=lambda: np.zeros((0, 0, 6)))
+    """(z, J, 6) wrenches that balance each other at the first time: what redundancy leaves open, torques of at most
+    about the mechanism's length, forces of at most about 1."""
 
 
-def reactions(dynamics: Dynamics, states: States, effort: Array, free: float) -> Reactions:
-    """Wrenches of all joints for the efforts (T, n) on their shafts; `free` decides the rank of the loops."""
-    network = Network(dynamics)
+def reactions(
+    dynamics: Dynamics, states: States, effort: Array, free: float, network: Network | None = None
+) -> Reactions:
+    """Wrenches of all joints for the efforts (T, n) on their shafts; `free` decides the rank of the loops. `network`:
+    that of the dynamics, which must be without teeth, where it is known already."""
+    network = Network(dynamics) if network is None else network
     needed = network.spread(needs(dynamics, states))
     points = joint_points(dynamics, states)
     wrenches = _in_chunks(network, dynamics, states, needed, points, effort, free)
@@ -72,8 +78,9 @@ def _in_chunks(
     if not parts:
         none = np.zeros((0, len(network.first), 6))
         return Reactions(none, points, np.zeros(none.shape[1:], dtype=np.bool_))
-    wrenches = np.concatenate([wrench for wrench, _ in parts])
-    return Reactions(wrenches, points, np.any([loose for _, loose in parts], axis=0))
+    wrenches = np.concatenate([wrench for wrench, _, _ in parts])
+    loose = np.any([loose for _, loose, _ in parts], axis=0)
+    return Reactions(wrenches, points, loose, stresses=parts[0][2])
 
 
 def needs(dynamics: Dynamics, states: States) -> Array:
@@ -208,9 +215,11 @@ def _rank(dynamics: Dynamics, states: States, gears: Array, free: float) -> int:
 
 def _solve(
     network: Network, screws: Array, needed: Array, points: Array, effort: Array, rank: int
-) -> tuple[Array, Flags]:
-    """(T, J, 6) wrenches on the second bodies about the joints' points, and (J, 6) what is not determined."""
+) -> tuple[Array, Flags, Array]:
+    """(T, J, 6) wrenches on the second bodies about the joints' points, (J, 6) what is not determined, and (z, J, 6)
+    what could be added at the first time."""
     carried = np.einsum("jb,tbk->tjk", network.by_needs, needed)
     if not network.closing:
-        return about(carried, points), np.zeros((len(network.first), 6), dtype=np.bool_)
+        none = np.zeros((len(network.first), 6), dtype=np.bool_)
+        return about(carried, points), none, np.zeros((0, *none.shape))
     return add_loops(carried, network.shares(), screws * network.sign[:, None], points, effort, rank)

@@ -58,6 +58,7 @@ def publish_dynamic(
         F_B=wrenches.on_second,
         undetermined=wrenches.undetermined,
         **_gear_fields(dynamics, wrenches),
+        **_friction_fields(dynamics, record),
         balance=balance.greatest,
         balance_bodies=balance.bodies,
         balance_shafts=_in_columns(dynamics.mechanism, balance.shafts),
@@ -72,6 +73,18 @@ def _gear_fields(dynamics: Dynamics, wrenches: Reactions) -> dict[str, Any]:
         return {}
     names = tuple(gear.subject for gear in dynamics.system.gears)
     return {"gear_names": names, "gear_effort": wrenches.gears.efforts, "gear_force": wrenches.gears.forces}
+
+
+def _friction_fields(dynamics: Dynamics, record: Record) -> dict[str, Any]:
+    """What frictions do, as fields of the results."""
+    if record.friction is None:
+        return {}
+    return {
+        "friction_joints": tuple(one.joint for one in dynamics.actuation.frictions),
+        "friction_effort": record.friction.effort,
+        "friction_limit": record.friction.limit,
+        "friction_sticks": record.friction.sticking,
+    }
 
 
 def _notes_of_gaps(residual: Array) -> tuple[str, ...]:

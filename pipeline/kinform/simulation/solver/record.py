@@ -4,7 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
 
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Flags
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionRecord:
+    """What m frictions did at T output times."""
+
+    effort: Array
+    """(T, m) N·m or N on their rates, in the order of the actuation."""
+    limit: Array
+    """(T, m) what each could take at most at rest."""
+    sticking: Flags
+    """(T, m)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +42,14 @@ class Record:
     stopped: str
     notes: tuple[str, ...] = ()
     """What is to be known of the run, in sentences."""
+    friction: FrictionRecord | None = None
+    """None without any."""
 
     def until(self, end: int, why: str) -> Record:
         """The first `end` output times, at which the run stopped for the reason `why`."""
-        cut = {f.name: getattr(self, f.name)[:end] for f in fields(self) if f.name not in ("stopped", "notes")}
-        return replace(self, **cut, stopped=why)
+        whole = ("stopped", "notes", "friction")
+        cut = {f.name: getattr(self, f.name)[:end] for f in fields(self) if f.name not in whole}
+        friction = self.friction
+        if friction is not None:
+            friction = FrictionRecord(friction.effort[:end], friction.limit[:end], friction.sticking[:end])
+        return replace(self, **cut, friction=friction, stopped=why)

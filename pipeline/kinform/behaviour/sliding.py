@@ -1,0 +1,224 @@
+"""What rubs in a joint as its contact patches show it: radii, ends, the angle of a thread, and which materials meet.
+
+A journal is a coaxial cylinder; its ends are those of the overlap of both surfaces, and go along with the shorter one.
+A thrust ring is a flat patch across the axis: its mean radius is that of a load spread evenly over it. A thread is a
+helicoid: mean radius and lean of the flanks are those of its samples. A guide between flat faces has their normals.
+What several unlike surfaces would share (journals of different radii, cones, a guide with faces in three directions) is
+not determined by rigid bodies: then there are no radii but the reason, and the manifest can state them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from kinform.behaviour.constants import ALIKE_RADII, ALONG_AXIS, MATERIAL_PAIRS
+from kinform.behaviour.rubbing import Rubs
+from kinform.kinematics.mobility.guides import span_along
+from kinform.model.arrays import Array
+from kinform.model.assembly import Assembly
+from kinform.model.contacts import Contacts, Patch
+from kinform.model.function import Drive
+from kinform.model.kinematics import Joint, Kinematics
+from kinform.model.surfaces import MeshSurfaces
+
+
+@dataclass(frozen=True, eq=False)
+class Sliding:
+    """What is known of the sliding surfaces of a joint."""
+
+    rubs: Rubs = field(default_factory=Rubs)
+    problem: str = ""
+    """Why the radii are not known; "": they are, or there are no patches."""
+    pairs: tuple[tuple[str | None, str | None], ...] = ()
+    """Materials that meet, sorted."""
+    table: Mapping[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
+    """(in motion, at rest) of pairs of materials, sorted."""
+
+    def coefficients(self) -> tuple[float, float]:
+        """(in motion, at rest) of the materials. Raises ValueError where they are not known, or differ."""
+        if not self.pairs:
+            raise ValueError("state its coefficient or its effort: no contact tells which materials meet")
+        known = set()
+        for first, second in self.pairs:
+            if first is None or second is None:
+                raise ValueError("state its coefficient: a part in contact has no material")
+            pair = (first, second) if first <= second else (second, first)
+            if pair not in self.table:
+                raise ValueError(
+                    f"the friction of {pair[0]} on {pair[1]} is not known: state its coefficient, or a [[friction]]"
+                )
+            known.add(self.table[pair])
+        if len(known) > 1:
+            raise ValueError("its contacts are of materials with different friction: state its coefficient")
+        return known.pop()
+
+    def stated(self, drive: Drive) -> Rubs:
+        """What rubs, with what the drive states in place of what contact shows. Raises ValueError with what neither
+        says."""
+        given, metres = drive.parameters, drive.metres_per_unit
+        out = self.rubs
+        if "radius" in given:
+            out = replace(out, radius=given["radius"] * metres)
+        if "thrust_radius" in given:
+            out = replace(out, thrust=given["thrust_radius"] * metres)
+        if "flank" in given:
+            out = replace(out, flank=math.radians(given["flank"]))
+        if "length" in given:
+            half = 0.5 * given["length"] * metres
+            out = replace(out, lower=-half, upper=half, riding=False, offset=np.zeros(3))
+        if self.problem and not {"radius", "thrust_radius", "length"} & given.keys():
+            raise ValueError(f"{self.problem}: state its radius, or its friction as an effort")
+        return out
+
+
+def sliding_joints(
+    assembly: Assembly, kinematics: Kinematics, contacts: Contacts | None, surfaces: Mapping[str, MeshSurfaces]
+) -> dict[str, Sliding]:
+    """What rubs in each joint, by its name; nothing where no friction is asked for."""
+    if not any(drive.kind == "friction" for drive in assembly.function.drives):
+        return {}
+    table = dict(MATERIAL_PAIRS)
+    for one in assembly.function.frictions:
+        first, second = sorted(one.materials)
+        table[first, second] = (one.coefficient, one.static)
+    parts = {body.name: body.parts for body in kinematics.bodies}
+    out: dict[str, Sliding] = {}
+    for joint in kinematics.joints:
+        patches = [] if contacts is None else [contacts.patches[k] for k in joint.patches]
+        pairs = {_materials(assembly, patch) for patch in patches}
+        ordered = tuple(sorted(pairs, key=lambda pair: tuple(name or "" for name in pair)))
+        sliding = Sliding(pairs=ordered, table=table)
+        try:
+            rubs = _rubs(assembly, surfaces, joint, patches, parts[joint.bodies[1]])
+            out[str(joint.name)] = replace(sliding, rubs=rubs)
+        except ValueError as error:
+            out[str(joint.name)] = replace(sliding, problem=str(error))
+    return out
+
+
+def _materials(assembly: Assembly, patch: Patch) -> tuple[str | None, str | None]:
+    first, second = (assembly.part(name).material for name in patch.parts)
+    return (first, second) if (first or "") <= (second or "") else (second, first)
+
+
+def _rubs(
+    assembly: Assembly,
+    surfaces: Mapping[str, MeshSurfaces],
+    joint: Joint,
+    patches: Sequence[Patch],
+    second: Iterable[str],
+) -> Rubs:
+    """What rubs in one joint; Rubs() without patches. Raises ValueError with why that is not known."""
+    if not patches or joint.axis is None or joint.type not in ("revolute", "prismatic", "cylindrical", "screw"):
+        return Rubs()
+    if joint.type == "screw":
+        return _thread(joint, [patch for patch in patches if patch.kind == "helicoid"])
+    axis = joint.axis
+    round_ = [p for p in patches if p.kind == "cylinder" and abs(float(p.axis @ axis)) > ALONG_AXIS]
+    flat = [p for p in patches if p.kind == "plane"]
+    others = [p.kind for p in patches if p not in round_ and p not in flat]
+    if others:
+        raise ValueError(f"what presses on its {others[0]} contact is not determined")
+    rings = [p for p in flat if abs(float(p.axis @ axis)) > ALONG_AXIS]
+    faces = [p for p in flat if p not in rings]
+    if joint.type == "prismatic" and rings:
+        faces, rings = flat, []
+    centre = np.mean([p.points.mean(axis=0) for p in (round_ or faces or patches)], axis=0)
+    base = np.zeros(3) if joint.point is None or not np.all(np.isfinite(joint.point)) else joint.point
+    if joint.type != "prismatic":
+        centre = base
+    ends = _ends(assembly, surfaces, joint, round_ or faces, set(second), centre)
+    out = replace(ends, offset=centre - base)
+    if round_:
+        out = replace(out, radius=_one_radius([0.5 * (p.radii[0] + p.radii[1]) for p in round_], "journals"))
+    if rings:
+        means = [float(p.weights @ _distance(p.points, base, axis) / p.weights.sum()) for p in rings]
+        out = replace(out, thrust=_one_radius(means, "thrust rings"))
+    if joint.type == "prismatic" and faces:
+        twist, normals = _flat(faces, axis, centre, round_=bool(round_))
+        out = replace(out, twist=twist, faces=normals)
+    elif faces:
+        raise ValueError("what presses on its flat faces is not determined")
+    return out
+
+
+def _thread(joint: Joint, patches: Sequence[Patch]) -> Rubs:
+    """Mean radius and lean of the flanks of a thread."""
+    if not patches:
+        return Rubs()
+    axis, base = joint.axis, joint.point
+    assert axis is not None and base is not None
+    points, normals, weights = (np.concatenate([getattr(p, name) for p in patches]) for name in _SAMPLES)
+    radius = float(weights @ _distance(points, base, axis) / weights.sum())
+    out = points - base - ((points - base) @ axis)[:, None] * axis
+    out /= np.linalg.norm(out, axis=1, keepdims=True)
+    lean = np.abs(np.einsum("ij,ij->i", normals, out)) / np.abs(normals @ axis)
+    return Rubs(radius=radius, flank=float(math.atan(weights @ lean / weights.sum())))
+
+
+_SAMPLES = ("points", "normals", "weights")
+
+
+def _distance(points: Array, base: Array, axis: Array) -> Array:
+    """(n,) m of points from the axis."""
+    return np.asarray(np.linalg.norm(np.cross(points - base, axis), axis=1))
+
+
+def _one_radius(radii: Sequence[float], what: str) -> float:
+    """The radius that all have. Raises ValueError where they differ."""
+    low, high = min(radii), max(radii)
+    if high - low > ALIKE_RADII * high:
+        raise ValueError(f"its {what} have radii of {1e3 * low:.4g} to {1e3 * high:.4g} mm, and which carries is open")
+    return 0.5 * (low + high)
+
+
+def _ends(
+    assembly: Assembly,
+    surfaces: Mapping[str, MeshSurfaces],
+    joint: Joint,
+    patches: Sequence[Patch],
+    second: set[str],
+    centre: Array,
+) -> Rubs:
+    """Both ends of what carries loads across the axis, from `centre`; they go along with the shorter surfaces."""
+    axis = joint.axis
+    assert axis is not None
+    low, high, longest = [], [], [0.0, 0.0]
+    for patch in patches:
+        spans = [span_along(assembly, surfaces, *side, axis) for side in zip(patch.parts, patch.surfaces, strict=True)]
+        known = [span for span in spans if span is not None]
+        if not known:
+            continue
+        low.append(max(span[0] for span in known))
+        high.append(min(span[1] for span in known))
+        for name, span in zip(patch.parts, spans, strict=True):
+            if span is not None:
+                side = int(name in second)
+                longest[side] = max(longest[side], span[1] - span[0])
+    if not low or max(high) <= min(low):
+        return Rubs()
+    at = float(centre @ axis)
+    return Rubs(lower=min(low) - at, upper=max(high) - at, riding=longest[1] < longest[0])
+
+
+def _flat(
+    faces: Sequence[Patch], axis: Array, centre: Array, *, round_: bool
+) -> tuple[float, tuple[Array, Array] | None]:
+    """The arm at which flat faces along a slide carry torques, and their normals where they carry forces too. Raises
+    ValueError where more than two directions share loads."""
+    arm = max(float(np.abs(np.cross(p.points - centre, p.normals) @ axis).max()) for p in faces)
+    lines: list[Array] = []
+    for patch in faces:
+        normal = patch.axis - (patch.axis @ axis) * axis
+        normal = normal / np.linalg.norm(normal)
+        if all(abs(float(normal @ other)) < ALONG_AXIS for other in lines):
+            lines.append(normal)
+    if round_:
+        return arm, None
+    if len(lines) != 2:
+        raise ValueError(f"its faces have normals in {len(lines)} directions, and how they share loads is open")
+    return arm, (lines[0], lines[1])

@@ -1,0 +1,37 @@
+"""Whether the friction of a model is determined: what is said before a run where it is not."""
+
+from __future__ import annotations
+
+from kinform.model.arrays import Array
+from kinform.simulation.mechanism.dynamics import Dynamics
+from kinform.simulation.settings import SolverSettings
+from kinform.simulation.solver.slip import undetermined
+from kinform.simulation.solver.sticking import grouped, ways
+from kinform.simulation.subject import Failures
+
+
+def friction_not_determined(dynamics: Dynamics, q: Array, settings: SolverSettings) -> Failures:
+    """(joint, why) of frictions that rigid bodies do not determine at positions q (nq,), or that are not simulated."""
+    frictions = dynamics.actuation.frictions
+    if not frictions:
+        return ()
+    if dynamics.actuation.stops:
+        why = "friction and end stops in one run are not simulated: what friction does during an impact is not known"
+        return tuple((stop.joint, why) for stop in dynamics.actuation.stops[:1])
+    loaded = [one for one in frictions if one.friction.static > 0.0]
+    if loaded and any(gear.pitch_point is not None for gear in dynamics.system.gears):
+        why = "friction by load beside meshing teeth is not simulated: give it as an effort (effort = ...)"
+        return tuple((one.joint, why) for one in loaded)
+    open_ = undetermined(dynamics, q, settings.free)
+    if open_:
+        why = (
+            "redundant constraints share the load that presses here in ways that rigid bodies do not tell: remove a "
+            "redundancy (KF303 names them), say which surfaces rub, or give the friction as an effort"
+        )
+        return tuple((joint, why) for joint in open_)
+    dependent = grouped(ways(dynamics, dynamics.actuation, q, settings.free))[2]
+    if dependent:
+        names = ", ".join(dict.fromkeys(frictions[k].joint for k in dependent))
+        why = "they move by fewer free motions than there are of them, and by none alone: which stick is not determined"
+        return ((names, why),)
+    return ()
