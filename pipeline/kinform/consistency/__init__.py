@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from kinform.consistency.baseline import Baseline, adopt, read_baseline, with_baseline
     from kinform.consistency.comparisons.intended_joints import Comparison, compare_joint
     from kinform.consistency.documentation import UnknownRuleError, explain, rules_markdown
-    from kinform.consistency.inspection import amended, check
+    from kinform.consistency.inspection import amended, check, margins
     from kinform.consistency.outcome import Outcome
     from kinform.consistency.rule import Rule
     from kinform.consistency.rules import RULES
@@ -34,6 +34,7 @@ __all__ = [
     "check",
     "compare_joint",
     "explain",
+    "margins",
     "read_baseline",
     "rules_markdown",
     "verdict",
@@ -56,6 +57,7 @@ __getattr__ = first_used(
         "rules_markdown": "documentation",
         "amended": "inspection",
         "check": "inspection",
+        "margins": "inspection",
         "Outcome": "outcome",
         "Rule": "rule",
         "RULES": "rules",

@@ -25,8 +25,7 @@ def check(design: Design) -> CheckReport:
     Stages that a rule needs and that have not been run leave the rule inconclusive, never passed.
     """
     settings = design.assembly.check
-    judges = {r.kind: r.judge for r in RULES if isinstance(r, RequirementRule) and _judged(r, settings)}
-    context = Context(replace(design, kinematics=design.ranged), judges)
+    context = _judging(design)
     applied = {rule.code: _run(rule, context) for rule in RULES if rule is not CONTROL}
     used = [entry for run in applied.values() for entry in run.used]
     # these two speak later: of the other rules, and where a lock is given
@@ -45,6 +44,19 @@ def check(design: Design) -> CheckReport:
         ignored=tuple(sorted((i for run in applied.values() for i in run.ignored), key=lambda i: _order(i.finding))),
         answers=() if context.lacks("comparisons") else answer_counts(answers(context.design)),
     )
+
+
+def margins(design: Design) -> dict[str, float | None]:
+    """How far each requirement that is asked about is from its nearest limit, by its name: SI units, negative where it
+    is violated; None where it is no matter of a value, or that is not known."""
+    return {requirement.name: answer.margin for requirement, answer in _judging(design).answers.items()}
+
+
+def _judging(design: Design) -> Context:
+    """The design with what answers its requirements."""
+    settings = design.assembly.check
+    judges = {r.kind: r.judge for r in RULES if isinstance(r, RequirementRule) and _judged(r, settings)}
+    return Context(replace(design, kinematics=design.ranged), judges)
 
 
 def amended(report: CheckReport, design: Design, outcome: Outcome) -> CheckReport:

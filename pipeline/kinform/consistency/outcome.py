@@ -59,21 +59,41 @@ class Answer:
     intended: str | None = None
     place: tuple[float, float, float] | None = None
     remedy: str | None = None
+    margin: float | None = None
+    """How far the value is from the nearest limit, in SI units; negative beyond it. None where there is no such value,
+    or it is not known."""
 
 
-def met(message: str, *, found: str | None = None, intended: str | None = None) -> Answer:
+def met(
+    message: str, *, found: str | None = None, intended: str | None = None, margin: float | None = None
+) -> Answer:  # fmt: skip
     """The requirement holds; the message says how this is known."""
-    return Answer("met", message, found, intended)
+    return Answer("met", message, found, intended, margin=margin)
 
 
-def violated(message: str, *, found: str, intended: str, remedy: str, place: Iterable[float] | None = None) -> Answer:
+def violated(
+    message: str,
+    *,
+    found: str,
+    intended: str,
+    remedy: str,
+    place: Iterable[float] | None = None,
+    margin: float | None = None,
+) -> Answer:
     """The requirement does not hold."""
-    return Answer("violated", message, found, intended, None if place is None else triple(place), remedy)
+    return Answer("violated", message, found, intended, None if place is None else triple(place), remedy, margin)
 
 
-def undecided(message: str, remedy: str, *, found: str | None = None, intended: str | None = None) -> Answer:
+def undecided(
+    message: str,
+    remedy: str,
+    *,
+    found: str | None = None,
+    intended: str | None = None,
+    margin: float | None = None,
+) -> Answer:
     """What is missing, and what would decide it."""
-    return Answer("undecided", message, found, intended, None, remedy)
+    return Answer("undecided", message, found, intended, None, remedy, margin)
 
 
 def triple(point: Iterable[float]) -> tuple[float, float, float]:

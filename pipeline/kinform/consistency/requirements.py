@@ -94,6 +94,13 @@ def worst_of(answers: Sequence[Answer]) -> Answer | None:
     return by_state.get("violated") or by_state.get("undecided")
 
 
+def least_margin(answers: Sequence[Answer]) -> float | None:
+    """Of all of these; None where one is not known."""
+    margins = [answer.margin for answer in answers]
+    known = [margin for margin in margins if margin is not None]
+    return min(known) if known and len(known) == len(margins) else None
+
+
 def simulated(context: Context, *, dynamic: bool = False) -> Simulation | Answer:
     """The simulation, or why it says nothing. One that stopped early is given: what it shows has happened."""
     lacking = context.lacks("simulation")

@@ -50,7 +50,8 @@ def nominal(
 
 def measure(design: Design, measured: Sequence[tuple[str, ...]]) -> tuple[float | None, ...]:
     """The numbers at these paths of what `kinform show --format json` prints, the first step being the topic;
-    `exit_code` alone is that of the gate, and `requirements.NAME` is 1 where it is met, and 0 where not."""
+    `exit_code` alone is that of the gate, `requirements.NAME` is 1 where it is met, and 0 where not, and `margins.NAME`
+    is how far it is from its limit."""
     shown: dict[str, Any] = {}
     out: list[float | None] = []
     for steps in measured:
@@ -72,10 +73,13 @@ def _topic(design: Design, topic: str) -> Any:
         from kinform.catalog import entry_of
 
         return {wanted.name: wanted.met for wanted in entry_of(design, "", "").requirements}
+    if topic == "margins":
+        from kinform.consistency import margins
+
+        return margins(design)
     if topic not in TOPICS:
-        raise InputError([
-            Problem(f"{topic!r} is no topic: expected one of {', '.join([*TOPICS, 'requirements', 'exit_code'])}")
-        ])  # fmt: skip
+        known = ", ".join([*TOPICS, "requirements", "margins", "exit_code"])
+        raise InputError([Problem(f"{topic!r} is no topic: expected one of {known}")])
     return summary(design, topic)
 
 

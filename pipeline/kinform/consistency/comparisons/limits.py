@@ -54,17 +54,18 @@ def beside_bounds(quantity: Quantity, value: float, error: float, low: float | N
     shown = telling(quantity.shown, value, *(bound for bound in (low, high) if bound is not None))
     wanted, text = _interval(low, high, shown), f"{quantity.name} is {shown(value)}"
     low, high = -np.inf if low is None else low, np.inf if high is None else high
+    margin = float(min(value - low, high - value))
     if value + error < low or value - error > high:
         return violated(
             f"{text}, required is {wanted}", found=shown(value), intended=wanted,
-            remedy=quantity.remedy, place=quantity.place,
+            remedy=quantity.remedy, place=quantity.place, margin=margin,
         )  # fmt: skip
     if value - error < low or value + error > high:
         return undecided(
             f"{text}, give or take {shown(error)} {quantity.cause}: too near to the bound",
-            quantity.cure, found=shown(value), intended=wanted,
+            quantity.cure, found=shown(value), intended=wanted, margin=margin,
         )  # fmt: skip
-    return met(text, found=shown(value), intended=wanted)
+    return met(text, found=shown(value), intended=wanted, margin=margin)
 
 
 def peak_beside_limit(quantity: Quantity, simulation: Simulation, values: Array, limit: float) -> Answer:
@@ -77,15 +78,16 @@ def peak_beside_limit(quantity: Quantity, simulation: Simulation, values: Array,
         intended = f"at most {shown(limit)}"
         text = f"{quantity.name} peaks at {shown(float(values[k]))} at t = {number(float(simulation.time[k]))} s"
         summit = max(float(values[k]), _highest_between(values))
+        margin = limit - summit
         if summit > limit >= values[k] and known.all():
             return undecided(
                 f"{text}, and between the output times at about {shown(summit)}: too near to the limit",
-                FINER, found=f"about {shown(summit)}", intended=intended,
+                FINER, found=f"about {shown(summit)}", intended=intended, margin=margin,
             )  # fmt: skip
         if values[k] > limit:
             return violated(
                 f"{text}, required is {intended}", found=shown(float(values[k])), intended=intended,
-                place=quantity.place, remedy=quantity.remedy,
+                place=quantity.place, remedy=quantity.remedy, margin=margin,
             )  # fmt: skip
     if not known.all():
         return undecided(
@@ -102,7 +104,8 @@ def peak_beside_limit(quantity: Quantity, simulation: Simulation, values: Array,
         )  # fmt: skip
     apart = f", {step} s apart" if len(simulation.time) > 1 else ""
     more = f", and between them at about {shown(summit)}" if shown(summit) != shown(float(values[k])) else ""
-    return met(f"{text}, of {len(values)} output times{apart}{more}", found=shown(float(values[k])), intended=intended)
+    told = f"{text}, of {len(values)} output times{apart}{more}"
+    return met(told, found=shown(float(values[k])), intended=intended, margin=margin)
 
 
 def coarse(simulation: Simulation) -> bool:

@@ -27,6 +27,7 @@ from kinform.consistency.context import Context, Need
 from kinform.consistency.outcome import Answer, met, undecided, violated
 from kinform.consistency.requirements import (
     JOINTS,
+    least_margin,
     requirement_rule,
     shared_parts,
     shown_value,
@@ -64,10 +65,12 @@ def judge(context: Context, requirement: Clear) -> Answer:
     worst, violations = worst_of(answers), sum(answer.state == "violated" for answer in answers)
     if worst is not None:
         more = f"; {counted(violations - 1, 'more pair')} of bodies too" if violations > 1 else ""
-        return replace(worst, message=worst.message + more)
+        return replace(worst, message=worst.message + more, margin=least_margin(answers))
     if simulation is not None and simulation.status != "done":
         return undecided(f"the simulation stopped: {simulation.reason}", "See KF502.")
-    return answers[0] if len(answers) == 1 else met(f"{counted(len(answers), 'pair')} clear; {answers[0].message}")
+    if len(answers) == 1:
+        return answers[0]
+    return met(f"{counted(len(answers), 'pair')} clear; {answers[0].message}", margin=least_margin(answers))
 
 
 def _pairs(context: Context, kinematics: Kinematics, between: Sequence[str] | None) -> list[Pair]:
@@ -153,7 +156,7 @@ def _answer(context: Context, groups: Apart, swept: Swept, required: float, name
         return violated(
             f"{what}{where}", found="collision" if near.distance <= 0.0 else shown,
             intended=f"at least {in_words(required)}" if required > 0.0 else "no collision",
-            place=near.place, remedy=REMEDY,
+            place=near.place, remedy=REMEDY, margin=near.distance - required,
         )  # fmt: skip
     if not swept.complete:
         return undecided(
@@ -161,7 +164,8 @@ def _answer(context: Context, groups: Apart, swept: Swept, required: float, name
             "Lower the distance, or check it by other means.", found=f"nearest measured {shown}",
         )  # fmt: skip
     text = f"{names} stay clear, certain within {length(swept.floor, units)} by {counted(swept.poses, 'measured pose')}"
-    return met(f"{text}; not counted: surfaces by which {_mating(groups)} mate" if groups.left_out else text)
+    told = f"{text}; not counted: surfaces by which {_mating(groups)} mate" if groups.left_out else text
+    return met(told, margin=near.distance - required)
 
 
 def _mating(groups: Apart) -> str:

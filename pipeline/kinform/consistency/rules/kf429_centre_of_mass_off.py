@@ -29,11 +29,12 @@ def judge(context: Context, requirement: CentreOfMass) -> Answer:
     shown = telling(lambda value, digits: length(value, units, digits), distance, requirement.tolerance)
     centre, wanted, within = place(whole.centre, units), place(requirement.point, units), shown(requirement.tolerance)
     text = f"the centre of mass of {whose(requirement.of)} is at {centre}, {shown(distance)} from {wanted}"
+    margin = requirement.tolerance - distance
     if distance <= requirement.tolerance:
-        return met(text)
+        return met(text, margin=margin)
     return violated(
         f"{text}, required is within {within}", found=centre, intended=f"within {within} of {wanted}",
-        place=whole.centre, remedy="Move material, or correct the point.",
+        place=whole.centre, remedy="Move material, or correct the point.", margin=margin,
     )  # fmt: skip
 
 

@@ -37,11 +37,12 @@ def judge(context: Context, requirement: Balance) -> Answer:
         f"the imbalance of {quoted([requirement.of])} is {shown(imbalance)}: {mass(whole.mass)}, "
         f"{length(distance, context.units)} off the axis"
     )
+    margin = requirement.limit - imbalance
     if imbalance <= requirement.limit:
-        return met(text)
+        return met(text, margin=margin)
     return violated(
         f"{text}, required is {limit}", found=shown(imbalance), intended=limit, place=whole.centre,
-        remedy="Move material across the axis, or add a counterweight.",
+        remedy="Move material across the axis, or add a counterweight.", margin=margin,
     )  # fmt: skip
 
 
