@@ -15,7 +15,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, span
-from kinform.foundation.algebra.vectors import canonical, cross, cross_matrix, perpendicular
+from kinform.foundation.algebra.vectors import canonical, cross, cross_matrix, norm, perpendicular
 from kinform.foundation.words import counted, listed
 from kinform.kinematics import constants
 from kinform.model.arrays import Array
@@ -43,7 +43,7 @@ def axis_word(direction: Array, near: float = constants.NAMED_AXIS) -> str:
     """ "z", where it is so near to it (sine), or "(0.6, 0.8, 0)"."""
     unit = canonical(direction)
     for name, axis in zip("xyz", np.eye(3), strict=True):
-        if float(np.linalg.norm(unit - axis)) < near:
+        if norm(unit - axis) < near:
             return name
     return "(" + ", ".join(f"{round(float(c), 3) + 0.0:g}" for c in unit) + ")"
 
@@ -57,8 +57,8 @@ def group_of(basis: Array, frame: Frame) -> str:
     if kind == (1, 0):
         return "revolute" if abs(_lead(turns[:, 0])) < constants.EXACT_MOTION else "screw"
     if kind[0] == 1:
-        axis = turns[:3, 0] / np.linalg.norm(turns[:3, 0])
-        along = float(np.linalg.norm(axis @ slides[3:]))
+        axis = turns[:3, 0] / norm(turns[:3, 0])
+        along = norm(axis @ slides[3:])
         if kind == (1, 1) and along > 1.0 - constants.EXACT_MOTION:
             return "cylindrical"
         if kind == (1, 2) and along < constants.EXACT_MOTION:
@@ -95,9 +95,12 @@ def _split(basis: Array) -> tuple[Array, Array]:
     """Twists that turn, their velocities without what slides do (6, r), and twists that slide (6, s)."""
     if not basis.shape[1]:
         return basis, basis
-    _, values, right = np.linalg.svd(basis[:3], full_matrices=True)
-    count = int(np.count_nonzero(values > constants.EXACT_MOTION))
-    mixed = basis @ right.T
+    if basis.shape[1] == 1:
+        count, mixed = int(norm(basis[:3]) > constants.EXACT_MOTION), basis
+    else:
+        _, values, right = np.linalg.svd(basis[:3], full_matrices=True)
+        count = int(np.count_nonzero(values > constants.EXACT_MOTION))
+        mixed = basis @ right.T
     turns, slides = mixed[:, :count].copy(), mixed[:, count:].copy()
     slides[:3] = 0.0
     if slides.shape[1]:
@@ -124,7 +127,7 @@ def _turning(turns: Array, slides: Array, frame: Frame) -> list[str]:
         through = "" if slides.shape[1] > 1 else f" through {_point(place)}"
         if (
             abs(lead) > constants.NO_LEAD * frame.length
-            and np.linalg.norm(slides[3:].T @ canonical(twist[:3])) < 1.0 - constants.EXACT_MOTION
+            and norm(slides[3:].T @ canonical(twist[:3])) < 1.0 - constants.EXACT_MOTION
         ):
             return [f"screws about {_axis_components(twist[:3])}{through}, {1e3 * lead:.4g} mm a turn"]
         return [f"turns about {_axis_components(twist[:3])}{through}"]

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, norm
 from kinform.model.arrays import Array
 
 
@@ -26,7 +26,7 @@ class Frame:
     def of(points: Array) -> Frame:
         """Centre and half diagonal of the box of the points (n, 3)."""
         low, high = points.min(axis=0), points.max(axis=0)
-        half = 0.5 * float(np.linalg.norm(high - low))
+        half = 0.5 * norm(high - low)
         return Frame(0.5 * (low + high), half if half > 0.0 else 1.0)
 
 
@@ -39,7 +39,7 @@ def rotation(axis: Array, point: Array, frame: Frame, pitch: float = 0.0) -> Arr
     """Scaled unit twist (6,) of a rotation about the line (unit axis, point) that advances by `pitch` (m) a turn."""
     velocity = cross(axis, frame.centre - point) + pitch / (2.0 * np.pi) * axis
     twist = np.concatenate([axis, velocity / frame.length])
-    unit: Array = twist / np.linalg.norm(twist)
+    unit: Array = twist / norm(twist)
     return unit
 
 

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import norm
 from kinform.kinematics.constants import EXACT_AXIS, SIGMAS
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
@@ -83,4 +84,4 @@ def _extent(touching: Sequence[Patch], reach: float) -> float:
     points = [p.points for p in touching if len(p.points)]
     if not points:
         return reach
-    return float(np.linalg.norm(np.ptp(np.concatenate(points), axis=0)))
+    return norm(np.ptp(np.concatenate(points), axis=0))

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, foot, perpendicular
+from kinform.foundation.algebra.vectors import cross, foot, norm, perpendicular
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics.constants import FIRST_LOOK, LEAST_CROSSING, MET, RCOND
 from kinform.model.arrays import Array, Flags, Ints
@@ -36,7 +36,7 @@ class Locus:
 
     def uncertainty(self, place: Array) -> float:
         """m: of the line beside a place (3,)."""
-        return self.position + self.angle * float(np.linalg.norm(place - self.point))
+        return self.position + self.angle * norm(place - self.point)
 
     def across(self) -> Array:
         """(k, 3) unit vectors along which a shift changes it."""
@@ -82,7 +82,7 @@ def _shifts(loci: Sequence[Locus], points: list[tuple[list[int], Array]], sigmas
 
 def _excess(locus: Locus, shift: Array, uncertain: float) -> float:
     """A shift (3,) over the most that it may be."""
-    size, most = float(np.linalg.norm(shift)), min(uncertain - locus.shifted, locus.room)
+    size, most = norm(shift), min(uncertain - locus.shifted, locus.room)
     return 0.0 if size == 0.0 else size / most if most > 0.0 else np.inf
 
 
@@ -100,7 +100,7 @@ def _meetings(loci: Sequence[Locus], sigmas: float) -> list[tuple[list[int], Arr
         reach = 2.0 * spread / sine
         for n in sorted(points_of.get(i, set()) | points_of.get(j, set())):
             members, other, wide = meetings[n]
-            if np.linalg.norm(other - place) <= reach + wide:
+            if norm(other - place) <= reach + wide:
                 members |= {i, j}
                 break
         else:
@@ -160,7 +160,7 @@ def _reach(locus: Locus, place: Array) -> float:
 
 def _distance(locus: Locus, place: Array) -> float:
     arm = place - locus.point
-    return float(np.linalg.norm(arm if locus.axis is None else cross(arm, locus.axis)))
+    return norm(arm if locus.axis is None else cross(arm, locus.axis))
 
 
 def _between(a: Locus, b: Locus) -> tuple[Array | None, float]:
@@ -170,7 +170,7 @@ def _between(a: Locus, b: Locus) -> tuple[Array | None, float]:
         place = other.point if other.axis is None else foot(other.point, other.axis, centre.point)
         return 0.5 * (centre.point + place), 1.0
     normal = cross(a.axis, b.axis)
-    sine = float(np.linalg.norm(normal))
+    sine = norm(normal)
     if sine < LEAST_CROSSING:
         return None, sine
     apart = b.point - a.point

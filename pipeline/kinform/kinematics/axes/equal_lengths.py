@@ -19,7 +19,7 @@ from itertools import combinations
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, perpendicular
+from kinform.foundation.algebra.vectors import cross, norm, perpendicular
 from kinform.foundation.graphs.graph import blocks
 from kinform.kinematics import constants
 from kinform.kinematics.axes.bounds import MoveBounds
@@ -78,7 +78,7 @@ def _parallel(candidates: Sequence[int], joints: Sequence[Joint]) -> list[list[i
     bundles: list[list[int]] = []
     for k in candidates:
         for bundle in bundles:
-            if float(np.linalg.norm(cross(_axis(joints[bundle[0]]), _axis(joints[k])))) < constants.EXACTLY_PARALLEL:
+            if norm(cross(_axis(joints[bundle[0]]), _axis(joints[k]))) < constants.EXACTLY_PARALLEL:
                 bundle.append(k)
                 break
         else:
@@ -117,7 +117,7 @@ def _pins(members: Sequence[int], joints: Sequence[Joint], bounds: MoveBounds, p
         place = plane @ _point(joints[k])
         sigma, most = float(bounds.sigma[k, 1]), float(bounds.most[k, 1])
         for n, pin in enumerate(pins):
-            if np.linalg.norm(pin.place - place) <= constants.ONE_PIN * size:
+            if norm(pin.place - place) <= constants.ONE_PIN * size:
                 pins[n] = _Pin((*pin.joints, k), pin.place, min(pin.sigma, sigma), min(pin.most, most))
                 break
         else:
@@ -154,7 +154,7 @@ def _equalities(cycle: Sequence[int], pins: Sequence[_Pin]) -> Iterator[_Equalit
     slack = sum(pins[n].most for n in cycle)
     places = [pins[n].place for n in cycle]
     sides = [places[(k + 1) % 4] - places[k] for k in range(4)]
-    lengths = [float(np.linalg.norm(side)) for side in sides]
+    lengths = [norm(side) for side in sides]
     if min(lengths) <= constants.LEAST_SIDE * slack:
         return
 
@@ -166,7 +166,7 @@ def _equalities(cycle: Sequence[int], pins: Sequence[_Pin]) -> Iterator[_Equalit
         return _Equality(cycle[i], cycle[(i + 1) % 4], cycle[(j + 1) % 4], cycle[j], vectors)
 
     if equal(0, 2) and equal(1, 3):
-        drawn_open = float(np.linalg.norm(sides[0] + sides[2])) <= slack
+        drawn_open = norm(sides[0] + sides[2]) <= slack
         # of vectors one pair of sides says it all
         yield sides_of(0, 2, drawn_open)
         if not drawn_open:
@@ -215,7 +215,7 @@ def _unequal(places: Array, equalities: Sequence[_Equality]) -> Array:
     out: list[float] = []
     for e in equalities:
         one, other = places[e.b] - places[e.a], places[e.d] - places[e.c]
-        difference = one - other if e.vectors else [np.linalg.norm(one) - np.linalg.norm(other)]
+        difference = one - other if e.vectors else [norm(one) - norm(other)]
         out.extend(float(x) for x in difference)
     return np.array(out)
 
@@ -227,7 +227,7 @@ def _rows(places: Array, equalities: Sequence[_Equality]) -> Array:
         one, other = places[e.b] - places[e.a], places[e.d] - places[e.c]
         along = [(np.eye(2)[k], np.eye(2)[k]) for k in range(2)]
         if not e.vectors:
-            along = [(one / np.linalg.norm(one), other / np.linalg.norm(other))]
+            along = [(one / norm(one), other / norm(other))]
         for first, second in along:
             row = np.zeros_like(places)
             row[e.b] += first

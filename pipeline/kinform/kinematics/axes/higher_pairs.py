@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, scaled, span, twist_at_origin
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics.constants import AT_REST, DOUBTFUL_MOTION, MOST_TURNED, SIGMAS
 from kinform.kinematics.loops.assembly_closure import body_twists
@@ -128,7 +128,7 @@ def _preserved_motions(pairs: Sequence[_Pair], motions: list[int]) -> tuple[Arra
         for pair in pairs:
             relative = combination @ pair.relative[motions]
             velocity = np.linalg.norm(combination @ pair.slip[:, motions], axis=1)
-            allowed = pair.angle * velocity + pair.position * float(np.linalg.norm(relative[:3]))
+            allowed = pair.angle * velocity + pair.position * norm(relative[:3])
             missed = np.abs(pair.rows[:, motions] @ combination)
             share = max(share, float((missed / np.maximum(allowed, 1e-300)).max()) if missed.max() > 0.0 else 0.0)
         if share > 1.0:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, norm
 from kinform.kinematics.constants import UNMOVED
 from kinform.model.kinematics import Joint, Misfit, Move
 
@@ -33,11 +33,11 @@ def _move(old: Joint, new: Joint) -> Move:
     """The turn of its axis; the shift of its line across itself, or of its centre."""
     angle = distance = 0.0
     if old.axis is not None and new.axis is not None:
-        angle = float(np.linalg.norm(cross(old.axis, new.axis)))
+        angle = norm(cross(old.axis, new.axis))
     if old.point is not None and new.point is not None:
         shift = new.point - old.point
         if new.axis is not None:
             shift = shift - new.axis * float(new.axis @ shift)
-        distance = float(np.linalg.norm(shift))
+        distance = norm(shift)
     rounding = UNMOVED * (0.0 if old.point is None else float(np.abs(old.point).max()))
     return Move(old.name, angle if angle > UNMOVED else 0.0, distance if distance > rounding else 0.0)

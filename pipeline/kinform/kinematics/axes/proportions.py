@@ -19,7 +19,7 @@ import numpy as np
 
 from kinform.foundation.algebra.displacements import adjoint, displacement
 from kinform.foundation.algebra.screws import Frame
-from kinform.foundation.algebra.vectors import cross, cross_matrix
+from kinform.foundation.algebra.vectors import cross, cross_matrix, norm
 from kinform.foundation.graphs.graph import blocks
 from kinform.kinematics import constants
 from kinform.kinematics.axes.bounds import MoveBounds
@@ -105,7 +105,7 @@ def _fit_axes(loops: _Loops) -> Sequence[Joint]:
         return joints
     for joint, twist, (angle, place) in zip(joints, twists, loops.most, strict=True):
         at = np.zeros(3) if joint.point is None else joint.point
-        turn, shift = np.linalg.norm(twist[:3]), np.linalg.norm(twist[3:] + cross(twist[:3], at))
+        turn, shift = norm(twist[:3]), norm(twist[3:] + cross(twist[:3], at))
         if turn > angle or shift > place:
             return joints
     return moved.joints
@@ -119,7 +119,7 @@ def _planar(joints: Sequence[Joint]) -> bool:
     if len(turns) + len(slides) < len(joints) or not turns:
         return False
     crossed = np.linalg.norm(cross(np.array(turns), turns[0]), axis=1).max()
-    tilted = [min(abs(float(s @ turns[0])), float(np.linalg.norm(cross(s, turns[0])))) for s in slides]
+    tilted = [min(abs(float(s @ turns[0])), norm(cross(s, turns[0]))) for s in slides]
     return bool(max([float(crossed), *tilted]) < constants.EXACTLY_PARALLEL)
 
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import canonical, cross, perpendicular
+from kinform.foundation.algebra.vectors import canonical, cross, norm, perpendicular
 from kinform.kinematics.axes.bounds import MoveBounds
 from kinform.kinematics.axes.concurrence import Locus, meeting_shifts
 from kinform.kinematics.constants import DIRECTION_DECIMALS, MET, RCOND, SIGMAS
@@ -58,11 +58,11 @@ class _Axis:
 
     def turn(self, direction: Array) -> float:
         """Sine of the angle by which it would be turned to this direction."""
-        return float(np.linalg.norm(cross(self.direction, direction)))
+        return norm(cross(self.direction, direction))
 
     def shift(self, place: Array) -> float:
         """m: by which it would be shifted to a line or centre through this place, once it has its direction."""
-        return float(np.linalg.norm(place - self.point))
+        return norm(place - self.point)
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,7 +173,7 @@ def _coaxial(bundle: Sequence[_Axis], direction: Array) -> list[list[_Axis]]:
 
     def excess(group: Sequence[_Axis]) -> list[float]:
         mean = _mean_foot(group, direction)
-        return [float(np.linalg.norm(a.foot(direction) - mean)) / a.most_distance for a in group]
+        return [norm(a.foot(direction) - mean) / a.most_distance for a in group]
 
     return _cluster(bundle, coaxial, excess)
 

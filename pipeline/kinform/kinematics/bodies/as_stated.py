@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.words import counted, quoted
 from kinform.kinematics.bodies.complete import complete_joints, without_effect
 from kinform.kinematics.bodies.merging import Merger
@@ -111,7 +111,7 @@ def _in_force(
     place = corners.mean(axis=0) if taken.point is None else taken.point
     if joint.status in ("ambiguous", "blocked"):
         cause, why = "doubt", "contact leaves it undecided"
-    elif leaves_free(joint.twists, taken.twists, place, float(np.linalg.norm(np.ptp(corners, axis=0))) or 1.0):
+    elif leaves_free(joint.twists, taken.twists, place, norm(np.ptp(corners, axis=0)) or 1.0):
         cause, why = "contact", "contact leaves it free and does not hold it"
     else:
         return joint

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.foundation.algebra.vectors import norm
 from kinform.model.assembly import Assembly
 from kinform.model.names import PartName
 
@@ -27,7 +28,7 @@ class Extents:
         if key not in self._known:
             boxes = [self._boxes[name] for name in key if name in self._boxes]
             size = np.ptp(np.concatenate(boxes), axis=0) if boxes else np.zeros(3)
-            self._known[key] = float(np.linalg.norm(size))
+            self._known[key] = norm(size)
         return self._known[key]
 
     @property

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, foot
+from kinform.foundation.algebra.vectors import cross, foot, norm
 from kinform.kinematics.bodies.stated_joints import Pair, pair_between
 from kinform.kinematics.constants import INTENDED_AXIS, ON_ONE_LINE, READING_PLACE
 from kinform.kinematics.pair.joint import reading_of
@@ -78,13 +78,13 @@ def _is(joint: Joint, intended: IntendedJoint, patches: Sequence[Patch]) -> bool
         return False
     if joint.axis is None or intended.axis is None:
         return True
-    if float(np.linalg.norm(cross(joint.axis, intended.axis))) > INTENDED_AXIS:
+    if norm(cross(joint.axis, intended.axis)) > INTENDED_AXIS:
         return False
     if intended.point is None or joint.point is None or joint.type in ("prismatic", "planar"):
         return True
     apart = joint.point - foot(intended.point, joint.axis, joint.point)
     box = np.ptp(np.concatenate([patches[k].points for k in joint.patches]), axis=0)
-    return float(np.linalg.norm(apart)) <= READING_PLACE * float(np.linalg.norm(box))
+    return norm(apart) <= READING_PLACE * norm(box)
 
 
 def _pins(decided: Decided, size: float) -> set[BodyName]:
@@ -103,10 +103,10 @@ def _about_one_line(joints: Sequence[Joint], size: float) -> bool:
     for joint in joints:
         if joint.type not in ("revolute", "cylindrical", "planar", "screw") or joint.axis is None:
             return False
-        if float(np.linalg.norm(cross(joint.axis, lead.axis))) > ON_ONE_LINE:
+        if norm(cross(joint.axis, lead.axis)) > ON_ONE_LINE:
             return False
         if joint.type != "planar" and joint.point is not None:
             apart = joint.point - foot(lead.point, lead.axis, joint.point)
-            if float(np.linalg.norm(apart)) > ON_ONE_LINE * size:
+            if norm(apart) > ON_ONE_LINE * size:
                 return False
     return True

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, scaled
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.graphs.cycles import Cycle, short_cycles
 from kinform.kinematics import constants
 from kinform.model.arrays import Array, Ints
@@ -121,7 +121,7 @@ def _by_turn(space: Array) -> Array:
 
 def _turns(twist: Array, size: float) -> bool:
     """Whether a twist turns, beyond the rounding of a slide."""
-    return float(np.linalg.norm(twist[:3])) * size > constants.FAR_AXIS * float(np.linalg.norm(twist[3:]))
+    return norm(twist[:3]) * size > constants.FAR_AXIS * norm(twist[3:])
 
 
 def _feet(turns: Array, centre: Array) -> Array:

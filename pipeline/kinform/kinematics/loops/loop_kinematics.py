@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from kinform.foundation.algebra.displacements import carry, exponentials, inverse
 from kinform.foundation.algebra.screws import Frame, bracket, scaled
+from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import forest
 from kinform.kinematics.constants import FAR_AXIS
 from kinform.model.arrays import Array, Flags
@@ -140,7 +141,7 @@ def loop_system(
         for k, factor in ((a, 1.0), (b, -ratio)):
             twist, turning = spaces[k][0], turns[start[k]]
             length = 1.0 if turning else frame.length
-            line[start[k]] = factor * length / np.linalg.norm(twist[:3] if turning else twist[3:])
+            line[start[k]] = factor * length / norm(twist[:3] if turning else twist[3:])
         line /= np.abs(line).max()
     tree = forest(len(number), inner, 0)
     depth = tree.depths()

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.meshes.edges import shared_edges
 from kinform.kinematics.axes.higher_pairs import is_higher
 from kinform.kinematics.constants import FIXED_RATIO, TOOTHED_TURNS
@@ -140,8 +140,8 @@ class _Tie:
                 twist = joint.twists[0]
                 velocity = twist[3:] + cross(twist[:3], point)
                 along = abs(float(velocity @ normal))
-                aside = float(np.linalg.norm(velocity - normal * float(velocity @ normal)))
-                off = patch.uncertainty[0] * aside + patch.uncertainty[1] * float(np.linalg.norm(twist[:3]))
+                aside = norm(velocity - normal * float(velocity @ normal))
+                off = patch.uncertainty[0] * aside + patch.uncertainty[1] * norm(twist[:3])
                 total += off / max(along, 1e-300)
             best = np.nanmin([best, abs(self.ratio) * total])
         return float(best)

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame
+from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import UnionFind, blocks
 from kinform.foundation.words import counted, listed
 from kinform.kinematics.constants import LEAST_FRAME, MOST_BLOCK_WORK, MOST_STATEMENTS, MOVING_JOINT
@@ -147,7 +148,7 @@ def _frame(joints: Sequence[Joint], size: float) -> Frame:
     if not placed:
         return Frame(np.zeros(3), size)
     low, high = np.min(placed, axis=0), np.max(placed, axis=0)
-    return Frame(0.5 * (low + high), max(0.5 * float(np.linalg.norm(high - low)), LEAST_FRAME * size))
+    return Frame(0.5 * (low + high), max(0.5 * norm(high - low), LEAST_FRAME * size))
 
 
 def _certificate(names: Sequence[JointName], system: LoopSystem) -> FiniteCertificate | None:

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, rotation, scaled, span, twist_at_origin
-from kinform.foundation.algebra.vectors import cross, widest_gap
+from kinform.foundation.algebra.vectors import cross, norm, widest_gap
 from kinform.kinematics import constants
 from kinform.kinematics.bodies.stated_joints import Pair, pair_between
 from kinform.kinematics.loops.joint_graph import JointGraph
@@ -120,7 +120,7 @@ def _idle_turns(held: _Held) -> Array:
     for axis, point in _candidates(patches, held.size):
         twist = rotation(axis, point, frame)
         if (
-            all(float(np.linalg.norm(twist - free @ (free.T @ twist))) < constants.IDLE_AXIS for free in spaces)
+            all(norm(twist - free @ (free.T @ twist)) < constants.IDLE_AXIS for free in spaces)
             and all(_invariant(patch, axis, point, held.size) for patch in patches)
             and not any(_names(wanted, axis, point, leaf, held.size) for wanted in held.intended)
         ):
@@ -145,7 +145,7 @@ def _candidates(patches: Sequence[Patch], size: float) -> list[tuple[Array, Arra
     centres = [p.point for p in patches if p.kind == "sphere"]
     for k, a in enumerate(centres):
         for b in centres[:k]:
-            far = float(np.linalg.norm(b - a))
+            far = norm(b - a)
             if far > constants.IDLE_PLACE * size:
                 lines.append(((b - a) / far, a))
     if centres and not lines:
@@ -156,16 +156,16 @@ def _candidates(patches: Sequence[Patch], size: float) -> list[tuple[Array, Arra
 def _invariant(patch: Patch, axis: Array, point: Array, size: float) -> bool:
     """Does the patch, as bounded as it is, turn onto itself?"""
     if patch.kind == "sphere" or patch.kind in COAXIAL:
-        parallel = patch.kind == "sphere" or float(np.linalg.norm(cross(patch.axis, axis))) < constants.IDLE_AXIS
-        away = float(np.linalg.norm(cross(patch.point - point, axis)))
+        parallel = patch.kind == "sphere" or norm(cross(patch.axis, axis)) < constants.IDLE_AXIS
+        away = norm(cross(patch.point - point, axis))
         return parallel and away <= abs(patch.gap) + constants.IDLE_PLACE * size
-    if patch.kind != "plane" or float(np.linalg.norm(cross(patch.axis, axis))) > constants.IDLE_AXIS:
+    if patch.kind != "plane" or norm(cross(patch.axis, axis)) > constants.IDLE_AXIS:
         return False
     # the middle of what turns onto itself is on the axis, whatever the attitude; and it goes all round
     arm = patch.points - point
     arm = arm - np.outer(arm @ axis, axis)
     reach = float(patch.weights @ np.linalg.norm(arm, axis=1))
-    if float(np.linalg.norm(patch.weights @ arm)) > constants.IDLE_MIDDLE * reach:
+    if norm(patch.weights @ arm) > constants.IDLE_MIDDLE * reach:
         return False
     return widest_gap(arm, axis) < constants.IDLE_OPEN
 
@@ -179,5 +179,5 @@ def _names(wanted: IntendedJoint, axis: Array, point: Array, leaf: bool, size: f
         return True
     if wanted.type not in ("revolute", "cylindrical", "screw") or wanted.axis is None or wanted.point is None:
         return False
-    parallel = float(np.linalg.norm(cross(wanted.axis, axis))) < constants.INTENDED_AXIS
-    return parallel and float(np.linalg.norm(cross(wanted.point - point, axis))) < constants.INTENDED_PLACE * size
+    parallel = norm(cross(wanted.axis, axis)) < constants.INTENDED_AXIS
+    return parallel and norm(cross(wanted.point - point, axis)) < constants.INTENDED_PLACE * size

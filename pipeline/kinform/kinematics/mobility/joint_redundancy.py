@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, rows, scaled, span
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics.constants import HELD_TWICE, NAMED_CONTACT_AXIS, SITE_GAP
 from kinform.kinematics.pair.evidence import COAXIAL
@@ -77,7 +77,7 @@ def sites(patches: Sequence[Patch]) -> list[list[int]]:
             if sets.find(k) == sets.find(n):
                 continue
             near = SITE_GAP * min(radii[k], radii[n])
-            if float(np.linalg.norm(centres[k] - centres[n])) - radii[k] - radii[n] > near:
+            if norm(centres[k] - centres[n]) - radii[k] - radii[n] > near:
                 continue
             if _distance(patches[k].points - centres[k], patches[n].points - centres[k]) <= near:
                 sets.union(k, n)

@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinform.foundation.algebra.screws import bracket
+from kinform.foundation.algebra.vectors import norm
 from kinform.kinematics import constants
 from kinform.kinematics.loops.loop_kinematics import LoopSystem
 from kinform.kinematics.mobility.second_order import Pose, complement, independent, second_order, units
@@ -238,7 +239,7 @@ def _explore(pose: Pose, directions: Array, step: float, rng: np.random.Generato
         fresh = len(poses) < constants.MOST_BRANCHES or all(there.freedoms != other.freedoms for other in poses)
         if fresh and not any(_same(there, other) for other in poses):
             poses.append(there)
-            dimensions.append(_dimension(there, constants.BRANCH_STEP * float(np.linalg.norm(end - pose.q)), rng))
+            dimensions.append(_dimension(there, constants.BRANCH_STEP * norm(end - pose.q), rng))
     decided = [] if None in dimensions else [d for d in dimensions if d is not None]
     if not decided:
         doubt = "a branch is singular itself"

@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import canonical, cross, foot
+from kinform.foundation.algebra.vectors import canonical, cross, foot, norm
 from kinform.foundation.graphs.graph import Forest, forest
 from kinform.kinematics.constants import (
     AT_REST,
@@ -94,7 +94,7 @@ def _read(twist: Array, near: Array | None, size: float) -> tuple[str, Array, Ar
     axis = omega / np.sqrt(square)
     point = foot(cross(omega, velocity) / square, axis, beside)
     pitch = 2.0 * np.pi * float(omega @ velocity) / square
-    lost = PITCH_ROUNDING * float(np.linalg.norm(velocity)) / np.sqrt(square)
+    lost = PITCH_ROUNDING * norm(velocity) / np.sqrt(square)
     if abs(pitch) < NO_PITCH * size + lost:
         return "turn", canonical(axis), point, 0.0
     return "screw", canonical(axis), point, pitch
@@ -150,7 +150,7 @@ def _exchange(
 def _rates(turn: Array, node: int, around: Sequence[int], graph: JointGraph, offset: Sequence[int]) -> dict[int, float]:
     """Joint rates when only this body moves, by the joints around it."""
     out: dict[int, float] = {}
-    unit = turn / float(np.linalg.norm(turn[:3]))
+    unit = turn / norm(turn[:3])
     for k in around:
         sign = 1.0 if graph.edges[k][1] == node else -1.0
         rates = np.linalg.lstsq(graph.joints[k].twists.T, sign * unit, rcond=None)[0]

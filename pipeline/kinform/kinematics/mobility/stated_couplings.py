@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import norm
 from kinform.kinematics.constants import INDEPENDENT_ROW
 from kinform.kinematics.loops.assembly_closure import Closure
 from kinform.kinematics.loops.block_closure import Solution
@@ -54,7 +55,7 @@ def _sense(joint: Joint, intended: IntendedJoint, first: BodyName) -> float | No
     if joint.freedoms != 1 or intended.axis is None:
         return None
     twist = joint.twists[0]
-    turns = float(np.linalg.norm(twist[:3])) > INDEPENDENT_ROW * float(np.linalg.norm(twist[3:]))
+    turns = norm(twist[:3]) > INDEPENDENT_ROW * norm(twist[3:])
     along = float((twist[:3] if turns else twist[3:]) @ intended.axis)
     return (1.0 if along > 0.0 else -1.0) * (1.0 if first == joint.bodies[0] else -1.0)
 

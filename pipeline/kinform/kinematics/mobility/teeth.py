@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, perpendicular
+from kinform.foundation.algebra.vectors import cross, norm, perpendicular
 from kinform.kinematics.constants import EVEN_TEETH, FEWEST_TEETH, IN_PLANE, RATIO_AGREES, TIP_MARGIN, TOOTH_POSES
 from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh
@@ -144,16 +144,16 @@ def _outline(side: Side, axis: Array, place: Array, plane: Array) -> _Outline | 
     """The section across the axis at the place; None where the side does not move in this plane."""
     omega, v = side.twist[:3], side.twist[3:]
     edges = _section(side.mesh, side.X_WP, axis, place, plane)
-    size = float(np.linalg.norm(omega))
+    size = norm(omega)
     if size > 0.0:
-        if float(np.linalg.norm(cross(omega, axis))) > IN_PLANE * size:
+        if norm(cross(omega, axis)) > IN_PLANE * size:
             return None
         centre = plane @ (cross(omega, v) / size**2)
         return _Outline(edges, centre, np.zeros(2), math.copysign(1.0, float(omega @ axis)))
     along = plane @ v
-    if float(np.linalg.norm(along)) < (1.0 - IN_PLANE**2) * float(np.linalg.norm(v)):
+    if norm(along) < (1.0 - IN_PLANE**2) * norm(v):
         return None
-    return _Outline(edges, plane @ place, along / np.linalg.norm(along), 1.0)
+    return _Outline(edges, plane @ place, along / norm(along), 1.0)
 
 
 def _section(mesh: Mesh, X_WP: Array, axis: Array, place: Array, plane: Array) -> Array:
@@ -292,9 +292,9 @@ def _mirror_normal(first: _Outline, second: _Outline, plane: Array, normal: Arra
     """The normal of the other flank: the mirror image across the line of centres, or across the way of a slide."""
     if first.turns and second.turns:
         line = second.centre - first.centre
-        across = np.array([-line[1], line[0]]) / max(float(np.linalg.norm(line)), 1e-300)
+        across = np.array([-line[1], line[0]]) / max(norm(line), 1e-300)
     else:
         across = first.along + second.along
-        across /= max(float(np.linalg.norm(across)), 1e-300)
+        across /= max(norm(across), 1e-300)
     t = across @ plane
     return np.asarray(normal - 2.0 * float(normal @ t) * t)

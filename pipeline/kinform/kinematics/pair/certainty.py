@@ -14,12 +14,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, perpendicular
+from kinform.foundation.algebra.vectors import cross, norm, perpendicular
 from kinform.foundation.words import counted
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.pair.freedoms import freedoms, preserved_motions
-from kinform.kinematics.pair.lower_pairs import JointForm, name_space
+from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.kinematics.pair.scraps import narrow, scraps
 from kinform.kinematics.pair.stops import ROLES, OtherReading, faces_in_words, freed_motions, one_sense, stop_reading
 from kinform.kinematics.pair.uncertainty import uncertainty_doubt
@@ -61,7 +61,7 @@ def certainty(
             f"singular value {values[count]:.2g} may be nothing: the directions of the surfaces are known to "
             f"{np.degrees(spread):.2g}°",
         )
-    form = name_space(basis, evidence.frame)
+    form = evidence.form(basis)
     touching = momentary(evidence, basis) or (form.type == "general" and meets([item.patch for item in evidence.items]))
     doubt = "" if touching else _loose_doubt(evidence, twists, count, tolerances) or _stray_doubt(evidence)
     doubt = doubt or _near_axes_doubt(evidence, twists, count, tolerances) or _thread_doubt(evidence, basis)
@@ -105,11 +105,7 @@ def meets(patches: Sequence[Patch]) -> bool:
         return False  # nobody knows where facets touch next
     return any(patch.kind in TOUCHING for patch in patches) and all(
         patch.kind in TOUCHING
-        or (
-            patch.kind == "plane"
-            and lines
-            and all(np.linalg.norm(cross(patch.axis, d)) < constants.ACROSS_LINE for d in lines)
-        )
+        or (patch.kind == "plane" and lines and all(norm(cross(patch.axis, d)) < constants.ACROSS_LINE for d in lines))
         for patch in patches
     )
 
@@ -119,7 +115,7 @@ def momentary(evidence: Evidence, basis: Array) -> bool:
     their pitch line, while a roller in a groove turns about its own axis."""
     if not meets([item.patch for item in evidence.items]):
         return False
-    form = name_space(basis, evidence.frame)
+    form = evidence.form(basis)
     if form.type not in ("revolute", "cylindrical", "screw", "spherical") or form.point is None:
         return False
     for item in evidence.items:
@@ -189,7 +185,7 @@ def _scrap_reading(
         and not one_sense(evidence, freed[:, 0], out)
     ):
         return None  # the flat of a shaft holds a turn both ways, however small it is
-    return OtherReading(name_space(firm, evidence.frame), firm, out, role)
+    return OtherReading(evidence.form(firm), firm, out, role)
 
 
 def _teeth_reading(
@@ -207,7 +203,7 @@ def _teeth_reading(
     if firm.shape[1] <= basis.shape[1]:
         return None
     out = tuple(int(k) for k in np.flatnonzero(flanks))
-    return OtherReading(name_space(firm, evidence.frame), firm, out, "flank")
+    return OtherReading(evidence.form(firm), firm, out, "flank")
 
 
 def _vagueness(patch: Patch, *, fixed: bool) -> float:
@@ -234,7 +230,7 @@ def _near_axes_doubt(evidence: Evidence, twists: Array, count: int, tolerances: 
 
 def _thread_doubt(evidence: Evidence, basis: Array) -> str:
     """Do facets all round an axis lean like those of a thread, without a thread that was found to mate there?"""
-    form = name_space(basis, evidence.frame)
+    form = evidence.form(basis)
     if form.type == "screw" or basis.shape[1] > 2:
         return ""
     coaxial = sorted((i for i in evidence.items if i.patch.kind in COAXIAL), key=lambda i: (-i.area, i.index))
@@ -283,7 +279,7 @@ def _advance(evidence: Evidence, axis: Array, point: Array) -> float:
 
 
 def _about(item: Item, axis: Array) -> bool:
-    return float(np.linalg.norm(cross(item.patch.axis, axis))) < constants.ALONG_AXIS
+    return norm(cross(item.patch.axis, axis)) < constants.ALONG_AXIS
 
 
 def _torn_doubt(evidence: Evidence, twists: Array, preserved: Flags, count: int, tolerances: Tolerances) -> str:
@@ -308,7 +304,7 @@ def _prism_reading(evidence: Evidence, basis: Array) -> OtherReading | None:
     if not turning:
         return None
     left = basis @ mixed[turning:].T
-    return OtherReading(name_space(left, evidence.frame), left, (), "prism")
+    return OtherReading(evidence.form(left), left, (), "prism")
 
 
 def _prism_words(evidence: Evidence, form: JointForm, other: OtherReading) -> str:

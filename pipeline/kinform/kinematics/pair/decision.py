@@ -11,13 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, norm
 from kinform.kinematics import constants
 from kinform.kinematics.pair.certainty import Certainty, certainty, momentary
 from kinform.kinematics.pair.evidence import COAXIAL, GUIDES, Evidence, Item
 from kinform.kinematics.pair.freedoms import freedoms, preserved_motions
 from kinform.kinematics.pair.hypotheses import Motion, candidate_motions
-from kinform.kinematics.pair.lower_pairs import JointForm, name_space
+from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.kinematics.pair.uncertainty import uncertainty_doubt
 from kinform.model.arrays import Array, Flags
 from kinform.model.tolerances import Tolerances
@@ -61,7 +61,7 @@ def decide(evidence: Evidence, tolerances: Tolerances) -> Decision:
     if chosen is None or basis.shape[1] <= strict.shape[1]:
         sure = certainty(evidence, twists, preserved, strict, values, tolerances)
         kept = tuple(range(len(evidence.items)))
-        form = JointForm("general") if momentary(evidence, strict) else name_space(strict, evidence.frame)
+        form = JointForm("general") if momentary(evidence, strict) else evidence.form(strict)
         other = None if sure.other is None else _other(evidence, sure, candidates, preserved, values)
         return Decision(form, strict, strict, sure.status, sure.reason, kept, (), values, other)
     out = tuple((int(k), motion) for k in np.flatnonzero(~keep))
@@ -69,7 +69,7 @@ def decide(evidence: Evidence, tolerances: Tolerances) -> Decision:
     share = float(area[~keep].sum() / area.sum())
     reason = f"{len(out)} of {len(area)} patches ({100 * share:.1f} % of the area) left out: they block it"
     kept = tuple(int(k) for k in np.flatnonzero(keep))
-    form = name_space(basis, evidence.frame)
+    form = evidence.form(basis)
     doubt = uncertainty_doubt(evidence.chosen(keep), form, evidence.frame.length)
     status, reason = ("ambiguous", f"{doubt}; {reason}") if doubt else ("blocked", reason)
     return Decision(form, basis, strict, status, reason, kept, out, loosened)
@@ -114,7 +114,7 @@ def _consensus(
         stopped = share <= constants.MOST_STOPPED and _turns_on_journal(evidence, motion, keep)
         if not (small or stopped) or (best is not None and share >= best[0]):
             continue
-        beyond = float(np.linalg.norm(motion.twist - strict @ (strict.T @ motion.twist)))
+        beyond = norm(motion.twist - strict @ (strict.T @ motion.twist))
         if strict.shape[1] and (not (motion.turn and motion.curved) or beyond < constants.NEW_FREEDOM):
             continue
         if _frees_thrust(evidence, motion, keep):
@@ -130,7 +130,7 @@ def _frees_thrust(evidence: Evidence, motion: Motion, keep: Flags) -> bool:
         return False
 
     def along(item: Item) -> bool:
-        return float(np.linalg.norm(cross(item.patch.axis, motion.axis))) < constants.ALONG_AXIS
+        return norm(cross(item.patch.axis, motion.axis)) < constants.ALONG_AXIS
 
     shaft = any(item.patch.kind in COAXIAL and along(item) for item in evidence.chosen(keep))
     return shaft and any(item.patch.kind == "plane" and along(item) for item in evidence.chosen(~keep))

@@ -8,12 +8,13 @@ weights serve.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, rows
 from kinform.kinematics.constants import GAP_BANDS, LOOSE_ANGLE, SIGMAS, STRAY_SHARE, TOUCHING_GAP
+from kinform.kinematics.pair.lower_pairs import JointForm, name_space
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.tolerances import Tolerances
@@ -70,11 +71,19 @@ class Evidence:
     """m: the contact tolerance of the pair."""
     size: float = 0.0
     """m: diagonal of the smaller body; 0: not known."""
+    _forms: dict[int, tuple[Array, JointForm]] = field(default_factory=dict, repr=False)
 
     @property
     def areas(self) -> Array:
         """(items,) m²."""
         return np.array([item.area for item in self.items])
+
+    def form(self, basis: Array) -> JointForm:
+        """The joint whose freedoms are the columns of `basis` (6, k); of an array that was asked about before it is
+        known."""
+        if id(basis) not in self._forms:
+            self._forms[id(basis)] = basis, name_space(basis, self.frame)
+        return self._forms[id(basis)][1]
 
     def chosen(self, chosen: Flags) -> list[Item]:
         """The items of the flags (items,) that are set."""

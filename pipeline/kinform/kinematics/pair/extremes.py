@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import perpendicular
+from kinform.foundation.algebra.vectors import norm, perpendicular
 from kinform.kinematics import constants
 from kinform.model.arrays import Array, Ints
 from kinform.model.contacts import Patch
@@ -101,9 +101,9 @@ def _around(flat: Array) -> Ints:
 def _rim(normals: Array) -> Ints:
     """Normals (n, 3) of a ball that span the same cone: the rim of a cap, or ends in directions all round."""
     mean = normals.mean(axis=0)
-    along = normals @ mean / max(float(np.linalg.norm(mean)), 1e-300)
+    along = normals @ mean / max(norm(mean), 1e-300)
     if along.min() > constants.CAP:
-        return hull(normals / along[:, None], mean / np.linalg.norm(mean))
+        return hull(normals / along[:, None], mean / norm(mean))
     ends = _SPREAD @ normals.T
     return np.unique(ends.argmax(axis=1)).astype(np.int64)
 

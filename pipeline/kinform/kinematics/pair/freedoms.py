@@ -10,10 +10,10 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.screws import span
-from kinform.foundation.algebra.vectors import cross, foot
+from kinform.foundation.algebra.vectors import cross, foot, norm
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import Evidence
-from kinform.kinematics.pair.lower_pairs import name_space, nearest_pair
+from kinform.kinematics.pair.lower_pairs import nearest_pair
 from kinform.model.arrays import Array, Flags
 from kinform.model.tolerances import Tolerances
 
@@ -87,7 +87,7 @@ def freedoms(
     basis = np.zeros((6, 0))
     for twist in twists[:, preserved[keep].all(axis=0)].T:
         rest = twist - basis @ (basis.T @ twist)
-        size = float(np.linalg.norm(rest))
+        size = norm(rest)
         unit = rest / max(size, 1e-300)
         if size > constants.CLEARLY_NEW or (
             size > constants.NEW_FREEDOM and _all_preserve(evidence, unit, keep, constants.DIFFERENCE_SLACK)
@@ -96,7 +96,7 @@ def freedoms(
     chosen = np.repeat(keep, np.diff(evidence.start))
     rows = evidence.rows[chosen] * np.sqrt(evidence.share[chosen] / evidence.share[chosen].sum())[:, None]
     basis, values = _complete(rows, basis, tolerances)
-    if name_space(basis, evidence.frame).type == "general":
+    if evidence.form(basis).type == "general":
         rounded = nearest_pair(basis, evidence.frame)
         if rounded is not None and _all_preserve(evidence, rounded, keep):
             return _complete(rows, rounded, tolerances)

@@ -13,7 +13,7 @@ from typing import TypeVar
 import numpy as np
 
 from kinform.foundation.algebra.screws import rotation, translation
-from kinform.foundation.algebra.vectors import canonical, cross, foot, perpendicular
+from kinform.foundation.algebra.vectors import canonical, cross, foot, norm, perpendicular
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.wording import components
@@ -66,7 +66,7 @@ def candidate_motions(evidence: Evidence, alignment: float) -> tuple[Motion, ...
     for centre in centres:
         turns = [*np.eye(3), *(d for d, _ in directions), *(n for n, _ in normals)]
         apart = constants.SEPARATE_CENTRES * frame.length
-        turns += [canonical(c - centre) for c in centres if np.linalg.norm(c - centre) > apart]
+        turns += [canonical(c - centre) for c in centres if norm(c - centre) > apart]
         out += [Motion(True, rotation(d, centre, frame), d, centre, True) for d in turns]
     for direction, curved in directions:
         out.append(Motion(False, translation(direction), direction, frame.centre, curved))
@@ -114,13 +114,13 @@ def coaxial_lines(evidence: Evidence, alignment: float) -> list[Line]:
 
 
 def _coaxial(a: Item, b: Item, alignment: float) -> bool:
-    sine = float(np.linalg.norm(cross(a.patch.axis, b.patch.axis)))
+    sine = norm(cross(a.patch.axis, b.patch.axis))
     if sine > np.sin(min(max(_tilt(a, alignment), _tilt(b, alignment)), 0.5 * np.pi)):
         return False
     middle = b.points.mean(axis=0)
     apart = foot(a.patch.point, a.patch.axis, middle) - foot(b.patch.point, b.patch.axis, middle)
-    reach = float(np.linalg.norm(middle - a.points.mean(axis=0)))
-    return float(np.linalg.norm(apart)) <= a.position + b.position + a.angle * reach
+    reach = norm(middle - a.points.mean(axis=0))
+    return norm(apart) <= a.position + b.position + a.angle * reach
 
 
 def _tilt(item: Item, alignment: float) -> float:
@@ -172,7 +172,7 @@ def _centres(evidence: Evidence) -> list[Array]:
     items = sorted((i for i in evidence.items if i.patch.kind == "sphere"), key=lambda i: -i.area)
     centres = _merge(
         [(item.patch.point, item.area, item.position) for item in items],
-        lambda a, b: bool(np.linalg.norm(a[0] - b[0]) <= a[2] + b[2] + slack),
+        lambda a, b: bool(norm(a[0] - b[0]) <= a[2] + b[2] + slack),
         lambda a, b: ((a[0] * a[1] + b[0] * b[1]) / (a[1] + b[1]), a[1] + b[1], max(a[2], b[2])),
     )
     return [centre for centre, _, _ in centres]
@@ -184,11 +184,11 @@ def _directions(candidates: Iterable[Direction], alignment: float) -> list[Direc
     def mean(a: Direction, b: Direction) -> Direction:
         total = a[1] + b[1]
         direction = (a[0] * a[1] + (b[0] if b[0] @ a[0] > 0.0 else -b[0]) * b[1]) / total
-        return direction / np.linalg.norm(direction), total
+        return direction / norm(direction), total
 
     merged = _merge(
         [(canonical(axis), weight) for axis, weight in sorted(candidates, key=lambda c: -c[1])],
-        lambda a, b: bool(np.linalg.norm(cross(b[0], a[0])) <= np.sin(alignment)),
+        lambda a, b: bool(norm(cross(b[0], a[0])) <= np.sin(alignment)),
         mean,
     )
     return sorted(merged, key=lambda m: -m[1])[: constants.MOST_DIRECTIONS]
@@ -203,7 +203,7 @@ def _slides(
     slides: list[tuple[Array, bool]] = [(line.axis, True) for line in lines]
 
     def add(direction: Array, curved: bool) -> None:
-        if all(np.linalg.norm(cross(direction, d)) > constants.DISTINCT_SLIDE * np.sin(alignment) for d, _ in slides):
+        if all(norm(cross(direction, d)) > constants.DISTINCT_SLIDE * np.sin(alignment) for d, _ in slides):
             slides.append((direction, curved))
 
     for axis, _ in _directions(
@@ -215,7 +215,7 @@ def _slides(
     for normal in heavy[: constants.MOST_FACES]:
         meeting += [*perpendicular(normal), *(cross(normal, line.axis) for line in lines)]
     for direction in meeting:
-        if np.linalg.norm(direction) > constants.LEAST_MEETING:
+        if norm(direction) > constants.LEAST_MEETING:
             add(_refine(canonical(direction), planes, alignment), False)
     return slides[: constants.MOST_SLIDES]
 
@@ -237,9 +237,7 @@ def _refine(direction: Array, planes: list[tuple[Array, float]], alignment: floa
 def _middle(evidence: Evidence, normal: Array, alignment: float) -> Array:
     """Area centroid of the plane patches with this normal."""
     members = [
-        i
-        for i in evidence.items
-        if i.patch.kind == "plane" and np.linalg.norm(cross(i.patch.axis, normal)) <= np.sin(alignment)
+        i for i in evidence.items if i.patch.kind == "plane" and norm(cross(i.patch.axis, normal)) <= np.sin(alignment)
     ]
     points = np.concatenate([i.points for i in members])
     return np.asarray(np.average(points, axis=0, weights=np.concatenate([i.weights for i in members])))

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.algebra.screws import twist_at_origin
-from kinform.foundation.algebra.vectors import canonical, cross, foot, perpendicular
+from kinform.foundation.algebra.vectors import canonical, cross, foot, norm, perpendicular
 from kinform.kinematics.constants import LEAST_MISALIGNMENT, SIGMAS
 from kinform.kinematics.pair.decision import Decision
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
@@ -162,5 +162,5 @@ def _unevenness(item: Item) -> float:
     """rad by which facets of a plane face that is not quite flat may lean, over the extent of the patch."""
     if item.patch.kind != "plane":
         return 0.0
-    extent = float(np.linalg.norm(np.ptp(item.points, axis=0)))
+    extent = norm(np.ptp(item.points, axis=0))
     return 2.0 * item.patch.chord / extent if extent > 0.0 else 0.0

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, rotation, translation
-from kinform.foundation.algebra.vectors import canonical, cross, cross_matrix, perpendicular
+from kinform.foundation.algebra.vectors import canonical, cross, cross_matrix, norm, perpendicular
 from kinform.kinematics.constants import EXACT_PAIR, NEAR_PAIR
 from kinform.model.arrays import Array
 
@@ -35,11 +35,11 @@ def name_space(basis: Array, frame: Frame) -> JointForm:
     freedoms = basis.shape[1]
     if freedoms == 0:
         return JointForm("fixed")
+    if freedoms == 1:
+        return _one_freedom(basis[:, 0], frame)
     _, values, right = np.linalg.svd(basis[:3], full_matrices=True)
     turns = int(np.count_nonzero(values > EXACT_PAIR))
     mixed = basis @ right.T
-    if freedoms == 1:
-        return _one_freedom(mixed[:, 0], turns, frame)
     if turns == 1:
         return _one_turn(mixed[:, 0], mixed[3:, turns:], frame)
     centre = _centre(basis, frame, 10.0 * EXACT_PAIR) if turns == 3 and freedoms == 3 else None
@@ -67,11 +67,11 @@ def nearest_pair(basis: Array, frame: Frame) -> Array | None:
     axis, point, lead = _axis_of(mixed[:, 0], frame)
     if freedoms == 1:
         return _orthonormal([rotation(axis, point, frame)]) if abs(lead) < NEAR_PAIR * frame.length else None
-    if freedoms == 2 and np.linalg.norm(cross(axis, slides[:, 0])) < NEAR_PAIR:
+    if freedoms == 2 and norm(cross(axis, slides[:, 0])) < NEAR_PAIR:
         return _orthonormal([rotation(axis, point, frame), translation(axis)])
-    if freedoms == 3 and np.linalg.norm(axis @ slides) < NEAR_PAIR:
+    if freedoms == 3 and norm(axis @ slides) < NEAR_PAIR:
         normal = cross(slides[:, 0], slides[:, 1])
-        normal /= np.linalg.norm(normal)
+        normal /= norm(normal)
         u, v = perpendicular(normal)
         return _orthonormal([rotation(normal, frame.centre, frame), translation(u), translation(v)])
     return None
@@ -90,8 +90,8 @@ def _axis_of(twist: Array, frame: Frame) -> tuple[Array, Array, float]:
     return omega / math.sqrt(square), point, float(omega @ velocity) / square
 
 
-def _one_freedom(twist: Array, turns: int, frame: Frame) -> JointForm:
-    if turns == 0:
+def _one_freedom(twist: Array, frame: Frame) -> JointForm:
+    if norm(twist[:3]) <= EXACT_PAIR:
         return JointForm("prismatic", canonical(twist[3:]), frame.centre)
     axis, point, lead = _axis_of(twist, frame)
     if abs(lead) < EXACT_PAIR * frame.length:
@@ -100,8 +100,8 @@ def _one_freedom(twist: Array, turns: int, frame: Frame) -> JointForm:
 
 
 def _one_turn(turn: Array, slides: Array, frame: Frame) -> JointForm:
-    axis = turn[:3] / np.linalg.norm(turn[:3])
-    along = np.linalg.norm(axis @ slides)
+    axis = turn[:3] / norm(turn[:3])
+    along = norm(axis @ slides)
     if slides.shape[1] == 1 and along > 1.0 - EXACT_PAIR:
         _, point, _ = _axis_of(turn, frame)
         return JointForm("cylindrical", canonical(axis), point)

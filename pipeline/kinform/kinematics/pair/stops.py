@@ -22,11 +22,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, perpendicular, widest_gap
+from kinform.foundation.algebra.vectors import cross, norm, perpendicular, widest_gap
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.pair.freedoms import freedoms
-from kinform.kinematics.pair.lower_pairs import JointForm, name_space
+from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.model.arrays import Array, Flags
 from kinform.model.tolerances import Tolerances
 
@@ -71,7 +71,7 @@ def stop_reading(
         basis, _ = freedoms(evidence, twists, preserved, keep, tolerances)
         if basis.shape[1] <= strict.shape[1]:
             continue
-        reading = OtherReading(name_space(basis, evidence.frame), basis, out, "stop")
+        reading = OtherReading(evidence.form(basis), basis, out, "stop")
         area = float(areas[list(out)].sum())
         if (best is None or area < best[0]) and _may_be_stop(evidence, strict, reading, keep):
             best = area, reading
@@ -103,7 +103,7 @@ def _may_be_stop(evidence: Evidence, strict: Array, reading: OtherReading, keep:
     if motions.shape[1] != 1 or not one_sense(evidence, motions[:, 0], reading.out):
         return False
     turned = {"fixed": ("revolute",), "prismatic": ("cylindrical",)}
-    if reading.form.type in turned.get(name_space(strict, evidence.frame).type, ()):
+    if reading.form.type in turned.get(evidence.form(strict).type, ()):
         return True
     return reading.form.axis is not None and _ends_guide(reading.form, guides, faces)
 
@@ -171,14 +171,14 @@ def _runs_along(item: Item, axis: Array) -> bool:
     """Does the patch slide on itself along the axis?"""
     if item.patch.kind == "plane":
         return abs(float(item.patch.axis @ axis)) < constants.ALONG_AXIS
-    return float(np.linalg.norm(cross(item.patch.axis, axis))) < constants.ALONG_AXIS
+    return norm(cross(item.patch.axis, axis)) < constants.ALONG_AXIS
 
 
 def _short_flank(
     evidence: Evidence, strict: Array, reading: OtherReading, guides: list[Item], faces: list[Item]
 ) -> bool:
     """Do short faces, all on one side, make a slider of a plane contact?"""
-    form = name_space(strict, evidence.frame)
+    form = evidence.form(strict)
     if form.type != "prismatic" or reading.form.type != "planar" or form.axis is None or reading.form.axis is None:
         return False
     sideways = cross(form.axis, reading.form.axis)

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, norm
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Item
 from kinform.kinematics.pair.lower_pairs import JointForm
@@ -41,7 +41,7 @@ def disagreement(items: Sequence[Item], form: JointForm) -> float:
     for item in items:
         angle = _angle(item, form)
         if angle is not None and form.axis is not None:
-            sine = float(np.linalg.norm(cross(item.patch.axis, form.axis)))
+            sine = norm(cross(item.patch.axis, form.axis))
             cosine = abs(float(item.patch.axis @ form.axis))
             out.append(max(angle, min(sine, cosine)))
     return min(out, default=0.0)
@@ -77,9 +77,9 @@ def _says(item: Item, form: JointForm) -> bool:
 
 def _angle(item: Item, form: JointForm) -> float | None:
     """rad: how well the patch says the joint's direction; None where it says nothing about it."""
-    if form.axis is None or not np.any(item.patch.axis):
+    if form.axis is None or not any(item.patch.axis.tolist()):
         return None
-    sine = float(np.linalg.norm(cross(item.patch.axis, form.axis)))
+    sine = norm(cross(item.patch.axis, form.axis))
     along = sine < constants.SAYS_DIRECTION
     across = abs(float(item.patch.axis @ form.axis)) < constants.SAYS_DIRECTION
     if item.patch.kind in (*COAXIAL, "extrusion") and along:
@@ -97,5 +97,5 @@ def _shift(item: Item, form: JointForm) -> float | None:
         return item.patch.uncertainty[1]
     if item.patch.kind not in COAXIAL or form.axis is None:
         return None
-    along = float(np.linalg.norm(cross(item.patch.axis, form.axis))) < constants.SAYS_DIRECTION
+    along = norm(cross(item.patch.axis, form.axis)) < constants.SAYS_DIRECTION
     return item.patch.uncertainty[1] if along else None

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import fcl
 import numpy as np
 
+from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.at_work import at_work_on
 from kinform.foundation.graphs.graph import shortest_path
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_model, fcl_pose
@@ -185,8 +186,8 @@ def _nearest(
     for other in among:
         if assembly.part(other).mesh is not None:
             low_o, high_o = _box(assembly, other)
-            gap = float(np.linalg.norm(np.maximum(np.maximum(low - high_o, low_o - high), 0.0)))
-            middle = float(np.linalg.norm(low + high - low_o - high_o))
+            gap = norm(np.maximum(np.maximum(low - high_o, low_o - high), 0.0))
+            middle = norm(low + high - low_o - high_o)
             apart.append((gap, middle, other))
     own = _object(assembly, name, models)
     best: tuple[float, PartName] | None = None

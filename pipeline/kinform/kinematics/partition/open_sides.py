@@ -16,6 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.errors import OpenSidesError, Problem
+from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import forest
 from kinform.foundation.words import counted, length, number, quoted
 from kinform.kinematics.partition import constants
@@ -134,7 +135,7 @@ def _nearest(ways: Ways, joint: IntendedJoint) -> str:
             continue
         else:
             arm = arm - (arm @ joint.axis) * joint.axis
-        best = min(best or (np.inf, patch.parts), (float(np.linalg.norm(arm)), patch.parts))
+        best = min(best or (np.inf, patch.parts), (norm(arm), patch.parts))
     if best is None:
         return "there is none of that kind anywhere" if joint.point is not None else "nothing guides it"
     kind = "ball" if joint.axis is None else "journal of that direction"

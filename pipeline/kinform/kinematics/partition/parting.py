@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, perpendicular, widest_gap
+from kinform.foundation.algebra.vectors import cross, norm, perpendicular, widest_gap
 from kinform.kinematics.partition import constants
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch, Suggestion
@@ -35,7 +35,7 @@ def joint_twists(joint: IntendedJoint) -> Array | None:
         return None if point is None else np.array([_turn(direction, point) for direction in np.eye(3)])
     if joint.axis is None:
         return None
-    axis = joint.axis / np.linalg.norm(joint.axis)
+    axis = joint.axis / norm(joint.axis)
     slide = np.concatenate([z, axis])
     if joint.type == "prismatic":
         return slide[None]
@@ -52,7 +52,7 @@ def joint_twists(joint: IntendedJoint) -> Array | None:
     if joint.type == "screw" and joint.pitch is not None:
         return (_turn(axis, point) + joint.pitch / (2.0 * np.pi) * slide)[None]
     if joint.type == "universal" and joint.axis2 is not None:
-        return np.array([_turn(axis, point), _turn(joint.axis2 / np.linalg.norm(joint.axis2), point)])
+        return np.array([_turn(axis, point), _turn(joint.axis2 / norm(joint.axis2), point)])
     return None
 
 
@@ -145,7 +145,7 @@ class Contact:
         arm = 0.5 * (self.points.min(axis=0) + self.points.max(axis=0)) - joint.point
         if joint.axis is not None:
             arm = arm - (arm @ joint.axis) * joint.axis
-        return float(np.linalg.norm(arm)) <= 0.5 * float(np.linalg.norm(np.ptp(self.points, axis=0)))
+        return norm(arm) <= 0.5 * norm(np.ptp(self.points, axis=0))
 
     def in_question(self, asked: Sequence[tuple[int, Array]]) -> list[tuple[int, Array]]:
         """The joints, by number and motions, whose first motion next to none of it opposes; all where it has facets of
@@ -200,12 +200,12 @@ class Contact:
         assert joint.point is not None
         arms = self.points[int(self.start[k]) : int(self.start[k + 1])] - joint.point
         if joint.type != "spherical" and joint.axis is not None:
-            axis = joint.axis / np.linalg.norm(joint.axis)
+            axis = joint.axis / norm(joint.axis)
             arms = arms - np.outer(arms @ axis, axis)
         weights = self.patches[k].weights
         reach = float(np.linalg.norm(arms, axis=1).max(initial=0.0))
         middle = weights @ arms / max(float(weights.sum()), 1e-300)
-        return float(np.linalg.norm(middle)) / max(reach, 1e-300)
+        return norm(middle) / max(reach, 1e-300)
 
     def _round(self, joint: IntendedJoint, opposed: Flags) -> float:
         """The price along a turn: do patches go round its axis, or its centre?"""
@@ -244,15 +244,15 @@ class Contact:
         arm = patch.point - joint.point
         size = max(patch.radii, default=0.0)
         if joint.type == "spherical" or joint.axis is None:
-            return patch.kind == "sphere" and float(np.linalg.norm(arm)) < constants.COAXIAL_OFF * size
-        axis = joint.axis / np.linalg.norm(joint.axis)
-        off = float(np.linalg.norm(arm - (arm @ axis) * axis))
+            return patch.kind == "sphere" and norm(arm) < constants.COAXIAL_OFF * size
+        axis = joint.axis / norm(joint.axis)
+        off = norm(arm - (arm @ axis) * axis)
         return abs(float(patch.axis @ axis)) > np.cos(constants.COAXIAL) and off < constants.COAXIAL_OFF * size
 
     def _guided(self, joint: IntendedJoint, opposed: Flags) -> float:
         """The price along a slide: do faces that run along it stand round it?"""
         assert joint.axis is not None
-        axis = joint.axis / np.linalg.norm(joint.axis)
+        axis = joint.axis / norm(joint.axis)
         gap = widest_gap(self.normals[~opposed], axis)
         return constants.JOURNAL if gap < constants.GUIDED_ROUND else constants.FLAT_BESIDE
 

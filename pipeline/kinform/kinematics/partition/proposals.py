@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import canonical_sign
+from kinform.foundation.algebra.vectors import canonical_sign, norm
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.words import counted, quoted
 from kinform.kinematics.partition import constants
@@ -151,7 +151,7 @@ def _candidates(patches: Sequence[Patch]) -> list[IntendedJoint]:
     for patch in sorted(patches, key=lambda patch: -patch.area):
         if patch.narrow or patch.kind not in ROUND:
             continue
-        reach = float(np.linalg.norm(np.ptp(patch.points, axis=0))) or 1e-6
+        reach = norm(np.ptp(patch.points, axis=0)) or 1e-6
         if patch.kind == "sphere":
             joint = _joint("spherical", None, patch.point)
         else:
@@ -169,10 +169,10 @@ def _same(one: IntendedJoint, other: IntendedJoint, off: float) -> bool:
     assert one.point is not None and other.point is not None
     apart = one.point - other.point
     if one.axis is None or other.axis is None:
-        return one.type == other.type and float(np.linalg.norm(apart)) <= off
+        return one.type == other.type and norm(apart) <= off
     if abs(float(one.axis @ other.axis)) < np.cos(constants.SAME_AXIS):
         return False
-    return float(np.linalg.norm(apart - (apart @ other.axis) * other.axis)) <= off
+    return norm(apart - (apart @ other.axis) * other.axis) <= off
 
 
 def _freed(

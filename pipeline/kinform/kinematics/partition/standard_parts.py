@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.words import counted
 from kinform.kinematics.partition import constants
 from kinform.model.arrays import Array
@@ -165,18 +166,18 @@ def _turned(surfaces: Sequence[Surface], main: Surface) -> float:
             area += s.area if along > 0.999 or (along < 0.05 and close) else 0.0
         elif s.kind in ("cylinder", "cone", "torus", "revolution", "helicoid"):
             gap = s.point - main.point
-            off = float(np.linalg.norm(gap - (gap @ main.axis) * main.axis))
+            off = norm(gap - (gap @ main.axis) * main.axis)
             on = off < constants.COAXIAL_OFF * main.radius and abs(float(s.axis @ main.axis)) > 0.999
             area += s.area if on else 0.0
         elif s.kind == "sphere":
             gap = s.point - main.point
-            area += s.area if float(np.linalg.norm(gap - (gap @ main.axis) * main.axis)) < 0.1 * main.radius else 0.0
+            area += s.area if norm(gap - (gap @ main.axis) * main.axis) < 0.1 * main.radius else 0.0
     return area
 
 
 def _coaxial(one: Surface, other: Surface) -> bool:
     gap = one.point - other.point
-    off = float(np.linalg.norm(gap - (gap @ other.axis) * other.axis))
+    off = norm(gap - (gap @ other.axis) * other.axis)
     return abs(float(one.axis @ other.axis)) > np.cos(constants.COAXIAL) and off < constants.COAXIAL_OFF * one.radius
 
 

@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import perpendicular
+from kinform.foundation.algebra.vectors import norm, perpendicular
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.partition import constants
@@ -79,7 +79,7 @@ class Ways:
         """m: the diagonal of the assembly's box."""
         boxes = [part.mesh.placed_box(part.X_WP) for part in self.assembly.parts if part.mesh is not None]
         low, high = (np.array([box[k] for box in boxes]) for k in (0, 1))
-        return float(np.linalg.norm(high.max(axis=0) - low.min(axis=0))) if boxes else 0.0
+        return norm(high.max(axis=0) - low.min(axis=0)) if boxes else 0.0
 
     @cached_property
     def piece(self) -> dict[PartName, PartName]:
@@ -251,7 +251,7 @@ class Ways:
         across = corners.mean(axis=1) @ np.column_stack(perpendicular(joint.axis))
         middle = areas @ across / areas.sum()
         spread = np.linalg.eigvalsh((across - middle).T @ ((across - middle) * areas[:, None]) / areas.sum())
-        off = float(np.linalg.norm(middle))
+        off = norm(middle)
         even = float(spread[0]) > (1.0 - constants.ROUND_OFF) * float(spread[1])
         return even and off < constants.ROUND_OFF * float(spread[1]) ** 0.5
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, rows, scaled, span
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.meant import did_you_mean
 from kinform.foundation.words import counted
 from kinform.kinematics.constants import AT_REST, BLOCKING_SPEED, MOTION_THERE
@@ -67,9 +67,9 @@ def query(
     if (turn is None) == (slide is None):
         raise ValueError("give either a turn or a slide")
     direction = np.asarray(turn[0] if turn is not None else slide, dtype=float)
-    if not np.linalg.norm(direction) > 0.0:
+    if not norm(direction) > 0.0:
         raise ValueError("the direction is zero")
-    direction = direction / np.linalg.norm(direction)
+    direction = direction / norm(direction)
     if turn is None:
         return query_twist(design, a, b, np.concatenate([np.zeros(3), direction]), "slide")
     point = np.asarray(turn[1], dtype=float)
@@ -95,7 +95,7 @@ def query_twist(design: Derived, a: str, b: str, motion: Array, what: str) -> Qu
         points.append((cross(motion[:3], motion[3:]) / float(motion[:3] @ motion[:3]))[None])
     frame = Frame.of(np.concatenate(points))
     twist = scaled(motion[:, None], frame)[:, 0]
-    twist = twist / np.linalg.norm(twist)
+    twist = twist / norm(twist)
     in_pair, residual = None, 1.0
     if joint is not None:
         residual = _outside(twist, joint.twists, frame)
@@ -142,7 +142,7 @@ def _body(design: Derived, name: str) -> str:
 def _outside(twist: Array, space: Array, frame: Frame) -> float:
     """Norm of the part of a unit twist outside the span of the (f, 6) twists."""
     basis = span(scaled(space.T, frame)) if len(space) else np.zeros((6, 0))
-    return float(np.linalg.norm(twist - basis @ (basis.T @ twist)))
+    return norm(twist - basis @ (basis.T @ twist))
 
 
 def _in_assembly(design: Derived, first: str, second: str, twist: Array, frame: Frame) -> float:
@@ -205,7 +205,7 @@ def _sentence(a: str, b: str, what: str, motion: Array, answer: QueryAnswer, *, 
 def _sense(what: str, motion: Array, *, forward: bool) -> str:
     """The sense of a motion: "+z", or "+z" of the axis of a turn."""
     axis = motion[:3] if motion[:3].any() else motion[3:]
-    axis = axis / np.linalg.norm(axis)
+    axis = axis / norm(axis)
     words = direction_words(axis if forward else -axis)
     return words if what == "slide" else f"the sense of {words}"
 

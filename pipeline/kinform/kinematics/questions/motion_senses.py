@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, scaled
+from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import blocks
 from kinform.kinematics.constants import MOST_CONTACTS_TRIED, MOST_PROGRAM_ROWS, MOST_ROWS_TRIED, MOTION_THERE
 from kinform.kinematics.loops.joint_graph import JointGraph
@@ -50,8 +51,8 @@ def pair_ways(kinematics: Kinematics, patches: Sequence[Patch], joint: Joint, tw
     if cone is None:
         return None
     unit = scaled(twist[:, None], cone.frame)[:, 0]
-    unit = unit / np.linalg.norm(unit)
-    if len(cone.fixed) and float(np.linalg.norm(cone.fixed @ unit)) > MOTION_THERE:
+    unit = unit / norm(unit)
+    if len(cone.fixed) and norm(cone.fixed @ unit) > MOTION_THERE:
         return False, False
     speed = cone.rows @ unit
     return bool((speed >= -MOTION_THERE).all()), bool((speed <= MOTION_THERE).all())
@@ -72,7 +73,7 @@ def attempt(
     others = sorted({n for k in between for n in graph.edges[k]} - {a, b})
     goal = scaled(twist[:, None], frame)[:, 0]
     source = ContactRows(kinematics.matrix, kinematics.bodies, patches)
-    program = _Program(others, {a: np.zeros(6), b: goal / np.linalg.norm(goal)})
+    program = _Program(others, {a: np.zeros(6), b: goal / norm(goal)})
     for k in between:
         for rows, label in _rows(source, graph.joints[k], frame):
             program.add(rows, label, graph.edges[k])

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, twist_at_origin
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, norm
 from kinform.kinematics import constants
 from kinform.kinematics.separation.cone import extreme_rays, held_for_certain, opening, split_directions, unit_rows
 from kinform.kinematics.separation.contact_rows import Cone
@@ -92,7 +92,7 @@ def _slides(cone: Cone) -> tuple[Array, bool]:
     rays = _distinct(rays @ straight.T)
     if len(rays) > constants.MOST_RELEASES:
         middle = rays.sum(axis=0)
-        return (middle / np.linalg.norm(middle))[None], True
+        return (middle / norm(middle))[None], True
     return rays[np.lexsort(np.round(rays, 6).T)[::-1]], False
 
 
@@ -102,8 +102,8 @@ def _middle(normals: Array) -> Array:
     for _ in range(constants.MIDDLE_STEPS):
         speed = normals @ mean
         worst = int(speed.argmin())
-        if speed[worst] > constants.CONE_HELD * float(np.linalg.norm(mean)):
-            return np.asarray(mean / np.linalg.norm(mean))[None]
+        if speed[worst] > constants.CONE_HELD * norm(mean):
+            return np.asarray(mean / norm(mean))[None]
         mean = mean + normals[worst] * (constants.MIDDLE_STRIDE - speed[worst])
     return np.zeros((0, normals.shape[1]))
 
@@ -111,7 +111,7 @@ def _middle(normals: Array) -> Array:
 def _distinct(rays: Array) -> Array:
     kept: list[Array] = []
     for ray in rays:
-        if all(np.linalg.norm(ray - other) > constants.SAME_DIRECTION for other in kept):
+        if all(norm(ray - other) > constants.SAME_DIRECTION for other in kept):
             kept.append(ray)
     return np.array(kept)
 
@@ -121,8 +121,8 @@ def _slides_off(ray: Array, cone: Cone, slides: Array) -> bool:
     basis, _ = split_directions(cone.rows)
     for slide in slides:
         shadow = basis @ (basis.T @ np.concatenate([np.zeros(3), slide]))
-        size = float(np.linalg.norm(shadow))
-        if size > constants.SAME_DIRECTION and np.linalg.norm(shadow / size - ray) < constants.SAME_DIRECTION:
+        size = norm(shadow)
+        if size > constants.SAME_DIRECTION and norm(shadow / size - ray) < constants.SAME_DIRECTION:
             return True
     return False
 
@@ -136,12 +136,12 @@ def release_of(ray: Array, frame: Frame, *, extreme: bool = True) -> Release:
     """A twist (6,), scaled in `frame`, as a release: unit slide, turn or screw about a line, in words; `extreme`: it is
     no sum of other releases."""
     omega, velocity = ray[:3] / frame.length, ray[3:]
-    turning = float(np.linalg.norm(ray[:3]))
-    if turning < constants.SAME_DIRECTION * float(np.linalg.norm(ray)):
-        direction = velocity / np.linalg.norm(velocity)
+    turning = norm(ray[:3])
+    if turning < constants.SAME_DIRECTION * norm(ray):
+        direction = velocity / norm(velocity)
         twist = np.concatenate([np.zeros(3), direction])
         return Release("slide", twist, direction, None, extreme, f"lift off along {direction_words(direction)}")
-    rate = float(np.linalg.norm(omega))
+    rate = norm(omega)
     direction = omega / rate
     lead = float(direction @ velocity) / rate
     point = frame.centre + cross(omega, velocity) / rate**2

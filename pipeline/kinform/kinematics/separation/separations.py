@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, scaled, twist_at_origin
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.graphs.graph import UnionFind, blocks
 from kinform.kinematics.answers import Answers, ask
 from kinform.kinematics.constants import (
@@ -286,7 +286,7 @@ def _smallest(start: int, rest: int, sides: dict[int, list[_Side]]) -> set[int]:
     tried: list[Array] = []
     for side in sides[start]:
         for direction in side.slides:
-            if any(np.linalg.norm(direction - other) < 1e-3 for other in tried):
+            if any(norm(direction - other) < 1e-3 for other in tried):
                 continue
             tried.append(direction)
             group = _push(start, rest, sides, direction)
