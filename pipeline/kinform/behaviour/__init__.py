@@ -78,4 +78,4 @@ __all__ = [
     "smooth",
 ]
 
-CODE_VERSION: int = 8
+CODE_VERSION: int = 9

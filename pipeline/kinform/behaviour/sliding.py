@@ -127,7 +127,9 @@ def _rubs(
     faces = [p for p in flat if p not in rings]
     if joint.type == "prismatic" and rings:
         faces, rings = flat, []
-    centre = np.mean([p.points.mean(axis=0) for p in (round_ or faces or patches)], axis=0)
+    bearing = round_ or faces or patches
+    weights = np.concatenate([p.weights for p in bearing])
+    centre = weights @ np.concatenate([p.points for p in bearing]) / weights.sum()
     base = np.zeros(3) if joint.point is None or not np.all(np.isfinite(joint.point)) else joint.point
     if joint.type != "prismatic":
         centre = base
