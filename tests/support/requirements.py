@@ -22,7 +22,7 @@ G = 9.81
 CODES = {
     "reach": "KF421", "follow": "KF422", "clear": "KF423", "hold": "KF424", "torque": "KF425", "speed": "KF426",
     "reaction": "KF427", "mass": "KF428", "centre_of_mass": "KF429", "inertia": "KF430", "balance": "KF431",
-    "retained": "KF432", "fit": "KF433",
+    "retained": "KF432", "fit": "KF433", "efficiency": "KF434", "self_locking": "KF435",
 }  # fmt: skip
 
 
@@ -78,6 +78,12 @@ def arm(shoulder=(-math.pi / 2, math.pi / 2), elbow=(-5 * math.pi / 6, 5 * math.
     ]
     parts = [rod("upper", ORIGIN, (0.3, 0, 0), 1.0), rod("lower", (0.3, 0, 0), (0.6, 0, 0), 0.5)]
     return design(parts, joints, wanted=wanted, **more)
+
+
+def rubbing_arm(effort=0.1):
+    """The arm with friction in its shoulder: a journal of 20 mm and a seal."""
+    of_seal = {"effort": effort, "static_effort": effort, "coefficient": 0.1, "radius": 0.01}
+    return arm(drives=[drive("shoulder", "friction", **of_seal)])
 
 
 def gimbal(yaw=45.0, pitch=30.0):

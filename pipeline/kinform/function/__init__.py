@@ -19,4 +19,4 @@ __all__ = [
     "stated_ranges",
 ]
 
-CODE_VERSION: int = 4
+CODE_VERSION: int = 5

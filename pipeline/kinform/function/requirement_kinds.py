@@ -118,6 +118,26 @@ class Hold(Kind):
 
 
 @dataclass(frozen=True, eq=False)
+class Efficiency(Kind):
+    """Of the work that a joint's drive puts in as it moves slowly against the load at least the share `minimum` comes
+    out, in these poses."""
+
+    kind = "efficiency"
+    joint: str
+    minimum: float
+    poses: Sequence[Mapping[str, float]] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class SelfLocking(Kind):
+    """A joint stays in these poses under the load when nothing drives it."""
+
+    kind = "self_locking"
+    joint: str
+    poses: Sequence[Mapping[str, float]] = ()
+
+
+@dataclass(frozen=True, eq=False)
 class JointLimit(Kind):
     """Something of a joint stays below `limit` in the simulation."""
 

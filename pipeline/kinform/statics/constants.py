@@ -24,3 +24,10 @@ DEPENDENT = 1e-7
 """Relative singular value below which a balance depends on the others, as in the count of freedoms."""
 MOST_JOINTS = 60
 """Joints up to which all wrenches are looked for."""
+
+# --- driving ----------------------------------------------------------------------------------------------------------
+
+SHARES_LOAD = 1e-6
+"""Share of a motion (rad, or lengths) below which a joint takes no part in it."""
+MOVES_AT_REST = 1e-6
+"""Share of gravity over the mechanism's length by which what is held may accelerate: rounding stays far below."""

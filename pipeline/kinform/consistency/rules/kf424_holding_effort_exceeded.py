@@ -1,9 +1,10 @@
 """The static effort that holds a joint in a pose exceeds its limit.
 
 Gravity, loads and springs by virtual work, at each of the poses (joints that a pose does not name stay at the pose
-of the meshes, or go where loops put them); other drives stand still; joints that close no loop are held. Friction
-plays no part. An unknown mass, a loop in which it is not stated which joint holds, or a joint that shares the load
-with other drives make the requirement inconclusive (KF902).
+of the meshes, or go where loops put them); other drives stand still; joints that close no loop are held. Where
+friction is stated (drives of kind friction) it is the least effort that holds the joint with all that friction at
+rest can hold, and what it would take without is told beside it. An unknown mass, a loop in which it is not stated
+which joint holds, or a joint that shares the load with other drives make the requirement inconclusive (KF902).
 
 Why it matters: the arm sinks, or the motor overheats while it does nothing.
 
@@ -18,10 +19,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from kinform.consistency.comparisons.driving import driven_in, pose_words, worst
 from kinform.consistency.constants import AT_END
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Answer, met, undecided, violated
-from kinform.consistency.requirements import SINGLE, effort, requirement_rule, shown_value, single_joint, stated_as
+from kinform.consistency.requirements import SINGLE, effort, requirement_rule, single_joint, stated_as
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.words import counted, telling
 from kinform.function import resolve_joint
@@ -44,26 +46,46 @@ def judge(context: Context, requirement: Hold) -> Answer:
         return joint
     if context.lacks("mass"):
         return undecided("masses have not been computed", "Run `kinform mass`.")
+    if any(drive.kind == "friction" for drive in context.function.drives):
+        return _with_friction(context, requirement)
     chain = mechanism_of(context.assembly, context.kinematics)
     if isinstance(chain, str):
         return undecided(chain, "See KF401 and KF901.")
-    worst, where = -1.0, ""
+    most, where = -1.0, ""
     poses = requirement.poses or [{}]
     for pose in poses:
         held = _held(context, chain, joint, pose)
         if isinstance(held, str):
             why = held.replace(f"'{joint.name}'", f"'{name}'")
-            return undecided(f"at {_shown(context, pose)}: {why}", STATE)
-        if abs(held) > worst:
-            worst, where = abs(held), _shown(context, pose)
-    shown = telling(lambda value, digits: effort(value, joint, digits), worst, requirement.limit)
-    text = f"joint '{name}' takes {shown(worst)} to hold {where}"
+            return undecided(f"at {pose_words(context, pose)}: {why}", STATE)
+        if abs(held) > most:
+            most, where = abs(held), pose_words(context, pose)
+    shown = telling(lambda value, digits: effort(value, joint, digits), most, requirement.limit)
+    text = f"joint '{name}' takes {shown(most)} to hold {where}"
     limit = f"at most {shown(requirement.limit)}"
-    if worst > requirement.limit:
+    if most > requirement.limit:
         return violated(
-            f"{text}, required is {limit}", found=shown(worst), intended=limit, place=joint.point, remedy=REMEDY
+            f"{text}, required is {limit}", found=shown(most), intended=limit, place=joint.point, remedy=REMEDY
         )
-    return met(f"{text}, the most of {counted(len(poses), 'pose')}", found=shown(worst), intended=limit)
+    return met(f"{text}, the most of {counted(len(poses), 'pose')}", found=shown(most), intended=limit)
+
+
+def _with_friction(context: Context, requirement: Hold) -> Answer:
+    """The same where friction helps to hold."""
+    name = requirement.joint
+    found = driven_in(context, name, requirement.poses)
+    if isinstance(found, Answer):
+        return found
+    where, driving, joint = worst(found, lambda one: one.least)
+    shown = telling(lambda value, digits: effort(value, joint, digits), driving.least, requirement.limit)
+    without = f"{shown(abs(driving.without))} without friction"
+    text = f"joint '{name}' takes {shown(driving.least)} to hold {where}, with friction at rest ({without})"
+    limit = f"at most {shown(requirement.limit)}"
+    if driving.least > requirement.limit:
+        return violated(
+            f"{text}, required is {limit}", found=shown(driving.least), intended=limit, place=joint.point, remedy=REMEDY
+        )
+    return met(f"{text}, the most of {counted(len(found), 'pose')}", found=shown(driving.least), intended=limit)
 
 
 def _held(context: Context, chain: Chain, joint: Joint, pose: Mapping[str, float]) -> float | str:
@@ -128,17 +150,6 @@ def _force(context: Context) -> Force:
         return total, moment
 
     return force
-
-
-def _shown(context: Context, pose: Mapping[str, float]) -> str:
-    """The pose in words."""
-    if not pose:
-        return "the pose of the meshes"
-    shown = []
-    for name, value in sorted(pose.items()):
-        joint = resolve_joint(context.assembly, context.kinematics, name).joint
-        shown.append(f"{name} = {value:g}" if joint is None else f"{name} = {shown_value(value, joint, context.units)}")
-    return ", ".join(shown)
 
 
 RULE = requirement_rule("KF424", "holding-effort-exceeded", Hold, __doc__, judge, SINGLE)

@@ -93,6 +93,27 @@ class Hold(_Require):
     )
 
 
+class Efficiency(_Require):
+    """Of the work that the drive of a joint puts in, moving slowly against the load, a share comes out."""
+
+    kind: Literal["efficiency"]
+    joint: Annotated[Reference, Joint] = Field(description="a [[function.joint]], which the drive moves")
+    minimum: Annotated[float, Field(gt=0, le=1)] = Field(description="share, between 0 and 1")
+    poses: Annotated[list[dict[str, Finite]], Quantity("joint_values")] = Field(
+        [], description="tables of joint = degrees or lengths; default the pose of the meshes"
+    )
+
+
+class SelfLocking(_Require):
+    """A joint stays under its load when nothing drives it."""
+
+    kind: Literal["self_locking"]
+    joint: Annotated[Reference, Joint] = Field(description="a [[function.joint]], whose drive lets go")
+    poses: Annotated[list[dict[str, Finite]], Quantity("joint_values")] = Field(
+        [], description="tables of joint = degrees or lengths; default the pose of the meshes"
+    )
+
+
 class Torque(_Require):
     """The peak effort of a joint during the simulation stays below a limit."""
 
@@ -182,6 +203,8 @@ Require = Annotated[
     | Follow
     | Clear
     | Hold
+    | Efficiency
+    | SelfLocking
     | Torque
     | Speed
     | Reaction

@@ -176,6 +176,16 @@ class Actuation:
         """The same with the joint of the stop free again."""
         return self._with_led([led for led in self._led if led[1] != stop.v])
 
+    def passive(self) -> Actuation:
+        """The same without drives, stops and dampers: loads, springs and friction alone, nothing led."""
+        out = copy.copy(self)
+        keep = [k for k, actor in enumerate(self.actors) if actor.friction >= 0 or actor.does == layout.SPRING]
+        out.actors = [self.actors[k] for k in keep]
+        out.frictions = [replace(one, actor=keep.index(one.actor)) for one in self.frictions]
+        out.stops = []
+        out._lead([], len(self.free) + len(self.led))
+        return out
+
     def _with_led(self, led: list[tuple[int, int, Signal, str]]) -> Actuation:
         out = copy.copy(self)
         out._lead(led, len(self.free) + len(self.led))

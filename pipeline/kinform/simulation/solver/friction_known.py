@@ -10,8 +10,11 @@ from kinform.simulation.solver.sticking import grouped, ways
 from kinform.simulation.subject import Failures
 
 
-def friction_not_determined(dynamics: Dynamics, q: Array, settings: SolverSettings) -> Failures:
-    """(joint, why) of frictions that rigid bodies do not determine at positions q (nq,), or that are not simulated."""
+def friction_not_determined(
+    dynamics: Dynamics, q: Array, settings: SolverSettings, *, at_rest: bool = False
+) -> Failures:
+    """(joint, why) of frictions that rigid bodies do not determine at positions q (nq,), or that are not simulated;
+    `at_rest`: a single motion is looked at, so that how several stick together plays no part."""
     frictions = dynamics.actuation.frictions
     if not frictions:
         return ()
@@ -29,7 +32,7 @@ def friction_not_determined(dynamics: Dynamics, q: Array, settings: SolverSettin
             "redundancy (KF303 names them), say which surfaces rub, or give the friction as an effort"
         )
         return tuple((joint, why) for joint in open_)
-    dependent = grouped(ways(dynamics, dynamics.actuation, q, settings.free))[2]
+    dependent = [] if at_rest else grouped(ways(dynamics, dynamics.actuation, q, settings.free))[2]
     if dependent:
         names = ", ".join(dict.fromkeys(frictions[k].joint for k in dependent))
         why = "they move by fewer free motions than there are of them, and by none alone: which stick is not determined"

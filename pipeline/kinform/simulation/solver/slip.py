@@ -12,7 +12,7 @@ Such a state is refused, not guessed at.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from weakref import WeakKeyDictionary
 
@@ -33,6 +33,10 @@ _NETWORKS: WeakKeyDictionary[Dynamics, Network] = WeakKeyDictionary()
 
 class NotDeterminedError(Exception):
     """Friction has no answer in a state, or several; the text says which joints."""
+
+    def __init__(self, message: str, joints: Sequence[str] = ()):
+        super().__init__(message)
+        self.joints = tuple(dict.fromkeys(joints))
 
 
 @dataclass(frozen=True)
@@ -94,7 +98,8 @@ def dry(run: Run, t: float, y: Array, acting: Mapping[int, Rub]) -> Answer:
         rates = np.array([_limit(one, rub, 1.0) for one, rub in pairs]) - least
         steep = np.array([rates * grips(slopes[:, :, j])[columns] for j in range(len(columns))]).T
         if float(np.abs(np.linalg.eigvals(steep)).max()) >= SLIP_STEEPEST:
-            raise NotDeterminedError(_doubt([one.joint for one, _ in pairs], t))
+            joints = [one.joint for one, _ in pairs]
+            raise NotDeterminedError(_doubt(joints, t), joints)
         for _ in range(SLIP_ROUNDS):
             after = least + rates * grips(base + slopes @ u)[columns]
             moved = float(np.abs(after - u).max())
