@@ -136,6 +136,9 @@ def _rubs(
     ends = _ends(assembly, surfaces, joint, round_ or faces, set(second), centre)
     out = replace(ends, offset=centre - base)
     if round_:
+        apart = max(float(_distance(p.point[None], round_[0].point, axis)[0]) for p in round_)
+        if apart > ALIKE_RADII * min(p.radii[0] for p in round_):
+            raise ValueError("its journals lie on several axes, and how they share loads is open")
         out = replace(out, radius=_one_radius([0.5 * (p.radii[0] + p.radii[1]) for p in round_], "journals"))
     if rings:
         means = [float(p.weights @ _distance(p.points, base, axis) / p.weights.sum()) for p in rings]

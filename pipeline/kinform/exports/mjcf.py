@@ -40,6 +40,7 @@ class _Joint:
     damping: float = 0.0
     stiffness: float = 0.0
     rest: float = 0.0
+    friction: float = 0.0
 
 
 @dataclass(eq=False)
@@ -78,7 +79,7 @@ class _Equality:
 def export(model: ExportModel) -> Exported:
     """NAME.xml and meshes/."""
     robot = robot_of(model, MJCF, CLOSABLE)
-    lost = [*model.lost, *_losses(robot)]
+    lost = [*model.lost, *model.stiction, *_losses(robot)]
     robot = _with_moments(robot, lost)
     root, twins = _bodies(robot)
     equalities = [row for closing in robot.closing for row in _closure(robot, closing, twins)]
@@ -182,7 +183,7 @@ def _joint(robot: Robot, link: RobotLink, motion: Motion, position: Array) -> li
     if isinstance(primitive, Ball):
         return [_Joint(name, "ball", position, np.zeros(3))]
     k = motion.coordinate
-    on_it = (link.range if link.single else None, link.damping(k), link.stiffness(k), link.rest(k))
+    on_it = (link.range if link.single else None, link.damping(k), link.stiffness(k), link.rest(k), link.friction(k))
     if not primitive.omega.any():
         return [_Joint(name, "slide", position, primitive.slide, *on_it)]
     turn = _Joint(name, "hinge", position, primitive.omega, *on_it)

@@ -84,6 +84,24 @@ class ExportModel:
         return (*self.missing, *self.elsewhere)
 
     @property
+    def dry(self) -> tuple[str, ...]:
+        """Friction of a given effort, which some formats have a number for, in sentences."""
+        return tuple(
+            f"{one.subject}: Coulomb friction of {one.effort:g} N·m or N"
+            for one in self.system.components
+            if isinstance(one, Friction) and one.static == 0.0
+        )
+
+    @property
+    def stiction(self) -> tuple[str, ...]:
+        """What of it these have no number for."""
+        return tuple(
+            f"{one.subject}: that friction is greater at rest ({one.static_effort:g} N·m or N)"
+            for one in self.system.components
+            if isinstance(one, Friction) and one.static == 0.0 and one.static_effort > one.effort
+        )
+
+    @property
     def teeth(self) -> tuple[str, ...]:
         """What becomes of teeth where a format has gears as ratios between joints, in sentences."""
         return tuple(
@@ -196,7 +214,7 @@ def _ranges(
 
 _ELSEWHERE: dict[type[Component], str] = {
     EndStop: "end stops with impacts",
-    Friction: "Coulomb friction",
+    Friction: "Coulomb friction by load",
     SpringDamper: "a spring between two points",
 }
 """What the equations of the other formats are not written for."""
@@ -206,7 +224,7 @@ def _elsewhere(system: System) -> tuple[str, ...]:
     return tuple(
         f"{component.subject}: {_ELSEWHERE[type(component)]}, which only json carries"
         for component in system.components
-        if type(component) in _ELSEWHERE
+        if type(component) in _ELSEWHERE and not (isinstance(component, Friction) and component.static == 0.0)
     )
 
 

@@ -12,6 +12,7 @@ from kinform.behaviour import (
     Damper,
     DcMotor,
     EffortDrive,
+    Friction,
     Ground,
     JointComponent,
     LoadComponent,
@@ -71,6 +72,14 @@ class RobotLink:
     def damping(self, freedom: int) -> float:
         """Of all dampers on a coordinate of its joint."""
         return sum(one.damping for one in self.actors if isinstance(one, Damper) and one.freedom == freedom)
+
+    def friction(self, freedom: int) -> float:
+        """N·m or N of all friction on a coordinate of its joint that does not depend on loads."""
+        return sum(
+            one.effort
+            for one in self.actors
+            if isinstance(one, Friction) and one.freedom == freedom and one.static == 0.0
+        )
 
     @property
     def springs(self) -> tuple[Spring, ...]:

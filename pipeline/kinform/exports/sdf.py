@@ -31,6 +31,7 @@ class _Axis:
     rest: float = 0.0
     mimic: tuple[str, float] | None = None
     driven: bool = False
+    friction: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +54,7 @@ class _Grain:
 def export(model: ExportModel) -> Exported:
     """NAME.sdf and meshes/."""
     robot = robot_of(model, SDF, KINDS)
-    lost = [*model.lost, *tree_losses(robot, "SDF", springs=True)]
+    lost = [*model.lost, *model.stiction, *tree_losses(robot, "SDF", springs=True)]
     taken = {link.name for link in robot.links} | {"world"}
     joints, grains = [], []
     for link in robot.links:
@@ -112,7 +113,9 @@ def _direct(robot: Robot, link: RobotLink) -> _Joint | None:
 def _axis(link: RobotLink, k: int, direction: Array) -> _Axis:
     """A coordinate of the link's joint, and what acts on it."""
     driven = any(drive.freedom == k for drive in link.drives)
-    return _Axis(direction, None, link.damping(k), link.stiffness(k), link.rest(k), driven=driven)
+    return _Axis(
+        direction, None, link.damping(k), link.stiffness(k), link.rest(k), driven=driven, friction=link.friction(k)
+    )
 
 
 def _of_hinge(link: RobotLink, hinge: Hinge) -> _Joint:

@@ -26,12 +26,13 @@ class _Joint:
     limits: tuple[float, float] | None
     damping: float
     mimic: tuple[str, float] | None
+    friction: float = 0.0
 
 
 def export(model: ExportModel) -> Exported:
     """NAME.urdf and meshes/."""
     robot = robot_of(model, XML, KINDS)
-    lost = [*model.lost, *tree_losses(robot, "URDF"), *_spherical(robot)]
+    lost = [*model.lost, *model.stiction, *tree_losses(robot, "URDF"), *_spherical(robot)]
     taken = {link.name for link in robot.links}
     joints, remarks = [], robot.remarks
     mimics = _mimics(robot, lost)
@@ -67,7 +68,8 @@ def _joint(robot: Robot, link: RobotLink, hinge: Hinge, mimics: dict[str, tuple[
     mimic = hinge.follows or mimics.get(hinge.name)
     ball = link.link.joint is not None and link.link.joint.kind.name == "spherical"
     damping = 0.0 if hinge.follows is not None or ball else link.damping(hinge.coordinate)
-    return _Joint(hinge, kind, limits, damping, mimic)
+    friction = 0.0 if hinge.follows is not None or ball else link.friction(hinge.coordinate)
+    return _Joint(hinge, kind, limits, damping, mimic, friction)
 
 
 def _mimics(robot: Robot, lost: list[str]) -> dict[str, tuple[str, float]]:
