@@ -21,7 +21,7 @@ from kinform.errors import InputError
 from kinform.form.sources import Reading
 from kinform.study import read_plan, run
 from kinform.study import session as module
-from kinform.study.work import sample
+from kinform.study.work import measure, sample, units
 
 pytest.importorskip("distributed")
 pytest.importorskip("pathspec")
@@ -81,7 +81,34 @@ def test_all_forms_of_the_table_say_the_same(done):
         rows = list(csv.DictReader(stream))
     assert [float(row["crank"]) for row in rows] == list(columns[0])
     assert [row["farthest"] for row in rows] == ["" if np.isnan(v) else repr(float(v)) for v in columns[1]]
-    assert "<svg" in (done / "s.html").read_text()
+    page = (done / "s.html").read_text()
+    assert page.count("<svg") == 3 and "farthest (m)" in page and ">reach<" in page and "nan" not in page
+
+
+SENSED = """
+[[simulation.sensor]]
+name = "pin"
+kind = "point"
+part = "crank"
+point = [0, 30, 0]
+[[function.require]]
+name = "slow"
+kind = "speed"
+joint = "crank_bearing"
+limit = 200.0
+"""
+
+
+def test_sensors_and_margins_are_measured(tmp_path):
+    """The crank turns by 180 °/s from where it stands upright: its pin is at 30 mm · sin, and 20 °/s are to spare."""
+    (tmp_path / "d.toml").write_text(DESIGN.read_text() + SENSED)
+    design = method.run(tmp_path / "d.toml").design
+    paths = [("sensors", "pin", "position", "x", "lowest"), ("sensors", "pin", "velocity", "y", "highest"),
+             ("margins", "slow"), ("requirements", "slow"), ("simulation", "joints", "guide", "fastest")]  # fmt: skip
+    lowest, fastest, margin, met, _ = measure(design, paths)
+    assert lowest == pytest.approx(-0.03, rel=1e-6) and fastest == pytest.approx(0.03 * np.pi, rel=1e-6)
+    assert margin == pytest.approx(np.radians(20.0), rel=1e-6) and met == 1.0
+    assert units(design, paths) == ("m", "m/s", "rad/s", "", "m/s")
 
 
 def test_a_study_goes_on_where_it_stopped(done, tmp_path, monkeypatch):
@@ -104,6 +131,7 @@ def test_a_study_goes_on_where_it_stopped(done, tmp_path, monkeypatch):
             found[k] = ((whole[k][0],), "")
 
     asked: list[str] = []
+    monkeypatch.setattr(module, "_nominal", lambda *_: ((0.0,), ("m",), {DESIGN.name: "hash"}))
     monkeypatch.setattr(module, "_measure", some)
     with pytest.raises(KeyboardInterrupt):
         run(plan, output, Settings())

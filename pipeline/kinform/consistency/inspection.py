@@ -7,7 +7,7 @@ from dataclasses import replace
 from kinform.consistency.comparisons.answers import answer_counts, answers
 from kinform.consistency.context import Context
 from kinform.consistency.control import Applied, apply, idle_ignore, is_selected, means, unused_entries
-from kinform.consistency.outcome import Outcome, decided, skipped
+from kinform.consistency.outcome import Margin, Outcome, decided, skipped
 from kinform.consistency.places import with_place
 from kinform.consistency.requirements import RequirementRule
 from kinform.consistency.rule import Rule
@@ -46,10 +46,12 @@ def check(design: Design) -> CheckReport:
     )
 
 
-def margins(design: Design) -> dict[str, float | None]:
-    """How far each requirement that is asked about is from its nearest limit, by its name: SI units, negative where it
-    is violated; None where it is no matter of a value, or that is not known."""
-    return {requirement.name: answer.margin for requirement, answer in _judging(design).answers.items()}
+def margins(design: Design) -> dict[str, Margin | None]:
+    """Of each stated requirement, by name, how far it is met or violated; None where that is not asked, undecided,
+    or no number."""
+    found = _judging(design).answers
+    stated = design.assembly.function.requirements
+    return {r.name: found[r].margin if r in found and found[r].state != "undecided" else None for r in stated}
 
 
 def _judging(design: Design) -> Context:

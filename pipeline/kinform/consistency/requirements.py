@@ -94,13 +94,6 @@ def worst_of(answers: Sequence[Answer]) -> Answer | None:
     return by_state.get("violated") or by_state.get("undecided")
 
 
-def least_margin(answers: Sequence[Answer]) -> float | None:
-    """Of all of these; None where one is not known."""
-    margins = [answer.margin for answer in answers]
-    known = [margin for margin in margins if margin is not None]
-    return min(known) if known and len(known) == len(margins) else None
-
-
 def simulated(context: Context, *, dynamic: bool = False) -> Simulation | Answer:
     """The simulation, or why it says nothing. One that stopped early is given: what it shows has happened."""
     lacking = context.lacks("simulation")
@@ -161,4 +154,14 @@ def shown_value(value: float, joint: Joint, units: str, digits: int = 4) -> str:
 def effort(value: float, joint: Joint, digits: int = 4) -> str:
     """A joint's effort; rounding is shown as nothing."""
     value = 0.0 if abs(value) < NO_EFFORT else value
-    return f"{number(value, digits)} {'N' if kind_of_value(joint) == 'length' else 'N·m'}"
+    return f"{number(value, digits)} {unit_of_effort(joint)}"
+
+
+def unit_of_effort(joint: Joint) -> str:
+    """Of a joint's effort."""
+    return "N" if kind_of_value(joint) == "length" else "N·m"
+
+
+def unit_of(joint: Joint) -> str:
+    """Of a joint's value."""
+    return "m" if kind_of_value(joint) == "length" else "rad"

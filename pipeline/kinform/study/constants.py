@@ -20,3 +20,18 @@ RESAMPLES = 999
 
 NOTHING_VARIES = 1e-12
 """Share of its greatest value by which a measure differs at most where it does not vary: rounding."""
+
+BINS_MOST = 60
+"""Bars of a histogram at most: thinner than 4 px they are no more to be told apart. A choice."""
+
+UNITS = {
+    "mass": "kg",
+    "volume": "m³",
+    "area": "m²",
+    "centre_of_mass": "m",
+    "point": "m",
+    "inertia": "kg·m²",
+    "principal_moments": "kg·m²",
+    "duration": "s",
+}
+"""What values of these names are in, where nothing beside them says it."""

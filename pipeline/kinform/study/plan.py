@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -51,6 +51,8 @@ class Vary(_Table):
     nominal: float | None = None
     diameter: Annotated[float, Field(gt=0)] | None = None
     """mm, of a tolerance class; else the nominal value."""
+    unit: str = ""
+    """What its values are in, as tables and pictures are to say; the manifest decides what they mean."""
 
     @model_validator(mode="after")
     def _one_way(self) -> Vary:
@@ -116,6 +118,8 @@ class Axis:
     """Limits; of a normal distribution mean ± deviation times `constants.SIGMAS`."""
     count: int | None = None
     """Steps of a grid."""
+    unit: str = ""
+    """As stated."""
 
 
 @dataclass(frozen=True)
@@ -154,7 +158,7 @@ def read_plan(path: Path, nominal: Any = None) -> Plan:
     axes = []
     for one in tables.vary:
         try:
-            axes.append(_axis(one, design, nominal))
+            axes.append(replace(_axis(one, design, nominal), unit=one.unit))
         except (ValueError, KeyError) as error:
             problems.append(Problem(f"[[vary]] {one.name!r}: {error.args[0]}", str(path)))
     problems += [Problem(text, str(path)) for text in _wrong_together(tables, axes)]

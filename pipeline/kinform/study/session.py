@@ -38,6 +38,8 @@ class Outcome:
     """Of each sample: "" where it was measured."""
     nominal: Row
     """Of the design as it stands."""
+    units: tuple[str, ...] = ()
+    """Of what is measured; "" where nothing says it."""
 
 
 def run(plan: Plan, output: Path, settings: Settings, progress: Callable[[int, int], None] | None = None) -> Outcome:
@@ -48,7 +50,7 @@ def run(plan: Plan, output: Path, settings: Settings, progress: Callable[[int, i
     folder = Path(tempfile.mkdtemp(prefix=".kinform-study-", dir=output.parent))
     try:
         base = folder / "base.h5"
-        nominal, contents = _nominal(plan, base, measured, settings)
+        nominal, units, contents = _nominal(plan, base, measured, settings)
         kept = Journal(output.with_name(f"{output.name}.part"), _key(plan, contents))
         done = kept.read()
         tasks = [
@@ -63,7 +65,7 @@ def run(plan: Plan, output: Path, settings: Settings, progress: Callable[[int, i
         shutil.rmtree(folder, ignore_errors=True)
     nothing: Row = (None,) * len(measured)
     values = tuple(done[k][0] or nothing for k in range(len(rows)))
-    return Outcome(plan, tuple(rows), values, tuple(done[k][1] for k in range(len(rows))), nominal)
+    return Outcome(plan, tuple(rows), values, tuple(done[k][1] for k in range(len(rows))), nominal, units)
 
 
 def _measure(
@@ -87,8 +89,9 @@ def _measure(
 
 def _nominal(
     plan: Plan, base: Path, measured: Sequence[tuple[str, ...]], settings: Settings
-) -> tuple[Row, dict[str, str]]:
-    """What is measured of the design as it stands, with its results at `base`, and the hashes of its files."""
+) -> tuple[Row, tuple[str, ...], dict[str, str]]:
+    """What is measured of the design as it stands, with its results at `base`, and the units; and the hashes of its
+    files."""
     arguments = {"design": str(plan.design.absolute()), "output": str(base), "measured": measured,
                  "allow_outside": settings.allow_outside}  # fmt: skip
     answer = perform(Task("nominal", "kinform.study.work:nominal", arguments, settings.limits))
@@ -97,7 +100,7 @@ def _nominal(
             raise InputError(answer.failure.problems)
         problem = answer.failure.problems[0]
         raise InputError([Problem(f"as it stands: {problem.message}", str(plan.design), None, problem.remedy)])
-    result: tuple[Row, dict[str, str]] = answer.result
+    result: tuple[Row, tuple[str, ...], dict[str, str]] = answer.result
     return result
 
 

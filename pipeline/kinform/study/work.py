@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import subprocess
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from kinform import method
+from kinform import consistency, method
 from kinform.design import Design
 from kinform.errors import InputError, Problem
 from kinform.form.keys import looked_up
 from kinform.form.sources import Reading
 from kinform.reports.values.topics import TOPICS, summary
+from kinform.study import constants
+
+_BESIDES = ("margins", "requirements", "sensors", "exit_code")
+"""What can be measured besides the topics of `kinform show`."""
 
 
 def sample(
@@ -39,28 +43,48 @@ def sample(
 
 def nominal(
     design: str, output: str, measured: Sequence[tuple[str, ...]], allow_outside: bool = False
-) -> tuple[tuple[float | None, ...], dict[str, str]]:
-    """The values at these paths of the design as it stands, whose results are written; and the hashes of its files."""
+) -> tuple[tuple[float | None, ...], tuple[str, ...], dict[str, str]]:
+    """The values at these paths of the design as it stands, whose results are written, and their units; and the hashes
+    of its files."""
     done = method.run(design, output, allow_outside=allow_outside).design
     try:
-        return measure(done, measured), dict(done.fingerprints.files)
+        return measure(done, measured), units(done, measured), dict(done.fingerprints.files)
     except KeyError as error:
         raise InputError([Problem(f"[[measure]]: {error.args[0]}", design)]) from None
 
 
 def measure(design: Design, measured: Sequence[tuple[str, ...]]) -> tuple[float | None, ...]:
     """The numbers at these paths of what `kinform show --format json` prints, the first step being the topic;
-    `exit_code` alone is that of the gate, `requirements.NAME` is 1 where it is met, and 0 where not, and `margins.NAME`
-    is how far it is from its limit."""
-    shown: dict[str, Any] = {}
-    out: list[float | None] = []
-    for steps in measured:
-        topic = steps[0]
-        if topic not in shown:
-            shown[topic] = _topic(design, topic)
-        value = looked_up(shown[topic], steps[1:])
-        out.append(float(value) if isinstance(value, int | float) else None)
-    return tuple(out)
+    `exit_code` alone is that of the gate, `requirements.NAME` is 1 where it is met, and 0 where not, `margins.NAME` how
+    far, and `sensors.NAME.QUANTITY.COMPONENT` what a sensor reads."""
+    shown = {topic: _topic(design, topic) for topic in sorted({steps[0] for steps in measured})}
+    values = (looked_up(shown[steps[0]], _to_value(steps)) for steps in measured)
+    return tuple(float(value) if isinstance(value, int | float) else None for value in values)
+
+
+def units(design: Design, measured: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
+    """In what these values are, "" where nothing says it."""
+    shown = {topic: _topic(design, topic) for topic in sorted({steps[0] for steps in measured})}
+    return tuple(_unit(shown[steps[0]], _to_value(steps)) for steps in measured)
+
+
+def _to_value(steps: tuple[str, ...]) -> tuple[str, ...]:
+    """The steps below the topic; a margin is the value of its entry."""
+    return (*steps[1:], "value") if steps[0] == "margins" and len(steps) == 2 else steps[1:]
+
+
+def _unit(values: Any, steps: tuple[str, ...]) -> str:
+    """What the nearest entry on the way that states a unit says, else what the name of the value means."""
+    last = next((step for step in reversed(steps) if step not in ("count", "min", "max", "sum", "mean")
+                 and not step.lstrip("-").isdigit()), "")  # fmt: skip
+    if steps and steps[-1] == "count":
+        return ""
+    for end in range(len(steps) - 1, -1, -1):
+        entry = looked_up(values, steps[:end])
+        unit = entry.get("unit") if isinstance(entry, Mapping) else None
+        if isinstance(unit, str):
+            return f"{unit}/s" if last == "fastest" else "" if unit == "1" else unit
+    return constants.UNITS.get(last, "")
 
 
 def _topic(design: Design, topic: str) -> Any:
@@ -74,13 +98,29 @@ def _topic(design: Design, topic: str) -> Any:
 
         return {wanted.name: wanted.met for wanted in entry_of(design, "", "").requirements}
     if topic == "margins":
-        from kinform.consistency import margins
-
-        return margins(design)
+        found = consistency.margins(design)
+        return {name: {"value": m and m.value, "unit": m and m.unit} for name, m in found.items()}
+    if topic == "sensors":
+        return _sensors(summary(design, "simulation")["sensors"])
     if topic not in TOPICS:
-        known = ", ".join([*TOPICS, "requirements", "margins", "exit_code"])
-        raise InputError([Problem(f"{topic!r} is no topic: expected one of {known}")])
+        raise InputError([
+            Problem(f"{topic!r} is no topic: expected one of {', '.join([*TOPICS, *_BESIDES])}")
+        ])  # fmt: skip
     return summary(design, topic)
+
+
+def _sensors(readings: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """What sensors read by sensor, quantity, and component where it has some; null where the model leaves it open."""
+    out: dict[str, Any] = {}
+    for reading in readings:
+        ends = {key: reading[key] if reading["known"] else None for key in ("start", "end", "lowest", "highest")}
+        read = {**ends, "unit": reading["unit"]}
+        quantities = out.setdefault(reading["sensor"], {})
+        if reading["component"]:
+            quantities.setdefault(reading["quantity"], {})[reading["component"]] = read
+        else:
+            quantities[reading["quantity"]] = read
+    return out
 
 
 def _made(part: str, words: Sequence[str], file: Path) -> tuple[tuple[str, ...], str]:

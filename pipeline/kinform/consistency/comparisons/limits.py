@@ -14,7 +14,7 @@ import numpy as np
 
 from kinform.consistency.constants import BENT_ALIKE, MOST_STEPS, QUIET, RATE_RESOLVED
 from kinform.consistency.context import Context
-from kinform.consistency.outcome import Answer, met, undecided, violated
+from kinform.consistency.outcome import Answer, Margin, met, undecided, violated
 from kinform.consistency.requirements import simulated, single_joint
 from kinform.foundation.words import number, quoted, telling
 from kinform.function.amounts import Amount, amount_of
@@ -39,6 +39,8 @@ class Quantity:
     """A value of it, in SI, with so many significant digits."""
     remedy: str
     """What to do where it is out of bounds."""
+    unit: str
+    """In SI."""
     place: Iterable[float] | None = None
     """(3,) m."""
     cause: str = "by its facets"
@@ -54,7 +56,7 @@ def beside_bounds(quantity: Quantity, value: float, error: float, low: float | N
     shown = telling(quantity.shown, value, *(bound for bound in (low, high) if bound is not None))
     wanted, text = _interval(low, high, shown), f"{quantity.name} is {shown(value)}"
     low, high = -np.inf if low is None else low, np.inf if high is None else high
-    margin = float(min(value - low, high - value))
+    margin = Margin(float(min(value - low, high - value)), quantity.unit)
     if value + error < low or value - error > high:
         return violated(
             f"{text}, required is {wanted}", found=shown(value), intended=wanted,
@@ -63,7 +65,7 @@ def beside_bounds(quantity: Quantity, value: float, error: float, low: float | N
     if value - error < low or value + error > high:
         return undecided(
             f"{text}, give or take {shown(error)} {quantity.cause}: too near to the bound",
-            quantity.cure, found=shown(value), intended=wanted, margin=margin,
+            quantity.cure, found=shown(value), intended=wanted,
         )  # fmt: skip
     return met(text, found=shown(value), intended=wanted, margin=margin)
 
@@ -78,11 +80,12 @@ def peak_beside_limit(quantity: Quantity, simulation: Simulation, values: Array,
         intended = f"at most {shown(limit)}"
         text = f"{quantity.name} peaks at {shown(float(values[k]))} at t = {number(float(simulation.time[k]))} s"
         summit = max(float(values[k]), _highest_between(values))
-        margin = limit - summit
+        whole = known.all() and simulation.status == "done" and not coarse(simulation)
+        margin = Margin(limit - summit, quantity.unit) if whole else None
         if summit > limit >= values[k] and known.all():
             return undecided(
                 f"{text}, and between the output times at about {shown(summit)}: too near to the limit",
-                FINER, found=f"about {shown(summit)}", intended=intended, margin=margin,
+                FINER, found=f"about {shown(summit)}", intended=intended,
             )  # fmt: skip
         if values[k] > limit:
             return violated(
@@ -104,8 +107,8 @@ def peak_beside_limit(quantity: Quantity, simulation: Simulation, values: Array,
         )  # fmt: skip
     apart = f", {step} s apart" if len(simulation.time) > 1 else ""
     more = f", and between them at about {shown(summit)}" if shown(summit) != shown(float(values[k])) else ""
-    told = f"{text}, of {len(values)} output times{apart}{more}"
-    return met(told, found=shown(float(values[k])), intended=intended, margin=margin)
+    text = f"{text}, of {len(values)} output times{apart}{more}"
+    return met(text, found=shown(float(values[k])), intended=intended, margin=margin)
 
 
 def coarse(simulation: Simulation) -> bool:

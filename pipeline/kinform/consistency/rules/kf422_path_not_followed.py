@@ -13,9 +13,11 @@ Example: `kind = "follow"` of a coupler point whose crank is 0.5 mm too short.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from kinform.consistency.constants import SAME_TIME
 from kinform.consistency.context import Context
-from kinform.consistency.outcome import Answer, met, undecided, violated
+from kinform.consistency.outcome import Answer, Margin, met, undecided, violated
 from kinform.consistency.requirements import requirement_rule, simulated
 from kinform.foundation.words import angle, length, number, telling
 from kinform.function.paths import Deviation, deviation
@@ -43,8 +45,10 @@ def judge(context: Context, requirement: Follow) -> Answer:
     early = path[:, 0] <= simulation.time[-1] * (1.0 + SAME_TIME)
     greatest = _deviation(simulation, body, requirement.point, path[early])
     violation = None if greatest is None else _violation(context, requirement, greatest)
+    whole = greatest is not None and early.all() and path[0, 0] >= 0.0 and requirement.angle_tolerance is None
+    margin = Margin(requirement.tolerance - greatest.distance, "m") if greatest is not None and whole else None
     if violation is not None:
-        return violation
+        return replace(violation, margin=margin)
     if greatest is None or not early.all() or path[0, 0] < 0.0:
         return undecided(
             f"the simulation ends at t = {number(float(simulation.time[-1]))} s, the path at "
@@ -54,7 +58,7 @@ def judge(context: Context, requirement: Follow) -> Answer:
     if greatest.distance + greatest.error > requirement.tolerance:
         doubt = f"{text}, give or take {length(greatest.error, context.units)} between output times"
         return undecided(doubt, "Simulate with a shorter step.")
-    return met(f"{text}, at t = {number(greatest.time)} s")
+    return met(f"{text}, at t = {number(greatest.time)} s", margin=margin)
 
 
 def _deviation(simulation: Simulation, body: str, point: Array, path: Array) -> Deviation | None:

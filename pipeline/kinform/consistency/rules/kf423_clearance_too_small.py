@@ -27,7 +27,6 @@ from kinform.consistency.context import Context, Need
 from kinform.consistency.outcome import Answer, met, undecided, violated
 from kinform.consistency.requirements import (
     JOINTS,
-    least_margin,
     requirement_rule,
     shared_parts,
     shown_value,
@@ -65,12 +64,11 @@ def judge(context: Context, requirement: Clear) -> Answer:
     worst, violations = worst_of(answers), sum(answer.state == "violated" for answer in answers)
     if worst is not None:
         more = f"; {counted(violations - 1, 'more pair')} of bodies too" if violations > 1 else ""
-        return replace(worst, message=worst.message + more, margin=least_margin(answers))
+        return replace(worst, message=worst.message + more)
     if simulation is not None and simulation.status != "done":
         return undecided(f"the simulation stopped: {simulation.reason}", "See KF502.")
-    if len(answers) == 1:
-        return answers[0]
-    return met(f"{counted(len(answers), 'pair')} clear; {answers[0].message}", margin=least_margin(answers))
+    # no margin: poses are measured until the distance is certain, not until the nearest is found
+    return answers[0] if len(answers) == 1 else met(f"{counted(len(answers), 'pair')} clear; {answers[0].message}")
 
 
 def _pairs(context: Context, kinematics: Kinematics, between: Sequence[str] | None) -> list[Pair]:
@@ -156,7 +154,7 @@ def _answer(context: Context, groups: Apart, swept: Swept, required: float, name
         return violated(
             f"{what}{where}", found="collision" if near.distance <= 0.0 else shown,
             intended=f"at least {in_words(required)}" if required > 0.0 else "no collision",
-            place=near.place, remedy=REMEDY, margin=near.distance - required,
+            place=near.place, remedy=REMEDY,
         )  # fmt: skip
     if not swept.complete:
         return undecided(
@@ -164,8 +162,7 @@ def _answer(context: Context, groups: Apart, swept: Swept, required: float, name
             "Lower the distance, or check it by other means.", found=f"nearest measured {shown}",
         )  # fmt: skip
     text = f"{names} stay clear, certain within {length(swept.floor, units)} by {counted(swept.poses, 'measured pose')}"
-    told = f"{text}; not counted: surfaces by which {_mating(groups)} mate" if groups.left_out else text
-    return met(told, margin=near.distance - required)
+    return met(f"{text}; not counted: surfaces by which {_mating(groups)} mate" if groups.left_out else text)
 
 
 def _mating(groups: Apart) -> str:

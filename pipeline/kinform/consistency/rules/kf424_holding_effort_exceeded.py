@@ -22,8 +22,15 @@ import numpy as np
 from kinform.consistency.comparisons.driving import driven_in, pose_words, worst
 from kinform.consistency.constants import AT_END
 from kinform.consistency.context import Context
-from kinform.consistency.outcome import Answer, met, undecided, violated
-from kinform.consistency.requirements import SINGLE, effort, requirement_rule, single_joint, stated_as
+from kinform.consistency.outcome import Answer, Margin, met, undecided, violated
+from kinform.consistency.requirements import (
+    SINGLE,
+    effort,
+    requirement_rule,
+    single_joint,
+    stated_as,
+    unit_of_effort,
+)
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.words import counted, telling
 from kinform.function import resolve_joint
@@ -63,11 +70,14 @@ def judge(context: Context, requirement: Hold) -> Answer:
     shown = telling(lambda value, digits: effort(value, joint, digits), most, requirement.limit)
     text = f"joint '{name}' takes {shown(most)} to hold {where}"
     limit = f"at most {shown(requirement.limit)}"
+    margin = Margin(requirement.limit - most, unit_of_effort(joint))
     if most > requirement.limit:
         return violated(
-            f"{text}, required is {limit}", found=shown(most), intended=limit, place=joint.point, remedy=REMEDY
-        )
-    return met(f"{text}, the most of {counted(len(poses), 'pose')}", found=shown(most), intended=limit)
+            f"{text}, required is {limit}", found=shown(most), intended=limit, place=joint.point, remedy=REMEDY,
+            margin=margin,
+        )  # fmt: skip
+    text = f"{text}, the most of {counted(len(poses), 'pose')}"
+    return met(text, found=shown(most), intended=limit, margin=margin)
 
 
 def _with_friction(context: Context, requirement: Hold) -> Answer:
@@ -81,11 +91,14 @@ def _with_friction(context: Context, requirement: Hold) -> Answer:
     without = f"{shown(abs(driving.without))} without friction"
     text = f"joint '{name}' takes {shown(driving.least)} to hold {where}, with friction at rest ({without})"
     limit = f"at most {shown(requirement.limit)}"
+    margin = Margin(requirement.limit - driving.least, unit_of_effort(joint))
     if driving.least > requirement.limit:
         return violated(
-            f"{text}, required is {limit}", found=shown(driving.least), intended=limit, place=joint.point, remedy=REMEDY
-        )
-    return met(f"{text}, the most of {counted(len(found), 'pose')}", found=shown(driving.least), intended=limit)
+            f"{text}, required is {limit}", found=shown(driving.least), intended=limit, place=joint.point,
+            remedy=REMEDY, margin=margin,
+        )  # fmt: skip
+    text = f"{text}, the most of {counted(len(found), 'pose')}"
+    return met(text, found=shown(driving.least), intended=limit, margin=margin)
 
 
 def _held(context: Context, chain: Chain, joint: Joint, pose: Mapping[str, float]) -> float | str:

@@ -19,7 +19,7 @@ import numpy as np
 from kinform.consistency.comparisons.limits import Quantity, peak_beside_limit, run_of_joint
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Answer, undecided
-from kinform.consistency.requirements import SINGLE, effort, requirement_rule
+from kinform.consistency.requirements import SINGLE, effort, requirement_rule, unit_of_effort
 from kinform.function import resolve_joint
 from kinform.function.requirement_kinds import Torque
 
@@ -37,7 +37,9 @@ def judge(context: Context, requirement: Torque) -> Answer:
     if joint not in driven:
         return undecided(f"nothing drives the joint '{requirement.joint}'", "Add a [[function.drive]] for it.")
     name = f"the effort of joint '{requirement.joint}'"
-    quantity = Quantity(name, lambda value, digits: effort(value, joint, digits), REMEDY, joint.point)
+    quantity = Quantity(
+        name, lambda value, digits: effort(value, joint, digits), REMEDY, unit_of_effort(joint), joint.point
+    )
     return peak_beside_limit(quantity, simulation, np.abs(simulation.joint_effort[:, column]), requirement.limit)
 
 

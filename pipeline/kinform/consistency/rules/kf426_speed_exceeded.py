@@ -19,7 +19,7 @@ import numpy as np
 from kinform.consistency.comparisons.limits import Quantity, peak_beside_limit, run_of_joint
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Answer
-from kinform.consistency.requirements import SINGLE, requirement_rule, shown_value
+from kinform.consistency.requirements import SINGLE, requirement_rule, shown_value, unit_of
 from kinform.function.requirement_kinds import Speed
 
 
@@ -33,7 +33,9 @@ def judge(context: Context, requirement: Speed) -> Answer:
     def shown(value: float, digits: int) -> str:
         return f"{shown_value(value, joint, context.units, digits)}/s"
 
-    quantity = Quantity(f"the speed of joint '{requirement.joint}'", shown, "Slow the drive.", joint.point)
+    quantity = Quantity(
+        f"the speed of joint '{requirement.joint}'", shown, "Slow the drive.", f"{unit_of(joint)}/s", joint.point
+    )
     return peak_beside_limit(quantity, simulation, np.abs(simulation.joint_velocity[:, column]), requirement.limit)
 
 

@@ -16,7 +16,6 @@ Example: `kind = "reaction"`, `joint = "elbow"`, `force = 250`.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 
@@ -58,14 +57,11 @@ def judge(context: Context, requirement: Reaction) -> Answer:
                 f"redundant constraints leave the {key} in joint '{name}' undetermined",
                 "Remove the redundant constraints: see KF303.",
             )
-        quantity = Quantity(f"the {key} in joint '{name}'", _shown_in(unit), REMEDY, joint.point)
+        quantity = Quantity(f"the {key} in joint '{name}'", _shown_in(unit), REMEDY, unit, joint.point)
         sizes = np.linalg.norm(simulation.F_A[:, index, part], axis=1)
         answers.append(peak_beside_limit(quantity, simulation, sizes, limit))
-    if len(answers) == 1:
-        return answers[0]
-    # force and torque are of different units: no margin is that of both
-    whole = worst_of(answers) or met("; ".join(answer.message for answer in answers))
-    return replace(whole, margin=None)
+    margin = answers[0].margin if len(answers) == 1 else None
+    return worst_of(answers) or met("; ".join(answer.message for answer in answers), margin=margin)
 
 
 def _shown_in(unit: str) -> Callable[[float, int], str]:

@@ -27,7 +27,7 @@ def judge(context: Context, requirement: Mass) -> Answer:
     whole = amount(context, requirement.of)
     if isinstance(whole, Answer):
         return whole
-    quantity = Quantity(f"the mass of {whose(requirement.of)}", mass, REMEDY, whole.centre)
+    quantity = Quantity(f"the mass of {whose(requirement.of)}", mass, REMEDY, "kg", whole.centre)
     return beside_bounds(quantity, whole.mass, whole.bound * whole.mass, requirement.minimum, requirement.maximum)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from kinform.consistency.comparisons.limits import amount, whose
 from kinform.consistency.context import Context
-from kinform.consistency.outcome import Answer, met, violated
+from kinform.consistency.outcome import Answer, Margin, met, violated
 from kinform.consistency.requirements import MASSES, requirement_rule
 from kinform.foundation.words import length, place, telling
 from kinform.function.requirement_kinds import CentreOfMass
@@ -29,7 +29,7 @@ def judge(context: Context, requirement: CentreOfMass) -> Answer:
     shown = telling(lambda value, digits: length(value, units, digits), distance, requirement.tolerance)
     centre, wanted, within = place(whole.centre, units), place(requirement.point, units), shown(requirement.tolerance)
     text = f"the centre of mass of {whose(requirement.of)} is at {centre}, {shown(distance)} from {wanted}"
-    margin = requirement.tolerance - distance
+    margin = Margin(requirement.tolerance - distance, "m")
     if distance <= requirement.tolerance:
         return met(text, margin=margin)
     return violated(

@@ -32,7 +32,7 @@ def judge(context: Context, requirement: Inertia) -> Answer:
     value = whole.about(axis, point)
     through = "the centre of mass" if point is None else "the point"
     name = f"the moment of inertia of {whose(requirement.of)} about {direction(axis)} through {through}"
-    quantity = Quantity(name, _shown, REMEDY, whole.centre)
+    quantity = Quantity(name, _shown, REMEDY, "kg·m²", whole.centre)
     error = INERTIA_SPREAD * whole.bound * value
     return beside_bounds(quantity, value, error, requirement.minimum, requirement.maximum)
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from kinform.consistency.comparisons.limits import amount
 from kinform.consistency.context import Context
-from kinform.consistency.outcome import Answer, met, undecided, violated
+from kinform.consistency.outcome import Answer, Margin, met, undecided, violated
 from kinform.consistency.requirements import JOINTS, MASSES, requirement_rule
 from kinform.foundation.words import length, mass, number, quoted, telling
 from kinform.function import resolve_joint
@@ -37,7 +37,7 @@ def judge(context: Context, requirement: Balance) -> Answer:
         f"the imbalance of {quoted([requirement.of])} is {shown(imbalance)}: {mass(whole.mass)}, "
         f"{length(distance, context.units)} off the axis"
     )
-    margin = requirement.limit - imbalance
+    margin = Margin(requirement.limit - imbalance, "kg·m")
     if imbalance <= requirement.limit:
         return met(text, margin=margin)
     return violated(

@@ -19,8 +19,8 @@ from dataclasses import replace
 
 from kinform.consistency.comparisons.limits import Quantity, beside_bounds
 from kinform.consistency.context import Context, Need
-from kinform.consistency.outcome import Answer, met, undecided
-from kinform.consistency.requirements import least_margin, requirement_rule, shared_parts, worst_of
+from kinform.consistency.outcome import Answer, least, met, undecided
+from kinform.consistency.requirements import requirement_rule, shared_parts, worst_of
 from kinform.foundation.words import counted, length, quoted
 from kinform.function.fits import clearances
 from kinform.function.requirement_kinds import Fit
@@ -49,10 +49,10 @@ def judge(context: Context, requirement: Fit) -> Answer:
     answers = []
     for fit in fits:
         name = f"the {KINDS[fit.kind]} of {quoted(between)}"
-        quantity = Quantity(name, shown, REMEDY, fit.place, cause="by the fit of the surfaces")
+        quantity = Quantity(name, shown, REMEDY, "m", fit.place, cause="by the fit of the surfaces")
         answers.append(beside_bounds(quantity, fit.value, fit.error, requirement.minimum, requirement.maximum))
     whole = worst_of(answers) or met(f"{counted(len(fits), 'fit')} within bounds; {answers[0].message}")
-    return replace(whole, margin=least_margin(answers))
+    return whole if whole.state == "undecided" else replace(whole, margin=least(answer.margin for answer in answers))
 
 
 RULE = requirement_rule("KF433", "fit-out-of-bounds", Fit, __doc__, judge, SUPPLIED_BY)

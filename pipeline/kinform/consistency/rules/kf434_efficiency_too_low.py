@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from kinform.consistency.comparisons.driving import driven_in, worst
 from kinform.consistency.context import Context
-from kinform.consistency.outcome import Answer, met, undecided, violated
+from kinform.consistency.outcome import Answer, Margin, met, undecided, violated
 from kinform.consistency.requirements import SINGLE, requirement_rule
 from kinform.foundation.words import counted
 from kinform.function.requirement_kinds import Efficiency
@@ -41,9 +41,14 @@ def judge(context: Context, requirement: Efficiency) -> Answer:
     text = f"moving joint '{name}' slowly against its load has an efficiency of {value} at {shown}"
     if least == 0.0:
         text = f"no effort moves joint '{name}' against its load at {shown}: friction grows with it"
+    margin = Margin(least - requirement.minimum, "")
     if least < requirement.minimum:
-        return violated(f"{text}, required is {limit}", found=value, intended=limit, place=joint.point, remedy=REMEDY)
-    return met(f"{text}, the least of {counted(len(found), 'pose')}", found=value, intended=limit)
+        return violated(
+            f"{text}, required is {limit}", found=value, intended=limit, place=joint.point, remedy=REMEDY,
+            margin=margin,
+        )  # fmt: skip
+    text = f"{text}, the least of {counted(len(found), 'pose')}"
+    return met(text, found=value, intended=limit, margin=margin)
 
 
 RULE = requirement_rule("KF434", "efficiency-too-low", Efficiency, __doc__, judge, SINGLE)
