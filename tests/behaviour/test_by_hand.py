@@ -67,6 +67,8 @@ def every_kind():
     model.motor("second motor", "spindle", 2.0, 0.0, 0.05)
     model.controller("pid", "second motor", "spindle", Constant(0.3), Controller(3.0, 0.1, 0.2, 5.0))
     model.spring_between("cord", "base", "planar body", ((0, 0, 1), (0, 0, 0)), 30.0, 1.0, 0.5)
+    model.gas_spring("gas", "base", "planar body", ((0, 0, 1), (0, 0, 0)), 5.0, 1.2, 0.8, 1.3, 0.1)
+    model.bushing("rubber", "base", "planar body", (0, 0, 0), (1, 2, 3), (0.1, 0.2, 0.3), (1, 1, 1))
     model.load("push", "wheel", (0, 0, 1), force=(0, 0, 1), torque=(0, 0.1, 0))
     outer = Model()
     outer.include("all", model.system())

@@ -13,12 +13,15 @@ from support.places import FIXTURES
 from support.port_models import DOWN, Model, bricard, four_bars, governor, hung_chain
 
 from kinform.behaviour import (
+    Bushing,
     Constant,
     Controller,
     DcMotor,
     EffortDrive,
     EndStop,
+    GasSpring,
     Gear,
+    LoadComponent,
     Sine,
     SpringDamper,
     Table,
@@ -67,7 +70,23 @@ def geared():
     return model
 
 
+def elastic():
+    """An arm on a ball that a bushing, a gas spring and a load over time hold and move."""
+    model = Model()
+    model.body("arm", 1.0, (0.5, 0, 0.1), (0.02, 0.08, 0.09))
+    model.joint("ball", "base", "arm", kind="spherical")
+    of_axes = np.array([[90.0, 40, 60], [20, 30, 25], [1, 2, 3], [0.1, 0.2, 0.3]])
+    at = np.array([0.3, 0.1, 0.0])
+    model.add(Bushing("rubber", "rubber", at, at, np.eye(3), *of_axes), a="body base", b="body arm")
+    gas = GasSpring("gas", "gas", np.array([0, 0, -0.5]), np.array([0.8, 0, 0.1]), 30.0, 1.1, 0.6, 1.3, 2.0)
+    model.add(gas, a="body base", b="body arm")
+    push, turn, law = np.array([1.0, 2, 3]), np.zeros(3), Sine(0.5, 2.0, 9.0, 0.1)
+    model.add(LoadComponent("push", "push", push, turn, np.array([1, 0, 0.2]), True, law), frame="body arm")
+    return model
+
+
 MODELS = {
+    "elastic": (elastic, SolverSettings(), 0.3),
     "Bricard": (bricard, SolverSettings(), 0.3),
     "four-bars": (lambda: four_bars(2), SolverSettings(), 0.3),
     "chain": (lambda: hung_chain(Table(np.array([0.0, 0.15, 1.0]), np.array([2.0, -1.0, 0.5]))), SolverSettings(), 0.3),

@@ -25,6 +25,7 @@ from kinform.model.function import Law
 from kinform.model.kinematics import ConstraintMatrix, Joint, Kinematics, Meshing, Mobility, Redundancy, Release
 from kinform.model.mass import MassProperties, MassReport
 from kinform.model.simulation import Simulation
+from kinform.model.springs import StatedSpring
 from kinform.model.surfaces import MeshSurfaces, Surface
 
 texts = st.text(max_size=6) | st.sampled_from(
@@ -91,6 +92,11 @@ def by_type(hint: Any) -> st.SearchStrategy[Any]:
     if dataclasses.is_dataclass(hint):
         return SPECIAL[hint]() if hint in SPECIAL else of(hint)
     return {str: texts, float: reals, int: integers, bool: st.booleans()}[hint]
+
+
+def stated_springs() -> st.SearchStrategy[StatedSpring]:
+    """Springs and bushings as the designer states them."""
+    return of(StatedSpring, axes=st.none() | array(3, 3))
 
 
 def masses() -> st.SearchStrategy[MassOverride]:
@@ -246,6 +252,9 @@ def behaviours(draw: Any) -> Behaviour:
         lambda n: model.controller(n, motor, joint, draw(signals()), gains),
         lambda n: model.spring_between(n, base, last, (vector(), vector()), number(), number(), number()),
         lambda n: model.load(n, body, vector(), vector(), vector(), turning=draw(st.booleans())),
+        lambda n: model.load(n, body, vector(), vector(), vector(), signal=draw(signals())),
+        lambda n: model.gas_spring(n, base, last, (vector(), vector()), *(number() for _ in range(5))),
+        lambda n: model.bushing(n, base, last, vector(), *(vector() for _ in range(4)), axes=draw(array(3, 3))),
     ]  # fmt: skip
     for k in draw(st.lists(st.sampled_from(range(len(extra))), max_size=12)):
         extra[k](next(names))
@@ -257,7 +266,7 @@ def behaviours(draw: Any) -> Behaviour:
 
 
 SPECIAL: dict[Any, Any] = {
-    StatedMass: stated_masses,
+    StatedMass: stated_masses, StatedSpring: stated_springs,
     DescribedLink: links,
     Law: laws, MassOverride: masses, Patch: patches, Contacts: contacts, Joint: joints, ConstraintMatrix: matrices,
     Behaviour: behaviours, Meshing: meshings, Mobility: mobilities, Redundancy: redundancies,

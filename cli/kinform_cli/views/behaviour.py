@@ -9,6 +9,7 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from kinform.behaviour import (
+    Bushing,
     Component,
     Controller,
     Damper,
@@ -16,6 +17,7 @@ from kinform.behaviour import (
     EffortDrive,
     EndStop,
     Friction,
+    GasSpring,
     Gear,
     Ground,
     JointComponent,
@@ -33,7 +35,7 @@ from kinform.behaviour import (
     counts,
 )
 from kinform.behaviour.components import kind_of
-from kinform.behaviour.signals import Constant, Ramp, Sine, Table
+from kinform.behaviour.signals import STEADY, Constant, Ramp, Sine, Table
 from kinform.design import Design
 from kinform.foundation.words import counted
 from kinform_cli.tables import Rows, stacked
@@ -152,10 +154,19 @@ _PARAMETERS: dict[type[Component], Callable[[Any, Lengths], str]] = {
         f"{number(c.stiffness)} N/m, {number(c.damping)} N·s/m, rest {_length(c.rest, u)}, "
         f"from {u.point(c.point)} to {u.point(c.other)} {u.unit}"
     ),
+    GasSpring: lambda c, u: (
+        f"{number(c.force)} N at {_length(c.extended, u)}, {_length(c.column, u)} of gas to the power "
+        f"{number(c.exponent)}, {number(c.damping)} N·s/m, from {u.point(c.point)} to {u.point(c.other)} {u.unit}"
+    ),
+    Bushing: lambda c, u: (
+        f"{_triple(c.stiffness)} N/m, {_triple(c.torsion)} N·m/rad, {_triple(c.damping)} N·s/m, "
+        f"{_triple(c.torsion_damping)} N·m·s/rad at {u.point(c.point)} {u.unit}"
+    ),
     Gear: lambda c, u: f"a = {number(c.ratio)}·b",
     LoadComponent: lambda c, u: (
         f"{_triple(c.force)} N, {_triple(c.torque)} N·m at {u.point(c.point)} {u.unit}"
         f"{', turning with it' if c.turning else ''}"
+        f"{'' if c.signal == STEADY else f', times {_signal(c.signal)}'}"
     ),
 }
 

@@ -9,7 +9,17 @@ Paredis and Khosla, "Kinematics support for design and simulation of mechatronic
 from __future__ import annotations
 
 from kinform.behaviour.acting import one_freedom
-from kinform.behaviour.components import Gear, Ground, JointComponent, LoadComponent, RigidBody, SpringDamper, System
+from kinform.behaviour.components import (
+    Bushing,
+    GasSpring,
+    Gear,
+    Ground,
+    JointComponent,
+    LoadComponent,
+    RigidBody,
+    SpringDamper,
+    System,
+)
 from kinform.behaviour.counting import Count, count, counts
 from kinform.behaviour.diagnosis import faults
 from kinform.behaviour.model import Model
@@ -37,6 +47,7 @@ __all__ = [
     "CODE_VERSION",
     "Actor",
     "Behaviour",
+    "Bushing",
     "Component",
     "Constant",
     "Controller",
@@ -46,6 +57,7 @@ __all__ = [
     "EffortDrive",
     "EndStop",
     "Friction",
+    "GasSpring",
     "Gear",
     "Ground",
     "JointComponent",
@@ -78,4 +90,4 @@ __all__ = [
     "smooth",
 ]
 
-CODE_VERSION: int = 9
+CODE_VERSION: int = 10

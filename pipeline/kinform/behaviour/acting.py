@@ -8,7 +8,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.behaviour.components import Gear, JointComponent, LoadComponent
+from kinform.behaviour.components import (
+    Bushing,
+    Elastic,
+    GasSpring,
+    Gear,
+    JointComponent,
+    LoadComponent,
+    SpringDamper,
+)
 from kinform.behaviour.ports import Component
 from kinform.behaviour.shafts import (
     Controller,
@@ -21,7 +29,7 @@ from kinform.behaviour.shafts import (
     Spring,
     VoltageSource,
 )
-from kinform.behaviour.signals import Constant, Signal, signal
+from kinform.behaviour.signals import STEADY, Constant, Signal, signal
 from kinform.behaviour.sliding import Sliding
 from kinform.function import acted_freedom
 from kinform.model.assembly import Assembly
@@ -29,6 +37,7 @@ from kinform.model.function import Coupling, Drive, Load
 from kinform.model.kinematics import Coupling as Found
 from kinform.model.kinematics import Kinematics
 from kinform.model.mass import MassReport
+from kinform.model.springs import BUSHING, GAS_SPRING, StatedSpring
 
 Joints = Mapping[str, JointComponent]
 
@@ -220,5 +229,36 @@ def make_load(
     torque = np.zeros(3) if load.torque is None else load.torque
     if not np.all(np.isfinite(np.concatenate([force, torque, point]))):
         return None, "", "a load on it contains a value that is not a number"
+    try:
+        factor = STEADY if load.law is None else signal(load.law, 1.0)
+    except ValueError as error:
+        return None, "", f"a load on it: {error}"
     name = f"load {number} {load.part}"
-    return LoadComponent(name, load.part, force, torque, point, load.frame == "body"), body, ""
+    return LoadComponent(name, load.part, force, torque, point, load.frame == "body", factor), body, ""
+
+
+def make_spring(
+    assembly: Assembly, kinematics: Kinematics, stated: StatedSpring, number: int
+) -> tuple[Elastic | None, tuple[str, str], str]:
+    """(component, bodies of its two ends, why not)."""
+    try:
+        first, second = (str(kinematics.body_of(assembly.parts_of(name)[0]).name) for name in stated.between)
+    except KeyError as error:
+        return None, ("", ""), f"{error} is no part or group"
+    if first == second:
+        return None, ("", ""), f"{' and '.join(stated.between)} are parts of one body: it does nothing"
+    name, numbers = f"{stated.kind.replace('_', ' ')} {number} {stated.name}", stated.parameters
+    at = (name, stated.name, stated.point, stated.other)
+    made: Elastic
+    if stated.kind == BUSHING:
+        assert stated.axes is not None
+        keys = ("stiffness", "torsion", "damping", "torsion_damping")
+        made = Bushing(*at, stated.axes, *(np.array([numbers[f"{key}_{axis}"] for axis in "xyz"]) for key in keys))
+    elif "exponent" in numbers:
+        made = GasSpring(*at, *(numbers[key] for key in ("force", "extended", "column", "exponent", "damping")))
+    elif stated.kind == GAS_SPRING:
+        stiffness = numbers["stiffness"]
+        made = SpringDamper(*at, stiffness, numbers["damping"], numbers["extended"] + numbers["force"] / stiffness)
+    else:
+        made = SpringDamper(*at, *(numbers[key] for key in ("stiffness", "damping", "rest")))
+    return made, (first, second), ""

@@ -8,11 +8,15 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Annotated
 
+import numpy as np
+
 from kinform.behaviour import shafts
+from kinform.behaviour.constants import LEAST_GAS
 from kinform.behaviour.joints import JointGeometry, JointKind
 from kinform.behaviour.ports import FRAME, Component, Node, Port
+from kinform.behaviour.signals import STEADY, Signal
 from kinform.model.arrays import Array
-from kinform.model.quantities import XYZ, Direction, Inertia, JointValue, Metres, Place, Ratio
+from kinform.model.quantities import MATRIX, XYZ, Direction, Inertia, JointValue, Metres, Place, Ratio
 
 
 @dataclass(frozen=True)
@@ -82,6 +86,8 @@ class LoadComponent(Component):
     """(3,) m, of the body, in the world at the pose of the meshes."""
     turning: bool
     """True: force and torque turn with the body."""
+    signal: Signal = STEADY
+    """What both are multiplied by."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +109,70 @@ class SpringDamper(Component):
     """N·s/m."""
     rest: Metres
     """m."""
+
+    def pull(self, length: Array) -> Array:
+        """N, of the spring alone, at lengths (m)."""
+        return np.asarray(self.stiffness * (length - self.rest))
+
+
+@dataclass(frozen=True, eq=False)
+class GasSpring(Component):
+    """A gas spring and a damper in parallel between a point of one body and a point of another.
+
+    It pushes with force · (column / (column − (extended − length)))^exponent, the gas law, in which `column` is the
+    length of gas at the extended length. Twelve equations.
+    """
+
+    PORTS = (Port("a", FRAME), Port("b", FRAME))
+
+    point: Place
+    """(3,) m, of the body at port a, in the world at the pose of the meshes."""
+    other: Place
+    """(3,) m, of the body at port b."""
+    force: Annotated[float, "N"]
+    """N, at the extended length."""
+    extended: Metres
+    """m."""
+    column: Metres
+    """m."""
+    exponent: Ratio
+    damping: Annotated[float, "N·s/m"]
+    """N·s/m."""
+
+    def left(self, length: Array) -> Array:
+        """m of gas that is left at lengths (m); no less than LEAST_GAS of it all."""
+        return np.maximum(self.column - (self.extended - length), LEAST_GAS * self.column)
+
+    def pull(self, length: Array) -> Array:
+        """N, of the gas alone, at lengths (m): it pushes."""
+        return np.asarray(-self.force * (self.column / self.left(length)) ** self.exponent)
+
+
+@dataclass(frozen=True, eq=False)
+class Bushing(Component):
+    """An elastic bearing between two bodies: in axes that the body at port a carries, forces along each against the
+    shift of the second point from the first, torques about each against the rotation vector. Twelve equations."""
+
+    PORTS = (Port("a", FRAME), Port("b", FRAME))
+
+    point: Place
+    """(3,) m, of the body at port a, in the world at the pose of the meshes."""
+    other: Place
+    """(3,) m, of the body at port b; both forces act here."""
+    axes: Annotated[Array, "1", MATRIX]
+    """(3, 3) as columns."""
+    stiffness: Annotated[Array, "N/m", XYZ]
+    """(3,)."""
+    torsion: Annotated[Array, "N·m/rad", XYZ]
+    """(3,)."""
+    damping: Annotated[Array, "N·s/m", XYZ]
+    """(3,)."""
+    torsion_damping: Annotated[Array, "N·m·s/rad", XYZ]
+    """(3,)."""
+
+
+Elastic = SpringDamper | GasSpring | Bushing
+"""What pulls between two bodies."""
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -242,14 +312,19 @@ class System(Component):
         return tuple(c for c in self.components if isinstance(c, Gear))
 
     @cached_property
-    def springs(self) -> tuple[SpringDamper, ...]:
-        """Springs and dampers between points, in order."""
-        return tuple(c for c in self.components if isinstance(c, SpringDamper))
+    def springs(self) -> tuple[Elastic, ...]:
+        """Springs, gas springs and bushings between points, in order."""
+        return tuple(c for c in self.components if isinstance(c, Elastic))
 
     @cached_property
     def loads(self) -> tuple[LoadComponent, ...]:
         """Loads in order."""
         return tuple(c for c in self.components if isinstance(c, LoadComponent))
+
+    @cached_property
+    def steady_loads(self) -> tuple[LoadComponent, ...]:
+        """Those that do not change over time."""
+        return tuple(load for load in self.loads if load.signal == STEADY)
 
     def actors(self, joint: str) -> tuple[shafts.Actor, ...]:
         """What acts on the shaft of the joint component of that name."""
@@ -290,6 +365,8 @@ COMPONENTS: dict[str, type[Component]] = {
     "voltage_source": shafts.VoltageSource,
     "voltage_controller": shafts.VoltageController,
     "spring_damper": SpringDamper,
+    "gas_spring": GasSpring,
+    "bushing": Bushing,
     "gear": Gear,
     "load": LoadComponent,
     "system": System,

@@ -37,3 +37,5 @@ MATERIAL_PAIRS: dict[tuple[str, str], tuple[float, float]] = {
 Jewett, Physics for Scientists and Engineers, table 5.1; Marks' Standard Handbook for Mechanical Engineers, section 3.2,
 for brass and for PTFE on steel). Lubrication, finish and wear change them several times over: runs name what they
 took, and a [[friction]] of the manifest goes before."""
+LEAST_GAS = 1e-6
+"""Share of the column of a gas spring below which its force grows no further: nothing is pushed in so far."""

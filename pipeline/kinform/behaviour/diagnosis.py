@@ -9,7 +9,16 @@ from itertools import pairwise
 
 import numpy as np
 
-from kinform.behaviour.components import Gear, Ground, JointComponent, LoadComponent, RigidBody, SpringDamper, System
+from kinform.behaviour.components import (
+    Elastic,
+    GasSpring,
+    Gear,
+    Ground,
+    JointComponent,
+    LoadComponent,
+    RigidBody,
+    System,
+)
 from kinform.behaviour.constants import UNIT_LENGTH
 from kinform.behaviour.ports import Component
 from kinform.behaviour.shafts import Actor, Controller, DcMotor, EndStop, Friction, VoltageController, VoltageSource
@@ -57,6 +66,8 @@ def _faults_of_values(component: Component) -> Iterator[str]:
         yield from _faults_of_friction(component)
     if isinstance(component, EndStop) and component.lower > component.upper:
         yield f"its lower limit {component.lower:g} is above the upper {component.upper:g}"
+    if isinstance(component, GasSpring) and not (component.column > 0.0 and component.exponent > 0.0):
+        yield "its column of gas and its exponent must be positive"
     if isinstance(component, DcMotor) and (component.resistance <= 0.0 or component.inductance < 0.0):
         yield "its resistance must be positive, its inductance not negative"
     if isinstance(component, JointComponent):
@@ -111,7 +122,7 @@ def _number(name: str, value: object, whose: str) -> Iterator[str]:
 
 def _faults_of_nodes(system: System, component: Component) -> Iterator[str]:
     """Ports that meet nothing that could answer them, or too much."""
-    if isinstance(component, JointComponent | SpringDamper):
+    if isinstance(component, JointComponent | Elastic):
         for port in ("a", "b"):
             yield from _one_body(system, component, port)
     if isinstance(component, JointComponent) and component.kind.rates:

@@ -20,12 +20,22 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinform.behaviour import shafts
-from kinform.behaviour.components import Gear, Ground, JointComponent, LoadComponent, RigidBody, SpringDamper, System
+from kinform.behaviour.components import (
+    Bushing,
+    GasSpring,
+    Gear,
+    Ground,
+    JointComponent,
+    LoadComponent,
+    RigidBody,
+    SpringDamper,
+    System,
+)
 from kinform.behaviour.joints import KINDS, JointGeometry
 from kinform.behaviour.nested import placed
 from kinform.behaviour.ports import Component, Node
 from kinform.behaviour.rubbing import Rubs
-from kinform.behaviour.signals import Signal
+from kinform.behaviour.signals import STEADY, Signal
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.model.arrays import Array
 
@@ -279,6 +289,42 @@ class Model:
         point, other = (np.asarray(end, dtype=np.float64) for end in points)
         self.add(SpringDamper(name, name, point, other, stiffness, damping, rest), a=a, b=b)
 
+    def gas_spring(
+        self,
+        name: str,
+        a: Where,
+        b: Where,
+        points: tuple[ArrayLike, ArrayLike],
+        force: float,
+        extended: float,
+        column: float,
+        exponent: float = 1.0,
+        damping: float = 0.0,
+    ) -> None:
+        """A gas spring between a point of body `a` and one of body `b`: N at the extended length, m, m of gas there,
+        the exponent of the gas law, N·s/m."""
+        point, other = (np.asarray(end, dtype=np.float64) for end in points)
+        self.add(GasSpring(name, name, point, other, force, extended, column, exponent, damping), a=a, b=b)
+
+    def bushing(
+        self,
+        name: str,
+        a: Where,
+        b: Where,
+        point: ArrayLike,
+        stiffness: ArrayLike,
+        torsion: ArrayLike = (0.0, 0.0, 0.0),
+        damping: ArrayLike = (0.0, 0.0, 0.0),
+        torsion_damping: ArrayLike = (0.0, 0.0, 0.0),
+        *,
+        axes: ArrayLike | None = None,
+    ) -> None:
+        """An elastic bearing of body `b` in body `a` at a point: N/m and N·m/rad along and about three axes, N·s/m and
+        N·m·s/rad; `axes` (3, 3) as columns, by default those of the world."""
+        at, triad = np.asarray(point, dtype=np.float64), np.eye(3) if axes is None else np.asarray(axes, np.float64)
+        of_axes = (np.asarray(values, np.float64) for values in (stiffness, torsion, damping, torsion_damping))
+        self.add(Bushing(name, name, at, at, triad, *of_axes), a=a, b=b)
+
     def load(
         self,
         name: str,
@@ -288,10 +334,12 @@ class Model:
         torque: ArrayLike = (0.0, 0.0, 0.0),
         *,
         turning: bool = False,
+        signal: Signal | None = None,
     ) -> None:
-        """A force (N) and a torque (N·m) on a body at a point; `turning`: they turn with the body."""
+        """A force (N) and a torque (N·m) on a body at a point; `turning`: they turn with the body; `signal`: what both
+        are multiplied by."""
         push, twist, at = (np.asarray(value, dtype=np.float64) for value in (force, torque, point))
-        self.add(LoadComponent(name, name, push, twist, at, turning), frame=body)
+        self.add(LoadComponent(name, name, push, twist, at, turning, signal or STEADY), frame=body)
 
 
 def _vector(value: ArrayLike | None) -> Array | None:

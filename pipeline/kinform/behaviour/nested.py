@@ -12,7 +12,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.behaviour.components import Gear, Ground, JointComponent, LoadComponent, RigidBody, SpringDamper, System
+from kinform.behaviour.components import (
+    Bushing,
+    Elastic,
+    Gear,
+    Ground,
+    JointComponent,
+    LoadComponent,
+    RigidBody,
+    System,
+)
 from kinform.behaviour.joints import KINDS, JointGeometry
 from kinform.behaviour.ports import Component, Node
 from kinform.foundation.graphs.graph import UnionFind
@@ -185,7 +194,9 @@ def placed(system: System, X_WS: Array) -> System:
         if isinstance(component, Gear) and component.pitch_point is not None:
             normals = [None if normal is None else direction(normal) for normal in (component.flank, component.back)]
             return replace(component, pitch_point=point(component.pitch_point), flank=normals[0], back=normals[1])
-        if isinstance(component, SpringDamper):
+        if isinstance(component, Elastic):
+            if isinstance(component, Bushing):
+                component = replace(component, axes=turn @ component.axes)
             return replace(component, point=point(component.point), other=point(component.other))
         return component
 

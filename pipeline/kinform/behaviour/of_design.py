@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.behaviour.acting import make_drive, make_gear, make_load, mesh_gear
+from kinform.behaviour.acting import make_drive, make_gear, make_load, make_spring, mesh_gear
 from kinform.behaviour.components import Ground, JointComponent, RigidBody, System
 from kinform.behaviour.homes import homes
 from kinform.behaviour.joints import KINDS, JointGeometry
@@ -146,6 +146,12 @@ def build(
             builder.add(component_load, frame=f"body {body_name}")
         else:
             forces_missing.append((load.part, why))
+    for number, stated_spring in enumerate(assembly.function.springs, start=1):
+        spring, ends, why = make_spring(assembly, kinematics, stated_spring, number)
+        if spring is not None:
+            builder.add(spring, a=f"body {ends[0]}", b=f"body {ends[1]}")
+        else:
+            forces_missing.append((stated_spring.name, why))
     system = builder.system()
     parts = {str(body.name): body.parts for body in kinematics.bodies}
     nested = nest(system, homes(system, parts))

@@ -47,6 +47,10 @@ class Constant:
         return 0.0
 
 
+STEADY = Constant(1.0)
+"""As a factor: nothing changes."""
+
+
 @dataclass(frozen=True)
 class Ramp:
     """offset + slope·t."""

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.behaviour import Behaviour, Component, JointComponent, RigidBody, System, build
-from kinform.behaviour.components import SpringDamper
+from kinform.behaviour.components import Bushing, GasSpring, SpringDamper
 from kinform.behaviour.shafts import EndStop, Friction
+from kinform.behaviour.signals import STEADY
 from kinform.design import Design
 from kinform.errors import StageError
 from kinform.foundation.algebra.spatial import quaternions
@@ -216,16 +217,20 @@ _ELSEWHERE: dict[type[Component], str] = {
     EndStop: "end stops with impacts",
     Friction: "Coulomb friction by load",
     SpringDamper: "a spring between two points",
+    GasSpring: "a gas spring",
+    Bushing: "a bushing",
 }
 """What the equations of the other formats are not written for."""
 
 
 def _elsewhere(system: System) -> tuple[str, ...]:
-    return tuple(
+    out = [
         f"{component.subject}: {_ELSEWHERE[type(component)]}, which only json carries"
         for component in system.components
         if type(component) in _ELSEWHERE and not (isinstance(component, Friction) and component.static == 0.0)
-    )
+    ]
+    changing = [load for load in system.loads if load.signal != STEADY]
+    return (*out, *(f"{load.subject}: a load that changes over time, which only json carries" for load in changing))
 
 
 def _missing(behaviour: Behaviour, adrift: tuple[str, ...]) -> tuple[str, ...]:

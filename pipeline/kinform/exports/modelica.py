@@ -252,7 +252,7 @@ def _actors(package: _Package) -> None:
     for gear in package.equations.gears:
         ends = {port: f"{names[system.joint_at(gear.name, port).name]}.shaft" for port in ("a", "b")}
         package.add("Gear", names[gear.name], f"ratio={number(gear.ratio)}", gear.subject, **ends)
-    for load in system.loads:
+    for load in system.steady_loads:
         values = f"f={_array(load.force)}, t={_array(load.torque)}, s={_array(load.point)}, turning={int(load.turning)}"
         frame = f"{names[system.body_at(load.name, 'frame').name]}.frame"
         package.add("Load", names[load.name], values, load.subject, frame=frame)

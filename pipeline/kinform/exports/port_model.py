@@ -177,6 +177,12 @@ def _entries(record: type) -> tuple[_Entry, ...]:
 def _entry(record: type, field: dataclasses.Field[Any], hint: Any) -> _Entry:
     """By the type of the field: arrays are lists, and what is not known or not bounded is null."""
     name, sparse = field.name, record is Gear and field.default is not dataclasses.MISSING
+    if hint is Signal and field.default is not dataclasses.MISSING:
+        steady = field.default
+        return _Entry(
+            name, LawTable | None, lambda signal: None if signal == steady else _written_law(signal),
+            lambda table: steady if table is None else _read_law(table), True,
+        )  # fmt: skip
     if hint is Signal:
         return _Entry(name, LawTable, _written_law, _read_law)
     if hint is Controller:
@@ -188,6 +194,8 @@ def _entry(record: type, field: dataclasses.Field[Any], hint: Any) -> _Entry:
         unknown = np.full((3, 3) if square else 3, np.nan)
         kind: Any = (Matrix if square else Vector) | None
         return _Entry(name, kind, _list, lambda rows: unknown.copy() if rows is None else np.array(rows))
+    if hint == Array and name == "axes":
+        return _Entry(name, Matrix, _list, np.array)
     if hint in (Array, Array | None):
         kind = Vector if hint == Array else Vector | None
         return _Entry(name, kind, _list, lambda row: None if row is None else np.array(row), sparse)

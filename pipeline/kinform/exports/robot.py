@@ -139,7 +139,7 @@ class Robot:
     @property
     def loads(self) -> tuple[LoadComponent, ...]:
         """Forces on bodies."""
-        return self.model.system.loads
+        return self.model.system.steady_loads
 
     @property
     def gears(self) -> tuple[tuple[Gear, JointComponent, JointComponent], ...]:

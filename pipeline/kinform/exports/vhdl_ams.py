@@ -39,7 +39,7 @@ def export(model: ExportModel) -> Exported:
         if joint.name not in left_out:
             _joint(writer, joint, closures.get(joint.name))
     drives(writer)
-    for load in model.system.loads:
+    for load in model.system.steady_loads:
         _load(writer, load)
     for name, (scope, efforts) in writer.efforts.items():
         writer.of[scope].statements.append(f"{name} == {' + '.join(efforts) or '0.0'}")

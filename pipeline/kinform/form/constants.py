@@ -283,3 +283,5 @@ WIDTH = 100
 NOISE = 2e-5
 """Components of a proposed axis or point below this share of the largest are written as zero: 0.001°, or 6 µm at 0.3 m,
 is the rounding of meshes in float32 far from the origin, and nothing that is meant."""
+ROWS_MOST = 10_000
+"""Rows of a law that is written in the manifest; longer ones are CSV files."""

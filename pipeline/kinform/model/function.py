@@ -12,6 +12,7 @@ import numpy as np
 from kinform.model.arrays import Array
 from kinform.model.quantities import XYZ, Direction, Metres, Place, Ratio, columns
 from kinform.model.sensors import Sensor
+from kinform.model.springs import StatedSpring
 
 Stated = Annotated[float, "unit of the manifest"]
 """Where only the joint says whether it is an angle or a length."""
@@ -131,6 +132,8 @@ class Load:
     """"world" (fixed direction) or "body" (turns with the part)."""
     file: str
     line: int | None
+    law: Law | None = None
+    """What force and torque are multiplied by; None: 1."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,6 +165,7 @@ class Function:
     requirements: tuple[Requirement, ...] = ()
     frictions: tuple[MaterialFriction, ...] = ()
     """Of `[[friction]]`."""
+    springs: tuple[StatedSpring, ...] = ()
     complete: tuple[str, ...] = ()
     """Prefixes of the manifests whose joints are all that are meant to move; "" for the top one."""
 
@@ -184,7 +188,7 @@ class Function:
     def stated(self) -> bool:
         """Whether the designer stated anything at all."""
         return self.mobility is not None or bool(
-            self.joints or self.couplings or self.drives or self.loads or self.requirements
+            self.joints or self.couplings or self.drives or self.loads or self.springs or self.requirements
         )
 
 

@@ -86,6 +86,8 @@ RAGGED: dict[str, tuple[str, Form]] = {
     "joints/patches": ("joints/joints", Form("i", (None,))),
     "mobility/redundant_patches": ("mobility/redundancies", Form("i", (None,))),
     "mobility/redundant_wrenches": ("mobility/redundancies", Form("f", (None, 6))),
+    "assembly/function/load_law_times": ("assembly/function/loads", Form("f", (None,))),
+    "assembly/function/load_law_values": ("assembly/function/loads", Form("f", (None,))),
     "behaviour/law_times": ("behaviour/laws", Form("f", (None,))),
     "behaviour/law_levels": ("behaviour/laws", Form("f", (None,))),
 }
@@ -119,6 +121,7 @@ ROWS: dict[str, tuple[str, bool]] = {
     "behaviour/motion.law": ("behaviour/laws", False),
     "behaviour/effort.law": ("behaviour/laws", False),
     "behaviour/servo.law": ("behaviour/laws", False),
+    "behaviour/load.law": ("behaviour/laws", False),
     "behaviour/voltage_source.law": ("behaviour/laws", False),
     "behaviour/voltage_controller.law": ("behaviour/laws", False),
 }

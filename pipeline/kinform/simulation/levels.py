@@ -169,5 +169,6 @@ def notes_of_level(
     if level != "dynamic":
         forces = sorted({f"{d.kind} on {d.joint}" for d in assembly.function.drives if d.kind != "motion"})
         forces += sorted({f"load on {load.part}" for load in assembly.function.loads})
+        forces += sorted({spring.name for spring in assembly.function.springs})
         if forces:
             yield f"forces play no part at the {level} level: {', '.join(forces)}"

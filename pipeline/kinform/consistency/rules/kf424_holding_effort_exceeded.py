@@ -104,6 +104,10 @@ def _with_friction(context: Context, requirement: Hold) -> Answer:
 def _held(context: Context, chain: Chain, joint: Joint, pose: Mapping[str, float]) -> float | str:
     """The effort in one pose, or why it is not determined."""
     assembly, kinematics = context.assembly, context.kinematics
+    if context.function.springs:
+        return "springs between two points are not reckoned with: only a dynamic run with the joint held shows it"
+    if any(load.law is not None for load in context.function.loads):
+        return "a load changes over time: only a dynamic run with the joint held shows it"
     wanted: dict[str, float] = {}
     for name, value in pose.items():
         resolution = resolve_joint(assembly, kinematics, name)

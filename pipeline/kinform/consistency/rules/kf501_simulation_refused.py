@@ -85,6 +85,7 @@ def _declaring(context: Context, subject: str, names: Sequence[str]) -> Declared
     acting: list[tuple[bool, Declared]] = [(stands_for(drive.joint), drive) for drive in function.drives]
     acting += [(subject == "coupling of " + " and ".join(c.joints), c) for c in function.couplings]
     acting += [(load.part == subject, load) for load in function.loads]
+    acting += [(spring.name == subject, spring) for spring in function.springs]
     acting += [(stands_for(value.joint), value) for value in (request.initial if request is not None else ())]
     return next((item for matches, item in acting if matches), None)
 

@@ -6,9 +6,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from kinform.form.constants import COUNT_MOST
+from kinform.form.constants import COUNT_MOST, ROWS_MOST
 from kinform.form.manifest.common import Finite, JointType, Name, NonNegative, Pair, Positive, Reference, Table, Vector
 from kinform.form.manifest.requirements import Require
+from kinform.form.manifest.springs import Bushing, GasSpring, PointSpring
 
 
 class IntendedJointTable(Table):
@@ -65,14 +66,19 @@ class Ramp(Table):
     offset: Finite = Field(0.0, description="value at time zero")
 
 
-class CsvTable(Table):
-    """Linear between the rows of a CSV file of time and value; the first and last value hold outside."""
+Column = Annotated[list[Finite], Field(min_length=2, max_length=ROWS_MOST)]
+
+
+class TimeTable(Table):
+    """Linear between rows of time and value, of a CSV file or written here; the first and last value hold outside."""
 
     type: Literal["table"]
-    file: Reference = Field(description="CSV file of time (s) and value, relative to the manifest")
+    file: Reference | None = Field(None, description="CSV file of time (s) and value, relative to the manifest")
+    times: Column | None = Field(None, description="in place of a file: seconds, ascending")
+    values: Column | None = Field(None, description="as many values")
 
 
-LawTable = Annotated[Constant | Sine | Ramp | CsvTable, Field(discriminator="type")]
+LawTable = Annotated[Constant | Sine | Ramp | TimeTable, Field(discriminator="type")]
 
 
 FreedomName = Literal["turn", "slide", "turn2", "u", "v", "x", "y", "z"]
@@ -178,6 +184,7 @@ class Load(Table):
         None, description="where the force acts, at the pose of the meshes; default the centre of mass"
     )
     frame: Literal["world", "body"] = Field("world", description="fixed in the world, or turning with the body")
+    law: LawTable | None = Field(None, description="what force and torque are multiplied by over time; default 1")
 
 
 class FunctionTable(Table):
@@ -193,4 +200,7 @@ class FunctionTable(Table):
     coupling: list[Coupling] = Field([], description="gears, racks and screws between intended joints")
     drive: list[Drive] = Field([], description="what acts on joints")
     load: list[Load] = Field([], description="forces and torques on parts")
+    spring: list[PointSpring] = Field([], description="springs and dampers between points of two parts")
+    gas_spring: list[GasSpring] = Field([], description="gas springs between points of two parts")
+    bushing: list[Bushing] = Field([], description="elastic bearings between two parts")
     require: list[Require] = Field([], description="requirements")

@@ -26,6 +26,7 @@ from kinform.form.readers.open_manifest import Parsed, Scope, parse
 from kinform.form.readers.poses import pose, shift, unit_error
 from kinform.form.readers.requirements import requirements_of
 from kinform.form.readers.sensors import sensors_of
+from kinform.form.readers.springs import springs_of
 from kinform.form.sources import AS_IT_IS, Reading, is_source
 from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.foundation.regular import AS_A_FILE, not_a_file
@@ -163,6 +164,7 @@ class _AssemblyReader:
             drives=tuple(drive for reader in readers for drive in reader.drives()),
             frictions=tuple(pair for reader in readers for pair in reader.frictions()),
             loads=tuple(load for reader in readers for load in reader.loads()),
+            springs=tuple(spring for reader in readers for spring in springs_of(reader)),
             requirements=tuple(requirement for reader in readers for requirement in requirements_of(reader)),
             complete=tuple(scope.prefix for scope in self.scopes if _complete(scope)),
         )

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -206,12 +207,26 @@ class FunctionReader:
             return None
         if table.type != "table":
             return Law(**table.model_dump())
+        if (table.file is None) == (table.times is None or table.values is None):
+            self.scope.complain("a table needs either file or times and values", "give one of them", *path)
+            return Law("table")
+        if table.file is None:
+            return self._inline(table, *path)
         file = self.file(table.file, "the table", *path)
         if file is None:
             return Law("table", file=table.file)
         shown = self.files.shown(file)
         times, values = law_rows(self.scope, file, shown)
         return Law("table", times=times, values=values, file=shown)
+
+    def _inline(self, table: Any, *path: str | int) -> Law:
+        """A table that is written in the manifest."""
+        if len(table.times) != len(table.values):
+            wrong = f"the table has {len(table.times)} times and {len(table.values)} values"
+            self.scope.complain(wrong, "give as many of both", *path)
+        if any(later <= earlier for earlier, later in pairwise(table.times)):
+            self.scope.complain("the times of the table do not increase", "sort them, each once", *path)
+        return Law("table", times=tuple(table.times), values=tuple(table.values))
 
     def loads(self) -> Iterator[Load]:
         """`[[function.load]]`."""
@@ -221,7 +236,8 @@ class FunctionReader:
                 scope.complain("a load has neither force nor torque", "add force = [x, y, z] in N", *path)
             part, point = self.place(table.part, *path, "part"), scope.point(table.point)
             force, torque = scope.vector(table.force), scope.vector(table.torque)
-            yield Load(part, force, torque, point, table.frame, *scope.where(*path))
+            law = self._law(table.law, *path, "law")
+            yield Load(part, force, torque, point, table.frame, *scope.where(*path), law)
 
     def check(self) -> CheckSettings:
         """`[check]` of the top manifest."""

@@ -75,6 +75,8 @@ TABLES = {
     "exposed": EXPOSED_ROWS, "laws": LAW_ROWS,
 }  # fmt: skip
 """In the order of the file."""
+_LATER_KINDS = ("gas_spring", "bushing")
+"""Kinds that files of older versions do not know."""
 REASONS = Layout(Behaviour, layout.Table("failures"), layout.Table("forces_missing"), layout.Table("held"))
 
 
@@ -142,7 +144,7 @@ class _Rows:
 def read(group: HeldGroup) -> Behaviour:
     """The model that `write` wrote."""
     signals = _read_laws(group)
-    kinds = {kind: read_rows(group, kind, columns, defaults(COMPONENTS[kind])) for kind, columns in PARAMETERS.items()}
+    kinds = {kind: _read_kind(group, kind) for kind in PARAMETERS}
     systems = read_rows(group, "systems", SYSTEM_ROWS)
     rows = read_rows(group, "components", COMPONENT_ROWS)
     members: dict[int, dict[int, Component]] = defaultdict(dict)
@@ -169,6 +171,14 @@ def read(group: HeldGroup) -> Behaviour:
     named = set(names)
     welds = [component.name for component in system.components if component.name not in named]
     return Behaviour(arranged(system, [*order, *welds]), nested, **REASONS.read_fields(group))
+
+
+def _read_kind(group: HeldGroup, kind: str) -> list[dict[str, Any]]:
+    """The parameters of components of a kind; files of older versions lack some kinds, and the law of loads."""
+    later = defaults(COMPONENTS[kind])
+    if kind in _LATER_KINDS and kind not in group:
+        return []
+    return read_rows(group, kind, PARAMETERS[kind], later | {"law"} if "signal" in later else later)
 
 
 def _flat_names(systems: list[dict[str, Any]], rows: list[dict[str, Any]]) -> list[str]:

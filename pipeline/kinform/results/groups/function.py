@@ -7,42 +7,54 @@ from dataclasses import replace
 
 import h5py
 
-from kinform.model.function import Drive, Function, Law, SimulationRequest
+from kinform.model.function import Drive, Function, Law, Load, SimulationRequest
 from kinform.results.held import HeldGroup
 from kinform.results.layout import Layout, Ragged, Row, Rows, Table, Texts
-from kinform.results.records import columns_of, defaults, hint
+from kinform.results.records import columns_of, defaults, hint, hints, record_values
 from kinform.results.table import read_rows, text, write_rows
 
+_NAMED = (("type", text("law_type")), ("file", text("law_file")))
+_OF_LAW = columns_of(hint(Law), frozenset({"type", "file", "times", "values"}))
+_NUMBERS = tuple(replace(column, optional=True) for column in _OF_LAW)
+"""Nothing needs to have a law."""
 
-class _Drives:
-    """One row a drive with the numbers of its law; the points of tables are ragged."""
 
-    dataset, fields = "drives", ("drives",)
-    of_drive = columns_of(hint(Drive), frozenset({"law"}))
-    named = (("type", text("law_type")), ("file", text("law_file")))
-    of_law = columns_of(hint(Law), frozenset({"type", "file", "times", "values"}))
-    numbers = tuple(replace(column, optional=True) for column in of_law)  # a drive may have no law
-    columns = (*of_drive, named[0][1], named[1][1], *numbers)
-    points = (Ragged("law_times", "times"), Ragged("law_values", "values"))
+class _WithLaws:
+    """One row a record with the numbers of its law; the points of tables are ragged."""
+
+    def __init__(self, field: str, record: type, points: str, *, later: bool = False):
+        """`points`: how the names of the datasets of tables begin; `later`: files of older versions have no laws."""
+        self.dataset, self.fields, self._record = field, (field,), record
+        self._own = columns_of(hint(record), frozenset(hints(record)), _plain(record))
+        self._columns = (*self._own, _NAMED[0][1], _NAMED[1][1], *_NUMBERS)
+        own = {column.field for column in self._own}
+        self._later = {column.field for column in self._columns} - own if later else set()
+        self._points = (Ragged(f"{points}_times", "times"), Ragged(f"{points}_values", "values"))
 
     def write(self, group: h5py.Group, cls: type, records: Sequence[Function]) -> None:
-        drives = records[0].drives
-        laws = [*(name for name, _ in self.named), *(column.field for column in self.numbers)]
-        of_drives = [[getattr(drive, column.field) for drive in drives] for column in self.of_drive]
-        of_laws = [[getattr(drive.law, field, None) for drive in drives] for field in laws]
-        write_rows(group, "drives", self.columns, of_drives + of_laws)
-        for points in self.points:
-            points.write(group, Law, [drive.law or Law("") for drive in drives])
+        found = getattr(records[0], self.dataset)
+        laws = [*(name for name, _ in _NAMED), *(column.field for column in _NUMBERS)]
+        own = [record_values(hint(self._record), found, column) for column in self._own]
+        of_laws = [[getattr(one.law, field, None) for one in found] for field in laws]
+        write_rows(group, self.dataset, self._columns, own + of_laws)
+        for points in self._points:
+            points.write(group, Law, [one.law or Law("") for one in found])
 
     def read(self, group: HeldGroup, cls: type, rows: Rows) -> None:
-        drives = read_rows(group, "drives", self.columns, defaults(Drive))
-        laws: Rows = [{name: row.pop(column.field) for name, column in self.named} for row in drives]
-        for row, law in zip(drives, laws, strict=True):
-            law.update({column.field: row.pop(column.field) for column in self.numbers})
-        for points in self.points:
-            points.read(group, Law, laws)
+        found = read_rows(group, self.dataset, self._columns, defaults(self._record) | self._later)
+        laws: Rows = [{name: row.pop(column.field, None) for name, column in _NAMED} for row in found]
+        for row, law in zip(found, laws, strict=True):
+            law.update({column.field: row.pop(column.field, None) for column in _NUMBERS})
+        if not self._later or self._points[0].dataset in group:
+            for points in self._points:
+                points.read(group, Law, laws)
         made = [None if law["type"] is None else Law(**law) for law in laws]
-        rows[0]["drives"] = tuple(Drive(**row, law=law) for row, law in zip(drives, made, strict=True))
+        rows[0][self.dataset] = tuple(self._record(**row, law=law) for row, law in zip(found, made, strict=True))
+
+
+def _plain(record: type) -> tuple[str, ...]:
+    """Fields of a record but for its law."""
+    return tuple(name for name in hints(record) if name != "law")
 
 
 FUNCTION = Layout(
@@ -50,8 +62,9 @@ FUNCTION = Layout(
     Row("header", "mobility", "mobility_line"),
     Table("joints"),
     Table("couplings"),
-    _Drives(),
-    Table("loads"),
+    _WithLaws("drives", Drive, "law"),
+    _WithLaws("loads", Load, "load_law", later=True),
+    Table("springs"),
     Table("requirements"),
     Table("frictions"),
     Texts("complete"),

@@ -14,7 +14,7 @@ from kinform.simulation.kernel.motion import place_links, twist_links
 from kinform.simulation.kernel.reduction import factor, settle
 
 from kinform.simulation.kernel.layout import (  # isort: skip
-    COUNTS, LINKS, COLUMNS, CLOSURES, SIGNALS, LOADS, SPRINGS, MODE, CONSTANTS, GEARS, PIECES, STATE, MASS, VECTORS,
+    COUNTS, LINKS, COLUMNS, CLOSURES, SIGNALS, SPRINGS, MODE, CONSTANTS, GEARS, PIECES, STATE, MASS, VECTORS,
     RANK, LED, POSITIONS, STATES, RATES, LENGTH, LAST, KIND, Q, FIRST, WIDTH, SCREW, SIGNAL, TWIST, GAIN, WRENCH,
     CHOSEN, WAY, FORCE, ACC, NEED, GAP, KEPT, PULLED,
     Row, Table, Index, Nums, Work,
@@ -54,7 +54,7 @@ def derivative(ints: Ints, nums: Nums, work: Work, t: float, y: Row, dy: Row) ->
         inertias(ints, nums, work)
         wrenches(ints, nums, work)
     power = drive(ints, nums, vectors, t, y, dy)
-    power += loads(ints[LOADS], nums[LOADS], state)
+    power += loads(ints, nums, state, t)
     power += between(ints[SPRINGS], nums[SPRINGS], state)
     if not articulated:
         mass_matrix(ints, work, True)

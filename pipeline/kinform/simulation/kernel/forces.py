@@ -11,10 +11,11 @@ from kinform.model.arrays import Ints
 from kinform.simulation.kernel.vectors import add, along, cross, dot, place, six, three
 
 from kinform.simulation.kernel.layout import (  # isort: skip
-    COUNTS, SIGNALS, ACTORS, PIECES,
+    COUNTS, SIGNALS, ACTORS, LOADS, PIECES,
     POSITIONS, RATES, TWIST, WRENCH, DOES, AT_Q, AT_V, LAW, FIRST_STATE, SECOND_STATE, EFFORT, SPRING, DAMPER, SERVO,
     MOTOR, STRAIGHT, WAVE, SHAPE, FIRST_PIECE, PIECE_COUNT,
-    FORCE, GIVEN,
+    FORCE, GIVEN, TURNING, FACTOR, ELASTIC, GAS, CUSHION, NEAR_STRAIGHT, LAST_GAS,
+    MEASURE, TORSION, DAMPED, TORSION_DAMPED, TRIAD,
     Row, Table, Index, Nums, Vector,
 )  # fmt: skip
 
@@ -110,15 +111,19 @@ def pace(link: Row, x: float, y: float, z: float, d0: float, d1: float, d2: floa
     return dot(v0 + l0, v1 + l1, v2 + l2, d0, d1, d2)
 
 
-def loads(table: Index, numbers: Table, state: Table) -> float:
+def loads(ints: Ints, nums: Nums, state: Table, t: float) -> float:
     """Given forces and torques on links; the power that they put in."""
-    power = 0.0
+    power, table = 0.0, ints[LOADS]
     for k in range(len(table)):
-        link, load = state[table[k][0]], numbers[k]
+        link, load = state[table[k][0]], nums[LOADS][k]
         # Vectors that do not turn with the link are those of the ground, link 0.
-        frame = link if table[k][1] == 1 else state[0]
+        frame = link if table[k][TURNING] == 1 else state[0]
         f0, f1, f2 = along(frame, load, 0)
         n0, n1, n2 = along(frame, load, 3)
+        if table[k][FACTOR] >= 0:
+            factor, _, _ = law(nums[SIGNALS], nums[PIECES], table[k][FACTOR], t)
+            f0, f1, f2 = factor * f0, factor * f1, factor * f2
+            n0, n1, n2 = factor * n0, factor * n1, factor * n2
         x, y, z = place(link, load, 6)
         push(link, x, y, z, f0, f1, f2)
         power += pace(link, x, y, z, f0, f1, f2)
@@ -128,11 +133,63 @@ def loads(table: Index, numbers: Table, state: Table) -> float:
     return power
 
 
+def onto(link: Row, row: Row, j: int, x: float, y: float, z: float) -> float:
+    """(x, y, z) along the direction of a link in the columns from j of a row."""
+    d0, d1, d2 = along(link, row, j)
+    return dot(d0, d1, d2, x, y, z)
+
+
+def cushion(a: Row, b: Row, bushing: Row) -> float:
+    """A bushing: forces against the shift, torques against the turn of b in the axes that a carries; the power of its
+    dampers. The forces of both act where the point of b is."""
+    x, y, z = place(a, bushing, 0)
+    u, v, w = place(b, bushing, 3)
+    p0, p1, p2 = along(b, bushing, TRIAD)
+    q0, q1, q2 = along(b, bushing, TRIAD + 3)
+    s0, s1, s2 = along(b, bushing, TRIAD + 6)
+    r0 = 0.5 * (onto(a, bushing, TRIAD + 6, q0, q1, q2) - onto(a, bushing, TRIAD + 3, s0, s1, s2))
+    r1 = 0.5 * (onto(a, bushing, TRIAD, s0, s1, s2) - onto(a, bushing, TRIAD + 6, p0, p1, p2))
+    r2 = 0.5 * (onto(a, bushing, TRIAD + 3, p0, p1, p2) - onto(a, bushing, TRIAD, q0, q1, q2))
+    diagonal = onto(a, bushing, TRIAD, p0, p1, p2) + onto(a, bushing, TRIAD + 3, q0, q1, q2)
+    diagonal += onto(a, bushing, TRIAD + 6, s0, s1, s2)
+    sine = math.sqrt(dot(r0, r1, r2, r0, r1, r2))
+    angle = math.atan2(sine, 0.5 * (diagonal - 1.0))
+    # The rotation vector, and its torque as the gradient of the energy in it.
+    scale, share = 1.0, 1.0 / 12.0
+    if angle > NEAR_STRAIGHT:
+        scale = angle / max(sine, 1e-300)
+        share = (1.0 - 0.5 * angle / math.tan(0.5 * angle)) / (angle * angle)
+    r0, r1, r2 = scale * r0, scale * r1, scale * r2
+    k0, k1, k2 = three(bushing, TORSION)
+    k0, k1, k2 = k0 * r0, k1 * r1, k2 * r2
+    c0, c1, c2 = cross(r0, r1, r2, k0, k1, k2)
+    e0, e1, e2 = cross(r0, r1, r2, c0, c1, c2)
+    torque = (k0 + 0.5 * c0 + share * e0, k1 + 0.5 * c1 + share * e1, k2 + 0.5 * c2 + share * e2)
+    a0, a1, a2 = three(a, TWIST)
+    b0, b1, b2 = three(b, TWIST)
+    power = 0.0
+    for k in range(3):
+        d0, d1, d2 = along(a, bushing, TRIAD + 3 * k)
+        speed = pace(b, u, v, w, d0, d1, d2) - pace(a, u, v, w, d0, d1, d2)
+        force = bushing[MEASURE + k] * dot(d0, d1, d2, u - x, v - y, w - z) + bushing[DAMPED + k] * speed
+        turning = dot(d0, d1, d2, b0 - a0, b1 - a1, b2 - a2)
+        moment = torque[k] + bushing[TORSION_DAMPED + k] * turning
+        power -= bushing[DAMPED + k] * speed * speed + bushing[TORSION_DAMPED + k] * turning * turning
+        push(a, u, v, w, force * d0, force * d1, force * d2)
+        push(b, u, v, w, -force * d0, -force * d1, -force * d2)
+        add(a, WRENCH, -moment * d0, -moment * d1, -moment * d2)
+        add(b, WRENCH, moment * d0, moment * d1, moment * d2)
+    return power
+
+
 def between(table: Index, numbers: Table, state: Table) -> float:
-    """Springs and dampers between points of two links; the power of their dampers."""
+    """Springs, gas springs and bushings between points of two links; the power of their dampers."""
     power = 0.0
     for k in range(len(table)):
         a, b, spring = state[table[k][0]], state[table[k][1]], numbers[k]
+        if table[k][ELASTIC] == CUSHION:
+            power += cushion(a, b, spring)
+            continue
         x, y, z = place(a, spring, 0)
         u, v, w = place(b, spring, 3)
         d0, d1, d2 = u - x, v - y, w - z
@@ -141,7 +198,11 @@ def between(table: Index, numbers: Table, state: Table) -> float:
             continue
         d0, d1, d2 = d0 / length, d1 / length, d2 / length
         speed = pace(b, u, v, w, d0, d1, d2) - pace(a, x, y, z, d0, d1, d2)
-        pull = spring[6] * (length - spring[8]) + spring[7] * speed
+        if table[k][ELASTIC] == GAS:
+            left = max(spring[9] - (spring[8] - length), LAST_GAS * spring[9])
+            pull = -spring[6] * math.pow(spring[9] / left, spring[10]) + spring[7] * speed
+        else:
+            pull = spring[6] * (length - spring[8]) + spring[7] * speed
         power -= spring[7] * speed * speed
         push(a, x, y, z, pull * d0, pull * d1, pull * d2)
         push(b, u, v, w, -pull * d0, -pull * d1, -pull * d2)

@@ -91,6 +91,22 @@ DOES, AT_Q, AT_V, LAW, FIRST_STATE, SECOND_STATE = range(6)
 EFFORT, SPRING, DAMPER, SERVO, MOTOR, CONTROLLED = range(6)
 """CONTROLLED: a motor with a controller."""
 
+# ints[LOADS]: the link, whether it turns with it, and the signal that it is multiplied by.
+TURNING, FACTOR = 1, 2
+
+# ints[SPRINGS]: the links, and which law holds between their points.
+ELASTIC = 2
+STRAIGHT_SPRING, GAS, CUSHION = range(3)
+"""CUSHION: a bushing."""
+NEAR_STRAIGHT = 1e-4
+"""Turns (rad) of a bushing below which 1/12 is its series: the next term is θ²/720."""
+LAST_GAS = 1e-6
+"""As `kinform.behaviour.constants.LEAST_GAS`."""
+
+# nums[SPRINGS]: two points; then stiffness or force, damping, rest or length, column, exponent; of a bushing stiffness,
+# torsion, their dampings and its axes, three numbers each.
+MEASURE, TORSION, DAMPED, TORSION_DAMPED, TRIAD = 6, 9, 12, 15, 18
+
 # nums[SIGNALS]: four numbers, the kind, first of its pieces and how many. Kinds: polynomial of degree one,
 # sine, pieces of cubics.
 STRAIGHT, WAVE, CURVE = range(3)

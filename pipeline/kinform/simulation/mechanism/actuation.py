@@ -10,9 +10,10 @@ import numpy as np
 
 from kinform.behaviour import shafts
 from kinform.behaviour.components import System
-from kinform.behaviour.signals import Constant, Signal, Spline, smooth
+from kinform.behaviour.signals import STEADY, Constant, Signal, Spline, smooth
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.kernel import layout
+from kinform.simulation.mechanism.elastic import Between
 from kinform.simulation.mechanism.mechanism import Mechanism, Slot
 from kinform.simulation.mechanism.rubbing import Rubbing, rubbing_of
 
@@ -44,19 +45,8 @@ class Push:
     torque: Array
     point: Array
     turning: bool
-
-
-@dataclass(frozen=True, eq=False)
-class Between:
-    """A spring and damper between points of two links, about the mechanism's centre."""
-
-    first: int
-    second: int
-    point: Array
-    other: Array
-    stiffness: float
-    damping: float
-    rest: float
+    signal: Signal = STEADY
+    """What force and torque are multiplied by."""
 
 
 @dataclass(frozen=True)
@@ -97,14 +87,14 @@ class Actuation:
         self.loads = [
             Push(
                 int(link_of[system.body_at(load.name, "frame").subject]),
-                load.force, load.torque, load.point - mechanism.centre, load.turning,
+                load.force, load.torque, load.point - mechanism.centre, load.turning, load.signal,
             )
             for load in system.loads
         ]  # fmt: skip
         for spring in system.springs:
             first, second = (int(link_of[system.body_at(spring.name, port).subject]) for port in ("a", "b"))
             ends = spring.point - mechanism.centre, spring.other - mechanism.centre
-            self.springs.append(Between(first, second, *ends, spring.stiffness, spring.damping, spring.rest))
+            self.springs.append(Between(first, second, *ends, spring))
         self.first_state = len(mechanism.start) + mechanism.rates
 
     def _take(self, system: System, slot: Slot, actor: shafts.Actor) -> None:
@@ -154,6 +144,7 @@ class Actuation:
     def knots(self) -> tuple[float, ...]:
         """Times at which a signal is not smooth, ascending."""
         signals = [*self.signals, *(actor.signal for actor in self.actors if actor.signal is not None)]
+        signals += [load.signal for load in self.loads]
         return tuple(sorted({knot for signal in signals for knot in signal.knots}))
 
     def led_values(self, t: float) -> Array:
@@ -207,12 +198,7 @@ class Actuation:
                 stiffness, rest = actor.numbers
                 total += 0.5 * stiffness * (q[:, actor.q] - rest) ** 2
         for spring in self.springs:
-            ends = [
-                X[:, link, :3, :3] @ point + X[:, link, :3, 3]
-                for link, point in ((spring.first, spring.point), (spring.second, spring.other))
-            ]
-            length = np.linalg.norm(ends[1] - ends[0], axis=1)
-            total += 0.5 * spring.stiffness * (length - spring.rest) ** 2
+            total += spring.energy(X)
         return total
 
 

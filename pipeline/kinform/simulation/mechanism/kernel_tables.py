@@ -7,13 +7,14 @@ from functools import cache
 import numpy as np
 
 from kinform.behaviour.components import RigidBody, System
-from kinform.behaviour.signals import Constant, Ramp, Signal, Sine, Spline, Table
+from kinform.behaviour.signals import STEADY, Constant, Ramp, Signal, Sine, Spline, Table
 from kinform.foundation.algebra.vectors import perpendicular
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.kernel import layout
 from kinform.simulation.kernel.tables import Tables
-from kinform.simulation.mechanism.actuation import Actuation
+from kinform.simulation.mechanism.actuation import Actuation, Push
 from kinform.simulation.mechanism.coefficients import NUMBERS
+from kinform.simulation.mechanism.elastic import WIDTH
 from kinform.simulation.mechanism.mechanism import Mechanism
 
 
@@ -30,13 +31,11 @@ def tabulate(mechanism: Mechanism, system: System, gravity: Array, actuation: Ac
         led += 1
     actors, actor_numbers, states = _actors(actuation, order, signals)
     loads, load_numbers = (
-        _rows([(load.link, int(load.turning)) for load in actuation.loads], 2),
+        _rows([(load.link, int(load.turning), _factor(load, signals)) for load in actuation.loads], 3),
         np.array([[*load.force, *load.torque, *load.point] for load in actuation.loads]).reshape(-1, 9),
     )
-    springs = _rows([(s.first, s.second) for s in actuation.springs], 2)
-    spring_numbers = np.array(
-        [[*s.point, *s.other, s.stiffness, s.damping, s.rest] for s in actuation.springs]
-    ).reshape(-1, 9)
+    springs = _rows([(s.first, s.second, s.kind) for s in actuation.springs], 3)
+    spring_numbers = np.array([s.numbers for s in actuation.springs]).reshape(-1, WIDTH)
     stops = _rows([(order.place[s.q], order.rate[s.v], s.sense, 0) for s in actuation.stops], 4)
     closures = _rows([tuple(pair) for pair in mechanism.closures], 2)
     n, nq = mechanism.rates, mechanism.gear_q.shape[1]
@@ -70,6 +69,11 @@ def tabulate(mechanism: Mechanism, system: System, gravity: Array, actuation: Ac
         tuple(np.ascontiguousarray(table, dtype=np.float64) for table in nums),
         work, order.q_order, order.v_order, states,
     )  # fmt: skip
+
+
+def _factor(load: Push, signals: _Signals) -> int:
+    """The signal of a load; −1 for what does not change."""
+    return -1 if load.signal == STEADY else signals.add(load.signal)
 
 
 def _rows(rows: list[tuple[int, ...]], width: int) -> Ints:

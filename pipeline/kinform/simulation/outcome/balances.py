@@ -37,7 +37,7 @@ class Balance:
         return np.asarray(both.max(axis=1, initial=0.0))
 
 
-def imbalance(dynamics: Dynamics, states: States, reactions: Reactions, effort: Array) -> Balance:
+def imbalance(dynamics: Dynamics, states: States, times: Array, reactions: Reactions, effort: Array) -> Balance:
     """How far the nodes are from balance at the efforts (T, n) on their shafts."""
     mechanism, length = dynamics.mechanism, dynamics.mechanism.length
     bodies = [mechanism.bodies[k] for k in dynamics.body_index]
@@ -45,7 +45,7 @@ def imbalance(dynamics: Dynamics, states: States, reactions: Reactions, effort: 
     with np.errstate(over="ignore"):  # of a run that overflows
         couples = np.abs(wrench[..., :3]).max(axis=2) / length
     sizes = np.concatenate([couples, np.abs(wrench[..., 3:]).max(axis=2)], axis=1)
-    external = applied(dynamics, states)
+    external = applied(dynamics, states, times)
     if reactions.gears is not None:
         external = external + reactions.gears.wrenches[:, dynamics.body_index]
     weights = np.abs(dynamics.mass * np.linalg.norm(dynamics.gravity)).max(initial=0.0)

@@ -41,12 +41,12 @@ class Reactions:
 
 
 def reactions(
-    dynamics: Dynamics, states: States, effort: Array, free: float, network: Network | None = None
+    dynamics: Dynamics, states: States, times: Array, effort: Array, free: float, network: Network | None = None
 ) -> Reactions:
     """Wrenches of all joints for the efforts (T, n) on their shafts; `free` decides the rank of the loops. `network`:
     that of the dynamics, which must be without teeth, where it is known already."""
     network = Network(dynamics) if network is None else network
-    needed = network.spread(needs(dynamics, states))
+    needed = network.spread(needs(dynamics, states, times))
     points = joint_points(dynamics, states)
     wrenches = _in_chunks(network, dynamics, states, needed, points, effort, free)
     if not len(network.gears):
@@ -83,7 +83,7 @@ def _in_chunks(
     return Reactions(wrenches, points, loose, stresses=parts[0][2])
 
 
-def needs(dynamics: Dynamics, states: States) -> Array:
+def needs(dynamics: Dynamics, states: States, times: Array) -> Array:
     """(T, B, 6) wrench about the centre that the joints must give each body with mass: momentum's rate
     less gravity, loads and springs between bodies."""
     links = dynamics.body_links
@@ -98,10 +98,10 @@ def needs(dynamics: Dynamics, states: States) -> Array:
         return np.concatenate([(tensor @ twist[..., :3, None])[..., 0] + np.cross(com, linear), linear], axis=-1)
 
     carried = cross_force(V.reshape(-1, 6), momentum(V).reshape(-1, 6)).reshape(V.shape)
-    return np.asarray(momentum(A) + carried - applied(dynamics, states))
+    return np.asarray(momentum(A) + carried - applied(dynamics, states, times))
 
 
-def applied(dynamics: Dynamics, states: States) -> Array:
+def applied(dynamics: Dynamics, states: States, times: Array) -> Array:
     """(T, B, 6) wrench about the centre of loads and springs between bodies on each body with mass."""
     out = np.zeros((len(states.poses), len(dynamics.body_links), 6))
     # What acts on a link of several bodies acts on one of them: fixed joints pass it on.
@@ -109,32 +109,23 @@ def applied(dynamics: Dynamics, states: States) -> Array:
     actuation, system = dynamics.actuation, dynamics.system
     subjects = [dynamics.mechanism.bodies[k] for k in dynamics.body_index]
 
-    def push(body: str, link: int, point: Array, force: Array) -> None:
+    def push(body: str, link: int, point: Array, force: Array, torque: Array) -> None:
         if link in first:
             k = subjects.index(body) if body in subjects else first[link]
-            out[:, k] += np.concatenate([np.cross(point, force), force], axis=1)
+            out[:, k] += np.concatenate([torque + np.cross(point, force), force], axis=1)
 
     for load, component in zip(actuation.loads, system.loads, strict=True):
         X = states.poses[:, load.link]
         R = X[:, :3, :3] if load.turning else np.broadcast_to(np.eye(3), (len(X), 3, 3))
         body = system.body_at(component.name, "frame").subject
-        push(body, load.link, X[:, :3, :3] @ load.point + X[:, :3, 3], R @ load.force)
-        if body in subjects:
-            out[:, subjects.index(body), :3] += R @ load.torque
+        factor = np.array([load.signal.value(float(t)) for t in times])[:, None]
+        place = X[:, :3, :3] @ load.point + X[:, :3, 3]
+        push(body, load.link, place, factor * (R @ load.force), factor * (R @ load.torque))
     for spring, between in zip(actuation.springs, system.springs, strict=True):
-        ends, speeds = [], []
-        for link, point in ((spring.first, spring.point), (spring.second, spring.other)):
-            X, V = states.poses[:, link], states.twists[:, link]
-            ends.append(X[:, :3, :3] @ point + X[:, :3, 3])
-            speeds.append(V[:, 3:] + np.cross(V[:, :3], ends[-1]))
-        line = ends[1] - ends[0]
-        length = np.linalg.norm(line, axis=1, keepdims=True)
-        along = line / np.where(length > 0.0, length, 1.0)
-        speed = ((speeds[1] - speeds[0]) * along).sum(axis=1, keepdims=True)
-        pull = (spring.stiffness * (length - spring.rest) + spring.damping * speed) * along
+        force, torque, at, on = spring.wrench(states.poses, states.twists)
         names = [system.body_at(between.name, port).subject for port in ("a", "b")]
-        push(names[0], spring.first, ends[0], pull)
-        push(names[1], spring.second, ends[1], -pull)
+        push(names[0], spring.first, on, force, torque)
+        push(names[1], spring.second, at, -force, -torque)
     return out
 
 

@@ -47,8 +47,8 @@ def publish_dynamic(
     """The results with energy, reactions, their balance, and what the drives did; and the states of the links."""
     run, states = publish(dynamics.mechanism, record, level, notes, settings.free)
     kinetic, potential = dynamics.energy(record.q, states)
-    wrenches = reactions(dynamics, states, record.effort, settings.free)
-    balance = imbalance(dynamics, states, wrenches, record.effort)
+    wrenches = reactions(dynamics, states, record.time, record.effort, settings.free)
+    balance = imbalance(dynamics, states, record.time, wrenches, record.effort)
     energy = np.column_stack([kinetic, potential, record.work])
     whole = replace(
         run,

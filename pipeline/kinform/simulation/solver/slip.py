@@ -81,7 +81,8 @@ def dry(run: Run, t: float, y: Array, acting: Mapping[int, Rub]) -> Answer:
     network = _NETWORKS.get(dynamics)
     if network is None:
         network = _NETWORKS[dynamics] = Network(dynamics)
-    wrenches = reactions(dynamics, states, given + needed, run.settings.free, network).on_second
+    times = np.full(len(trials), t)
+    wrenches = reactions(dynamics, states, times, given + needed, run.settings.free, network).on_second
 
     maps = [one.maps(states.poses[0, one.link, :3, :3], q) for one in rubbings]
     owner = np.repeat(np.arange(len(rubbings)), [len(each) for each in maps])
@@ -154,7 +155,7 @@ def undetermined(dynamics: Dynamics, q: Array, free: float) -> tuple[str, ...]:
     """Joints whose friction needs loads that redundant loops share in ways that rigid bodies do not tell."""
     mechanism, still = dynamics.mechanism, np.zeros((1, dynamics.mechanism.rates))
     states = states_at(mechanism, q[None], still, still)
-    stresses = reactions(dynamics, states, still, free).stresses
+    stresses = reactions(dynamics, states, np.zeros(1), still, free).stresses
     if not len(stresses):
         return ()
     out = []
