@@ -24,6 +24,7 @@ from kinform.foundation.lazily import first_used
 
 if TYPE_CHECKING:
     from kinform.kinematics.derivation import derive, functional, mobility_within
+    from kinform.kinematics.mobility.couplings import coupling_aside
     from kinform.kinematics.mobility.named_freedoms import Motions
     from kinform.kinematics.partition import propose, proposed_joints, stated_proposals
     from kinform.kinematics.questions.intended_freedoms import IntendedAnswer, IntendedMotion, intended_answers
@@ -38,6 +39,7 @@ __all__ = [
     "Motions",
     "QueryAnswer",
     "QueryBlocker",
+    "coupling_aside",
     "derive",
     "functional",
     "insight",
@@ -58,6 +60,7 @@ __getattr__ = first_used(
         "derive": "derivation",
         "functional": "derivation",
         "mobility_within": "derivation",
+        "coupling_aside": "mobility.couplings",
         "Motions": "mobility.named_freedoms",
         "propose": "partition",
         "proposed_joints": "partition",

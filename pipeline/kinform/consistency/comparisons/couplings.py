@@ -12,7 +12,9 @@ import numpy as np
 from kinform.consistency import constants
 from kinform.foundation.words import rate
 from kinform.function import resolve_joint
+from kinform.kinematics import coupling_aside
 from kinform.model.assembly import Assembly
+from kinform.model.contacts import Contacts
 from kinform.model.function import Coupling as Stated
 from kinform.model.kinematics import Coupling, Kinematics
 
@@ -26,8 +28,11 @@ class Ratio:
     through: tuple[str, ...]
 
 
-def derived_ratio(assembly: Assembly, kinematics: Kinematics, stated: Stated) -> Ratio | str:
-    """What the geometry gives for a stated coupling, or the reason why it gives nothing."""
+def derived_ratio(
+    assembly: Assembly, kinematics: Kinematics, stated: Stated, contacts: Contacts | None = None
+) -> Ratio | str:
+    """What the geometry gives for a stated coupling, or the reason why it gives nothing. Teeth whose contact was set
+    aside, as the function states all joints, are counted in `contacts`."""
     ends = [resolve_joint(assembly, kinematics, name) for name in stated.joints]
     for end in ends:
         if end.joint is None:
@@ -35,7 +40,7 @@ def derived_ratio(assembly: Assembly, kinematics: Kinematics, stated: Stated) ->
     first, second = (str(end.joint.name) for end in ends if end.joint is not None)
     if first == second:
         return "both names stand for one joint"
-    chain = _chain(kinematics, first, second)
+    chain = _chain(kinematics, first, second) or _aside(assembly, kinematics, first, second, contacts)
     if chain is None:
         return "no contact of teeth, cam or screw is found that ties these joints"
     ratio, relative = float(ends[0].sign * ends[1].sign), 0.0
@@ -100,6 +105,17 @@ def _chain(kinematics: Kinematics, first: str, second: str) -> list[tuple[Coupli
         name, coupling, forward = came[name]
         out.append((coupling, forward))
     return out[::-1]
+
+
+def _aside(
+    assembly: Assembly, kinematics: Kinematics, first: str, second: str, contacts: Contacts | None
+) -> list[tuple[Coupling, bool]] | None:
+    """The coupling by teeth that constrain nothing, as the function states all joints."""
+    if contacts is None or kinematics.mobility.by_contact is None:
+        return None
+    joints = {str(joint.name): joint for joint in kinematics.joints}
+    found = coupling_aside(assembly, kinematics.bodies, contacts.patches, (joints[first], joints[second]))
+    return None if found is None else [(found, True)]
 
 
 def _leads(kinematics: Kinematics) -> Iterator[Coupling]:

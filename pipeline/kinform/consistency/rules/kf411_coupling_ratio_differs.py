@@ -26,7 +26,7 @@ def check(context: Context) -> Outcome:
     """Every coupling that can be derived."""
     findings, count = [], 0
     for coupling in context.function.couplings:
-        derived = derived_ratio(context.assembly, context.kinematics, coupling)
+        derived = derived_ratio(context.assembly, context.kinematics, coupling, context.design.contacts)
         if isinstance(derived, str):
             continue
         count += 1

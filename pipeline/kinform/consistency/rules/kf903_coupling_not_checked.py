@@ -31,6 +31,7 @@ def check(context: Context) -> Outcome:
     lacking = context.lacks("kinematics")
     if lacking is not None:
         return lacking
+    known = context.assembly, context.kinematics
     findings = [
         RULE.finding(
             coupling.joints,
@@ -41,7 +42,7 @@ def check(context: Context) -> Outcome:
             remedy="Bring the teeth into contact at this pose, or check the ratio by other means.",
         )
         for coupling in couplings
-        if isinstance(reason := derived_ratio(context.assembly, context.kinematics, coupling), str)
+        if isinstance(reason := derived_ratio(*known, coupling, context.design.contacts), str)
     ]
     return settled(findings, f"{counted(len(findings), 'coupling')} not checked" if findings else "")
 

@@ -23,6 +23,7 @@ from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Mesh
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, Coupling, Joint, Meshing
+from kinform.model.names import BodyName, JointName, PartName
 
 SINGLE = ("revolute", "prismatic", "screw")
 """Joints of one freedom, whose values a ratio compares."""
@@ -78,13 +79,62 @@ def _ratio(a: Array, b: Array) -> float | None:
     return float(right[0, 0] * size[0] / (right[0, 1] * size[1])) if abs(right[0, 1]) > FIXED_RATIO else None
 
 
+def coupling_aside(
+    assembly: Assembly, bodies: Sequence[Body], patches: Sequence[Patch], pair: tuple[Joint, Joint]
+) -> Coupling | None:
+    """The coupling of two joints of one freedom, on one common body, by teeth that touch, where contact between what
+    they move is no joint: it constrains nothing, but shows the ratio. None where no teeth touch, or they do not keep a
+    ratio that can be counted."""
+    common = set(pair[0].bodies) & set(pair[1].bodies)
+    if len(common) != 1 or any(joint.type not in SINGLE or not len(joint.twists) for joint in pair):
+        return None
+    names = [next(name for name in joint.bodies if name not in common) for joint in pair]
+    sides = [next(body.parts for body in bodies if body.name == name) for name in names]
+    touching = [p for p in patches if p.kind in TOUCHING and _joins(p, sides)]
+    if not touching:
+        return None
+    points, normals = (np.concatenate([getattr(p, name) for p in touching]) for name in ("points", "normals"))
+    along = []
+    for joint, name in zip(pair, names, strict=True):
+        twist = joint.twists[0] if joint.bodies[1] == name else -joint.twists[0]
+        along.append(((twist[3:] + np.cross(twist[:3], points)) * normals).sum(axis=1))
+    ratio = _least_ratio(along[1], along[0])
+    if ratio is None:
+        return None
+    first, second = sorted(names)
+    touch = _Touch(JointName(f"{first}~{second}"), (first, second))
+    coupling = _Tie(assembly, bodies, touch, pair, touching, ratio).coupling()
+    return coupling if coupling.meshing is not None else None
+
+
+@dataclass(frozen=True)
+class _Touch:
+    """Contact that is no joint."""
+
+    name: JointName
+    bodies: tuple[BodyName, BodyName]
+    type: str = "general"
+    status: str = "determined"
+
+
+def _joins(patch: Patch, sides: Sequence[Sequence[PartName]]) -> bool:
+    first, second = patch.parts
+    return (first in sides[0] and second in sides[1]) or (first in sides[1] and second in sides[0])
+
+
+def _least_ratio(a: Array, b: Array) -> float | None:
+    """a over b by least squares; None where one of them is nought."""
+    size = float(b @ b)
+    return float(a @ b) / size if size > 0.0 and np.any(a) else None
+
+
 @dataclass(frozen=True, eq=False)
 class _Tie:
     """Two joints of one freedom, and what ties them: a screw, or a contact between the two bodies that they move."""
 
     assembly: Assembly
     bodies: Sequence[Body]
-    through: Joint
+    through: Joint | _Touch
     pair: tuple[Joint, Joint]
     touching: Sequence[Patch]
     """Points and lines of the contact."""
