@@ -138,7 +138,9 @@ def _friction(drive: Drive, on: OneFreedom, name: str, found: Mapping[str, Slidi
     static = kinetic if static is None else static
     if static < kinetic or rest < effort:
         raise ValueError("friction at rest cannot be less than that in motion")
-    friction = Friction(name, drive.joint, kinetic, static, effort, rest, freedom=on.freedom, rates=joint.kind.rates)
+    least = bool(stated.get("least_reactions", 0.0))
+    rates = joint.kind.rates
+    friction = Friction(name, drive.joint, kinetic, static, effort, rest, least=least, freedom=on.freedom, rates=rates)
     if static == 0.0:
         return friction
     return replace(friction, **sliding.stated(drive).levers(joint.kind, joint.geometry, on.freedom))

@@ -188,17 +188,27 @@ class Model:
         effort: float = 0.0,
         static_effort: float | None = None,
         surfaces: Rubs | None = None,
+        least: bool = False,
         freedom: int | None = None,
     ) -> None:
         """Coulomb friction: the coefficient in motion, and that at rest where it is greater; `effort` (N·m or N) that
         there is without load. `surfaces`: what rubs, needed for joints that turn; a slide takes loads at its point.
+        `least`: where redundant constraints share loads, take the least reactions that balance; refused otherwise.
         """
         on = self._on(joint, freedom)
         component = self.components.get(joint if isinstance(joint, str) else joint[0])
         static = coefficient if static is None else static
         rest = effort if static_effort is None else static_effort
         friction = shafts.Friction(
-            name, name, coefficient, static, effort, rest, freedom=on.get("freedom", 0), rates=on.get("rates", 1)
+            name,
+            name,
+            coefficient,
+            static,
+            effort,
+            rest,
+            freedom=on.get("freedom", 0),
+            least=least,
+            rates=on.get("rates", 1),
         )
         if static and isinstance(component, JointComponent):
             levers = (surfaces or Rubs()).levers(component.kind, component.geometry, friction.freedom)

@@ -110,6 +110,8 @@ class Friction(OnShaft):
     """(3,) from the joint's point, at the zero pose, to the point that all of this is about."""
     riding: bool = False
     """Whether the ends go along with the second body as it slides."""
+    least: bool = False
+    """Whether, where redundant constraints share loads, the least reactions that balance are taken for what presses."""
 
 
 @dataclass(frozen=True)

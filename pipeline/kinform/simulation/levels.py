@@ -100,6 +100,8 @@ def notes_of_friction(system: System) -> Iterator[str]:
             words.append(f"thread of tan λ / cos α {-one.torsion:.4g}")
         if one.static and one.axial and not one.torsion:
             words.append(f"thrust ring of mean radius {1e3 * one.axial:.4g} mm")
+        if one.static and one.least:
+            words.append("where redundant constraints share loads, by the least reactions that balance")
         yield f"friction on {one.subject}: {'; '.join(words)}"
 
 

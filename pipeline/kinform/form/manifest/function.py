@@ -146,6 +146,11 @@ class Friction(_Drive):
     flank: Annotated[float, Field(ge=0.0, lt=90.0)] | None = Field(
         None, description="degrees: half the angle of a thread; default from the contact"
     )
+    least_reactions: bool = Field(
+        False,
+        description="where redundant constraints share the load that presses, take the least reactions that balance; "
+        "default such friction is refused",
+    )
 
 
 class Servo(_Drive):

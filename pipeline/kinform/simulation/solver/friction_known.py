@@ -29,7 +29,8 @@ def friction_not_determined(
     if open_:
         why = (
             "redundant constraints share the load that presses here in ways that rigid bodies do not tell: remove a "
-            "redundancy (KF303 names them), say which surfaces rub, or give the friction as an effort"
+            "redundancy (KF303 names them), say which surfaces rub, give the friction as an effort, or take the least "
+            "reactions that balance (least_reactions = true)"
         )
         return tuple((joint, why) for joint in open_)
     dependent = [] if at_rest else grouped(ways(dynamics, dynamics.actuation, q, settings.free))[2]

@@ -163,6 +163,6 @@ def undetermined(dynamics: Dynamics, q: Array, free: float) -> tuple[str, ...]:
         friction = one.friction
         size = max(friction.radial, abs(friction.axial), abs(friction.torsion) * mechanism.length)
         grips = one.grip(stresses[:, one.number], states.poses[0, one.link, :3, :3], q)
-        if (friction.static or friction.kinetic) and grips.max() > UNDETERMINED_SHARE * size:
+        if friction.static and not friction.least and grips.max() > UNDETERMINED_SHARE * size:
             out.append(one.joint)
     return tuple(dict.fromkeys(out))

@@ -33,7 +33,9 @@ def ways(dynamics: Dynamics, actuation: Actuation, q: Array, free: float) -> Arr
     rank = rank_of(rows, scale, free)
     null = np.zeros((mechanism.rates, len(loose) - rank))
     null[loose] = factor(rows, scale, rank).null if rows.size else np.diag(scale)
-    return np.array([null[one.v] / mechanism.scale[one.v] for one in actuation.frictions]).reshape(-1, null.shape[1])
+    return np.array([null[one.v] / mechanism.scale[one.v] for one in actuation.frictions]).reshape(
+        len(actuation.frictions), null.shape[1]
+    )
 
 
 def grouped(rows: Array) -> tuple[list[list[int]], list[int], list[int]]:
@@ -53,7 +55,7 @@ def grouped(rows: Array) -> tuple[list[list[int]], list[int], list[int]]:
                 break
         else:
             groups.append([k])
-    firsts = np.array([rows[group[0]] / size[group[0]] for group in groups]).reshape(len(groups), -1)
+    firsts = np.array([rows[group[0]] / size[group[0]] for group in groups]).reshape(len(groups), rows.shape[1])
     if len(groups) and np.linalg.matrix_rank(firsts, tol=constants.DEAD_CENTRE) < len(groups):
         return groups, led, [k for group in groups for k in group]
     return groups, led, []
