@@ -63,13 +63,15 @@ def row(robot: Path, contacts: Path | None, verbose: bool) -> int:
     moving = [joint for joint in truth["joints"] if joint["type"] != "fixed"]
     unused = dict(joints)
     angles, offsets, shares, said = [], [], [], []
-    for joint in moving:
+    # what is there first: a joint that is not takes one that no other is
+    there = {joint["name"]: any(_near(away(joint, found)) for found in joints.values()) for joint in moving}
+    for joint in sorted(moving, key=lambda joint: not there[joint["name"]]):
         expected = sum(weight[name] for name in truth["rigid_groups"][joint["child_group"]])
         ways = sorted(
             (*away(joint, found), abs(masses.get(found[2], 0.0) / expected - 1.0), name)
             for name, found in unused.items()
         )
-        near = [way for way in ways if way[0] <= ANGLE and way[1] <= OFFSET]
+        near = [way for way in ways if _near(way[:2])]
         angle, offset, share, name = min(near, key=lambda way: way[2]) if near else ways[0]
         del unused[name]
         angles.append(angle)
@@ -89,6 +91,10 @@ def row(robot: Path, contacts: Path | None, verbose: bool) -> int:
     for line in said if verbose else ():
         print(line, flush=True)
     return int(right < len(moving) or heavy < len(moving))
+
+
+def _near(off: tuple[float, float]) -> bool:
+    return off[0] <= ANGLE and off[1] <= OFFSET
 
 
 def away(joint: dict[str, Any], found: tuple[Any, Any, str]) -> tuple[float, float]:
