@@ -6,6 +6,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from support.command_line import ran_here
 
 from kinform.batch import touched as module
 from kinform.batch.discovery import discover
@@ -49,7 +50,7 @@ def repository(tmp_path: Path) -> Path:
 
 
 def touched(repository: Path) -> list[str]:
-    return [one.name for one in module.touched(discover([repository]), "HEAD")]
+    return [one.name for one in module.changed_since(discover([repository]), "HEAD")]
 
 
 @pytest.mark.parametrize(
@@ -85,10 +86,19 @@ def test_commits_count_as_changes_that_are_not_committed_do(repository):
     (repository / "sub/parts/rotor.stl").write_text("solid other")
     git(repository, "commit", "-qam", "rotor")
     found = discover([repository])
-    assert module.touched(found, "HEAD") == ()
-    assert {one.name for one in module.touched(found, "HEAD~1")} >= {"sub/motor.toml", "top.toml"}
+    assert module.changed_since(found, "HEAD") == ()
+    assert {one.name for one in module.changed_since(found, "HEAD~1")} >= {"sub/motor.toml", "top.toml"}
 
 
 def test_a_revision_that_is_none_is_refused(repository):
     with pytest.raises(InputError, match="there is no revision --help"):
-        module.touched(discover([repository]), "--help")
+        module.changed_since(discover([repository]), "--help")
+
+
+def test_the_command_says_how_much_is_touched_and_refuses_what_is_no_revision(repository):
+    (repository / "other.txt").write_text("something")
+    words = ("batch", ".", "-o", "results", "--changed-since")
+    ran = ran_here(*words, "HEAD", cwd=repository)
+    assert ran.returncode == 0 and "0 of 4 designs differ from HEAD" in ran.stderr, ran.stderr
+    ran = ran_here(*words, "no_such", cwd=repository)
+    assert ran.returncode == 2 and "there is no revision no_such" in ran.stderr, ran.stderr

@@ -106,3 +106,16 @@ def test_architecture_names_nothing_that_is_gone():
         places = (ROOT, ROOT / "cli", SOURCES["kinform"] / "kinform")
         gone += [path] if not any((place / path).exists() for place in places) else []
     assert gone == []
+
+
+def test_no_name_that_a_package_gives_on_first_use_is_that_of_a_module_in_it():
+    """Once the module is imported it stands where the name was looked for."""
+    for name, path in modules().items():
+        if path.name == "__init__.py":
+            calls = (node for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if _first_used(node))
+            given = {key.value for call in calls for key in call.args[1].keys}
+            assert not {one for one in given if f"{name}.{one}" in modules()}, name
+
+
+def _first_used(node: ast.AST) -> bool:
+    return isinstance(node, ast.Call) and getattr(node.func, "id", "") == "first_used"

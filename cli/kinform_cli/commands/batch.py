@@ -148,9 +148,9 @@ def need_extra() -> None:
 
 
 def _touched(found: tuple[Found, ...], revision: str) -> tuple[Found, ...]:
-    from kinform.batch import touched
+    from kinform.batch import changed_since
 
-    left = touched(found, revision)
+    left = changed_since(found, revision)
     console.say(f"{len(left)} of {counted(len(found), 'design')} differ from {revision}")
     return left
 

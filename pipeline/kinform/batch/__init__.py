@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from kinform.batch.record import Record, Row
     from kinform.batch.renderings import FORMATS, render
     from kinform.batch.session import Settings, run
-    from kinform.batch.touched import touched
+    from kinform.batch.touched import changed_since
 
-__all__ = ["FORMATS", "Crew", "Found", "Record", "Row", "Settings", "discover", "render", "run", "touched"]
+__all__ = ["FORMATS", "Crew", "Found", "Record", "Row", "Settings", "changed_since", "discover", "render", "run"]
 
 __getattr__ = first_used(
     __name__,
@@ -37,6 +37,6 @@ __getattr__ = first_used(
         "render": "renderings",
         "Settings": "session",
         "run": "session",
-        "touched": "touched",
+        "changed_since": "touched",
     },
 )

@@ -25,7 +25,7 @@ _QUOTED = re.compile(r"\"([^\"\n]+)\"|'([^'\n]+)'|>([^<>\n]+)<|^(?:mtllib|map_\w
 _COMPUTED = re.compile(r"\$\{[^}]*\}|\$\([^)]*\)")
 
 
-def touched(found: Sequence[Found], revision: str) -> tuple[Found, ...]:
+def changed_since(found: Sequence[Found], revision: str) -> tuple[Found, ...]:
     """Those of the designs that differ from how they were at the revision of git, in whatever they are made of.
 
     Raises InputError where there is no repository, or no such revision.
