@@ -65,7 +65,7 @@ def beside(kind, system, run):
 
 
 def rows(quick: bool) -> Iterator[Row]:
-    engine(compiled=True)
+    engine(compiled=True, articulated_bodies=True)
     for kind, make in KINDS.items():
         sizes, times = SIZES[1:4] if quick else SIZES, []
         for n in sizes:

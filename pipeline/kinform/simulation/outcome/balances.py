@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.behaviour.components import System
+from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array
 from kinform.simulation.constants import DEPENDENT_GEARS, VANISHING_WRENCH
 from kinform.simulation.mechanism.dynamics import Dynamics
@@ -59,17 +60,17 @@ def imbalance(dynamics: Dynamics, states: States, times: Array, reactions: React
         X, V, A = states.poses[:, link], states.twists[:, link], states.accelerations[:, link]
         R, spin, turn = X[:, :3, :3], V[:, :3], A[:, :3]
         com = R @ dynamics.com[k] + X[:, :3, 3]
-        speed = V[:, 3:] + np.cross(spin, com)
-        rise = A[:, 3:] + np.cross(turn, com) + np.cross(spin, speed)
+        speed = V[:, 3:] + cross(spin, com)
+        rise = A[:, 3:] + cross(turn, com) + cross(spin, speed)
         force = external[:, k, 3:] + dynamics.mass[k] * (dynamics.gravity - rise)
-        torque = external[:, k, :3] - np.cross(com, external[:, k, 3:])
+        torque = external[:, k, :3] - cross(com, external[:, k, 3:])
         omega, alpha = ((R.transpose(0, 2, 1) @ w[..., None])[..., 0] for w in (spin, turn))
         inertia = dynamics.inertia[k]
-        euler = alpha @ inertia.T + np.cross(omega, omega @ inertia.T)
+        euler = alpha @ inertia.T + cross(omega, omega @ inertia.T)
         torque = torque - (R @ euler[..., None])[..., 0]
         for j, sign in held.get(body, ()):
             force = force + sign * wrench[:, j, 3:]
-            torque = torque + sign * (wrench[:, j, :3] + np.cross(points[:, j] - com, wrench[:, j, 3:]))
+            torque = torque + sign * (wrench[:, j, :3] + cross(points[:, j] - com, wrench[:, j, 3:]))
         errors[:, dynamics.body_index[k]] = np.maximum(np.abs(force).max(axis=1), np.abs(torque).max(axis=1) / length)
     least = np.where(scale > 0.0, scale, 1.0)[:, None]
     return Balance(errors / least, _shafts(dynamics, states, reactions, effort) / least)

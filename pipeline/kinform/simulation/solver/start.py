@@ -104,14 +104,14 @@ def _notes_of_rest(
     mechanism: Mechanism, stated: tuple[Stated, ...], led: set[int], q: Array, v: Array
 ) -> tuple[str, ...]:
     """What begins at rest at the pose of the meshes because nobody said otherwise."""
-    stated_rates = led | {value.v for value in stated}
+    stated_rates, start = led | {value.v for value in stated}, mechanism.start
     still = [
         slot.name
         for slot in mechanism.slots
         if slot.v.stop > slot.v.start
         and stated_rates.isdisjoint(range(slot.v.start, slot.v.stop))
         and not v[slot.v].any()
-        and np.array_equal(q[slot.q], mechanism.start[slot.q])
+        and np.array_equal(q[slot.q], start[slot.q])
     ]
     return (f"no initial value is stated, so at rest at the pose of the meshes: {', '.join(still)}",) if still else ()
 
