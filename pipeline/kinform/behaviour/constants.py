@@ -39,3 +39,6 @@ for brass and for PTFE on steel). Lubrication, finish and wear change them sever
 took, and a [[friction]] of the manifest goes before."""
 LEAST_GAS = 1e-6
 """Share of the column of a gas spring below which its force grows no further: nothing is pushed in so far."""
+STRAIGHT = 1e-9
+"""Share of a table's span by which rows may be off the line between its ends and count as on it: tables that programs
+write have nine digits and more."""

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from kinform.behaviour.constants import OVERSHOOT, SPLINE_SAMPLES
+from kinform.behaviour.constants import OVERSHOOT, SPLINE_SAMPLES, STRAIGHT
 from kinform.model.function import Law
 
 
@@ -189,9 +189,24 @@ def signal(law: Law, scale: float) -> Signal:
     raise ValueError(f'its law is of the unknown type "{law.type}"')
 
 
-def smooth(signal: Signal) -> Signal:
-    """The same signal, or for a table the spline that a body with mass can follow."""
-    return Spline(signal) if isinstance(signal, Table) else signal
+def smooth(signal: Signal, until: float = math.inf) -> Signal:
+    """The same signal, or for a table what a body with mass can follow until that time (s): the straight line, where
+    its rows lie on one and none of its ends is before; else the spline."""
+    if not isinstance(signal, Table):
+        return signal
+    return _straight(signal, until) or Spline(signal)
+
+
+def _straight(table: Table, until: float) -> Ramp | None:
+    """The line on which the rows of a table lie, where they reach from the start to that time."""
+    times, levels = np.asarray(table.knots), np.asarray(table.levels)
+    if times[0] > 0.0 or times[-1] < until:
+        return None
+    slope = float((levels[-1] - levels[0]) / (times[-1] - times[0]))
+    off = float(np.abs(levels - levels[0] - slope * (times - times[0])).max())
+    if off > STRAIGHT * float(np.ptp(levels)):
+        return None
+    return Ramp(float(levels[0] - slope * times[0]), slope)
 
 
 def _table(law: Law, scale: float) -> Signal:

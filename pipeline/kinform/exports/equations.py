@@ -77,7 +77,8 @@ class Equations:
                 yield actor
             elif actor.freedom not in led:
                 led.add(actor.freedom)
-                yield replace(actor, signal=smooth(actor.signal)) if self.model.with_forces else actor
+                followed = smooth(actor.signal, self.model.duration) if self.model.with_forces else actor.signal
+                yield replace(actor, signal=followed)
 
     def rates_of(self, joint: JointComponent) -> range:
         """Indices of the rates of a joint."""

@@ -146,7 +146,7 @@ def run_course(
 ) -> Simulation:
     """Start and run the system; `notes` are what is assumed already."""
     dynamic, settings = course.level == "dynamic", conduct.settings
-    actuation = Actuation(mechanism, system, with_mass=dynamic)
+    actuation = Actuation(mechanism, system, with_mass=dynamic, until=course.duration)
     if actuation.conflicts:
         return refuse("the drives or the initial values cannot be applied", tuple(actuation.conflicts))
     start = begin(mechanism, actuation, stated, settings, coasting=dynamic)

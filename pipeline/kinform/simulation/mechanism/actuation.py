@@ -65,8 +65,9 @@ class Stop:
 class Actuation:
     """Drives and loads with the rates and links that they act on."""
 
-    def __init__(self, mechanism: Mechanism, system: System, *, with_mass: bool):
-        """`with_mass`: prescribed tables are smoothed, so that finite efforts can follow."""
+    def __init__(self, mechanism: Mechanism, system: System, *, with_mass: bool, until: float = math.inf):
+        """`with_mass`: prescribed tables are smoothed, so that finite efforts can follow, but for those that are
+        straight up to the time `until` (s)."""
         self.notes: list[str] = []
         self.conflicts: list[tuple[str, str]] = []
         self.actors: list[Acts] = []
@@ -74,7 +75,7 @@ class Actuation:
         self.frictions: list[Rubbing] = []
         self._led: list[tuple[int, int, Signal, str]] = []
         self.springs: list[Between] = []
-        self._with_mass = with_mass
+        self._with_mass, self._until = with_mass, until
         slots = {slot.name: slot for slot in mechanism.slots}
         for joint in system.joints:
             for actor in system.actors(joint.name):
@@ -129,7 +130,7 @@ class Actuation:
 
     def _followed(self, actor: shafts.MotionDrive, turns: bool) -> Signal:
         """The signal as a body with mass can follow it."""
-        signal = smooth(actor.signal)
+        signal = smooth(actor.signal, self._until)
         if isinstance(signal, Spline):
             deviation = signal.deviation
             words = f"{math.degrees(deviation):.3g}°" if turns else f"{1e3 * deviation:.3g} mm"
