@@ -1,13 +1,16 @@
-"""Ranges of the joints of two real arms: `python benchmarks/arms.py MANIFEST …`, or in the folders of KINFORM_ARMS.
+"""The whole run of real arms, and ranges of their joints: `python benchmarks/arms.py MANIFEST …`, or in the folders of
+KINFORM_ARMS, or so100 and so101 as `geometry` finds robots.
 
-Processor seconds of finding how far each joint goes, everything before it done. Nothing is printed where there are no
-arms. Beside: bare FCL, the trees of all meshes and one distance of each pair.
+Seconds by the clock of `kinform run` on the processors that there are, and processor seconds of finding how far each
+joint goes, everything before it done. An arm that is not there is left out, and said so. Beside: the processor seconds
+of the run; bare FCL, the trees of all meshes and one distance of each pair.
 """
 
 from __future__ import annotations
 
 import os
 import sys
+import tempfile
 from collections.abc import Iterator
 from itertools import combinations
 from pathlib import Path
@@ -15,9 +18,22 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(Path(__file__).resolve().parent), str(ROOT / "pipeline"), str(ROOT / "cli")]
 
+from change import run  # noqa: E402
+from geometry import manifest_of  # noqa: E402
 from table import HEADER, Row, line, peak, processor  # noqa: E402
 
 AIM = 3.0
+ARMS = {"so100": None, "so101": 8.0}
+"""Arms, with the most seconds that a whole run of them should take, on two processors."""
+
+
+def whole(manifest: Path) -> Row:
+    """The row of the whole run of one manifest."""
+    with tempfile.TemporaryDirectory() as scratch:
+        seconds, worked, _ = run(manifest, Path(scratch) / "arm.h5")
+    name = manifest.parent.name
+    words = f"{worked:.1f} s of {os.cpu_count()} processors"
+    return Row(f"whole run of {name}", seconds, ARMS.get(name), "s of the clock", words, peak())
 
 
 def of_arm(manifest: Path) -> Row:
@@ -45,16 +61,33 @@ def of_arm(manifest: Path) -> Row:
     return Row(f"ranges of {design.assembly.name}", seconds, AIM, "s", words, peak())
 
 
+def manifests() -> Iterator[Path]:
+    """Those of KINFORM_ARMS; without it, of the arms among the robots."""
+    folders = [Path(folder) for folder in os.environ.get("KINFORM_ARMS", "").split(os.pathsep) if folder]
+    for folder in folders:
+        yield from sorted(folder.glob("*.toml"))
+    robots = [Path(named)] if (named := os.environ.get("KINFORM_ROBOTS")) else []
+    for name in () if folders else ARMS:
+        places = [*(robot / name for robot in robots), ROOT.parent / "shared" / "data" / name]
+        found = next((path for place in places if (path := manifest_of(place)) is not None), None)
+        if found is None:
+            print(f"{name}: not there; name the folder of the robots", flush=True)
+        else:
+            yield found
+
+
 def rows(quick: bool) -> Iterator[Row]:
-    for folder in filter(None, os.environ.get("KINFORM_ARMS", "").split(os.pathsep)):
-        for manifest in sorted(Path(folder).glob("*.toml")):
-            yield of_arm(manifest)
+    """Two of each arm."""
+    for manifest in manifests():
+        yield whole(manifest)
+        yield of_arm(manifest)
 
 
 def main(arguments: list[str]) -> None:
     print(HEADER)
-    for row in (of_arm(Path(name)) for name in arguments) if arguments else rows(False):
-        print(line(row), flush=True)
+    for manifest in [Path(name) for name in arguments] or manifests():
+        print(line(whole(manifest)), flush=True)
+        print(line(of_arm(manifest)), flush=True)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,8 @@ said so. Each robot and each size is measured in a process of its own:
 - import: kinform reads, welds and checks the meshes, against `trimesh.load(process=True)` of the same files;
 - surfaces: seconds of the processor for 100,000 facets, of each distinct shape once;
 - contacts after surfaces, against bare FCL trees of all distinct meshes;
-- contacts of many small parts: pins in the bores of one plate, all as files of their own;
+- contacts of many small parts: pins in the bores of one plate, and bars bolted to each other, all as files of their
+  own;
 - contacts of two blocks that meet in a wavy face, from four sizes, with the exponent of the growth; `--large` adds the
   size of 5.4 million facets, and its memory.
 """
@@ -31,6 +32,7 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 sys.path[:0] = [str(HERE), str(ROOT / "pipeline")]
 
+from change import chain  # noqa: E402
 from scale import bvh, plate_with_pins  # noqa: E402
 from table import HEADER, Row, line  # noqa: E402
 
@@ -130,6 +132,12 @@ def of_small_parts(quick: bool) -> Iterator[Row]:
         words = f"{found['pairs']:.0f} pairs, {found['patches']:.0f} patches; bare FCL trees {found['fcl']:.2f} s"
         each = 1e3 * found["contacts"] / found["pairs"]
         yield Row(f"contacts of a plate with {parts} pins", each, PAIR, "ms a pair", words, found["MB"])
+    for links in (10,) if quick else (200,):
+        with tempfile.TemporaryDirectory() as folder:
+            found = measured(chain(Path(folder), links)[0], 1)
+        words = f"{found['pairs']:.0f} pairs, {found['patches']:.0f} patches; bare FCL trees {found['fcl']:.2f} s"
+        each = 1e3 * found["contacts"] / found["pairs"]
+        yield Row(f"contacts of a chain of {5 * links} bars, pins, bolts", each, PAIR, "ms a pair", words, found["MB"])
 
 
 def wavy_blocks(folder: Path, facets: int) -> Path:
