@@ -69,7 +69,7 @@ def test_a_spring_swings_ever_less_about_shifted_centres_until_friction_at_rest_
     shift = kinetic * 2.0 * G / stiffness
 
     def place(t):
-        x = 0.15
+        x = 0.1
         while stiffness * abs(x) > static * 2.0 * G:
             centre = np.sign(x) * shift
             if t < np.pi / omega:
@@ -77,7 +77,7 @@ def test_a_spring_swings_ever_less_about_shifted_centres_until_friction_at_rest_
             x, t = 2.0 * centre - x, t - np.pi / omega
         return x
 
-    run = _block(Course(1.0, 0.05), kinetic=kinetic, static=static, start=(0.15, 0.0), spring=stiffness)
+    run = _block(Course(0.7, 0.1), kinetic=kinetic, static=static, start=(0.1, 0.0), spring=stiffness)
     np.testing.assert_allclose(run.joint_position[:, 0], [place(t) for t in run.time], atol=1e-9)
     assert run.friction_sticks[-1, 0] and not run.friction_sticks[1, 0]
 
@@ -103,7 +103,7 @@ def test_a_block_on_a_belt_sticks_and_slips_in_the_period_of_the_closed_form():
     model.motion("pace", "drive", Ramp(0.0, belt))
     model.spring_between("spring", "base", "block", ((-1, 0, 0), (0, 0, 0)), stiffness, rest=1.0)
     model.friction("friction", "slide", kinetic, static=static)
-    run = simulate_system(model.system(), Course(2.5, 0.02))
+    run = simulate_system(model.system(), Course(2.5, 0.1))
     omega = np.sqrt(stiffness / mass)
     over = (static - kinetic) * mass * G / stiffness
     starts = static * mass * G / stiffness / belt
@@ -136,7 +136,7 @@ def _screw(torque, *, mu=0.15, collar=0.0, inertia=1e-3, weight=1000.0, flank=0.
     model.friction("on thread", "thread", mu, surfaces=Rubs(radius=0.01, flank=flank))
     if collar:
         model.friction("on collar", "spin", collar, surfaces=Rubs(thrust=0.02))
-    return simulate_system(model.system(), Course(0.02, 0.02))
+    return simulate_system(model.system(), Course(1e-3, 1e-3))
 
 
 def _shigley(mu, raising, *, flank=0.0, lead=0.004, force=1000.0 + 10.0 * G):
@@ -208,12 +208,12 @@ def _four_bar(friction):
 
 
 def test_the_bearings_of_a_four_bar_take_the_energy_that_it_loses():
-    run = simulate_system(_four_bar(0.3).system(), Course(0.1, 0.05))
+    run = simulate_system(_four_bar(0.3).system(), Course(0.05, 0.025))
     assert run.status == "done", run.reason
     total = run.energy @ (1.0, 1.0, -1.0)
     np.testing.assert_allclose(total, total[0], atol=1e-9)
     power = np.einsum("tm,tm->t", run.friction_effort, run.joint_velocity)
-    assert power.max() <= 1e-12 and run.energy[-1, 2] < -1e-3
+    assert power.max() <= 1e-12 and run.energy[-1, 2] < -1e-4
     assert run.balance.max() < 1e-9
 
 
@@ -264,7 +264,7 @@ def test_a_slider_that_rubs_turns_its_friction_at_both_dead_centres(led):
     if led:
         model.motion("motor", "O", Ramp(0.0, pace))
     initial = {} if led else {"O": (0.0, pace)}
-    run = simulate_system(model.system(), Course(0.2, 0.02, np.array([0.0, -G, 0.0])), initial=initial)
+    run = simulate_system(model.system(), Course(0.1, 0.02, np.array([0.0, -G, 0.0])), initial=initial)
     assert run.status == "done", run.reason
     slide = run.joint_velocity[:, run.joint_names.index("B")]
     assert slide.min() < -0.1 < 0.1 < slide.max()
@@ -292,7 +292,7 @@ def test_friction_without_load_holds_a_pendulum_up_to_its_effort_and_brakes_it_b
         model.body("bob", 1.0, (0, 0, -1), inertia=np.zeros((3, 3)))
         model.joint("hinge", "base", "bob", "revolute", axis=(0, 1, 0), point=(0, 0, 0))
         model.friction("seal", "hinge", effort=effort)
-        return simulate_system(model.system(), Course(2.5, 0.1), initial={"hinge": (angle, 0.0)})
+        return simulate_system(model.system(), Course(2.6, 0.2), initial={"hinge": (angle, 0.0)})
 
     held = pendulum(2.0, np.arcsin(2.0 / G) * 0.999)
     assert np.ptp(held.joint_position) == 0.0
@@ -308,7 +308,7 @@ def test_friction_without_load_holds_a_pendulum_up_to_its_effort_and_brakes_it_b
 def test_a_swinging_force_below_the_limit_moves_nothing_and_above_it_for_a_while():
     still = _block(Course(0.2, 0.05), kinetic=0.2, push=Sine(0.0, 0.2 * 2.0 * G * 0.999, 20.0, 0.0))
     assert np.all(still.joint_position == 0.0)
-    run = _block(Course(0.32, 0.02), kinetic=0.2, push=Sine(0.0, 0.2 * 2.0 * G * 1.5, 20.0, 0.0))
+    run = _block(Course(0.32, 0.04), kinetic=0.2, push=Sine(0.0, 0.2 * 2.0 * G * 1.5, 20.0, 0.0))
     assert run.friction_sticks.any() and not run.friction_sticks.all()
     assert run.joint_position.max() > 1e-3
 
