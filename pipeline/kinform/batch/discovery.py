@@ -49,6 +49,9 @@ class Found:
         return (self.name.removesuffix(".toml") if self.name.endswith(".toml") else self.name) + ".h5"
 
 
+_REMEDY = "name a folder of designs, or choose with --include; what .gitignore leaves out is found with --ignored"
+
+
 def discover(
     paths: Sequence[Path], *, include: Sequence[str] = (), exclude: Sequence[str] = (), ignored: bool = False,
     results: Path | None = None,
@@ -197,7 +200,7 @@ def _complain(paths: Sequence[Path], found: Sequence[Found], include: Sequence[s
     if not found:
         what = f"no file matches {' or '.join(include)}" if include else "there is no manifest and no robot description"
         raise InputError([
-            Problem(f"{what} here or below", str(path), None, "name a folder of designs, or choose with --include")
+            Problem(f"{what} here or below", str(path), None, _REMEDY)
             for path in paths
         ])  # fmt: skip
     by_results: dict[str, Found] = {}
