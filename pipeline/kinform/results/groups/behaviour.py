@@ -75,7 +75,7 @@ TABLES = {
     "exposed": EXPOSED_ROWS, "laws": LAW_ROWS,
 }  # fmt: skip
 """In the order of the file."""
-_LATER_KINDS = ("gas_spring", "bushing")
+_LATER_KINDS = ("friction", "gas_spring", "bushing")
 """Kinds that files of older versions do not know."""
 REASONS = Layout(Behaviour, layout.Table("failures"), layout.Table("forces_missing"), layout.Table("held"))
 
