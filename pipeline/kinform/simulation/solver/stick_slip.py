@@ -215,6 +215,7 @@ class _Driver:
             return np.inf
         actuation = self.state.base
         signals = [*actuation.signals, *(actor.signal for actor in actuation.actors)]
+        signals += [load.signal for load in actuation.loads]
         speeds = [abs(signal.speed) for signal in signals if isinstance(signal, Sine) and signal.amplitude != 0.0]
         return np.pi / (constants.LAW_PARTS * max(speeds)) if any(speeds) else np.inf
 
