@@ -68,7 +68,8 @@ def propose(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: 
     pairs = contact_of_pairs(contacts.patches)
     hints = hints_of(contacts.suggestions)
     axes = _candidates(contacts.patches)
-    free = [_freed(axis, pairs, hints, constants.PROPOSED[0]) for axis in axes]
+    screws = {pair: 0.0 if worth <= constants.FASTENED["spigot"] else worth for pair, worth in hints.items()}
+    free = [_freed(axis, pairs, screws, constants.PROPOSED[0]) for axis in axes]
     graph = _Parts(parts, sorted(pairs), volume)
     standard = standard_parts(assembly, surfaces)
     holders = {name for name, one in standard.items() if one.kind in HOLDERS}
@@ -76,32 +77,40 @@ def propose(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: 
     screwed = [all(holders & set(pair) for pair in own) for own in journals]
     borne = [{name for pair in own for name in pair} for own in journals]
     found: dict[int, list[Sides]] = {}
+
+    def bearing(number: int, several: list[Sides]) -> list[Sides]:
+        """Those where either side has a part that touches about the axis, and more than standard parts."""
+        return [both for both in several if all(borne[number] & set(s) and not standard.keys() >= set(s) for s in both)]
+
     for most in constants.PROPOSED:
         for number, axis in enumerate(axes):
             # a screw may be a pivot, but nothing that holds may be parted for that
             if journals[number] and not found.get(number) and not (screwed[number] and most > constants.PROPOSED[0]):
                 cut = free[number] if most == constants.PROPOSED[0] else _freed(axis, pairs, hints, most)
-                found[number] = graph.sides(free[number], cut)
+                found[number] = bearing(number, graph.sides(free[number], cut))
+    for number in range(len(axes)):
+        if len(found.get(number, ())) > 1 and not _unhinted(journals[number], hints):
+            # a motor between, whose own screw holes are no firmer: one joint
+            found[number] = [max(found[number], key=lambda both: min(graph.size(side) for side in both))]
     every = frozenset().union(*free)
     for number in range(len(axes)):
         if not found.get(number) and not screwed[number]:
-            found[number] = graph.sides(free[number], every)
+            found[number] = bearing(number, graph.sides(free[number], every))
     ways = [
-        (axes[number], sides, frozenset(borne[number]))
+        (_as_ball(axes[number], sides, free[number], pairs), sides, frozenset(borne[number]))
         for number, several in sorted(found.items())
         for sides in several
-        if all(borne[number] & set(side) and not standard.keys() >= set(side) for side in sides)
     ]
     total = sum(volume.values()) or 1.0  # parts without any volume: nothing is substantial
     shares = [min(sum(volume[name] for name in side) for side in sides) / total for _, sides, _ in ways]
     out = []
     for (joint, sides, touching), share in zip(ways, shares, strict=True):
-        largest = max(its for (other, _, _), its in zip(ways, shares, strict=True) if other is joint)
-        twice = any(other is not joint and graph.alike(sides, theirs) for other, theirs, _ in ways)
+        largest = max(its for (other, _, _), its in zip(ways, shares, strict=True) if _one(other, joint))
+        twice = any(not _one(other, joint) and graph.alike(sides, theirs) for other, theirs, _ in ways)
         if not twice and share >= constants.BESIDE * largest:
             assert joint.point is not None
             out.append(Proposal(joint.type, joint.axis, joint.point, sides, share, touching))
-    return sorted(out, key=lambda one: (-one.share, one.sides))
+    return _once(sorted(out, key=lambda one: (-one.share, one.sides)))
 
 
 def proposed_joints(
@@ -143,6 +152,43 @@ def volumes(assembly: Assembly) -> dict[PartName, float]:
             own = part.mesh.health.volume
             out[part.name] = abs(own) if own else float(np.prod(high - low))
     return out
+
+
+def _as_ball(
+    joint: IntendedJoint, sides: Sides, cut: frozenset[PartPair], pairs: Mapping[PartPair, Contact]
+) -> IntendedJoint:
+    """The joint, or the ball joint that it is where all that is round about one of its sides is one sphere: the axis
+    is that of a pin then, which holds the ball."""
+    for side in sides:
+        own = sorted(pair for pair in cut if len(set(side) & set(pair)) == 1)
+        patches = [patch for pair in own for patch in pairs[pair].patches if patch.kind in ROUND]
+        balls = [_joint("spherical", None, patch.point) for patch in patches if patch.kind == "sphere"]
+        reach = max((max(patch.radii) for patch in patches), default=0.0)
+        one = all(_same(balls[0], other, constants.SAME_AXIS_OFF * reach) for other in balls)
+        if balls and one and len(balls) == len(patches):
+            return balls[0]
+    return joint
+
+
+def _unhinted(pairs: frozenset[PartPair], hints: Mapping[PartPair, float]) -> list[PartPair]:
+    """Those that nothing suggests to be fastened."""
+    return [pair for pair in sorted(pairs) if not hints.get(pair)]
+
+
+def _once(proposals: Sequence[Proposal]) -> list[Proposal]:
+    """Of balls with one centre that have the same side, the first."""
+    out: list[Proposal] = []
+    for one in proposals:
+        balls = [other for other in out if one.axis is None and other.axis is None]
+        balls = [other for other in balls if float(np.linalg.norm(one.point - other.point)) <= constants.SAME_CENTRE]
+        if not any(set(one.sides) & set(other.sides) for other in balls):
+            out.append(one)
+    return out
+
+
+def _one(joint: IntendedJoint, other: IntendedJoint) -> bool:
+    """Whether two are the same joint, or balls with the same centre."""
+    return joint is other or (joint.axis is None and other.axis is None and _same(joint, other, constants.SAME_CENTRE))
 
 
 def _candidates(patches: Sequence[Patch]) -> list[IntendedJoint]:
@@ -210,7 +256,7 @@ class _Parts:
         for name in self.parts:
             members.setdefault(sets.find(number[name]), []).append(name)
         size = {root: sum(self.volume[name] for name in names) for root, names in members.items()}
-        least = constants.SUBSTANTIAL * sum(size.values())
+        least = constants.PROPOSED_SHARE * sum(size.values())
         near: dict[int, set[int]] = {}
         for pair in own:
             first, second = (sets.find(number[name]) for name in pair)
@@ -236,8 +282,12 @@ class _Parts:
             out += [(tuple(members[one]), tuple(members[other])) for other in large[k + 1 :] if other in reached]
         return out
 
+    def size(self, side: Sequence[PartName]) -> float:
+        """Volume of a side."""
+        return sum(self.volume[name] for name in side)
+
     def alike(self, one: Sides, other: Sides) -> bool:
         """Whether these are the same two bodies, but for what is small."""
-        least = constants.SUBSTANTIAL * sum(self.volume.values())
+        least = constants.PROPOSED_SHARE * sum(self.volume.values())
         odd = (set(a) ^ set(b) for a, b in zip(one, other, strict=True))
         return all(sum(self.volume[name] for name in names) < least for names in odd)

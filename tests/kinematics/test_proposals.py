@@ -1,0 +1,61 @@
+"""Joints that are proposed where no function is: what is proposed on small assemblies with a joint of each make."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from manifold3d import Manifold
+from support.assemblies import assembly
+from support.solids import box, part, rod
+
+from kinform import contacts, surfaces
+from kinform.kinematics import propose
+
+
+def proposed(**solids):
+    """(type, sides) of what is proposed."""
+    whole = assembly(*(part(name, solid, np.eye(4)) for name, solid in solids.items()))
+    found = {p.mesh.digest: surfaces.recover(p.mesh, whole.tolerances) for p in whole.parts}
+    return [(one.type, one.sides, one) for one in propose(whole, found, contacts.find(whole, found))]
+
+
+BASE = box(-30, 30, -30, 30, -10, 0) + rod(5, -1, 10, 48)
+ARM = box(-10, 60, -10, 10, 0, 6) - rod(5.02, -1, 7, 48)
+
+
+@pytest.mark.parametrize("radius", [None, 8.0])
+def test_a_pivot_is_proposed_among_screw_holes_too(radius):
+    """Holes of a horn line up with those of its motor in the pose that is drawn."""
+    base, arm = BASE, ARM
+    for x, y in () if radius is None else ((0, radius), (0, -radius), (radius, 0), (-radius, 0)):
+        hole = rod(1, -20, 20, 24).translate((x, y, 0))
+        base, arm = base - hole, arm - hole
+    ((type_, sides, one),) = proposed(base=base, arm=arm)
+    assert (type_, sides) == ("revolute", (("base",), ("arm",)))
+    assert np.linalg.norm(one.axis[:2]) < 1e-9
+    assert np.linalg.norm(one.point[:2]) < 1e-9
+
+
+def test_what_lies_on_an_axis_does_not_hide_the_joint_there():
+    """A foot of the arm slides on the base, beside the axis; a battery stands under the base, on the axis."""
+    foot, battery = box(20, 28, 10, 25, 0, 6), box(-12, 12, -12, 12, -30, -10)
+    ((type_, sides, _),) = proposed(base=BASE, arm=ARM, foot=foot, battery=battery)
+    assert type_ == "revolute"
+    assert {"arm", "foot"} in map(set, sides)
+
+
+def test_a_ball_on_a_pin_is_a_ball_joint():
+    """Lever and fork could turn about the pin alone, and the ball in the lever lets them more."""
+    pin = rod(1.5, -9, 9, 32)
+    ball = Manifold.sphere(4, 48) - rod(1.5, -9, 9, 32)
+    lever = box(-4.5, 30, -6, 6, -2.5, 2.5) + box(30, 90, -30, 30, -20, 20) - Manifold.sphere(4, 48)
+    fork = (
+        box(-90, -30, -30, 30, -20, 20)
+        + box(-30, 8, -6, 6, 5, 9)
+        + box(-30, -25, -6, 6, -9, 9)
+        + box(-30, 8, -6, 6, -9, -5)
+    )
+    ((type_, sides, one),) = proposed(pin=pin, ball=ball, lever=lever, fork=fork - pin)
+    assert type_ == "spherical"
+    assert np.linalg.norm(one.point) < 1e-5
+    assert ("lever",) in sides
