@@ -199,6 +199,9 @@ roundings, as poses are products of many factors."""
 
 # solver.leap, solver.collocation: across singular poses.
 
+AT_LIMIT, AT_LIMIT_SHARE = 0.05, 0.1
+"""Margin of the loops for what is not led, and its share of that for all rates, below which a run that cannot go on
+has come to the end of what the loops let be led. Runs end at margins of a hundredth and less. A choice."""
 APPROACHED = 3e-3
 """Margin below which a step that ends there was not laid across a singular pose ahead, but came too near."""
 FAR_BEHIND = 3.0 * APPROACHED

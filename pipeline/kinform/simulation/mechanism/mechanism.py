@@ -20,7 +20,7 @@ from kinform.behaviour.joints import JointKind
 from kinform.behaviour.primitives import OneFreedom
 from kinform.foundation.algebra.spatial import along_motion, multiply, rotation_vector, to_matrix
 from kinform.model.arrays import Array, Ints
-from kinform.simulation.constants import CORNER_MARGIN, LENGTHS_ROUNDED
+from kinform.simulation.constants import AT_LIMIT, AT_LIMIT_SHARE, CORNER_MARGIN, LENGTHS_ROUNDED
 
 IDENTITY = np.eye(4)
 
@@ -119,6 +119,23 @@ class Mechanism:
         only the others are."""
         values = np.linalg.svd(self.closure_at(q) * self.scale, compute_uv=False)
         return bool(rank) and bool(values[rank - 1] < self.narrow * values[0])
+
+    def at_limit(self, q: Array, led: Ints, rank: int) -> bool:
+        """Whether the rates that are led (k,) have come as far as the loops let them at positions q (nq,): the loops
+        are singular for the other rates, and not for all."""
+        if not rank or not len(led):
+            return False
+        rows = self.closure_at(q) * self.scale
+        others, every = (np.linalg.svd(block, compute_uv=False) for block in (np.delete(rows, led, axis=1), rows))
+        if len(others) < rank:
+            return False
+        tight, whole = others[rank - 1] / others[0], every[rank - 1] / every[0]
+        return bool(tight < AT_LIMIT and tight < AT_LIMIT_SHARE * whole)
+
+    def limit(self, led: Ints) -> str:
+        """That these rates can be led no further, in words."""
+        names = " and ".join(self.joints_of(led))
+        return f"the motion comes to a limit position, beyond which the loops do not let {names} go"
 
     def doubt(self) -> str:
         """That the motion has come to where its branches are not told apart, in words."""

@@ -137,6 +137,8 @@ class _Driver:
             run.choose()
         if status in _GOING:
             if self._stalled():
+                if run.limit():
+                    return f"at t = {t:.6g} s {run.limit()}{run.loops()}"
                 return (
                     f"at t = {t:.6g} s the steps become too short to get on: "
                     f"the mechanism is singular there or the model is stiff{run.loops()}"
@@ -154,6 +156,8 @@ class _Driver:
             t = float(run.clock[layout.REACHED])
         if status == layout.TURNED or (status == layout.STUCK and run.folds()):
             return f"at t = {t:.6g} s {run.dynamics.mechanism.doubt()}{run.loops()}"
+        if run.limit():
+            return f"at t = {t:.6g} s {run.limit()}{run.loops()}"
         if status == layout.OPENED:
             return f"at t = {t:.6g} s the loops cannot be closed any more: the pose is singular{run.loops()}"
         return (

@@ -154,6 +154,8 @@ class Follower:
         return f"{gap:.3g} rad or {gap * self.mechanism.length:.3g} m"
 
     def _singular(self) -> str:
+        if self.mechanism.at_limit(self.q, self.led.v, self.rank):
+            return self.mechanism.limit(self.led.v)
         names = self.mechanism.joints_of(self.led.v)
         led = " and ".join(names) if names else "the driven joints"
         return f"the loop is singular: {led} no longer determines the other joints (a dead point)"

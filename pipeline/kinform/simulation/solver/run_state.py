@@ -117,6 +117,12 @@ class Run:
         elif not wanted:
             self.clock[layout.APPROACH] = 0.0
 
+    def limit(self) -> str:
+        """That what is led has come to a limit position at the present pose, in words; "" where it has not."""
+        mechanism, led = self.dynamics.mechanism, self.dynamics.actuation.led
+        q = self.dynamics.tables.unpack(self.y)[0]
+        return mechanism.limit(led) if mechanism.at_limit(q, led, self.dynamics.rank) else ""
+
     def folds(self) -> bool:
         """Whether branches of the motion meet at the present pose, as far as lengths are known."""
         return self.dynamics.mechanism.folds(self.dynamics.tables.unpack(self.y)[0], self.dynamics.rank)
