@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import signal
 import socket
 import subprocess
@@ -32,7 +33,7 @@ def blocks(name: str) -> list[list[str]]:
 def place(tmp_path) -> tuple[Path, dict[str, str]]:
     """A folder beside a checkout, and an environment with the commands `kinform` and `dask`."""
     (tmp_path / "kinform" / "fixtures").mkdir(parents=True)
-    (tmp_path / "kinform" / "fixtures" / "pairs").symlink_to(FIXTURES / "pairs")
+    shutil.copytree(FIXTURES / "pairs", tmp_path / "kinform" / "fixtures" / "pairs")
     (tmp_path / "bin").mkdir()
     for name, module in (("kinform", "kinform_cli"), ("dask", "dask")):
         (tmp_path / "bin" / name).write_text(f'#!/bin/sh\nexec "{sys.executable}" -m {module} "$@"\n')

@@ -16,16 +16,19 @@ from support.validators import package
 from kinform_cli.app import app
 from kinform_cli.options import FindingsFormat
 
-CI = sorted((ROOT / "examples" / "ci").glob("*.yml"))
+EVERY = sorted((ROOT / "examples" / "ci").glob("*.yml"))
+MANY = ROOT / "examples" / "ci" / "many-designs.yml"
+CI = [path for path in EVERY if path != MANY]
+"""Pipelines of one design."""
 
 
 def commands(text):
     """Every command line of kinform in a file, as words."""
-    found = re.findall(r"(?:^|[\s:-])(kinform [^#\n]*)", re.sub(r"#.*", "", text))
+    found = re.findall(r"(?:^|[\s:-])(kinform [^#\n]*)", re.sub(r"#.*", "", re.sub(r"\\\n\s*", "", text)))
     return [shlex.split(re.split(r"\|\||>>|>|&&", line)[0]) for line in found]
 
 
-@pytest.mark.parametrize("path", [*CI, ROOT / ".pre-commit-hooks.yaml"], ids=lambda path: path.name)
+@pytest.mark.parametrize("path", [*EVERY, ROOT / ".pre-commit-hooks.yaml"], ids=lambda path: path.name)
 def test_the_commands_in_an_example_exist_with_their_options(path):
     group = typer.main.get_command(app)
     lines = [words for words in commands(path.read_text()) if words[1:2] and words[1] in group.commands]
@@ -78,7 +81,7 @@ def test_the_page_is_among_the_reports_that_are_kept(path):
     assert re.search(r"^\s*(- )?reports$", kept, re.MULTILINE)
 
 
-@pytest.mark.parametrize("path", [*CI, ROOT / ".pre-commit-hooks.yaml"], ids=lambda path: path.name)
+@pytest.mark.parametrize("path", [*EVERY, ROOT / ".pre-commit-hooks.yaml"], ids=lambda path: path.name)
 def test_an_example_is_yaml(path):
     yaml = package("yaml")
     assert yaml.safe_load(path.read_text())
@@ -113,3 +116,18 @@ def test_an_example_installs_from_the_repository(path):
     installs = re.findall(r"pip install (.*)", path.read_text())
     assert installs == ['"git+$KINFORM"']
     assert re.search(r"^\s+KINFORM: https://\S+\.git@\S+$", path.read_text(), re.MULTILINE)
+
+
+def test_many_designs_have_one_gate_and_keep_results_and_reports_when_it_is_red():
+    text = MANY.read_text()
+    (gate,) = [words for words in commands(text) if words[1] == "batch"]
+    assert "||" not in text
+    assert text.index("actions/cache/restore@") < text.index("kinform batch") < text.index("actions/cache/save@")
+    after = text[text.index("kinform batch") :]
+    assert after.count("if: ${{ !cancelled() }}") == after.count("- name:") + after.count("- uses:") == 3
+    keys = re.findall(r" key: (.*)", text)
+    assert len(keys) == 2 and keys[0] == keys[1] and "run_attempt" in keys[0]
+    written = [word.partition("=")[2] for word in gate if "=" in word]
+    assert all(name.startswith("reports/") for name in written) and "reports/findings.sarif" in written
+    assert re.findall(r"pip install (.*)", text) == ['"kinform[batch] @ git+$KINFORM"']
+    assert re.search(r"^\s+KINFORM: https://\S+\.git@\S+$", text, re.MULTILINE)

@@ -26,7 +26,7 @@ EXAMPLES = examples(
     "kinform batch arms/ hands/ -o results --exclude 'old/*' -f junit=all.xml",
     "kinform batch . -o results --changed-since origin/main -f sarif=all.sarif",
     "kinform batch designs/ -o results --jobs 4 --time 300 --memory 2GB",
-    "kinform batch arms/ -o results --catalog arms.sqlite    # then: kinform catalog find",
+    "kinform batch arms/ -o results --catalog arms.sqlite",
     "kinform batch arms/ -o results --scheduler tcp://10.0.0.5:8786 --send",
 )
 
