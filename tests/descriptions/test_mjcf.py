@@ -82,6 +82,26 @@ def test_poses_axes_and_masses_are_those_of_mujoco(tmp_path, angle, sequence):
         assert np.allclose(np.abs(X[:3, 2] @ data.geom_xmat[k].reshape(3, 3)[:, 2]), 1.0, atol=1e-12)
 
 
+FRAMES = """<mujoco><compiler angle="degree"/><default><default class="s"><joint type="slide" axis="1 0 0"/></default>
+</default><worldbody><body name="a"><geom size="0.1"/><body name="b" pos="0 0 1">
+<frame pos="1 0 0" euler="0 0 90"><frame pos="1 0 0" euler="90 20 0"><joint name="turn" pos="0 0.5 0"/></frame>
+<frame childclass="s" euler="0 30 0"><joint name="slide"/></frame></frame><geom size="0.1"/></body></body></worldbody></mujoco>
+"""
+
+
+def test_joints_in_frames_of_a_body_stand_as_the_frames_are_nested(tmp_path):
+    mujoco = pytest.importorskip("mujoco")
+    path = write(tmp_path, FRAMES)
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    joints = {joint.name: joint for joint in form.load(path).function.joints}
+    for k, (name, kind) in enumerate((("turn", "revolute"), ("slide", "prismatic"))):
+        assert joints[name].type == kind
+        assert np.allclose(joints[name].axis, data.xaxis[k], atol=1e-12)
+    assert np.allclose(joints["turn"].point, data.xanchor[0], atol=1e-12)
+
+
 def test_function_and_what_is_seen(tmp_path):
     assembly = form.load(write(tmp_path, text()))
     assert [group.name for group in assembly.groups] == ["arm", "base", "wrist"]

@@ -188,19 +188,19 @@ class _Reader:
         if self.compiler.from_geometry:
             inertial = None
         stated_mass = None if inertial is None else self.shapes.inertial(inertial, name, X)
-        joints = [j for j in self._joints(element) if self._type(j, named) is not None]
-        free = self.xml.child(element, "freejoint") is not None or any(self._type(j, named) == "" for j in joints)
+        joints = [j for j in self._joints(element, X, named) if self._type(j[0], j[2]) is not None]
+        free = self.xml.child(element, "freejoint") is not None or any(self._type(j, c) == "" for j, _, c in joints)
         written = None if inertial is None else self.shapes.stated(inertial)
         self.links[name] = Link(name, X, at, inertial=stated_mass, stated=written)
         self.above[name] = above
         if not free:
             between = above
-            for k, joint in enumerate(joints):
+            for k, (joint, X_FJ, of_class) in enumerate(joints):
                 below = name if k == len(joints) - 1 else self.free_link(f"{name} {k + 1}")
                 if below != name:
                     self.links[below] = Link(below, X, self.xml.at(joint))
                     self.above[below] = name
-                self._joint(joint, between, below, X, named)
+                self._joint(joint, between, below, X_FJ, of_class)
                 between = below
             if not joints:
                 label = self.free_joint(f"{name} fixed")
@@ -235,12 +235,14 @@ class _Reader:
         self.ratios += new.ratios
         self.sites |= new.sites
 
-    def _joints(self, element: Element) -> Iterator[Element]:
+    def _joints(self, element: Element, X: Array, named: str | None) -> Iterator[tuple[Element, Array, str | None]]:
+        """The joints of a body, and in its frames: each with the pose in F of what it is in, and the class there."""
         for child in self.xml.children(element, "joint", "frame"):
             if tag_of(child) == "joint":
-                yield child
+                yield child, X, named
             else:
-                yield from self._joints(child)
+                inner = X @ self.compiler.pose(self.xml, child, child.attrib)
+                yield from self._joints(child, inner, child.get("childclass") or named)
 
     def _type(self, element: Element, named: str | None) -> str | None:
         """kinform's type of a joint, "" of a free one; None after noting that it is not known."""
@@ -257,10 +259,6 @@ class _Reader:
             message = f"two joints are named {in_quotes(stated)}: the first is at line {self.joints[stated].at.line}"
             xml.complain(element, message, "rename one of them")
         name, kind = self.free_joint(stated), self._type(element, named) or ""
-        frame = element.getparent()
-        while tag_of(frame) == "frame":
-            X = X @ self.compiler.pose(xml, frame, frame.attrib)
-            frame = frame.getparent()
         axis = np.array(xml.numbers(element, said.get("axis", "0 0 1"), "axis", 3) or (0.0, 0.0, 1.0))
         if float(np.linalg.norm(axis)) < AXIS_LENGTH:
             xml.complain(element, f"joint {in_quotes(name)}: its axis is zero", 'give an axis such as "0 0 1"')
