@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
-from tests.support.walkers import Box, Walker
+from tests.support.walkers import Box, Link, Walker
 
 from kinform import form, run
 from kinform.consistency import RULES
@@ -233,6 +235,29 @@ def test_a_side_that_is_not_mirrored_is_told_by_geometry_by_mass_and_by_frame(tm
     walker.hips["right"] = (0.02, -0.13, 0.05)
     frame = next(f for f in findings(tmp_path, walker) if "frame" in f.message)
     assert frame.subject == ("right_thigh", "left_thigh") and "20 mm" in frame.message
+
+
+def test_geometry_that_is_not_mirrored_as_the_stated_masses_are_is_told_also_where_all_pairs_are_so(tmp_path):
+    walker = Walker()
+    right = {name: link.text(name) for name, link in walker.links.items() if name.startswith("right")}
+    text = walker.text()
+    for name, line in right.items():
+        copied = Link(list(walker.links[name.replace("right", "left")].boxes)).text(name)
+        inertial = re.search("<inertial>.*</inertial>", line)[0]
+        text = text.replace(line, re.sub("<inertial>.*</inertial>", inertial, copied))
+    (tmp_path / "walker.urdf").write_text(text)
+    found = next(f for f in run(tmp_path / "walker.urdf").findings if f.code == "KF132")
+    assert "geometry is no mirror image" in found.message and "so is" in found.message
+
+
+def test_a_part_that_is_moved_to_the_other_side_is_not_taken_for_a_turned_one(tmp_path):
+    # symmetric in z: turned about z, its second moments are those of what was only moved
+    walker = Walker()
+    thigh = [Box((0.2, 0.04, 0.04), (0.0, 0.0, -0.1)), Box((0.05, 0.08, 0.02), (0.05, 0.06, -0.1))]
+    walker.links["left_thigh"] = Link(thigh)
+    walker.links["right_thigh"] = Link(list(thigh))
+    found = only(tmp_path, walker)
+    assert (found.code, found.subject[0]) == ("KF132", "right_thigh") and "geometry" in found.message
 
 
 def test_equal_parts_that_are_turned_instead_of_mirrored_pass(tmp_path):

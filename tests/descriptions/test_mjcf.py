@@ -85,7 +85,8 @@ def test_poses_axes_and_masses_are_those_of_mujoco(tmp_path, angle, sequence):
 FRAMES = """<mujoco><compiler angle="degree"/><default><default class="s"><joint type="slide" axis="1 0 0"/></default>
 </default><worldbody><body name="a"><geom size="0.1"/><body name="b" pos="0 0 1">
 <frame pos="1 0 0" euler="0 0 90"><frame pos="1 0 0" euler="90 20 0"><joint name="turn" pos="0 0.5 0"/></frame>
-<frame childclass="s" euler="0 30 0"><joint name="slide"/></frame></frame><geom size="0.1"/></body></body></worldbody></mujoco>
+<frame childclass="s" euler="0 30 0"><joint name="slide"/></frame></frame><geom size="0.1"/></body></body>
+</worldbody></mujoco>
 """
 
 

@@ -167,11 +167,13 @@ def _turns(mirror: Image) -> Iterator[Image]:
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """Moments of the surface of a link: area (m²), centroid (3,) m, second moments (3, 3) m² about it, and box."""
+    """Moments of the surface of a link: area (m²), centroid (3,) m, second (3, 3) m² and third moments (3, 3, 3) m³
+    about it, and box."""
 
     area: float
     centroid: Array
     second: Array
+    third: Array
     size: float
 
 
@@ -198,7 +200,10 @@ def look_of(body: Weighed) -> Look | None:
     mean = away.mean(axis=1)
     ends = np.einsum("n,nki,nkj->ij", weights, away, away)
     second = (ends + 9.0 * np.einsum("n,ni,nj->ij", weights, mean, mean)) / 12.0
-    return Look(area, centroid, second / area, body.size)
+    third = -27.0 / 48.0 * np.einsum("n,ni,nj,nk->ijk", weights, mean, mean, mean)  # exact for cubics
+    for q in (0.6 * mean + 0.4 * away[:, k] for k in range(3)):
+        third += 25.0 / 48.0 * np.einsum("n,ni,nj,nk->ijk", weights, q, q, q)
+    return Look(area, centroid, second / area, third / area, body.size)
 
 
 def brought(turn: Image, left: Look, right: Look) -> Image:
@@ -208,13 +213,16 @@ def brought(turn: Image, left: Look, right: Look) -> Image:
 
 def unlike(image: Image, left: Look, right: Look) -> float:
     """How far the right is from the image of the left: the worst of its centroid as a share of its size, its second
-    moments relative to their trace, and a tenth of its area."""
+    moments relative to their trace, a fifth of its third moments relative to that trace to the power of 3/2 (the
+    second ones of what is moved and of what is turned are often equal), and a tenth of its area."""
     size = max(left.size, right.size)
     apart = float(np.linalg.norm(image.of(left.centroid) - right.centroid)) / size
     traces = float(np.trace(left.second)) + float(np.trace(right.second))
     spread = 2.0 * float(np.linalg.norm(image.A @ left.second @ image.A.T - right.second)) / traces
+    turned = np.einsum("ai,bj,ck,ijk->abc", image.A, image.A, image.A, left.third)
+    lopsided = float(np.linalg.norm(turned - right.third)) / float((0.5 * traces) ** 1.5)
     area = abs(left.area - right.area) / max(left.area, right.area)
-    return max(apart, spread, 0.1 * area)
+    return max(apart, spread, 0.2 * lopsided, 0.1 * area)
 
 
 def inertial_off(image: Image, left: Weighed, right: Weighed) -> tuple[float, float, float]:

@@ -2,9 +2,9 @@
 
 Links are pairs by name (left and right, l and r, fl and fr, …), and the plane is the one in which the frames of at
 least half of the pairs are mirrored, each beside the pair above it; without one nothing is asked. Then, of each pair:
-frames, stated masses, centres of mass and inertias, and geometry, unless more than half of the pairs differ in it.
-Equal parts that are turned by half a turn instead of mirrored pass, and so do their masses under that turn. Of each
-kind the worst pair is told, with the others.
+frames, stated masses, centres of mass and inertias, and geometry. Where more than half of the pairs differ in geometry,
+only those are told whose stated masses say that they are mirror images. Equal parts that are turned by half a turn
+instead of mirrored pass, and so do their masses under that turn. Of each kind the worst pair is told, with the others.
 
 Why it matters: a robot that leans to one side in simulation and not in reality; usually one side was edited, or its
 inertia was copied without turning the signs of its products.
@@ -18,6 +18,8 @@ Example: the right thigh has the `ixy` of the left one, with the same sign.
 from __future__ import annotations
 
 from collections.abc import Iterator
+
+import numpy as np
 
 from kinform.consistency.comparisons.links import Weighed
 from kinform.consistency.comparisons.sides import (
@@ -75,7 +77,9 @@ class _Judge:
         """One for each kind of difference."""
         looks = list(self._looks())
         seen = [pair for pair in self.sides.pairs if self._seen(pair)]
-        if 2 * len(looks) <= len(seen):
+        if 2 * len(looks) > len(seen):
+            looks = [told for told in looks if self._mass_mirrored(told[1])]
+        if looks:
             yield from self._told(looks, "geometry is no mirror image", "Mirror the mesh (a negative scale does), or "
                                   "correct its origin.")  # fmt: skip
         yield from self._told(list(self._frames()), "frame is not mirrored", "Mirror the origin of the joint.")
@@ -125,6 +129,18 @@ class _Judge:
                 off, _ = self._image(pair)
                 if off > SAME_LOOK:
                     yield off, pair, f"it differs by {number(100.0 * off, 2)} % of its size"
+
+    def _mass_mirrored(self, pair: Pair) -> bool:
+        """Whether the stated masses of a pair are mirror images, by numbers that its geometry does not have."""
+        left, right = self.looks[pair.left.name], self.looks[pair.right.name]
+        one, other = self.bodies.get(pair.left.name), self.bodies.get(pair.right.name)
+        if left is None or right is None or one is None or other is None:
+            return False
+        size = max(one.size, other.size)
+        masses, centres, inertias = inertial_off(self.sides.mirror, one, other)
+        same = masses <= SAME_MASS and centres <= SAME_CENTRE * size and inertias <= SAME_INERTIA
+        beside = np.linalg.norm(self.sides.mirror.of(left.centroid) - right.centroid)
+        return bool(same and beside > SAME_CENTRE * size)
 
     def _inertials(self) -> Iterator[_Told]:
         for pair in self.sides.pairs:
