@@ -71,6 +71,53 @@ def test_a_changed_file_touches_what_names_it_in_any_depth(repository, changed, 
     assert touched(repository) == sorted({*designs, *wildcards})
 
 
+def test_what_a_link_points_to_and_where_a_link_points_touch(repository):
+    (repository / "linked.toml").write_text(manifest("[[part]]", 'name="p"', 'mesh="other.stl"'))
+    (repository / "other.stl").symlink_to("alone.stl")
+    git(repository, "add", ".")
+    git(repository, "commit", "-qm", "a link")
+    (repository / "alone.stl").write_text("solid changed")
+    assert touched(repository) == ["alone.toml", "linked.toml"]
+    git(repository, "checkout", "alone.stl")
+    (repository / "other.stl").unlink()
+    (repository / "other.stl").symlink_to("sub/parts/rotor.stl")
+    assert touched(repository) == ["linked.toml"]
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "mesh"),
+    [
+        ("a.urdf", '<robot name="a"><mesh filename="a&amp;b.stl"/></robot>', "a&b.stl"),
+        ("a.toml", manifest("[[part]]", 'name="p"', r'mesh="\u00fc.stl"'), "ü.stl"),
+        ("a.toml", manifest("[[subassembly]]", 'name="p"', 'file="x.GLTF"'), "my buffer.bin"),
+    ],
+)
+def test_names_that_are_written_with_escapes_are_understood(repository, file, text, mesh):
+    (repository / file).write_text(text)
+    (repository / mesh).write_text("1")
+    (repository / "x.GLTF").write_text('{"buffers": [{"uri": "my%20buffer.bin"}]}')
+    git(repository, "add", ".")
+    git(repository, "commit", "-qm", "escapes")
+    (repository / mesh).write_text("2")
+    assert touched(repository) == [file]
+
+
+def test_a_submodule_at_another_commit_touches_what_names_its_files(repository, tmp_path_factory):
+    inner = tmp_path_factory.mktemp("inner")
+    (inner / "leg.stl").write_text("1")
+    git(inner, "init", "-q")
+    git(inner, "add", ".")
+    git(inner, "commit", "-qm", "one")
+    git(repository, "-c", "protocol.file.allow=always", "submodule", "add", "-q", str(inner), "meshes")
+    (repository / "leg.toml").write_text(manifest("[[part]]", 'name="p"', 'mesh="meshes/leg.stl"'))
+    git(repository, "add", ".")
+    git(repository, "commit", "-qm", "a submodule")
+    assert touched(repository) == []
+    (repository / "meshes" / "leg.stl").write_text("2")
+    git(repository / "meshes", "commit", "-qam", "two")
+    assert "leg.toml" in touched(repository)
+
+
 def test_nothing_changed_touches_nothing(repository):
     assert touched(repository) == []
 

@@ -2,19 +2,26 @@
 
 Nothing is parsed as a design, which may be faulty now: every text in a manifest or a description that could name a
 changed file counts, by its last part, with what is computed in it (`$(find pkg)`, `${name}.stl`) as a wildcard. So a
-design may be run for nothing, and is never left out because a reference was not understood.
+design may be run for nothing, and is never left out because a reference was not understood. What a link points to
+counts as that, and a submodule whose commit differs as all that is in it. Files that git ignores, or that lie outside
+of the repository, have no revision: they do not count.
 """
 
 from __future__ import annotations
 
 import fnmatch
+import html
 import json
 import os
 import re
 import subprocess
+import tomllib
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
+from typing import Any
+from urllib.parse import unquote
 
 from kinform.batch.discovery import DESCRIPTIONS, Found
 from kinform.errors import InputError, Problem
@@ -58,10 +65,13 @@ def _reaches(source: Path, changed: set[str], root: str) -> bool:
             hit = fnmatch.filter(bases, pattern) if wild else [pattern] if pattern in bases else []
             if hit:
                 return True
+            known = _files(root)
+            names = fnmatch.filter(known, pattern) if wild else [pattern]
+            files = [file for name in names for file in known.get(name, ())]
+            if not changed.isdisjoint(files):  # by a link, which has a name of its own
+                return True
             if os.path.splitext(pattern)[1].lower() in _FOLLOWED:
-                known = _files(root)
-                names = fnmatch.filter(known, pattern) if wild else [pattern]
-                waiting += [file for name in names for file in known.get(name, ())]
+                waiting += files
     return False
 
 
@@ -83,25 +93,40 @@ def _names(path: str) -> tuple[tuple[str, bool], ...]:
 
 
 def _texts(path: str, text: str) -> Iterator[str]:
-    """Everything in quotes, between tags, or after the words of an OBJ that name files."""
-    if path.endswith(".gltf"):
+    """Everything in quotes, between tags, or after the words of an OBJ that name files; without escapes."""
+    kind = os.path.splitext(path)[1].lower()
+    if kind == ".gltf":
         try:
-            whole = json.loads(text)
+            whole = json.loads(text.removeprefix("\ufeff"))
         except ValueError:
             return
         for item in [*whole.get("buffers", ()), *whole.get("images", ())]:
             if isinstance(item.get("uri"), str) and not item["uri"].startswith("data:"):
-                yield item["uri"]
+                yield unquote(item["uri"])
         return
+    if kind == ".toml":
+        with suppress(ValueError, RecursionError):  # of a faulty manifest, what stands in quotes
+            yield from _strings(tomllib.loads(text.removeprefix("\ufeff")))
     for match in _QUOTED.finditer(text):
-        yield next(filter(None, match.groups()))
+        yield html.unescape(next(filter(None, match.groups())))
+
+
+def _strings(value: Any) -> Iterator[str]:
+    """All texts in a table, in any depth."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, dict | list):
+        for inner in value.values() if isinstance(value, dict) else value:
+            yield from _strings(inner)
 
 
 @cache
 def _files(root: str) -> dict[str, list[str]]:
     """All files of the repository that are tracked or could be, by name."""
     out: dict[str, list[str]] = {}
-    for path in _git(root, "ls-files", "-z", "--cached", "--others", "--exclude-standard").split("\0"):
+    own = _git(root, "ls-files", "-z", "--cached", "--others", "--exclude-standard").split("\0")
+    inner = _git(root, "ls-files", "-z", "--cached", "--recurse-submodules").split("\0")
+    for path in dict.fromkeys([*own, *inner]):
         if path:
             out.setdefault(os.path.basename(path), []).append(os.path.realpath(os.path.join(root, path)))
     return out
@@ -111,10 +136,19 @@ def _changed(root: str, revision: str) -> set[str]:
     """Absolute paths of what differs from the revision, or is not tracked; also what is gone."""
     commit = _git(root, "rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}").strip()
     if not commit:
-        raise InputError([Problem(f"there is no revision {revision}", root, None, "fetch it: git fetch --unshallow")])
+        remedy = "correct its name; or fetch it, where the clone is shallow: git fetch --unshallow"
+        raise InputError([Problem(f"there is no revision {revision}", root, None, remedy)])
     differing = _git(root, "diff", "-z", "--name-only", "--no-renames", "--no-ext-diff", commit, "--").split("\0")
     fresh = _git(root, "ls-files", "-z", "--others", "--exclude-standard").split("\0")
-    return {os.path.realpath(os.path.join(root, name)) for name in _present(differing, fresh)}
+    paths = [os.path.join(root, name) for name in _present(differing, fresh)]
+    inner = [_files(path) for path in paths if os.path.isdir(path) and not os.path.islink(path)]  # submodules
+    below = (file for files in inner for named in files.values() for file in named)
+    return {*map(os.path.realpath, paths), *(_linked(path) for path in paths if os.path.islink(path)), *below}
+
+
+def _linked(path: str) -> str:
+    """The place of a link itself, in a folder without links."""
+    return os.path.join(os.path.realpath(os.path.dirname(path)), os.path.basename(path))
 
 
 def _present(*lists: Iterable[str]) -> Iterator[str]:
