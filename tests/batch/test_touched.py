@@ -44,13 +44,18 @@ def repository(tmp_path: Path) -> Path:
     git(tmp_path, "init", "-q")
     git(tmp_path, "add", ".")
     git(tmp_path, "commit", "-qm", "all")
-    for cached in (module._names, module._files, module._root):
-        cached.cache_clear()
     return tmp_path
 
 
 def touched(repository: Path) -> list[str]:
+    for cached in (module._names, module._files, module._root):
+        cached.cache_clear()
     return [one.name for one in module.changed_since(discover([repository]), "HEAD")]
+
+
+def by_name(repository: Path) -> list[str]:
+    """Without the one that any mesh may touch."""
+    return [name for name in touched(repository) if name != "ros/urdf/arm.urdf.xacro"]
 
 
 @pytest.mark.parametrize(
@@ -77,11 +82,11 @@ def test_what_a_link_points_to_and_where_a_link_points_touch(repository):
     git(repository, "add", ".")
     git(repository, "commit", "-qm", "a link")
     (repository / "alone.stl").write_text("solid changed")
-    assert touched(repository) == ["alone.toml", "linked.toml"]
+    assert by_name(repository) == ["alone.toml", "linked.toml"]
     git(repository, "checkout", "alone.stl")
     (repository / "other.stl").unlink()
     (repository / "other.stl").symlink_to("sub/parts/rotor.stl")
-    assert touched(repository) == ["linked.toml"]
+    assert by_name(repository) == ["linked.toml"]
 
 
 @pytest.mark.parametrize(
@@ -99,7 +104,7 @@ def test_names_that_are_written_with_escapes_are_understood(repository, file, te
     git(repository, "add", ".")
     git(repository, "commit", "-qm", "escapes")
     (repository / mesh).write_text("2")
-    assert touched(repository) == [file]
+    assert by_name(repository) == [file]
 
 
 def test_a_submodule_at_another_commit_touches_what_names_its_files(repository, tmp_path_factory):
@@ -115,7 +120,7 @@ def test_a_submodule_at_another_commit_touches_what_names_its_files(repository, 
     assert touched(repository) == []
     (repository / "meshes" / "leg.stl").write_text("2")
     git(repository / "meshes", "commit", "-qam", "two")
-    assert "leg.toml" in touched(repository)
+    assert by_name(repository) == ["leg.toml"]
 
 
 def test_nothing_changed_touches_nothing(repository):

@@ -47,8 +47,8 @@ def changed_since(found: Sequence[Found], revision: str) -> tuple[Found, ...]:
 
 def _reaches(source: Path, changed: set[str], root: str) -> bool:
     """Whether a design is, or names in any depth, a changed file."""
-    if not changed:
-        return False
+    if not changed or _place(os.path.abspath(source)) in changed:
+        return bool(changed)
     bases: dict[str, list[str]] = {}
     for path in changed:
         bases.setdefault(os.path.basename(path), []).append(path)
@@ -143,11 +143,11 @@ def _changed(root: str, revision: str) -> set[str]:
     paths = [os.path.join(root, name) for name in _present(differing, fresh)]
     inner = [_files(path) for path in paths if os.path.isdir(path) and not os.path.islink(path)]  # submodules
     below = (file for files in inner for named in files.values() for file in named)
-    return {*map(os.path.realpath, paths), *(_linked(path) for path in paths if os.path.islink(path)), *below}
+    return {*(_place(path) if os.path.islink(path) else os.path.realpath(path) for path in paths), *below}
 
 
-def _linked(path: str) -> str:
-    """The place of a link itself, in a folder without links."""
+def _place(path: str) -> str:
+    """Where a file is, or the link itself where it is one: the folder without links."""
     return os.path.join(os.path.realpath(os.path.dirname(path)), os.path.basename(path))
 
 
