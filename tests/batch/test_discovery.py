@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 from pathlib import Path
 
@@ -88,3 +89,9 @@ def test_nothing_found_is_an_error(tmp_path):
         discover([tmp_path])
     with pytest.raises(InputError, match="no such file"):
         discover([tmp_path / "absent"])
+
+
+def test_pipes_are_no_designs_and_nobody_waits_for_them(repository):
+    for name in ("pipe.toml", "pipe.urdf"):
+        os.mkfifo(repository / name)
+    assert not [name for name in names(repository) if "pipe" in name]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -16,11 +17,11 @@ from kinform.study.sampling import samples
 MEASURE = '[[measure]]\nname = "m"\nvalue = "mobility.effective"\n'
 
 
-def plan(folder: Path, study: str, *varied: str, nominal=None):
-    (folder / "d.toml").write_text("schema = 1\n")
+def plan(folder: Path, study: str, *varied: str, design="schema = 1\n"):
+    (folder / "d.toml").write_text(design)
     tables = "\n".join(f"[[vary]]\n{text}" for text in varied)
     (folder / "s.toml").write_text(f'schema = 1\n[study]\ndesign = "d.toml"\n{study}\n{tables}\n{MEASURE}')
-    return read_plan(folder / "s.toml", nominal)
+    return read_plan(folder / "s.toml")
 
 
 A = 'name = "a"\nvalue = "x.a"\n'
@@ -59,8 +60,38 @@ def test_samples_are_of_their_distribution(tmp_path, method, way, expected):
 
 def test_the_nominal_value_is_that_of_the_manifest(tmp_path):
     study = 'method = "monte-carlo"\nsamples = 3'
-    found = plan(tmp_path, study, A + 'tolerance = "±1"', nominal=lambda design, steps: 7.0)
-    assert (found.axes[0].low, found.axes[0].high) == (6.0, 8.0)
+    for design in ("[x]\na = 7.0\n", "\ufeff[x]\r\na = 7.0\r\n"):
+        found = plan(tmp_path, study, A + 'tolerance = "±1"', design=design)
+        assert (found.axes[0].low, found.axes[0].high) == (6.0, 8.0)
+
+
+def test_the_nominal_value_of_a_description_is_what_it_states(tmp_path):
+    inertia = '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+    box = '<visual><geometry><box size="1 1 1"/></geometry></visual>'
+    link = f'<link name="arm">{box}<inertial><mass value="0.4"/>{inertia}</inertial></link>'
+    (tmp_path / "arm.urdf").write_text(f'<robot name="r">{link}</robot>')
+    (tmp_path / "over.toml").write_text('schema = 1\n[assembly]\nname = "r"\nfrom = "arm.urdf"\n')
+    for design in ("arm.urdf", "over.toml"):
+        (tmp_path / "s.toml").write_text(
+            f'schema = 1\n[study]\ndesign = "{design}"\nsamples = 3\n[[vary]]\nname = "a"\n'
+            f'value = "group.arm.mass"\ntolerance = "±0.1"\n{MEASURE}'
+        )
+        axis = read_plan(tmp_path / "s.toml").axes[0]
+        assert (axis.low, axis.high) == pytest.approx((0.3, 0.5))
+
+
+@pytest.mark.parametrize("place", ["study", "design"])
+def test_a_pipe_and_what_is_no_text_are_refused(tmp_path, place):
+    study = ('method = "monte-carlo"\nsamples = 3', A + 'tolerance = "±1"')
+    plan(tmp_path, *study, design="[x]\na = 7.0\n")
+    file = tmp_path / {"study": "s.toml", "design": "d.toml"}[place]
+    file.write_bytes(b"\xff")
+    with pytest.raises(InputError, match="UTF-8"):
+        read_plan(tmp_path / "s.toml")
+    file.unlink()
+    os.mkfifo(file)
+    with pytest.raises(InputError, match=r"is a pipe|there is no file"):
+        read_plan(tmp_path / "s.toml")
 
 
 @pytest.mark.parametrize(
@@ -100,6 +131,12 @@ def test_paths_lead_by_names_and_numbers():
 def test_a_path_that_leads_nowhere_is_an_error(text):
     with pytest.raises(KeyError, match=r"no|leads"):
         changed(TABLES, steps_of(text), 1)
+
+
+def test_nothing_is_below_a_value_and_below_what_is_not_known_is_nothing_known():
+    with pytest.raises(KeyError, match="leads nowhere"):
+        looked_up(TABLES, steps_of("x.y.z"))
+    assert looked_up({"x": None}, steps_of("x.y.z")) is None
 
 
 @pytest.mark.parametrize("text", ["", ".a", "a..b", "a.", 'a"b', '"a'])

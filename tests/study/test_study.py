@@ -21,7 +21,7 @@ from kinform.errors import InputError
 from kinform.form.sources import Reading
 from kinform.study import read_plan, run
 from kinform.study import session as module
-from kinform.study.work import measure, sample, units
+from kinform.study.work import measure, nominal, sample, units
 
 pytest.importorskip("distributed")
 pytest.importorskip("pathspec")
@@ -178,6 +178,35 @@ def test_commands_make_meshes_only_where_they_are_allowed(tmp_path):
     failing = (part, [sys.executable, "-c", "import sys; print('no'); sys.exit(3)"], ".stl")
     with pytest.raises(InputError, match="ended with 3: no"):
         sample(design, None, [], [], [failing])
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [("joints.joints.guide.type", "is the text"), ("mass.bodies", "is a list"), ("mobility", "is a table"),
+     ("mobility.effective.x", "leads nowhere"), ("nonsense.x", "is no topic")],
+)  # fmt: skip
+def test_what_is_no_number_cannot_be_measured(tmp_path, value, said):
+    steps = tuple(value.split("."))
+    with pytest.raises(InputError, match=said):
+        nominal(str(DESIGN), str(tmp_path / "base.h5"), [steps])
+
+
+def test_commands_run_in_the_folder_of_the_study(tmp_path):
+    pair = FIXTURES / "pairs" / "revolute_collars"
+    shutil.copytree(pair, tmp_path, dirs_exist_ok=True)
+    mesh = next(iter(sorted(tmp_path.glob("*.stl"))))
+    words = [sys.executable, "-c", "import shutil, sys; shutil.copy(*sys.argv[1:])", mesh.name, "{file}"]
+    command = (mesh.stem, words, ".stl")
+    made = sample(str(tmp_path / "revolute_collars.toml"), None, [], [("mobility", "effective")], [command],
+                  folder=str(tmp_path))  # fmt: skip
+    assert made == (1.0,)
+
+
+def test_a_study_of_which_every_sample_fails_is_told_by_the_exit_code(tmp_path):
+    shutil.copy(DESIGN, tmp_path)
+    (tmp_path / "s.toml").write_text(STUDY.replace("[29.0, 30.0, 31.0]", "[1e300]").replace("0, 0.0]", "0]"))
+    ran = ran_here("study", "s.toml", "-o", "s.h5", "--jobs", "1", cwd=tmp_path)
+    assert ran.returncode == 2 and "failed" in ran.stdout and (tmp_path / "s.h5").exists()
 
 
 def test_a_measure_that_is_not_there_is_refused_before_samples_are_measured(done, tmp_path):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -46,7 +46,7 @@ def study(
 
     A study that was interrupted goes on where it stopped.
 
-    Exit code 0: written, also where samples failed: the table says which. 2: not written.
+    Exit code 0: written, also where some samples failed: the table says which. 2: all failed, or nothing was written.
     """
     limits = limits_of(seconds, memory)
     need_extra()
@@ -60,7 +60,7 @@ def study(
     beside = [output.with_suffix(end) for end in (".csv", ".html")]
     if output.suffix.lower() not in (".h5", ".hdf5"):
         raise refuse("the table of a study is HDF5", file=output, remedy=f"name it {output.with_suffix('.h5')}")
-    plan = studies.read_plan(source, _nominal)
+    plan = studies.read_plan(source)
     _check_commands(plan, allow_commands)
     began = time.monotonic()
     with Pace("study", began) as pace:
@@ -76,6 +76,8 @@ def study(
 
         console.out(view.render(outcome))
     console.say(f"{output}, {beside[0].name} and {beside[1].name}: {time.monotonic() - began:.1f} s")
+    if all(outcome.failures):
+        raise typer.Exit(2)
 
 
 def _check_commands(plan: Plan, allowed: bool) -> None:
@@ -83,14 +85,3 @@ def _check_commands(plan: Plan, allowed: bool) -> None:
         words = " ".join(plan.makes[0].command)
         raise refuse(f"runs commands of its own, such as: {words}", file=plan.path,
                      remedy="read them, then allow them: --allow-commands")  # fmt: skip
-
-
-def _nominal(design: Path, steps: tuple[str, ...]) -> Any:
-    """The value that a manifest has at a path; None of other sources."""
-    import tomllib
-
-    from kinform.form.keys import looked_up
-
-    if design.suffix.lower() != ".toml":
-        return None
-    return looked_up(tomllib.loads(design.read_text(encoding="utf-8")), steps)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rich.console import Group
 
-from kinform.foundation.words import number
+from kinform.foundation.words import counted, number
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import NONE
 
@@ -31,13 +31,16 @@ def render(outcome: Outcome) -> Group:
         for each in one.sensitivities:
             ends = NONE if each.index_low is None else f"{_n(each.index_low)} … {_n(each.index_high)}"
             sensitive.add(one.name, each.axis, _n(each.rank), _n(each.index), ends)
-    lines = [f"{len(outcome.samples)} samples, {outcome.plan.study.method}"]
+    lines = [f"{counted(len(outcome.samples), 'sample')}, {outcome.plan.study.method}"]
     whole = whole_yield(outcome)
     if whole is not None:
         good, n, (share_all, low, high) = whole
         lines.append(f"yield {_percent(share_all)} ({good} of {n}), 95 %: {_percent(low)} to {_percent(high)}")
     failures = [(k, why) for k, why in enumerate(outcome.failures) if why]
-    told = [f"{len(failures)} samples failed, the first ({failures[0][0]}): {failures[0][1]}"] if failures else []
+    all_of_them = "all of " if len(failures) == len(outcome.samples) else ""
+    first = f", the first ({failures[0][0]}): {failures[0][1]}" if failures else ""
+    told = [f"{all_of_them}{counted(len(failures), 'sample')} failed{first}"] if failures else []
+    told += [f"{one.name}: not known of any sample" for one in found if one.lowest is None and not all_of_them]
     worst = [_worst(outcome, k, one.worst[0]) for k, one in enumerate(found) if one.worst]
     return stacked(*lines, measures, "", sensitive, "", *worst, *told)
 

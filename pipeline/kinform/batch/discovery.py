@@ -17,7 +17,9 @@ from typing import Any
 
 from kinform.batch import constants
 from kinform.errors import InputError, Problem
+from kinform.form.constants import MANIFEST_BYTES
 from kinform.form.sources import states_units
+from kinform.foundation.regular import not_a_file
 
 DESCRIPTIONS = (".urdf", ".xacro", ".sdf", ".world", ".mjcf", ".xml")
 """Suffixes of files that are looked into, beside manifests."""
@@ -87,6 +89,8 @@ def discover(
 def is_design(path: Path) -> bool:
     """Whether a file is a manifest, or a robot description that stands for itself; one that cannot be read may be."""
     suffix = path.suffix.lower()
+    if not_a_file(path) is not None:
+        return False
     if suffix == ".toml":
         return _is_manifest(path)
     if suffix not in _ROOTS:
@@ -102,10 +106,11 @@ def is_design(path: Path) -> bool:
 def _is_manifest(path: Path) -> bool:
     """Whether it begins as manifests do; a faulty one still is one, and its run says what is wrong."""
     try:
-        text = path.read_text(encoding="utf-8", errors="replace")
+        with path.open("rb") as stream:
+            text = stream.read(MANIFEST_BYTES).decode("utf-8-sig", "replace").replace("\r", "\n")
     except OSError:
         return True
-    begins = (r"^\s*schema\s*=", r"^\s*\[\s*assembly\b|^\s*assembly\s*[.=]")
+    begins = (r"^[ \t]*schema[ \t]*=", r"^[ \t]*\[[ \t]*assembly\b|^[ \t]*assembly[ \t]*[.=]")
     return all(re.search(pattern, text, re.M) for pattern in begins)
 
 

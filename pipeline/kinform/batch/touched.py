@@ -25,6 +25,7 @@ from urllib.parse import unquote
 
 from kinform.batch.discovery import DESCRIPTIONS, Found
 from kinform.errors import InputError, Problem
+from kinform.foundation.regular import not_a_file
 
 _FOLLOWED = (".toml", ".gltf", ".obj", ".dae", ".yaml", ".yml", ".csv", *DESCRIPTIONS)
 """Suffixes of files that name others, or may."""
@@ -78,7 +79,7 @@ def _reaches(source: Path, changed: set[str], root: str) -> bool:
 @cache
 def _names(path: str) -> tuple[tuple[str, bool], ...]:
     """The last parts of all texts in a file that could name files, and whether each is a pattern."""
-    if os.path.splitext(path)[1].lower() not in _FOLLOWED:
+    if os.path.splitext(path)[1].lower() not in _FOLLOWED or not_a_file(path) is not None:
         return ()
     try:
         text = Path(path).read_text(encoding="utf-8", errors="replace")

@@ -71,8 +71,10 @@ def looked_up(values: Any, steps: Sequence[str]) -> Any:
                     return None
                 return _WORDS[key](values)
             values = values[_index(values, key)]
-        else:
+        elif values is None:  # not known, and so is what would be below it
             return None
+        else:
+            raise KeyError(f"nothing is below the value {values!r}: {key!r} leads nowhere")
     return values
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import tomllib
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -12,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from kinform.errors import InputError, Problem
 from kinform.form.keys import steps_of
+from kinform.form.stated import stated_value, toml_of
 from kinform.study import constants, fits
 
 METHODS = ("grid", "one-at-a-time", "latin-hypercube", "sobol", "monte-carlo")
@@ -133,19 +133,12 @@ class Plan:
     measures: tuple[Measure, ...]
     makes: tuple[Make, ...]
     digest: str
-    """SHA-256 of the file."""
+    """SHA-256 of the file's text."""
 
 
-def read_plan(path: Path, nominal: Any = None) -> Plan:
-    """The study in a file. `nominal(design, steps)` gives the value that a manifest has at a path, for tolerances that
-    state none. Raises InputError with every problem."""
-    try:
-        data = path.read_bytes()
-        raw = tomllib.loads(data.decode("utf-8"))
-    except OSError as error:
-        raise InputError([Problem(f"cannot be read: {error.strerror}", str(path))]) from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError([Problem(f"is no TOML: {error}", str(path))]) from None
+def read_plan(path: Path) -> Plan:
+    """The study in a file. Raises InputError with every problem."""
+    text, raw = toml_of(path, "a study")
     try:
         tables = Tables.model_validate(raw)
     except ValidationError as error:
@@ -158,17 +151,17 @@ def read_plan(path: Path, nominal: Any = None) -> Plan:
     axes = []
     for one in tables.vary:
         try:
-            axes.append(replace(_axis(one, design, nominal), unit=one.unit))
+            axes.append(replace(_axis(one, design), unit=one.unit))
         except (ValueError, KeyError) as error:
             problems.append(Problem(f"[[vary]] {one.name!r}: {error.args[0]}", str(path)))
     problems += [Problem(text, str(path)) for text in _wrong_together(tables, axes)]
     if problems:
         raise InputError(problems)
-    digest = hashlib.sha256(data).hexdigest()
+    digest = hashlib.sha256(text.encode()).hexdigest()
     return Plan(path, design, tables.study, tuple(axes), tuple(tables.measure), tuple(tables.make), digest)
 
 
-def _axis(one: Vary, design: Path, nominal: Any) -> Axis:
+def _axis(one: Vary, design: Path) -> Axis:
     steps = None if one.value is None else steps_of(one.value)
     if one.values is not None:
         return Axis(one.name, steps, tuple(one.values))
@@ -179,8 +172,13 @@ def _axis(one: Vary, design: Path, nominal: Any) -> Axis:
         width = constants.SIGMAS * one.deviation
         return Axis(one.name, steps, None, "normal", one.mean - width, one.mean + width, one.steps)
     middle = one.nominal
-    if middle is None and steps is not None and nominal is not None:
-        middle = nominal(design, steps)
+    if middle is None and steps is not None and design.is_file():
+        try:
+            middle = stated_value(design, steps)
+        except KeyError as error:
+            raise ValueError(
+                f"its nominal value is not known ({error.args[0]}): correct value, or state nominal"
+            ) from None
     if not isinstance(middle, int | float) or isinstance(middle, bool):
         raise ValueError("its nominal value is not known: state nominal")
     low, high = _deviations(str(one.tolerance), one.diameter or abs(float(middle)))

@@ -115,6 +115,7 @@ def _task(
     arguments = {
         "design": str(plan.design.absolute()), "base": None if base is None else str(base.absolute()),
         "changes": changes, "measured": measured, "commands": commands, "allow_outside": settings.allow_outside,
+        "folder": str(plan.path.parent.absolute()),
     }  # fmt: skip
     return Task(f"sample {k}", "kinform.study.work:sample", arguments, settings.limits, code_of_here())
 

@@ -27,18 +27,25 @@ def sample(
     measured: Sequence[tuple[str, ...]],
     commands: Sequence[tuple[str, Sequence[str], str]] = (),
     allow_outside: bool = False,
+    folder: str | None = None,
 ) -> tuple[float | None, ...]:
     """The values at these paths of the design with these changes; None where a value is not known.
 
     `base` are results of the design as it stands: what a change leaves as it was is taken from there. `commands` make
-    meshes: the part, the words (with {file} for the mesh), the suffix. Raises InputError.
+    meshes: the part, the words (with {file} for the mesh), the suffix; they run in `folder`, that of the study. Raises
+    InputError.
     """
-    with tempfile.TemporaryDirectory(prefix="kinform-study-") as folder:
-        made = [_made(part, words, Path(folder) / f"mesh{k}{end}") for k, (part, words, end) in enumerate(commands)]
+    with tempfile.TemporaryDirectory(prefix="kinform-study-") as place:
+        made = [
+            _made(part, words, Path(place) / f"mesh{k}{end}", folder) for k, (part, words, end) in enumerate(commands)
+        ]
         reading = Reading(changes=(*changes, *made))
         outside = allow_outside or bool(made)
         outcome = method.run(design, base=base, reading=reading, allow_outside=outside)
-        return measure(outcome.design, measured)
+        try:
+            return measure(outcome.design, measured)
+        except KeyError as error:
+            raise InputError([Problem(f"[[measure]]: {error.args[0]}", design)]) from None
 
 
 def nominal(
@@ -48,6 +55,7 @@ def nominal(
     of its files."""
     done = method.run(design, output, allow_outside=allow_outside).design
     try:
+        _refuse_what_is_no_number(done, measured)
         return measure(done, measured), units(done, measured), dict(done.fingerprints.files)
     except KeyError as error:
         raise InputError([Problem(f"[[measure]]: {error.args[0]}", design)]) from None
@@ -60,6 +68,20 @@ def measure(design: Design, measured: Sequence[tuple[str, ...]]) -> tuple[float 
     shown = {topic: _topic(design, topic) for topic in sorted({steps[0] for steps in measured})}
     values = (looked_up(shown[steps[0]], _to_value(steps)) for steps in measured)
     return tuple(float(value) if isinstance(value, int | float) else None for value in values)
+
+
+def _refuse_what_is_no_number(design: Design, measured: Sequence[tuple[str, ...]]) -> None:
+    """Raises KeyError for a path at which there is a text, a list or a table."""
+    for steps in measured:
+        value = looked_up(_topic(design, steps[0]), _to_value(steps))
+        path = ".".join(steps)
+        if isinstance(value, Mapping):
+            raise KeyError(f"{path!r} is a table, no number: it has {', '.join(map(str, value)) or 'nothing'}")
+        if isinstance(value, Sequence):
+            what = (
+                f"the text {value!r}" if isinstance(value, str) else f"a list of {len(value)} ({path}.count, {path}.0)"
+            )
+            raise KeyError(f"{path!r} is {what}, no number")
 
 
 def units(design: Design, measured: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
@@ -103,9 +125,7 @@ def _topic(design: Design, topic: str) -> Any:
     if topic == "sensors":
         return _sensors(summary(design, "simulation")["sensors"])
     if topic not in TOPICS:
-        raise InputError([
-            Problem(f"{topic!r} is no topic: expected one of {', '.join([*TOPICS, *_BESIDES])}")
-        ])  # fmt: skip
+        raise KeyError(f"{topic!r} is no topic: expected one of {', '.join([*TOPICS, *_BESIDES])}")
     return summary(design, topic)
 
 
@@ -123,11 +143,13 @@ def _sensors(readings: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     return out
 
 
-def _made(part: str, words: Sequence[str], file: Path) -> tuple[tuple[str, ...], str]:
+def _made(part: str, words: Sequence[str], file: Path, folder: str | None) -> tuple[tuple[str, ...], str]:
     """The change that gives a part the mesh that a command makes."""
     command = [word.replace("{file}", str(file)) for word in words]
     try:
-        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            command, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", check=False, cwd=folder
+        )
     except OSError as error:
         raise InputError([Problem(f"{command[0]}: {error.strerror}", None, None, "see that it is installed")]) from None
     if done.returncode or not file.is_file():
