@@ -122,7 +122,7 @@ def test_files_of_others_are_left_out_and_said_so(designs, capsys):
 
 @pytest.mark.parametrize("arguments, message", [
     (["add", "nowhere"], "nowhere: error: there is no such file"),
-    (["add", "empty"], "empty: error: no design is below this folder"),
+    (["add", "empty"], "empty: error: no results file of a design is below this folder"),
     (["add", "note.txt"], "note.txt: error: this is not a results file"),
     (["add", "designs", "-c", "note.txt"], "note.txt: error: this is not a catalog"),
     (["find", "-c", "note.txt"], "note.txt: error: this is not a catalog"),

@@ -84,3 +84,13 @@ def test_a_catalog_gives_back_what_was_written(tmp_path):
     catalog.write(catalog.Catalog((), (one, dataclasses.replace(one, path="b", graph="h"))), tmp_path / "c.sqlite")
     assert catalog.read(tmp_path / "c.sqlite").entries[1].graph == "h"
     assert [e.path for _, e in catalog.like(tmp_path / "c.sqlite", one)[0]] == ["a"]
+
+
+def test_what_is_no_results_of_joints_is_told_with_the_command_that_makes_them(tmp_path):
+    catalog.write(catalog.Catalog(), tmp_path / "catalog.sqlite")
+    (tmp_path / "arm.urdf").write_text('<robot name="r"><link name="arm"/></robot>')
+    ran = ran_here("catalog", "find", "--like", "arm.urdf", cwd=tmp_path)
+    assert ran.returncode == 2 and "kinform run arm.urdf -o arm.h5" in ran.stderr
+    assert ran_here("import", "arm.urdf", "-o", "arm.h5", cwd=tmp_path).returncode == 0
+    ran = ran_here("catalog", "find", "--like", "arm.h5", cwd=tmp_path)
+    assert ran.returncode == 2 and "arm.h5: error: has no results of `kinform joints`" in ran.stderr

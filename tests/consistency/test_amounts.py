@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
+import numpy as np
 import pytest
+from support.assemblies import HERE
 from support.devices import body, rod
 from support.places import FIXTURES
 from support.requirements import ORIGIN, X, Y, Z, arm, design, state, wheel
+
+from kinform.model.assembly import Group, MassOverride
 
 
 def test_masses_are_compared_with_their_bounds():
@@ -27,6 +32,17 @@ def test_a_mass_nearer_to_its_bound_than_coarse_facets_allow_is_undecided(derive
     near = shaft.mass * (1.0 - 0.5 * shaft.mass_bound)
     assert state(made, "mass", of="shaft", maximum=near)[0] == "undecided"
     assert state(made, "mass", of="shaft", maximum=0.9 * near)[0] == "violated"
+
+
+def test_groups_with_a_stated_mass_weigh_that_and_not_what_their_parts_do():
+    made = design([body("a", 1.0), body("b", mass=None), body("base", 0.5)], [])
+    stated = MassOverride(3.0, np.array([0.1, 0.0, 0.0]), np.eye(3) * 1e-3)
+    grouped = replace(made, assembly=replace(made.assembly, groups=(Group("g", ("a", "b"), HERE, stated),)))
+    assert state(grouped, "mass", minimum=3.5 - 1e-9, maximum=3.5 + 1e-9)[0] == "met"
+    assert state(grouped, "mass", of="g", minimum=3.0 - 1e-9, maximum=3.0 + 1e-9)[0] == "met"
+    assert state(grouped, "mass", of="a", maximum=1.0 + 1e-9)[0] == "met"
+    assert state(grouped, "mass", of="b", maximum=9.0)[0] == "undecided"
+    assert state(grouped, "centre_of_mass", point=[0.3 / 3.5, 0, 0], tolerance=1e-9)[0] == "met"
 
 
 def test_the_centre_of_mass_of_several_parts():

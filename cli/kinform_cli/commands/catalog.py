@@ -156,7 +156,11 @@ def find(
     if alike is not None:
         if wanted != catalog.Wanted():
             raise typer.BadParameter("asks for all that a design does: give it alone", param_hint="--like")
-        near, total = catalog.like(file, catalog.entry_of(files.read(alike), "", ""))
+        if is_design(alike):
+            run = command("kinform", "run", alike, "-o", alike.with_suffix(".h5"))
+            raise refuse("--like takes a results file", file=alike, remedy=f"first {run}, then name that")
+        with files.needing(alike):
+            near, total = catalog.like(file, catalog.entry_of(files.read(alike), "", ""))
         designs = tuple(entry for _, entry in near)
     else:
         designs, total = catalog.find(file, wanted)

@@ -62,7 +62,11 @@ def _gate(entry: Entry) -> str:
 
 
 def _requirements_met(requirements: Sequence[CatalogRequirement]) -> str:
-    return f"{sum(r.met is True for r in requirements)} of {counted(len(requirements), 'requirement')} met"
+    open_ones = sum(r.met is None for r in requirements)
+    if open_ones == len(requirements):
+        return f"{counted(len(requirements), 'requirement')} not checked"
+    met = f"{sum(r.met is True for r in requirements)} of {counted(len(requirements), 'requirement')} met"
+    return met + (f", {open_ones} not checked" if open_ones else "")
 
 
 def as_json(entries: Sequence[Entry], states: Sequence[str]) -> str:

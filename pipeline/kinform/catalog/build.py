@@ -133,8 +133,9 @@ def _problem(error: Exception, path: Path) -> Problem:
 def _empty(folder: Path, left_out: list[Refused]) -> Problem:
     why = "; ".join(f"{item.path}: {item.reason}" for item in left_out[:3])
     return Problem(
-        f"no design is below this folder{': ' + why if why else ''}",
+        f"no results file of a design is below this folder{': ' + why if why else ''}",
         str(folder),
         None,
-        "make results there first: kinform run M.toml -o M.h5",
+        "make results there first: kinform run SOURCE -o F.h5, or of all designs: kinform batch FOLDER -o RESULTS; a "
+        "manifest or description that is named itself is run",
     )

@@ -13,6 +13,7 @@ from kinform.design import Design
 from kinform.errors import StageError
 from kinform.foundation.graphs.graph import forest
 from kinform.function import resolve_joint
+from kinform.function.amounts import amount_of
 from kinform.model.assembly import Assembly
 from kinform.model.findings import CheckReport
 from kinform.model.function import IntendedJoint, Requirement
@@ -158,8 +159,8 @@ def _loops(kinematics: Kinematics) -> int:
 def _mass(design: Design) -> float | None:
     if design.mass is None:
         return None
-    masses = [part.mass for part in design.mass.parts if part.mass is not None]
-    return float(sum(masses)) if masses and len(masses) == len(design.mass.parts) else None
+    found = amount_of(design.assembly, design.mass, [part.name for part in design.assembly.parts])
+    return None if isinstance(found, str) else found.mass
 
 
 def _size(assembly: Assembly) -> Triple | None:

@@ -9,7 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross
+from kinform.mass import weighed_together
 from kinform.model.arrays import Array
+from kinform.model.assembly import Assembly
 from kinform.model.mass import MassReport
 
 
@@ -38,10 +40,10 @@ class Amount:
         return float(np.linalg.norm(cross(axis, self.centre - point)))
 
 
-def amount_of(report: MassReport, parts: Sequence[str]) -> Amount | str:
-    """The parts together by the parallel axis theorem; a sentence where a mass is not known."""
-    by_name = {p.name: p for p in report.parts}
-    chosen = [by_name[name] for name in sorted(parts)]
+def amount_of(assembly: Assembly, report: MassReport, parts: Sequence[str]) -> Amount | str:
+    """The parts together by the parallel axis theorem, groups with a stated mass as that; a sentence where one is not
+    known."""
+    chosen = weighed_together(assembly, report, sorted(parts))
     for part in chosen:
         if part.mass is None:
             return f"the mass of '{part.name}' is not known: {part.reason}"

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from kinform.mass.compile import compile_mass
+from kinform.mass.compile import compile_mass, weighed_together
 
-__all__ = ["CODE_VERSION", "compile_mass"]
+__all__ = ["CODE_VERSION", "compile_mass", "weighed_together"]
 
 CODE_VERSION: int = 3

@@ -45,7 +45,7 @@ def compile_mass(
     stated = {group.name: group for group in assembly.groups if group.override is not None}
     frames = _frames(assembly)
     bodies = tuple(
-        _body_properties(body, _weights(body, by_name, stated, frames))
+        _body_properties(body, _weights(body.parts, by_name, stated, frames))
         for body in sorted(kinematics.bodies, key=lambda body: body.name)
     )
     problems = [(p.name, p.reason) for p in parts if p.mass is None and p.name not in assembly.weighed]
@@ -60,16 +60,22 @@ def _frames(assembly: Assembly) -> frozenset[str]:
     return frozenset(part.name for part in assembly.parts if part.mesh is None and part.override is None)
 
 
+def weighed_together(assembly: Assembly, report: MassReport, parts: Sequence[str]) -> list[MassProperties]:
+    """What these parts weigh together is the sum of: groups of them with a stated mass, and parts that are in none."""
+    stated = {group.name: group for group in assembly.groups if group.override is not None}
+    return _weights(parts, {part.name: part for part in report.parts}, stated, _frames(assembly))
+
+
 def _weights(
-    body: Body, parts: Mapping[str, MassProperties], stated: Mapping[str, Group], frames: frozenset[str]
+    names: Sequence[str], parts: Mapping[str, MassProperties], stated: Mapping[str, Group], frames: frozenset[str]
 ) -> list[MassProperties]:
-    """What a body weighs is the sum of: groups with a stated mass, and parts that are in none of them."""
-    inside = set(body.parts)
+    """What parts weigh is the sum of: groups with a stated mass, and parts that are in none of them."""
+    inside = set(names)
     groups = [group for _, group in sorted(stated.items()) if inside.issuperset(group.parts)]
     taken = {name for group in groups for name in group.parts}
     volumes = {group.name: [parts[name].volume for name in group.parts] for group in groups}
     whole = [_group_properties(group, volumes[group.name]) for group in groups]
-    left = [name for name in body.parts if name not in taken]
+    left = [name for name in names if name not in taken]
     heavy = [name for name in left if name not in frames]
     return whole + [parts[name] for name in (heavy if whole or heavy else left)]
 

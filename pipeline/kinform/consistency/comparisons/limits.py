@@ -151,7 +151,7 @@ def run_of_joint(
 def amount(context: Context, name: str | None) -> Amount | Answer:
     """Mass, centre and inertia of a part, a group, or everything. Needs masses."""
     parts = [p.name for p in context.assembly.parts] if name is None else list(context.assembly.parts_of(name))
-    result = amount_of(context.mass, parts)
+    result = amount_of(context.assembly, context.mass, parts)
     return undecided(result, WEIGH) if isinstance(result, str) else result
 
 
