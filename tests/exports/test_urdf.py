@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 
@@ -14,6 +15,7 @@ from support.other_programs import forward, numbers, posed
 from support.places import FIXTURES
 from support.validators import package
 
+import kinform
 from kinform.exports import export
 from kinform.exports.names import comment
 
@@ -221,3 +223,17 @@ def test_a_free_body_of_unknown_mass_is_a_grain_and_named(format):
     assert masses == [1e-9]
     assert sum(text.startswith("stick: its mass is not known") for text in made.lost) == 1
     assert any("1e-09 kg" in text for text in made.lost)
+
+
+def test_limits_of_a_description_are_kept_in_another_format_where_the_parts_leave_more(tmp_path):
+    text = """<robot name="r"><link name="base"><visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual></link>
+    <link name="arm"><visual><origin xyz="0 0.1 0"/><geometry><box size="0.02 0.2 0.02"/></geometry></visual></link>
+    <joint name="turn" type="revolute"><parent link="base"/><child link="arm"/><origin xyz="0.2 0 0"/>
+    <axis xyz="0 0 1"/><limit lower="-0.4" upper="UPPER" effort="1" velocity="1"/></joint></robot>"""
+    meets = math.atan2(0.15, 0.05) - math.asin(0.01 / math.hypot(0.15, 0.05))  # the arm's side at an edge of the base
+    for upper, kept in ((0.3, 0.3), (2.0, meets)):
+        (tmp_path / "r.urdf").write_text(text.replace("UPPER", str(upper)))
+        root = ElementTree.fromstring(export(kinform.run(tmp_path / "r.urdf").design, "mjcf").files["r.xml"])
+        joint = root.find(".//joint")
+        ends = [float(joint.get("axis").split()[2]) * float(end) for end in joint.get("range").split()]
+        assert sorted(ends) == pytest.approx([-0.4, kept], abs=1e-3)

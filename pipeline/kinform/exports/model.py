@@ -18,7 +18,7 @@ from kinform.behaviour.signals import STEADY
 from kinform.design import Design
 from kinform.errors import StageError
 from kinform.foundation.algebra.spatial import quaternions
-from kinform.function import stated_ranges
+from kinform.function import resolve_joint, stated_ranges
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.function import SimulationRequest
@@ -198,17 +198,23 @@ def _starts(mechanism: Mechanism, q: Array, v: Array) -> dict[str, BodyStart]:
 def _ranges(
     assembly: Assembly, kinematics: Kinematics, joints: tuple[JointComponent, ...]
 ) -> dict[str, tuple[float, float]]:
-    """Ranges that the geometry leaves; a side that it leaves open, or that is not known, as the function states it."""
+    """Ranges that the geometry leaves; a side that it leaves open, or that is not known, as the function states it.
+    What a robot description states is a limit, beyond which it does not go though its parts could."""
     single = {joint.subject for joint in joints if joint.kind.rates == 1}
     out: dict[str, tuple[float, float]] = {}
     for name, (low, high) in stated_ranges(assembly, kinematics):
         if name in single:
             out[name] = (float(low), float(high))
+    said = {joint.name for description in assembly.descriptions for joint in description.joints}
+    named = (resolve_joint(assembly, kinematics, name).joint for name in sorted(said))
+    limited = {joint.name for joint in named if joint is not None}
     for joint in kinematics.joints:
         if joint.name in single and joint.range_status in ("found", "unbounded"):
             stated_low, stated_high = out.get(joint.name, (-np.inf, np.inf))
             low = stated_low if joint.range_lower is None else joint.range_lower
             high = stated_high if joint.range_upper is None else joint.range_upper
+            if joint.name in limited:
+                low, high = max(low, stated_low), min(high, stated_high)
             out[joint.name] = (float(low), float(high))
     return dict(sorted(out.items()))
 

@@ -47,7 +47,7 @@ def export(model: ExportModel) -> Exported:
     if any(joint.limits is not None and UNLIMITED in map(abs, joint.limits) for joint in joints):
         remarks.append(f"limits of {UNLIMITED:g} stand for ranges that are open or not known")
     if any(joint.limits is not None for joint in joints):
-        remarks.append(f"efforts and velocities are not limited: {UNLIMITED:g} stands for that")
+        remarks.append(f"limits of effort and velocity are not carried: {UNLIMITED:g} stands for them")
     remarks.append("URDF has no gravity; ours is " + ", ".join(f"{x:g}" for x in model.gravity) + " m/s²")
     text = render(
         "robot.urdf.j2", robot=robot, joints=joints, free=free, lost=lost, remarks=remarks, unlimited=UNLIMITED,
