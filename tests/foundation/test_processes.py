@@ -51,3 +51,13 @@ def test_what_was_done_before_a_crash_comes_in_order():
         come.extend(map_in_processes(ended, [1, 2, 3, 4, 5, 6], jobs=2, name=str))
     done = map_in_processes(ended, [1, 2, 3, 4], jobs=2)
     assert list(done) == [1, 4, 9, 16]
+
+
+def test_little_work_gets_one_process_and_a_crash_in_it_is_told_alike():
+    workers = set(map_in_processes(lambda _: os.getpid(), range(6), jobs=2, little=True))
+    assert len(workers) == 1
+    assert os.getpid() not in workers
+    come = []
+    with pytest.raises(KinformError, match=r"part 5: .*SIGSEGV"):
+        come.extend(map_in_processes(ended, [1, 2, 5, 6], jobs=2, name=lambda k: f"part {k}", little=True))
+    assert list(map_in_processes(ended, [1, 2, 3], jobs=2, little=True)) == [1, 4, 9]

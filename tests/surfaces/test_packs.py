@@ -71,4 +71,5 @@ def test_packs_hold_every_mesh_once_the_largest_first():
         assert held[0] == [3]
         assert all(len(pack) == 1 or sum(facets[k] for k in pack) <= PACK for pack in held)
     assert len(packs([1000] * 10, 1)) == 1
-    assert len(packs([1000] * 10, 2)) == 2
+    assert len(packs([1000] * 100, 2)) == 2
+    assert len(packs([100] * 10, 2)) == 1

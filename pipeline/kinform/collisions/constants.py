@@ -32,6 +32,9 @@ SPHERES_FAR = 0.1
 """Spheres whose distance is more than this need no closer look."""
 STEPS_MOST = 60
 """Steps that are taken as wholes."""
+STEPS_TRIED = 8
+"""Steps after which it is seen whether so many reach the end: a pair that stays near is followed with the facets that
+count, which are fewer."""
 CERTAIN = 1.0 - 1e-6
 """Share of a distance that is trusted."""
 WHOLES_TOUCH = 1e-6

@@ -15,6 +15,7 @@ from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.posed_pairs import Nodes, moving_pairs
 from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.parts.shapes import Shapes
+from kinform.foundation.algebra.rotations import matrices, rotation_vectors, turned
 from kinform.foundation.progress import Progress
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Part
@@ -142,12 +143,8 @@ def _parts_of_a_step(simulation: Simulation, size: float) -> int:
 
 
 def _displacements(simulation: Simulation) -> Array:
-    from scipy.spatial.transform import Rotation
-
-    steps, bodies = simulation.p_WB.shape[:2]
-    out = np.zeros((steps, bodies, 4, 4))
-    w, x, y, z = np.moveaxis(simulation.q_WB.reshape(-1, 4), 1, 0)
-    out[..., :3, :3] = Rotation.from_quat(np.stack([x, y, z, w], axis=1)).as_matrix().reshape(steps, bodies, 3, 3)
+    out = np.zeros((*simulation.p_WB.shape[:2], 4, 4))
+    out[..., :3, :3] = matrices(simulation.q_WB)
     out[..., :3, 3] = simulation.p_WB
     out[..., 3, 3] = 1.0
     return out
@@ -155,12 +152,9 @@ def _displacements(simulation: Simulation) -> Array:
 
 def _nodes(simulation: Simulation) -> Nodes:
     """The displacements of all bodies at the output times, and between them along screws of constant rotation."""
-    from scipy.spatial.transform import Rotation
-
     displacements, time = _displacements(simulation), simulation.time
     R = displacements[..., :3, :3]
-    turned = (np.swapaxes(R[:-1], 2, 3) @ R[1:]).reshape(-1, 3, 3)
-    turns = Rotation.from_matrix(turned).as_rotvec().reshape(*R[1:].shape[:2], 3)
+    turns = rotation_vectors(np.swapaxes(R[:-1], 2, 3) @ R[1:])
 
     def between(s: float) -> Array:
         out = np.zeros((displacements.shape[1], 4, 4))
@@ -169,7 +163,7 @@ def _nodes(simulation: Simulation) -> Nodes:
             return np.asarray(displacements[n])
         n = min(max(int(np.searchsorted(time, s, side="right")) - 1, 0), len(time) - 2)
         share = (s - time[n]) / (time[n + 1] - time[n])
-        out[:, :3, :3] = R[n] @ Rotation.from_rotvec(share * turns[n]).as_matrix()
+        out[:, :3, :3] = R[n] @ turned(share * turns[n])
         out[:, :3, 3] = (1.0 - share) * displacements[n, :, :3, 3] + share * displacements[n + 1, :, :3, 3]
         out[:, 3, 3] = 1.0
         return out

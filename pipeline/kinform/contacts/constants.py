@@ -288,3 +288,11 @@ POCKET_GAP = math.pi - 0.05
 MOST_BESIDE = 5
 """Points of an outline that may lie within a grain along x, of each on average, for a sweep along it. With five of a
 thousand points each it takes as long as a tree does, with none a sixth of that."""
+
+# find: pairs side by side
+
+LITTLE_PAIRS = 64
+"""Pairs, of ..."""
+LITTLE_FACETS = 10_000
+"""... facets in all, that are looked at in one process: less than half a second of work, and another process costs 0.05
+to 0.1 s to start, with what it imports."""

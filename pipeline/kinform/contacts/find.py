@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import replace
 
+from kinform.contacts import constants
 from kinform.contacts.fastening import suggest
 from kinform.contacts.overlap.solids import SolidStore
 from kinform.contacts.pair import PairContacts, pair_contacts
@@ -33,6 +34,11 @@ class _Work:
         tolerances = self.assembly.tolerances
         return pair_contacts(parts, self.surfaces, self.store, self.solids, self.tolerance[pair], tolerances)
 
+    def is_little(self, pairs: list[Pair]) -> bool:
+        """Whether it takes no longer than other processes take to start."""
+        meshes = [mesh for name in {name for pair in pairs for name in pair} if (mesh := self.parts[name].mesh)]
+        return len(pairs) <= constants.LITTLE_PAIRS and sum(len(m.faces) for m in meshes) <= constants.LITTLE_FACETS
+
 
 def find(
     assembly: Assembly,
@@ -55,7 +61,7 @@ def find(
     wanted = [pair for pair in tolerance if pair not in reused]
     work = _Work(assembly, surfaces, tolerance)
     name = lambda pair: f"contacts of {pair[0]} and {pair[1]}"
-    computed = map_in_processes(work.contacts, wanted, jobs, progress, name)
+    computed = map_in_processes(work.contacts, wanted, jobs, progress, name, little=work.is_little(wanted))
     done: dict[Pair, PairContacts] = dict(zip(wanted, computed, strict=True))
     if reuse is not None:
         done |= _earlier_contacts(reuse, reused)

@@ -56,6 +56,9 @@ FEW_PAIRS = 1 << 16
 """Pairs that share a place up to which all of them are measured: in all, ..."""
 SHARED_PAIRS = 2
 """... and a point."""
+MEASURED = 1 << 21
+"""Distances to points of one set that are measured before a tree is made: 0.02 s, a tenth of what importing trees
+takes."""
 
 # meshes/probes
 

@@ -42,21 +42,24 @@ def map_in_processes(
     jobs: int,
     progress: Progress | None = None,
     name: Callable[[Item], str] = str,
+    *,
+    little: bool = False,
 ) -> Iterator[Result]:
     """The function of each item, in their order, whatever the number of `jobs`; `progress(done, total)` counts items.
 
     Items and results are sent between processes, the function is not. Where the system cannot fork, threads do it.
     Raises Crash, with the `name` of the item, where another process ends without an answer: with more than one of the
-    `jobs`, also a single item is computed in one.
+    `jobs`, also a single item is computed in one. `little`: all of them together take no longer than several processes
+    take to start, and are computed in one.
     """
-    for done, result in enumerate(_results(function, items, jobs, name), start=1):
+    for done, result in enumerate(_results(function, items, jobs, name, little), start=1):
         if progress is not None:
             progress(done, len(items))
         yield result
 
 
 def _results(
-    function: Callable[[Item], Result], items: Sequence[Item], jobs: int, name: Callable[[Item], str]
+    function: Callable[[Item], Result], items: Sequence[Item], jobs: int, name: Callable[[Item], str], little: bool
 ) -> Iterator[Result]:
     if jobs <= 1:
         for item in items:
@@ -66,6 +69,14 @@ def _results(
         return
     if len(items) < 2:
         yield from _one_by_one(function, items, name)
+        return
+    if little:
+        try:
+            together = in_own_process(lambda: [function(item) for item in items])
+        except Crash:
+            yield from _one_by_one(function, items, name)
+        else:
+            yield from together
         return
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor

@@ -388,6 +388,9 @@ PACK = 200_000
 rows: so100 (60,000 facets in 13 meshes) takes 1.6 s of processor in one pack and 2.5 s mesh by mesh; packs of 400,000
 gain 7 % over packs of 100,000, those of 200,000 5 %, for 140 and 60 MB more."""
 
+LITTLE = 10_000
+"""Facets in all that are recovered in one pack, however many processors there are: less than half a second of work."""
+
 THREAD_FACET = 2e-2
 """Share of the area below which a plane may be a facet of a thread."""
 

@@ -57,7 +57,8 @@ def recover_all(meshes: Sequence[Mesh], tolerances: Tolerances) -> list[MeshSurf
 def packs(facets: Sequence[int], jobs: int = 1) -> list[list[int]]:
     """Positions of meshes of so many facets, the largest first, in packs that `recover_all` takes at once: none of more
     than `constants.PACK` facets in which there are several meshes, and as many as jobs where there is enough to do."""
-    most = min(constants.PACK, sum(facets) // max(jobs, 1)) if jobs > 1 else constants.PACK
+    several = jobs > 1 and sum(facets) > constants.LITTLE
+    most = min(constants.PACK, sum(facets) // jobs) if several else constants.PACK
     out: list[list[int]] = []
     held = most + 1
     for k in sorted(range(len(facets)), key=lambda k: -facets[k]):

@@ -13,7 +13,7 @@ from functools import cached_property
 import fcl
 import numpy as np
 
-from kinform.collisions.constants import CERTAIN, SHORT_STEP, SPHERES_FAR, STEPS_MOST, WHOLES_TOUCH
+from kinform.collisions.constants import CERTAIN, SHORT_STEP, SPHERES_FAR, STEPS_MOST, STEPS_TRIED, WHOLES_TOUCH
 from kinform.collisions.pair.course import Course
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.at_work import at_work_on
@@ -64,8 +64,11 @@ class Wholes:
         return following, following < end and (free < SHORT_STEP * self._size or self._steps > STEPS_MOST)
 
     def clear_until(self, course: Course, start: float, end: float) -> float:
-        """The parameter up to which they are certainly apart: `start` where they touch, `end` where they stay so."""
+        """The parameter up to which they are certainly apart: `start` where they touch, `end` where they stay so; less
+        where so many steps as are taken would not reach the end."""
         s, short = self.step(course, start, end)
         while s < end and not short:
+            if self._steps >= STEPS_TRIED and (s - start) * STEPS_MOST < (end - start) * self._steps:
+                break
             s, short = self.step(course, s, end)
         return s

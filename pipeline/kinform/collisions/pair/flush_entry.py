@@ -33,8 +33,8 @@ class Probes:
         near = np.flatnonzero(out > -POINTS_FAR * other.mesh.diagonal)
         if len(near):
             inside = other.contains(placed[near])
-            out[near] = np.where(inside, 0.0, -other.away(placed[near]))
-            deep = near[inside]
+            deep, clear = near[inside], near[~inside]
+            out[clear] = -other.away(placed[clear])
             out[deep] = other.whole().depths(placed[deep])[0]
         return np.asarray(out)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.foundation.algebra.rotations import matrices, rotation_vectors
 from kinform.foundation.algebra.vectors import cross, cross_matrix
 from kinform.model.arrays import Array
 
@@ -36,9 +37,7 @@ def exponentials(screws: Array, q: Array) -> Array:
 
 def twist_of(X: Array) -> Array:
     """(6,) twist (ω; v at the origin) whose displacement is X (4, 4), by less than half a turn."""
-    from scipy.spatial.transform import Rotation
-
-    omega = Rotation.from_matrix(X[:3, :3]).as_rotvec()
+    omega = rotation_vectors(X[:3, :3])
     spin = cross_matrix(omega)
     _, versine, rest = _shares(float(np.linalg.norm(omega)))
     return np.concatenate([omega, np.linalg.solve(np.eye(3) + versine * spin + rest * spin @ spin, X[:3, 3])])
@@ -46,10 +45,8 @@ def twist_of(X: Array) -> Array:
 
 def poses(positions: Array, quaternions: Array) -> Array:
     """(n, 4, 4) poses at positions (n, 3), turned by unit quaternions (n, 4) wxyz."""
-    from scipy.spatial.transform import Rotation
-
     out = np.tile(np.eye(4), (len(positions), 1, 1))
-    out[:, :3, :3] = Rotation.from_quat(quaternions, scalar_first=True).as_matrix()
+    out[:, :3, :3] = matrices(quaternions)
     out[:, :3, 3] = positions
     return out
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import fcl
 import numpy as np
@@ -14,6 +13,7 @@ from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
 from kinform.foundation.meshes.edges import shared_edges
 from kinform.foundation.meshes.fcl_adapter import fcl_model, partial_model
+from kinform.foundation.meshes.near import Nearest
 from kinform.foundation.meshes.parity import Ray
 from kinform.foundation.meshes.probes import Region
 from kinform.foundation.meshes.rings import Ring, rings_of
@@ -21,9 +21,6 @@ from kinform.foundation.meshes.surface_table import SurfaceTable
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
-
-if TYPE_CHECKING:
-    from scipy.spatial import cKDTree
 
 
 class MeshIndex:
@@ -37,7 +34,7 @@ class MeshIndex:
         self._shells: Ints | None = None
         self._boxes: FacetBoxes | None = None
         self._rays: list[Ray] | None = None
-        self._near: list[tuple[cKDTree, float]] | None = None
+        self._near: list[tuple[Nearest, float]] | None = None
         self._table: SurfaceTable | None = None
         self._rings: tuple[Ring, ...] | None = None
         self.low: Array = mesh.vertices.min(axis=0)
@@ -141,8 +138,8 @@ class MeshIndex:
         if self._near is None:
             self._near = _balls(self.mesh)
         out = np.full(len(points), np.inf)
-        for tree, radius in self._near:
-            out = np.minimum(out, tree.query(points)[0] - radius)
+        for centres, radius in self._near:
+            out = np.minimum(out, centres.away(points) - radius)
         return np.asarray(np.maximum(out, 0.0))
 
     def contains(self, points: Array) -> Flags:
@@ -175,10 +172,8 @@ def _spans(corners: Array) -> Array:
     return cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
 
 
-def _balls(mesh: Mesh) -> list[tuple[cKDTree, float]]:
+def _balls(mesh: Mesh) -> list[tuple[Nearest, float]]:
     """Middles of balls that hold all facets, with their radius (m), by octaves of it."""
-    from scipy.spatial import cKDTree
-
     corners = mesh.vertices[mesh.faces]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     parts = np.clip(np.ceil(longest / max(BALL_SHARE * mesh.diagonal, 1e-300)), 1, BALL_PARTS).astype(np.int64)
@@ -197,7 +192,7 @@ def _balls(mesh: Mesh) -> list[tuple[cKDTree, float]]:
         place = np.round((points[level == k] - mesh.vertices.min(axis=0)) / cell).astype(np.int64)
         _, kept = np.unique((place[:, 0] << 40) + (place[:, 1] << 20) + place[:, 2], return_index=True)
         centres = mesh.vertices.min(axis=0) + cell * place[kept]
-        out.append((cKDTree(centres), largest + 0.5 * float(np.sqrt(3.0)) * cell))
+        out.append((Nearest(centres), largest + 0.5 * float(np.sqrt(3.0)) * cell))
     return out
 
 

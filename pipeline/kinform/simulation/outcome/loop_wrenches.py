@@ -12,9 +12,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import sparse
 
 from kinform.foundation.algebra.vectors import cross_matrix
+from kinform.foundation.graphs.graph import UnionFind
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.simulation.constants import UNDETERMINED_SHARE
 
@@ -109,10 +109,14 @@ def _stacks(shares: Shares) -> Iterator[_Stack]:
     if len(shares.gears):
         yield _Stack(*(np.arange(many)[None] for many in (len(shares.owner), loops, joints)))
         return
-    touched = sparse.csr_matrix(shares.by_loops != 0.0)
-    count, of_loop = sparse.csgraph.connected_components(touched.T @ touched, directed=False)
-    of_joint = np.full(joints, -1)
-    rows, columns = touched.nonzero()
+    sets, of_joint = UnionFind(loops), np.full(joints, -1)
+    first: dict[int, int] = {}
+    rows, columns = np.nonzero(shares.by_loops)
+    for joint, loop in zip(rows.tolist(), columns.tolist(), strict=True):
+        sets.union(first.setdefault(joint, loop), loop)
+    # systems are numbered as their first loops are
+    roots, of_loop = np.unique([sets.find(loop) for loop in range(loops)], return_inverse=True)
+    count = len(roots)
     of_joint[rows] = of_loop[columns]
     of_rate = of_joint[shares.owner]
     lists = [[np.flatnonzero(of == k) for of in (of_rate, of_loop, of_joint)] for k in range(count)]
