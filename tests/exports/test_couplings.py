@@ -110,3 +110,32 @@ def test_a_gear_between_joints_of_different_sub_assemblies_is_in_the_one_around_
     assert {ports["a_value"], ports["b_value"]} <= values
     ran = analysed(made, tmp_path)
     assert (ran.returncode, ran.stderr) == (0, "")
+
+
+@pytest.fixture(scope="module")
+def summed():
+    """A differential: the crown has the mean of what its two half shafts have."""
+    parts = [block(name, (x, 0.0, 0.0)) for name, x in (("crown", 0.0), ("left", -0.3), ("right", 0.3))]
+    wanted = [intended(part.name, "base", part.name, "revolute", X, (0, 0, 0)) for part in parts]
+    made = device(
+        parts, [], intended=wanted, couplings=[Coupling(("crown", "left"), 0.5, "device.toml", 1, {"right": 0.5})],
+        drives=[drive("left", "motion", sine(90, 1)), drive("right", "motion", sine(40, 2))],
+        level="functional", duration=0.5, step=0.05,
+    )  # fmt: skip
+    found = design(made)
+    assert (found.simulation.status, found.simulation.level) == ("done", "functional")
+    q = dict(zip(found.simulation.joint_names, found.simulation.joint_position.T, strict=True))
+    np.testing.assert_allclose(q["base~crown"], 0.5 * (q["base~left"] + q["base~right"]), atol=1e-9)
+    return found
+
+
+def test_rumoca_turns_the_crown_as_we_do(summed, tmp_path):
+    _, q = solved(summed, tmp_path)
+    np.testing.assert_allclose(q, summed.simulation.q_WB, atol=1e-6)
+
+
+def test_ghdl_reads_the_train(summed, tmp_path):
+    made = export(summed, "vhdl-ams")
+    assert b"entity work.gear_3" in made.files["3_device.vhd"]
+    ran = analysed(made, tmp_path)
+    assert (ran.returncode, ran.stderr) == (0, "")

@@ -311,11 +311,11 @@ def test_the_function_alone_is_simulated_with_its_couplings():
     assert names["base~wheel"] == pytest.approx(np.pi / 4)
 
 
-def test_couplings_are_not_imposed_on_what_geometry_gives_and_the_run_says_so():
+def test_couplings_are_imposed_where_geometry_gives_no_ratio_and_the_run_says_so():
     made, chain, mass = functional_device()
     run = simulate(*meshed(made, chain, mass), level="kinematic")
-    assert run.joint_position[-1, run.joint_names.index("base~wheel")] == 0.0
-    assert any("coupling" in note for note in run.assumptions)
+    assert run.joint_position[-1, run.joint_names.index("base~wheel")] == pytest.approx(np.pi / 4)
+    assert any("coupling of out and in is imposed as stated" in note for note in run.assumptions)
 
 
 def test_without_joints_and_meshes_there_is_nothing_to_simulate():

@@ -54,10 +54,13 @@ def test_gears_couple_shafts_and_keep_the_count():
     joints = [joint("base", "one", "revolute", Z, (0, 0, 0)), joint("base", "two", "revolute", Z, (1, 0, 0))]
     couplings = [Coupling(("a", "b"), 3.0, "device.toml", 1)]
     made = device(parts, joints, intended=wanted, couplings=couplings)
-    assert build(*made).system.gears == ()
     system = build(*made, gears=True).system
     assert [gear.ratio for gear in system.gears] == [3.0]
     assert count(system).balanced
+    # no teeth give these joints a ratio: it is imposed on joints of geometry too, and said to be stated
+    assert build(*made, gears=True).imposed == ()
+    assert build(*made).system.gears[0].ratio == 3.0
+    assert build(*made).imposed == (("gear 1 a b", ""),)
 
 
 def test_a_port_in_no_node_or_in_two_is_refused():

@@ -61,6 +61,20 @@ def epicyclic():
     return {"frame": frame, "carrier": carrier, "planet": planet}
 
 
+def planetary():
+    """The same with a planet of 18 teeth, 16 mm off, in a ring of 50, and a sun of 14 on a journal of the frame."""
+    apart, low = 0.5 * (50 - 18), -12
+    frame = ring(50, 30, 24.2) + rod(30, low - 4, low, 96) + (rod(30, low, 0, 96) - rod(27, low - 1, 1, 96))
+    frame += rod(3, low, WIDTH + 1, 48) + rod(5, low, -9, 48) + rod(5, -4, -2.5, 48) + rod(4, -2.5, 0, 48)
+    frame += rod(4, WIDTH, WIDTH + 1, 48)
+    carrier = rod(7, -9, -4, 48) + box(0, apart, -3, 3, -8, -5) + rod(5, -8, 0, 48).translate((apart, 0, 0))
+    carrier -= rod(3, -20, 5, 48)
+    carrier += (rod(3, 0, WIDTH + 1, 48) + rod(5, WIDTH, WIDTH + 1, 48)).translate((apart, 0, 0))
+    planet = wheel(limited(Gear(18, thin=0.04).outline(), 0.0, 9.7), apart)
+    sun = wheel(Gear(14, thin=0.04).outline(np.pi / 14))
+    return {"frame": frame, "carrier": carrier, "planet": planet, "sun": sun}
+
+
 def rack_and_pinion(teeth=20, turn=0.1, points=12, thin=0.0):
     """A pinion about z at the origin, and a rack below it that slides along x in a T slot."""
     gear = Gear(teeth, thin=thin, points=points)

@@ -162,7 +162,7 @@ _PARAMETERS: dict[type[Component], Callable[[Any, Lengths], str]] = {
         f"{_triple(c.stiffness)} N/m, {_triple(c.torsion)} N·m/rad, {_triple(c.damping)} N·s/m, "
         f"{_triple(c.torsion_damping)} N·m·s/rad at {u.point(c.point)} {u.unit}"
     ),
-    Gear: lambda c, u: f"a = {number(c.ratio)}·b",
+    Gear: lambda c, u: "a = " + " + ".join(f"{number(-factor)}·{port}" for port, factor in c.terms[1:]),
     LoadComponent: lambda c, u: (
         f"{_triple(c.force)} N, {_triple(c.torque)} N·m at {u.point(c.point)} {u.unit}"
         f"{', turning with it' if c.turning else ''}"

@@ -21,6 +21,7 @@ from kinform.behaviour.components import (
     System,
 )
 from kinform.behaviour.counting import Count, count, counts
+from kinform.behaviour.coupled import imposed_couplings
 from kinform.behaviour.diagnosis import faults
 from kinform.behaviour.model import Model
 from kinform.behaviour.nested import flat, nest, placed
@@ -83,6 +84,7 @@ __all__ = [
     "counts",
     "faults",
     "flat",
+    "imposed_couplings",
     "nest",
     "one_freedom",
     "placed",
@@ -90,4 +92,4 @@ __all__ = [
     "smooth",
 ]
 
-CODE_VERSION: int = 10
+CODE_VERSION: int = 11

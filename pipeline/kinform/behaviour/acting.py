@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from string import ascii_lowercase
 
 import numpy as np
 
@@ -177,22 +178,25 @@ def _number(drive: Drive, key: str, default: float | None = None) -> float:
 
 def make_gear(
     assembly: Assembly, kinematics: Kinematics, joints: Joints, coupling: Coupling, number: int
-) -> tuple[Gear | None, tuple[str, str], str]:
-    """(component, joints of its two sides, why not)."""
-    first, second = (one_freedom(assembly, kinematics, joints, name) for name in coupling.joints)
-    for side in (first, second):
+) -> tuple[Gear | None, dict[str, str], str]:
+    """(component, the joint at each of its ports, why not)."""
+    sides = []
+    for name in coupling.every:
+        side = one_freedom(assembly, kinematics, joints, name)
         if isinstance(side, str):
-            return None, ("", ""), side
+            return None, {}, side
         if side.joint.kind.rates != 1:
             kind = side.joint.kind
             why = f'the joint "{side.joint.subject}" is {kind.name}: it has {kind.rates} freedoms, not one'
-            return None, ("", ""), why
-    assert not isinstance(first, str) and not isinstance(second, str)
-    ratio = first.sign * second.sign * coupling.ratio
-    if not math.isfinite(ratio):
-        return None, ("", ""), "its ratio is not a number"
-    name = f"gear {number} {coupling.joints[0]} {coupling.joints[1]}"
-    return Gear(name, name, ratio), (first.joint.subject, second.joint.subject), ""
+            return None, {}, why
+        sides.append(side)
+    of_joints = (coupling.ratio, *coupling.others.values())
+    ratio, *others = (sides[0].sign * side.sign * float(one) for side, one in zip(sides[1:], of_joints, strict=True))
+    if not all(math.isfinite(one) for one in (ratio, *others)):
+        return None, {}, "its ratio is not a number"
+    name = " ".join([f"gear {number}", *coupling.every])
+    gear = Gear(name, name, ratio, others=dict(zip(ascii_lowercase[2:], others, strict=False)))
+    return gear, {port.name: side.joint.subject for port, side in zip(gear.ports, sides, strict=True)}, ""
 
 
 def mesh_gear(coupling: Found, joints: Joints) -> Gear | str:

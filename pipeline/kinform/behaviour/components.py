@@ -55,9 +55,11 @@ class JointComponent(Component):
 
 @dataclass(frozen=True, eq=False)
 class Gear(Component):
-    """value at a = ratio · value at b; the efforts do no work between them. Two equations.
+    """value at a = ratio · value at b + Σ others · value at c, d, …; the efforts do no work between them. An equation a
+    port.
 
-    Where teeth do that, their force acts along one of two lines through the pitch point, whichever pushes.
+    Where teeth do that, their force acts along one of two lines through the pitch point, whichever pushes. Planetary
+    trains and differentials have three ports and more.
     """
 
     PORTS = (Port("a", 1), Port("b", 1))
@@ -72,6 +74,18 @@ class Gear(Component):
     lower: JointValue = -math.inf
     """Values at a (rad or m) between which there are teeth."""
     upper: JointValue = math.inf
+    others: dict[str, float] = field(default_factory=dict)
+    """By the names of the ports after b, which are c, d, …: the ratio of each."""
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """a, b, and one for each of the others."""
+        return (*self.PORTS, *(Port(name, 1) for name in self.others))
+
+    @property
+    def terms(self) -> tuple[tuple[str, float], ...]:
+        """Ports, each with what multiplies its value in the sum that is zero: 1 at a."""
+        return (("a", 1.0), ("b", -self.ratio), *((name, -float(ratio)) for name, ratio in self.others.items()))
 
 
 @dataclass(frozen=True, eq=False)

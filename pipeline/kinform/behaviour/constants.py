@@ -42,3 +42,6 @@ LEAST_GAS = 1e-6
 STRAIGHT = 1e-9
 """Share of a table's span by which rows may be off the line between its ends and count as on it: tables that programs
 write have nine digits and more."""
+TIED = 1e-9
+"""Share of the greatest singular value of ratios between joints up to which one is nought: ratios are given to six
+digits and more, and stand side by side as they are, each row over its greatest."""

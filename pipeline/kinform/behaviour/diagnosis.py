@@ -132,7 +132,7 @@ def _faults_of_nodes(system: System, component: Component) -> Iterator[str]:
     if isinstance(component, LoadComponent):
         yield from _one_body(system, component, "frame")
     if isinstance(component, Gear):
-        for port in ("a", "b"):
+        for port, _ in component.terms:
             yield from _one_shaft(system, component, port)
     if isinstance(component, Actor | VoltageController):
         yield from _one_shaft(system, component, "shaft")

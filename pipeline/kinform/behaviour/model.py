@@ -14,7 +14,9 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
+from collections.abc import Mapping
 from dataclasses import replace
+from string import ascii_lowercase
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -237,14 +239,19 @@ class Model:
         *,
         pitch_point: ArrayLike | None = None,
         flanks: tuple[ArrayLike, ArrayLike] | None = None,
+        others: Mapping[str, float] | None = None,
     ) -> None:
-        """The value of joint `a` is the ratio times that of joint `b`.
+        """The value of joint `a` is the ratio times that of joint `b`, and of `others`, by their names, each with its
+        own ratio: planetary trains and differentials.
 
         `pitch_point` (3,) m and `flanks`, the directions (3,) in which either side of the teeth at `a` pushes those at
         `b`, where the force between the teeth is to be known, and what it does to the bearings.
         """
         flank, back = (None, None) if flanks is None else (_unit(side) for side in flanks)
-        self.add(Gear(name, name, ratio, _vector(pitch_point), flank, back), a=a, b=b)
+        more = dict(zip(ascii_lowercase[2:], (others or {}).items(), strict=False))
+        ratios = {port: factor for port, (_, factor) in more.items()}
+        gear = Gear(name, name, ratio, _vector(pitch_point), flank, back, others=ratios)
+        self.add(gear, a=a, b=b, **{port: joint for port, (joint, _) in more.items()})
 
     def servo(
         self, name: str, joint: Where, target: Signal, controller: shafts.Controller, *, freedom: int | None = None

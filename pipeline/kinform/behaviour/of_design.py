@@ -10,12 +10,14 @@ import numpy as np
 
 from kinform.behaviour.acting import make_drive, make_gear, make_load, make_spring, mesh_gear
 from kinform.behaviour.components import Ground, JointComponent, RigidBody, System
+from kinform.behaviour.coupled import Imposed, imposed_couplings
 from kinform.behaviour.homes import homes
 from kinform.behaviour.joints import KINDS, JointGeometry
 from kinform.behaviour.nested import nest
 from kinform.behaviour.ports import Component, Node
 from kinform.behaviour.shafts import EndStop
 from kinform.behaviour.sliding import sliding_joints
+from kinform.foundation.words import quoted
 from kinform.function import resolve_joint, stated_ranges
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
@@ -40,6 +42,8 @@ class Behaviour:
     held: tuple[Reason, ...] = ()
     """(subject, why) of joints that are not understood and rigid in the model, and of what acts on them and is left
     out: what is asked for with `[simulation] partial = true`."""
+    imposed: tuple[Reason, ...] = ()
+    """(subject of the gear, what it stands for) of couplings that are imposed as stated on joints of geometry."""
 
 
 class _Builder:
@@ -96,9 +100,15 @@ def build(
         else:
             rigid = RigidBody(name, body.name, known.mass, known.centre_of_mass, known.inertia)
         builder.add(rigid, frame=name)
-    ties = {coupling.through: coupling for coupling in reversed(kinematics.couplings) if coupling.kind != "screw"}
+    stated = enumerate(assembly.function.couplings, start=1)
+    imposed = Imposed(tuple(stated), {}) if gears else imposed_couplings(assembly, kinematics, contacts)
+    ties = {
+        coupling.through: coupling
+        for coupling in reversed(kinematics.couplings)
+        if coupling.kind != "screw" and coupling.through not in imposed.replaced
+    }
     for joint in kinematics.joints:
-        if joint.type == "general" and (joint.freedoms == 6 or joint.name in ties):
+        if joint.type == "general" and (joint.freedoms == 6 or joint.name in ties or joint.name in imposed.replaced):
             continue
         made, why = _joint(joint)
         first, second = (f"body {name}" for name in joint.bodies)
@@ -128,13 +138,14 @@ def build(
         if not actors:
             lost = held if partial and _acts_on(assembly, kinematics, drive.joint, held) else failures
             (forces_missing if by_force else lost).append((drive.joint, why))
-    if gears:
-        for number, stated in enumerate(assembly.function.couplings, start=1):
-            gear, sides, why = make_gear(assembly, kinematics, modelled, stated, number)
-            if gear is not None:
-                builder.add(gear, a=f"shaft {sides[0]}", b=f"shaft {sides[1]}")
-            else:
-                failures.append(("coupling of " + " and ".join(stated.joints), why))
+    geared = []
+    for number, wanted in imposed.couplings:
+        gear, sides, why = make_gear(assembly, kinematics, modelled, wanted, number)
+        if gear is not None:
+            builder.add(gear, **{port: f"shaft {joint}" for port, joint in sides.items()})
+            geared.append((gear.subject, [name for name, by in imposed.replaced.items() if by == number]))
+        elif gears or number in imposed.replaced.values():
+            failures.append(("coupling of " + " and ".join(wanted.every), why))
     if assembly.simulation is not None and assembly.simulation.stops == "range":
         for name, (lower, upper) in stated_ranges(assembly, kinematics):
             if name in modelled and modelled[name].kind.rates == 1 and not np.all(np.isinf([lower, upper])):
@@ -155,7 +166,13 @@ def build(
     system = builder.system()
     parts = {str(body.name): body.parts for body in kinematics.bodies}
     nested = nest(system, homes(system, parts))
-    return Behaviour(system, nested, tuple(failures), tuple(forces_missing), tuple(held))
+    said = () if gears else tuple(_imposed(subject, replaced) for subject, replaced in geared)
+    return Behaviour(system, nested, tuple(failures), tuple(forces_missing), tuple(held), said)
+
+
+def _imposed(subject: str, replaced: Sequence[str]) -> Reason:
+    """A coupling that is imposed as stated, and the contact that it stands for."""
+    return subject, f"it stands for the contact of {quoted(replaced)}" if replaced else ""
 
 
 def _rigid(name: str) -> JointComponent:

@@ -13,6 +13,7 @@ from typing import Literal, TypeVar
 
 import numpy as np
 
+from kinform.behaviour import imposed_couplings
 from kinform.consistency.comparisons.couplings import coupled_through
 from kinform.consistency.comparisons.intended_joints import Comparison, bodies_of, compare_joint
 from kinform.consistency.comparisons.links import Weighed, weighed
@@ -301,6 +302,7 @@ class Context:
         coupling goes through them."""
         stated = self.function.couplings
         meshing = {name for c in stated for name in coupled_through(self.assembly, self.kinematics, c)}
+        meshing |= set(imposed_couplings(self.assembly, self.kinematics, self.design.contacts).replaced)
         return tuple(
             j
             for j in self.kinematics.joints

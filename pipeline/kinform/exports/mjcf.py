@@ -18,7 +18,7 @@ import numpy as np
 from kinform.behaviour.primitives import Ball
 from kinform.exports.constants import GRAIN, LEAST_MOMENT, MOST_FACETS, STEP, STEP_OF_LOOPS
 from kinform.exports.exported import Exported
-from kinform.exports.mjcf_drives import actuators, gears, load
+from kinform.exports.mjcf_drives import actuators, gears, load, trains
 from kinform.exports.model import ExportModel
 from kinform.exports.names import MJCF, free_name
 from kinform.exports.robot import Robot, RobotLink, robot_of
@@ -94,6 +94,7 @@ def export(model: ExportModel) -> Exported:
         qpos=[x for body in ordered for x in body.qpos], qvel=[x for body in ordered for x in body.qvel],
         loads=[load(robot, one) for one in robot.loads], most=MOST_FACETS, inf=np.inf,
         screws=[screw for body in ordered for screw in _screws(body)], gears=gears(robot, lost),
+        trains=trains(robot, lost),
         ctrl=[*(row["start"] for row in rows), *(1.0 for _ in robot.loads)],
     )  # fmt: skip
     return Exported({f"{robot.stem}.xml": text, **robot.meshes}, tuple(lost), tuple(remarks))

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from kinform.behaviour import Constant, DcMotor, EffortDrive, LoadComponent, MotionDrive, Servo, VoltageController
+from kinform.behaviour import Constant, DcMotor, EffortDrive, Gear, LoadComponent, MotionDrive, Servo, VoltageController
 from kinform.behaviour.primitives import Ball
 from kinform.behaviour.shafts import Controller
 from kinform.behaviour.signals import Signal
@@ -21,10 +21,25 @@ def gears(robot: Robot, lost: list[str]) -> list[tuple[Any, str, str]]:
     """Couplings with the names of both joints; those that MJCF cannot have are added to `lost`."""
     out = []
     for gear, a, b in robot.gears:
+        if gear.others:
+            continue
         if robot.link_of(a.subject) is None or robot.link_of(b.subject) is None:
             lost.append(f"{gear.subject}: one of its joints closes a loop and has no coordinate in MJCF")
             continue
         out.append((gear, robot.joint_names[a.subject], robot.joint_names[b.subject]))
+    return out
+
+
+def trains(robot: Robot, lost: list[str]) -> list[tuple[Gear, list[tuple[str, float]]]]:
+    """Couplings of three joints and more, which are fixed tendons of constant length, with what multiplies the value
+    of each joint; those that MJCF cannot have are added to `lost`."""
+    out = []
+    for gear in (gear for gear, _, _ in robot.gears if gear.others):
+        ends = [(robot.model.system.joint_at(gear.name, port).subject, factor) for port, factor in gear.terms]
+        if any(robot.link_of(joint) is None for joint, _ in ends):
+            lost.append(f"{gear.subject}: one of its joints closes a loop and has no coordinate in MJCF")
+            continue
+        out.append((gear, [(robot.joint_names[joint], factor) for joint, factor in ends]))
     return out
 
 

@@ -40,8 +40,8 @@ from kinform.model.arrays import Array
 
 LIBRARY = (
     "Frame Shaft Ground Body Revolute Prismatic Screw Spherical Fixed Free Cylindrical Planar PlanarReversed Universal "
-    "Motion Effort Spring Damper Gear Load System Place Turn turned back product Pin Servo Voltage VoltageController "
-    "Motor MotorWithoutCoil"
+    "Motion Effort Spring Damper Gear Train Load System Place Turn turned back product Pin Servo Voltage "
+    "VoltageController Motor MotorWithoutCoil"
 ).split()
 
 _SUFFIXES = ("", "_closure", "_free", *(f"_held_{k}" for k in (1, 2, 3)))
@@ -195,7 +195,7 @@ def _geared(equations: Equations) -> frozenset[int]:
     system = equations.model.system
     geared: set[int] = set()
     for gear in equations.gears:
-        rates = [equations.rates_of(system.joint_at(gear.name, port))[0] for port in ("a", "b")]
+        rates = [equations.rates_of(system.joint_at(gear.name, port))[0] for port, _ in gear.terms]
         geared.add(next((k for k in rates if k not in equations.led and k not in geared), rates[0]))
     return frozenset(geared)
 
@@ -250,7 +250,14 @@ def _actors(package: _Package) -> None:
             elif isinstance(actor, DcMotor):
                 _motor(package, actor, shaft)
     for gear in package.equations.gears:
-        ends = {port: f"{names[system.joint_at(gear.name, port).name]}.shaft" for port in ("a", "b")}
+        ends = {port: f"{names[system.joint_at(gear.name, port).name]}.shaft" for port, _ in gear.terms}
+        if gear.others:
+            first, *others = ends.values()
+            ratios = _array([-factor for _, factor in gear.terms[1:]])
+            joined = {"a": first} | {f"b[{k}]": end for k, end in enumerate(others, start=1)}
+            values = f"n={len(others)}, ratios={ratios}"
+            package.add("Train", names[gear.name], values, gear.subject, **joined)
+            continue
         package.add("Gear", names[gear.name], f"ratio={number(gear.ratio)}", gear.subject, **ends)
     for load in system.steady_loads:
         values = f"f={_array(load.force)}, t={_array(load.torque)}, s={_array(load.point)}, turning={int(load.turning)}"

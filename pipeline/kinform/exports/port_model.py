@@ -187,6 +187,8 @@ def _entry(record: type, field: dataclasses.Field[Any], hint: Any) -> _Entry:
         return _Entry(name, LawTable, _written_law, _read_law)
     if hint is Controller:
         return _Entry(name, ControllerTable, _values_of, lambda table: Controller(**_fields_of(Controller, table)))
+    if hint == dict[str, float]:
+        return _Entry(name, hint | None, lambda ratios: ratios or None, lambda ratios: ratios or {}, True)
     if hint == tuple[float, ...]:
         return _Entry(name, list[float], list, tuple)
     if hint == Array and record is RigidBody:

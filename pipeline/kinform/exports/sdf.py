@@ -68,6 +68,9 @@ def export(model: ExportModel) -> Exported:
         joints += [_of_hinge(link, hinge) for hinge in hinges]
         grains += [_Grain(hinge.child, link.link.origin) for hinge in hinges if hinge.between]
     for gear, a, b in robot.gears:
+        if gear.others:
+            lost.append(f"{gear.subject}: SDF lets a joint follow one other only")
+            continue
         joints = _mimicking(robot, joints, gear.subject, a.subject, b.subject, gear.ratio, lost)
     weightless = [link.name for link in robot.links[1:] if link.mass is None]
     if grains or weightless:

@@ -76,6 +76,9 @@ def _mimics(robot: Robot, lost: list[str]) -> dict[str, tuple[str, float]]:
     """By joint: the joint that it follows, and the ratio."""
     out: dict[str, tuple[str, float]] = {}
     for gear, a, b in robot.gears:
+        if gear.others:
+            lost.append(f"{gear.subject}: URDF lets a joint follow one other only")
+            continue
         ways = [(a.subject, b.subject, gear.ratio)]
         if gear.ratio:
             ways.append((b.subject, a.subject, 1.0 / gear.ratio))

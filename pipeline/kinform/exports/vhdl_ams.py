@@ -57,9 +57,11 @@ def _files(writer: Writer) -> Exported:
         potentials=writer.potentials, tables=writer.tables,
         scopes=[writer.of[path] for path in reversed(writer.scopes.paths)],
     )  # fmt: skip
+    counts = {len(gear.others): list(gear.others) for gear in writer.equations.gears if gear.others}
+    trains = [counts[count] for count in sorted(counts)]
     files = {
         order[0]: render("mechanics.vhd.j2"),
-        order[1]: render("components.vhd.j2", count=COUNT),
+        order[1]: render("components.vhd.j2", count=COUNT, trains=trains),
         order[2]: system,
         order[3]: render("bench.vhd.j2", model=model, bench=bench, entity=top, starts=writer.starts),
     }

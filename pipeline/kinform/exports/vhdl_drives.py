@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from kinform.behaviour import Actor, Damper, DcMotor, EffortDrive, MotionDrive, Servo, Spring, VoltageController
+from kinform.behaviour import Actor, Damper, DcMotor, EffortDrive, Gear, MotionDrive, Servo, Spring, VoltageController
 from kinform.behaviour.shafts import Controller
 from kinform.behaviour.signals import Signal, Spline, Table
 from kinform.exports.equations import law_numbers, polynomials
@@ -64,7 +64,7 @@ def drives(writer: Writer) -> None:
                 level = {"level": number(float(writer.model.coordinates(joint.subject)[0][k]))}
                 shaft.actor(f"{shaft.value}_held", "motion_constant", f"{joint.subject} is held", level)
     for gear in writer.equations.gears:
-        _gear(writer, gear.name, gear.ratio)
+        _gear(writer, gear)
 
 
 def _actor(shaft: _Shaft, actor: Actor) -> None:
@@ -107,20 +107,22 @@ def _motor(shaft: _Shaft, name: str, motor: DcMotor) -> None:
     shaft.instance(label, entity, f"voltage of {supply.subject}", values, {"p": terminal})
 
 
-def _gear(writer: Writer, name: str, ratio: float) -> None:
-    """A gear in the innermost scope around both joints: their values come up to it, its efforts go down."""
-    system, top, label = writer.model.system, writer.scopes.of[name], writer.names[name]
+def _gear(writer: Writer, gear: Gear) -> None:
+    """A gear in the innermost scope around its joints: their values come up to it, its efforts go down."""
+    system, top, label = writer.model.system, writer.scopes.of[gear.name], writer.names[gear.name]
     ports: dict[str, str] = {}
-    for port in "ab":
-        joint = system.joint_at(name, port)
+    for port, _ in gear.terms:
+        joint = system.joint_at(gear.name, port)
         home = writer.scopes.of[joint.name]
         value, effort = f"{writer.names[joint.name]}_{joint.kind.coordinates[0][0]}", f"{label}_{port}_effort"
         writer.pass_up(value, home, top)
         writer.pass_down(effort, top, home)
         writer.efforts[f"{value}_effort"][1].append(effort)
         ports |= {f"{port}_value": value, f"{port}_effort": effort}
-    generics = {"ratio": writer.generic(top, f"{label}_ratio", "real", number(ratio))}
-    writer.add(top, Part(label, "gear", name, generics, ports))
+    ratios = {"ratio": gear.ratio} | {f"ratio_{port}": float(ratio) for port, ratio in gear.others.items()}
+    generics = {key: writer.generic(top, f"{label}_{key}", "real", number(ratio)) for key, ratio in ratios.items()}
+    entity = f"gear_{len(gear.terms)}" if gear.others else "gear"
+    writer.add(top, Part(label, entity, gear.name, generics, ports))
 
 
 def _law(writer: Writer, kind: str, name: str, signal: Signal) -> tuple[str, Values]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from string import ascii_lowercase
 from typing import Any
 
 from kinform.behaviour import System
@@ -46,6 +47,8 @@ _SUFFIXES = (
             "gear p"
         ).split()
     ),
+    *(f"_{letter}_effort" for letter in ascii_lowercase[2:]),
+    *(f"_ratio_{letter}" for letter in ascii_lowercase[2:]),
     *(
         f"_{source}{suffix}"
         for source in ("target", "supply")

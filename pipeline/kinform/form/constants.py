@@ -283,5 +283,8 @@ WIDTH = 100
 NOISE = 2e-5
 """Components of a proposed axis or point below this share of the largest are written as zero: 0.001°, or 6 µm at 0.3 m,
 is the rounding of meshes in float32 far from the origin, and nothing that is meant."""
+COUPLED_MOST = 16
+"""Joints of one stated coupling: a compound planetary train has at most as many; each is a column of its row."""
+
 ROWS_MOST = 10_000
 """Rows of a law that is written in the manifest; longer ones are CSV files."""

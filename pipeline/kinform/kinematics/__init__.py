@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 from kinform.foundation.lazily import first_used
 
 if TYPE_CHECKING:
+    from kinform.kinematics.axes.higher_pairs import is_higher
     from kinform.kinematics.derivation import derive, functional, mobility_within
     from kinform.kinematics.mobility.couplings import coupling_aside
     from kinform.kinematics.mobility.named_freedoms import Motions
@@ -44,6 +45,7 @@ __all__ = [
     "functional",
     "insight",
     "intended_answers",
+    "is_higher",
     "mobility_within",
     "propose",
     "proposed_joints",
@@ -61,6 +63,7 @@ __getattr__ = first_used(
         "functional": "derivation",
         "mobility_within": "derivation",
         "coupling_aside": "mobility.couplings",
+        "is_higher": "axes.higher_pairs",
         "Motions": "mobility.named_freedoms",
         "propose": "partition",
         "proposed_joints": "partition",

@@ -55,12 +55,26 @@ class IntendedJoint:
 
 @dataclass(frozen=True)
 class Coupling:
-    """value(first) = ratio · value(second), in SI values of the two joints."""
+    """value(first) = ratio · value(second) + Σ others[name] · value(name), in SI values of the joints."""
 
     joints: Annotated[tuple[str, str], columns("joint_a", "joint_b")]
     ratio: Ratio
     file: str
     line: int | None
+    others: dict[str, Any] = field(default_factory=dict)
+    """By the names of further joints, of trains with three and more: the ratio of each."""
+
+    @property
+    def terms(self) -> dict[str, float]:
+        """By joint what multiplies its value in the sum that is zero: 1 at the first."""
+        return {self.joints[0]: 1.0, self.joints[1]: -self.ratio} | {
+            name: -float(ratio) for name, ratio in self.others.items()
+        }
+
+    @property
+    def every(self) -> tuple[str, ...]:
+        """Names of all its joints, in the order in which they are stated."""
+        return (*self.joints, *self.others)
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,17 @@ from kinform.design import Design
 from kinform.model.assembly import Assembly
 from kinform.reuse import views
 
-MOTION = ("simulation", "behaviour", "function", "kinematics", "collisions", "surfaces", "contacts", "foundation")
+MOTION = (
+    "simulation",
+    "behaviour",
+    "function",
+    "mass",
+    "kinematics",
+    "collisions",
+    "surfaces",
+    "contacts",
+    "foundation",
+)
 """Rooms whose code decides what a simulation comes out as."""
 RESULTS: dict[str, Callable[[Design], Any]] = {
     "surfaces": lambda design: design.surfaces,

@@ -148,26 +148,34 @@ def _teeth_counted(teeth: Meshing, types: Mapping[str, str], joints: tuple[str, 
     return " and ".join(parts)
 
 
-def _intended_ratios(assembly: Assembly, kinematics: Kinematics) -> Iterator[str]:
-    """What becomes of stated couplings where there are meshes: teeth keep their own ratio, what has none is free."""
+def _intended_ratios(assembly: Assembly, kinematics: Kinematics, behaviour: Behaviour) -> Iterator[str]:
+    """What becomes of stated couplings where there are meshes: teeth keep their own ratio, what has none is imposed."""
     tied = {frozenset(c.joints): c for c in kinematics.couplings if c.meshing is not None or c.kind == "screw"}
+    imposed = {subject.split(" ")[1]: why for subject, why in behaviour.imposed}
     free = []
-    for coupling in assembly.function.couplings:
-        ends = [resolve_joint(assembly, kinematics, name).joint for name in coupling.joints]
-        if frozenset(end.name for end in ends if end is not None) not in tied:
-            free.append(" and ".join(coupling.joints))
+    for number, coupling in enumerate(assembly.function.couplings, start=1):
+        ends = [resolve_joint(assembly, kinematics, name).joint for name in coupling.every]
+        named = " and ".join(coupling.every)
+        if str(number) in imposed:
+            why = imposed[str(number)]
+            yield (
+                f"the coupling of {named} is imposed as stated: no ratio of geometry ties these joints"
+                + (f"; {why}" if why else "")
+            )
+        elif frozenset(end.name for end in ends if end is not None) not in tied:
+            free.append(named)
     if free:
         yield f"couplings are intended, not derived from geometry, and are not imposed: {', '.join(free)}"
 
 
 def notes_of_level(
-    assembly: Assembly, kinematics: Kinematics, level: str, adrift: tuple[str, ...], gears: bool
+    assembly: Assembly, kinematics: Kinematics, behaviour: Behaviour, level: str, adrift: tuple[str, ...], gears: bool
 ) -> Iterator[str]:
     """What plays no part at this level."""
     if adrift:
         yield f"what no joints connect with the ground stays where it is: {', '.join(adrift)}"
     if not gears and assembly.function.couplings:
-        yield from _intended_ratios(assembly, kinematics)
+        yield from _intended_ratios(assembly, kinematics, behaviour)
     if level != "dynamic":
         forces = sorted({f"{d.kind} on {d.joint}" for d in assembly.function.drives if d.kind != "motion"})
         forces += sorted({f"load on {load.part}" for load in assembly.function.loads})

@@ -71,7 +71,7 @@ def simulate_assembly(
         *notes_of_freedoms(assembly, kinematics),
         *(notes_of_drives(assembly.function.drives) if choice.level == "dynamic" else ()),
         *(notes_of_friction(behaviour.system) if choice.level == "dynamic" else ()),
-        *notes_of_level(assembly, kinematics, choice.level, adrift, gears),
+        *notes_of_level(assembly, kinematics, behaviour, choice.level, adrift, gears),
     )
     request, system = assembly.simulation or SimulationRequest(), behaviour.system
     joints = {joint.subject: joint for joint in system.joints}

@@ -10,13 +10,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinform.consistency import constants
+from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.words import rate
 from kinform.function import resolve_joint
-from kinform.kinematics import coupling_aside
+from kinform.kinematics import coupling_aside, is_higher
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.function import Coupling as Stated
-from kinform.model.kinematics import Coupling, Kinematics
+from kinform.model.kinematics import Coupling, Joint, Kinematics
 
 
 @dataclass(frozen=True)
@@ -66,14 +67,80 @@ def derived_ratio(
 
 def shown_ratio(assembly: Assembly, stated: Stated, ratio: float) -> str:
     """A ratio of SI values as the manifest has it, of degrees and lengths in the assembly's units:
-    "ratio 0.02 mm/°"."""
-    slides = [_slides(assembly, name) for name in stated.joints]
-    return f"ratio {rate(ratio, slides[0], slides[1], assembly.units)}"
+    "ratio 0.02 mm/°"; with one for each further joint, where there are more than two."""
+    first, *slides = (_slides(assembly, name) for name in stated.every)
+    ratios = (ratio, *stated.others.values())
+    shown = [rate(one, first, slide, assembly.units) for one, slide in zip(ratios, slides, strict=True)]
+    return f"ratio {shown[0]}" if len(shown) == 1 else f"ratios {', '.join(shown)}"
 
 
 def _slides(assembly: Assembly, name: str) -> bool:
     """Whether values of the joint are lengths."""
     return any(joint.name == name and joint.type == "prismatic" for joint in assembly.function.joints)
+
+
+@dataclass(frozen=True)
+class Difference:
+    """How far the motions that contact leaves are from a coupling of three joints and more, at the pose of the
+    meshes."""
+
+    share: float
+    """Of the greatest term of the sum that should be zero, in the motion where it is greatest."""
+    found: float
+    """Value of the first joint in that motion (rad or m, by the designer's sense), and as the ratios have it."""
+    meant: float
+    through: tuple[str, ...]
+    """Joints carried by points and lines alone, which tie them."""
+
+
+def derived_sum(
+    assembly: Assembly, kinematics: Kinematics, stated: Stated, contacts: Contacts | None
+) -> Difference | str:
+    """What contact says of a stated coupling of three joints and more, or why it says nothing.
+
+    Read out of all motions that contact leaves, each a ray of joint rates: the sum must be zero in every one.
+    """
+    ends = [resolve_joint(assembly, kinematics, name) for name in stated.every]
+    for end in ends:
+        if end.joint is None:
+            return end.reason
+    names = [str(end.joint.name) for end in ends if end.joint is not None]
+    if len(set(names)) < len(names):
+        return "two of its names stand for one joint"
+    tied = [
+        str(joint.name)
+        for joint in kinematics.joints
+        if contacts is not None and is_higher(joint, contacts.patches) and _on_the_way(kinematics, names, joint)
+    ]
+    if kinematics.mobility.by_contact is not None or not tied:
+        return "no contact of teeth, cam or screw is found that ties these joints"
+    moved = [{str(name): rate for name, _, rate in freedom.drives} for freedom in kinematics.mobility.named]
+    terms = np.array([factor * end.sign for end, factor in zip(ends, stated.terms.values(), strict=True)])
+    rates = np.array([[motion.get(name, 0.0) for name in names] for motion in moved]).reshape(-1, len(names)) * terms
+    sizes = np.abs(rates).max(axis=1, initial=0.0)
+    if not sizes.any():
+        return "contact lets none of these joints move"
+    shares = np.abs(rates.sum(axis=1)) / np.where(sizes > 0.0, sizes, 1.0)
+    worst = int(shares.argmax())
+    found, meant = float(rates[worst, 0]), -float(rates[worst, 1:].sum())
+    doubtful = next((j for j in kinematics.joints if j.name in tied and j.status != "determined"), None)
+    if doubtful is not None:
+        at = "agrees with the ratios" if shares[worst] <= constants.UNCOUNTED_TEETH else "is off by "
+        off = "" if shares[worst] <= constants.UNCOUNTED_TEETH else f"{100 * shares[worst]:.2g} % of its greatest term"
+        return f"the contact '{doubtful.name}' is {doubtful.status}; as it stands, the motion at this pose {at}{off}"
+    if constants.UNCOUNTED_TEETH < shares[worst] <= constants.UNCERTAIN_RATIO:
+        return f"the motion at this pose is off by {100 * shares[worst]:.2g} %, which normals of teeth may be"
+    return Difference(float(shares[worst]), found, meant, tuple(tied))
+
+
+def _on_the_way(kinematics: Kinematics, names: list[str], joint: Joint) -> bool:
+    """Whether the joints of these names lead from the one body of the joint to the other."""
+    number = {body.name: k for k, body in enumerate(kinematics.bodies)}
+    met = UnionFind(len(number))
+    for one in kinematics.joints:
+        if one.name in names and one.name != joint.name:
+            met.union(*(number[name] for name in one.bodies))
+    return len({met.find(number[name]) for name in joint.bodies}) == 1
 
 
 def coupled_through(assembly: Assembly, kinematics: Kinematics, stated: Stated) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ Example: `ratio = -2.5` between two shafts whose gears are drawn as plain discs.
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.couplings import derived_ratio, shown_ratio
+from kinform.consistency.comparisons.couplings import derived_ratio, derived_sum, shown_ratio
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled, skipped
 from kinform.consistency.rule import Rule
@@ -34,15 +34,18 @@ def check(context: Context) -> Outcome:
     known = context.assembly, context.kinematics
     findings = [
         RULE.finding(
-            coupling.joints,
-            f"the coupling of {quoted(coupling.joints)} is not checked: {reason}",
+            coupling.every,
+            f"the coupling of {quoted(coupling.every)} is not checked: {reason}",
             found="not checked",
             intended=shown_ratio(context.assembly, coupling, coupling.ratio),
             declared=coupling,
             remedy="Bring the teeth into contact at this pose, or check the ratio by other means.",
         )
         for coupling in couplings
-        if isinstance(reason := derived_ratio(*known, coupling, context.design.contacts), str)
+        if isinstance(
+            reason := (derived_sum if coupling.others else derived_ratio)(*known, coupling, context.design.contacts),
+            str,
+        )
     ]
     return settled(findings, f"{counted(len(findings), 'coupling')} not checked" if findings else "")
 

@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from kinform.form.constants import COUNT_MOST, ROWS_MOST
-from kinform.form.manifest.common import Finite, JointType, Name, NonNegative, Pair, Positive, Reference, Table, Vector
+from kinform.form.constants import COUNT_MOST, COUPLED_MOST, ROWS_MOST
+from kinform.form.manifest.common import Finite, JointType, Name, NonNegative, Positive, Reference, Table, Vector
 from kinform.form.manifest.requirements import Require
 from kinform.form.manifest.springs import Bushing, GasSpring, PointSpring
 
@@ -35,10 +35,15 @@ class IntendedJointTable(Table):
 
 
 class Coupling(Table):
-    """`[[function.coupling]]`: value(first) = ratio · value(second)."""
+    """`[[function.coupling]]`: value(first) = ratio · value(second), or a sum over more joints."""
 
-    joints: Pair = Field(description="two joints of [[function.joint]]")
-    ratio: Finite = Field(description="value(first) / value(second), values in degrees or lengths; not zero")
+    joints: Annotated[list[Reference], Field(min_length=2, max_length=COUPLED_MOST)] = Field(
+        description="two joints of [[function.joint]]; three and more for planetary trains and differentials"
+    )
+    ratio: Finite | Annotated[list[Finite], Field(min_length=1, max_length=COUPLED_MOST - 1)] = Field(
+        description="value(first) / value(second), values in degrees or lengths; not zero. With three joints and more "
+        "a list: value(first) = ratio[0] · value(second) + ratio[1] · value(third) + …"
+    )
 
 
 class Constant(Table):

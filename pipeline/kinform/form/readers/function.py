@@ -155,13 +155,29 @@ class FunctionReader:
         return lower * scale, upper * scale
 
     def couplings(self) -> Iterator[Coupling]:
-        """`[[function.coupling]]`; the ratio from degrees and lengths to SI values."""
+        """`[[function.coupling]]`; the ratios from degrees and lengths to SI values."""
         for path, table in self.scope.tables("function", "coupling"):
-            first, second = self.pair(table.joints, self.joint, *path, "joints")
-            if table.ratio == 0.0:
+            ratios = table.ratio if isinstance(table.ratio, list) else [table.ratio]
+            if len(ratios) != len(table.joints) - 1:
+                self.scope.complain(
+                    f"a coupling of {len(table.joints)} joints has {len(ratios)} "
+                    + ("ratio" if len(ratios) == 1 else "ratios"),
+                    "give one ratio for each joint after the first: value(a) = ratio[0] · value(b) + ratio[1] · …",
+                    *path, "ratio",
+                )  # fmt: skip
+                continue
+            if 0.0 in ratios:
                 self.scope.complain("the ratio of a coupling is zero", "give value(a) / value(b)", *path, "ratio")
-            scales = [self.value_scale(name, *path, "joints") for name in (first, second)]
-            yield Coupling((first, second), table.ratio * scales[0] / scales[1], *self.scope.where(*path))
+            names = [*self.pair(table.joints[:2], self.joint, *path, "joints")]
+            names += [self.joint(name, *path, "joints") for name in table.joints[2:]]
+            twice = next((name for k, name in enumerate(names) if k > 1 and name in names[:k]), None)
+            if twice is not None:
+                named = in_quotes(twice.removeprefix(self.scope.prefix))
+                self.scope.complain(f"a coupling names {named} twice", "name each joint once", *path, "joints")
+            scales = [self.value_scale(name, *path, "joints") for name in names]
+            ratio, *more = (value * scales[0] / scale for value, scale in zip(ratios, scales[1:], strict=True))
+            others = dict(zip(names[2:], more, strict=True))
+            yield Coupling((names[0], names[1]), ratio, *self.scope.where(*path), others)
 
     def value_scale(self, joint: str, *path: str | int) -> float:
         """Radians or metres in a manifest's value of the joint; a problem where it is not stated which it is."""

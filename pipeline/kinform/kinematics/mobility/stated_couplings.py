@@ -34,17 +34,20 @@ def coupling_rows(
     rows = []
     for coupling in function.couplings:
         row = np.zeros(offset[-1])
-        ends = []
-        for wanted in (intended[name] for name in coupling.joints if name in intended):
-            first, second = (body_of[name] for name in wanted.between)
+        ends = {}
+        for name, factor in coupling.terms.items():
+            wanted = intended.get(name)
+            if wanted is None:
+                continue
+            first, second = (body_of[side] for side in wanted.between)
             k = number.get(frozenset((first, second)))
             sense = None if k is None else _sense(joints[k], wanted, first)
             if k is not None and sense is not None:
-                ends.append((k, sense))
-        if len(ends) < 2 or ends[0][0] == ends[1][0]:
+                ends[k] = sense * factor
+        if len(ends) < len(coupling.terms):
             continue
-        for (k, sense), factor in zip(ends, (1.0, -coupling.ratio), strict=True):
-            row[offset[k]] = sense * factor
+        for k, factor in ends.items():
+            row[offset[k]] = factor
         rows.append(row / np.abs(row).max())
     return np.array(rows).reshape(-1, offset[-1])
 

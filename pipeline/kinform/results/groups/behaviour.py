@@ -77,7 +77,9 @@ TABLES = {
 """In the order of the file."""
 _LATER_KINDS = ("friction", "gas_spring", "bushing")
 """Kinds that files of older versions do not know."""
-REASONS = Layout(Behaviour, layout.Table("failures"), layout.Table("forces_missing"), layout.Table("held"))
+REASONS = Layout(
+    Behaviour, layout.Table("failures"), layout.Table("forces_missing"), layout.Table("held"), layout.Table("imposed")
+)
 
 
 def write(group: h5py.Group, design: Design) -> None:

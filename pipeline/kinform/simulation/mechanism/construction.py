@@ -165,14 +165,13 @@ def _finish(
 
 
 def _gears(system: System, slots: tuple[Slot, ...], scale: Array, nq: int, n: int) -> tuple[Array, Array]:
-    """Rows value(a) − ratio · value(b), over the scale of a."""
+    """Rows value(a) − ratio · value(b) − …, over the scale of a."""
     slot_of = {slot.name: slot for slot in slots}
     on_q, on_v = np.zeros((len(system.gears), nq)), np.zeros((len(system.gears), n))
     for row, gear in enumerate(system.gears):
-        a, b = (slot_of[system.joint_at(gear.name, port).subject] for port in ("a", "b"))
-        unit = 1.0 / scale[a.v.start]
-        on_q[row, a.q.start] += unit
-        on_q[row, b.q.start] -= gear.ratio * unit
-        on_v[row, a.v.start] += unit
-        on_v[row, b.v.start] -= gear.ratio * unit
+        slots_of = [(slot_of[system.joint_at(gear.name, port).subject], factor) for port, factor in gear.terms]
+        unit = 1.0 / scale[slots_of[0][0].v.start]
+        for slot, factor in slots_of:
+            on_q[row, slot.q.start] += factor * unit
+            on_v[row, slot.v.start] += factor * unit
     return on_q, on_v
