@@ -47,6 +47,29 @@ def test_what_contact_forbids_stays_and_is_an_error(tmp_path):
     assert found["KF402", "turn"] == "error" and ("KF414", "turn") not in found
 
 
+BOXES = """<robot name="r"><link name="box"><visual><geometry><box size="0.2 0.2 0.1"/></geometry></visual></link>
+<link name="lid"><visual><origin xyz="{at} 0 0.005"/><geometry><box size="0.2 0.2 0.01"/></geometry></visual></link>
+<joint name="k" type="{type}"><parent link="box"/><child link="lid"/><origin xyz="{back} 0 0.05"/><axis xyz="{axis}"/>
+<limit lower="{lower}" upper="1" effort="1" velocity="1"/></joint></robot>
+"""
+
+
+@pytest.mark.parametrize(
+    ("type", "axis", "at", "lower", "codes"),
+    [
+        ("revolute", "0 -1 0", 0.1, 0.0, ["KF414"]),  # a lid, drawn closed, about an edge of the box
+        ("revolute", "0 -1 0", 0.1, -0.5, ["KF412", "KF414"]),  # that is to go into the box
+        ("revolute", "0 -1 0", 0.0, 0.0, ["KF402", "KF904"]),  # about the middle of the face it would go in on one side
+        ("prismatic", "0 0 1", 0.0, 0.0, ["KF414"]),  # a cylinder, drawn in
+        ("prismatic", "0 0 -1", 0.0, 0.0, ["KF412", "KF414"]),
+        ("prismatic", "0 0 1", 0.0, -0.5, ["KF412", "KF414"]),
+    ],
+)
+def test_a_face_that_the_motion_only_leaves_is_an_end_stop_and_forbids_nothing(tmp_path, type, axis, at, lower, codes):
+    (tmp_path / "r.urdf").write_text(BOXES.format(type=type, axis=axis, at=at, back=-at, lower=lower))
+    assert sorted(code for code, _ in findings(tmp_path / "r.urdf")) == codes
+
+
 def test_a_fixed_joint_makes_one_body_and_a_frame_weighs_nothing(tmp_path):
     heavy = ARM + '<inertial><mass value="1"/><inertia ixx="1e-3" iyy="1e-3" izz="1e-3"/></inertial>'
     design = run(write(tmp_path, urdf(arm=heavy))).design

@@ -68,7 +68,8 @@ def _beside_ends(context: Context, intended: IntendedJoint, comparison: Comparis
     if reach is None:
         return RangeComparison(intended, reason="no range was computed for it")
     lower, upper = (reach.lower, reach.upper) if sign > 0.0 else (reach.upper, reach.lower)
-    taken = comparison.state == "taken"
+    # an end stop between the two bodies is where the range ends, though it is there as it is drawn
+    taken = comparison.state == "taken" and all(reading.cause != "end" for reading in joint.readings)
     return RangeComparison(
         intended,
         _clear(intended, lower) if taken else lower,

@@ -30,7 +30,9 @@ def check(context: Context) -> Findings:
 
 def _taken_with_contact(c: Comparison) -> bool:
     """Whether the function states all joints, and this one as contact leaves more free."""
-    return c.state == "taken" and c.joint is not None and any(one.cause == "contact" for one in c.joint.readings)
+    return (
+        c.state == "taken" and c.joint is not None and any(one.cause in ("contact", "end") for one in c.joint.readings)
+    )
 
 
 def _finding(c: Comparison) -> Finding:

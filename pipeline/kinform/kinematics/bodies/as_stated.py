@@ -3,14 +3,15 @@
 The pins and bearings of most assemblies are in no mesh: parts end at a flush plane, or with a gap. Where the function
 states all joints, one that contact leaves free, with more beside, is taken as stated (`stated`), and so is one whose
 bodies do not touch; what contact says stays beside it as a reading. One that contact determines as it is stated stays
-as it was derived, and so does one that contact certainly forbids: the function never overrides what holds. Where
+as it was derived, and so does one that contact certainly forbids, in both senses: the function never overrides what
+holds, and a face that the motion only leaves (a lid that is drawn closed, a cylinder drawn in) holds nothing. Where
 contact is ambiguous or blocked the joint is taken as stated, too, and the doubt is kept. Contact between bodies that
 stated joints move relative to each other, without one of their own, constrains nothing and is set aside.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,6 +28,7 @@ from kinform.model.assembly import Assembly
 from kinform.model.contacts import Patch
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Aside, Joint
+from kinform.model.names import PartName
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +64,8 @@ def as_stated(
         if pair in wanted and pair not in assumed:
             forms = [joint_form(assembly, of_part, one, pair) for one in wanted[pair]]
             stated = [stated_joint(pair, form, "function", "") for form in forms]
-            out.append(_in_force(wanted[pair], stated, joint, patches))
+            first = {part for part, body in of_part.items() if body == pair[0]}
+            out.append(_in_force(wanted[pair], stated, joint, patches, first))
         elif joint is not None and (
             pair in assumed or pair in sticks or not (whole or idle(*(some_part[name] for name in pair)))
         ):
@@ -94,10 +97,28 @@ def _at(twists: Array, place: Array) -> Array:
     return np.concatenate([twists[:, :3], twists[:, 3:] + cross(twists[:, :3], place)], axis=1)
 
 
+def opens(patches: Sequence[Patch], motion: Array, first: Collection[PartName]) -> bool:
+    """Whether one sense of a motion (6,) of the second body leaves all contact that the motion does not slide along;
+    `first` are the parts of the first body."""
+    senses = set()
+    for patch in patches:
+        side = 1.0 if patch.parts[0] in first else -1.0
+        speeds = motion[3:] + cross(np.broadcast_to(motion[:3], patch.points.shape), patch.points)
+        across = side * np.einsum("ni,ni->n", speeds, patch.normals)
+        pace = float(np.linalg.norm(speeds, axis=1).max(initial=0.0))
+        senses |= {float(sign) for sign in np.sign(across[np.abs(across) > ADMITTED * pace])}
+    return len(senses) <= 1
+
+
 def _in_force(
-    wanted: Sequence[IntendedJoint], stated: Sequence[Joint], joint: Joint | None, patches: Sequence[Patch]
+    wanted: Sequence[IntendedJoint],
+    stated: Sequence[Joint],
+    joint: Joint | None,
+    patches: Sequence[Patch],
+    first: Collection[PartName],
 ) -> Joint:
-    """The joint between two bodies that the function joins, by one or more joints; `joint` is that of contact."""
+    """The joint between two bodies that the function joins, by one or more joints; `joint` is that of contact, `first`
+    the parts of the first body."""
     types = [one.type for one in wanted]
     if joint is not None and joint.type in types and joint.status != "ambiguous":
         return joint
@@ -113,6 +134,8 @@ def _in_force(
         cause, why = "doubt", "contact leaves it undecided"
     elif leaves_free(joint.twists, taken.twists, place, norm(np.ptp(corners, axis=0)) or 1.0):
         cause, why = "contact", "contact leaves it free and does not hold it"
+    elif len(taken.twists) == 1 and opens([patches[k] for k in joint.patches], taken.twists[0], first):
+        cause, why = "end", "contact leaves it free in one sense, as an end stop does, and does not hold it"
     else:
         return joint
     return replace(
