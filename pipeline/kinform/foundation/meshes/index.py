@@ -33,7 +33,7 @@ class MeshIndex:
         self._borders: Ints | None = None
         self._shells: Ints | None = None
         self._boxes: FacetBoxes | None = None
-        self._rays: list[Ray] | None = None
+        self._rays: dict[int, Ray] = {}
         self._near: list[tuple[Nearest, float]] | None = None
         self._table: SurfaceTable | None = None
         self._rings: tuple[Ring, ...] | None = None
@@ -150,21 +150,25 @@ class MeshIndex:
         out = np.asarray(((points >= self.low) & (points <= self.high)).all(axis=1))
         if not out.any():
             return out
-        if self._rays is None:
-            self._rays = [Ray(self.mesh, ray) for ray in RAYS]
         within = points[out]
-        count = self._rays[0].crossings(within)
+        count = self._crossings(0, within)
         # of a closed mesh, one ray that leaves through as many facets as it enters through says enough
         asked = np.flatnonzero(count) if self.mesh.health.watertight else np.arange(len(within))
         if len(asked):
-            second = self._rays[1].crossings(within[asked])
+            second = self._crossings(1, within[asked])
             # two rays that agree are the median whatever the third says
             doubtful = count[asked] != second
             if doubtful.any():
-                third = self._rays[2].crossings(within[asked[doubtful]])
+                third = self._crossings(2, within[asked[doubtful]])
                 count[asked[doubtful]] = np.median([count[asked[doubtful]], second[doubtful], third], axis=0)
         out[out] = np.abs(count) > 0.5
         return out
+
+    def _crossings(self, ray: int, points: Array) -> Array:
+        """(n,) of one of the three rays from points; the last one is rarely asked for."""
+        if ray not in self._rays:
+            self._rays[ray] = Ray(self.mesh, RAYS[ray])
+        return self._rays[ray].crossings(points)
 
 
 def _spans(corners: Array) -> Array:
@@ -183,15 +187,15 @@ def _balls(mesh: Mesh) -> list[tuple[Nearest, float]]:
         middles.append((inner_weights(number) @ corners[alike]).reshape(-1, 3))
         radii.append(np.repeat(2.0 / 3.0 * longest[alike] / number, number * number))
     points, radius = np.concatenate(middles), np.concatenate(radii)
-    size = max(mesh.diagonal, 1e-300)
+    size, low = max(mesh.diagonal, 1e-300), mesh.vertices.min(axis=0)
     level = np.ceil(np.log2(np.maximum(radius / size, BALL_SHARE)))
     out = []
     for k in np.unique(level):
         # one for all that are in one cell of a grid
         largest, cell = float(radius[level == k].max()), 0.5 * float(2.0**k) * size
-        place = np.round((points[level == k] - mesh.vertices.min(axis=0)) / cell).astype(np.int64)
-        _, kept = np.unique((place[:, 0] << 40) + (place[:, 1] << 20) + place[:, 2], return_index=True)
-        centres = mesh.vertices.min(axis=0) + cell * place[kept]
+        place = np.round((points[level == k] - low) / cell).astype(np.int64)
+        held = np.unique((place[:, 0] << 40) + (place[:, 1] << 20) + place[:, 2])
+        centres = low + cell * np.stack([held >> 40, held >> 20 & 0xFFFFF, held & 0xFFFFF], axis=1)
         out.append((Nearest(centres), largest + 0.5 * float(np.sqrt(3.0)) * cell))
     return out
 
