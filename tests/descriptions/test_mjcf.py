@@ -115,6 +115,17 @@ def test_function_and_what_is_seen(tmp_path):
     assert [r.values["limit"] for r in assembly.function.requirements] == [6.0]
 
 
+def test_masses_of_geoms_and_of_the_whole_are_said_not_to_be_carried(tmp_path):
+    geoms = '<geom size="0.1" mass="2"/><geom size="0.1" density="500"/><geom size="0.1" mass="0"/>'
+    body = f'<worldbody><geom size="1" mass="9"/><body name="a">{{}}<joint/>{geoms}</body></worldbody></mujoco>'
+    inertial = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
+    every = {"settotalmass of <compiler>", "mass of geoms", "density of geoms"}
+    for total, has, said in (("5", "", every), ("-1", inertial, set())):
+        text = f'<mujoco><compiler settotalmass="{total}"/>' + body.format(has)
+        notes = " ".join(note for note in form.load(write(tmp_path, text)).notes if "carried" in note)
+        assert {one for one in notes.rpartition(": ")[2].split(", ") if one} == said
+
+
 def test_loops_are_joints(tmp_path):
     closing = '<equality><connect body1="arm" body2="base" anchor="0 0 0.1"/>'
     second = '<connect body1="arm" body2="base" anchor="0 0.1 0.1"/>'

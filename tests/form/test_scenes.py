@@ -200,3 +200,13 @@ def test_a_manifest_of_meshes_imports_nothing_of_this():
     )
     out = subprocess.run([sys.executable, "-c", code, str(FOUR_BAR)], capture_output=True, text=True, check=True)
     assert out.stdout.strip() == "[]"
+
+
+def test_morph_targets_that_move_vertices_are_said_to_be_left_out(tmp_path):
+    def morphed(header):
+        header["meshes"][0]["weights"] = [0.5]
+        header["nodes"] = [{"mesh": 0, "name": "a"}, {"mesh": 0, "name": "b", "weights": [0.0]}]
+        header["scenes"] = [{"nodes": [0, 1]}]
+
+    notes = form.load(glb(tmp_path, morphed)).notes
+    assert [note for note in notes if "morph" in note] == ['box.glb: node "a" has morph targets: it is taken without']

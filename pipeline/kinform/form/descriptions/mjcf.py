@@ -125,6 +125,10 @@ class _Reader:
         for child in xml.children(root):
             if tag_of(child) not in _QUIET:
                 self.left.add(f"<{tag_of(child)}>")
+        for compiler in xml.children(root, "compiler"):
+            for key in ("settotalmass", "boundmass", "boundinertia"):
+                if (xml.number(compiler, key, 0.0) or 0.0) > 0.0:
+                    self.left.add(f"{key} of <compiler>")
         worlds = list(xml.children(root, "worldbody"))
         if not worlds:
             xml.complain(root, "has no <worldbody>", "name an MJCF with bodies")

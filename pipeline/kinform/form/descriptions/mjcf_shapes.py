@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from kinform.form.descriptions.elements import Element, Xml, colour_of
+from kinform.form.descriptions.elements import Element, Xml, colour_of, tag_of
 from kinform.form.descriptions.inertials import placed, symmetric
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.mjcf_defaults import Compiler, Defaults, from_z, mesh_assets
@@ -63,8 +63,19 @@ class Shapes:
     def geom(self, element: Element, link: str, X: Array, named: str | None) -> tuple[Shape | None, bool]:
         """The shape of a geom, and whether it is seen only: it collides with nothing."""
         said = self._defaults.said(element, named)
+        self._leave_out_mass(element, said)
         shape, seen = self._geom(element, said, link, X)
         return None if shape is None else replace(shape, colour=self._colour(said)), seen
+
+    def _leave_out_mass(self, element: Element, said: Mapping[str, str]) -> None:
+        """Masses that a geom states are those of its body where that has no `<inertial>`: they are not carried."""
+        body = element.getparent()
+        while tag_of(body) == "frame":
+            body = body.getparent()
+        inertial = self._xml.child(body, "inertial") is not None and not self._compiler.from_geometry
+        for key in ("mass", "density"):
+            if tag_of(body) == "body" and not inertial and said.get(key, "0").strip(" 0.") != "":
+                self._left.add(f"{key} of geoms")
 
     def _geom(self, element: Element, said: Mapping[str, str], link: str, X: Array) -> tuple[Shape | None, bool]:
         xml = self._xml

@@ -119,10 +119,18 @@ class _Reader:
             self.notes.append(f"node {in_quotes(table.get('name', k))} has a skin: it is taken without")
         mesh = None
         if "mesh" in table:
+            self._leave_out_weights(table)
             mesh = number.get(self._index(table["mesh"], len(self._list(self.header, "meshes")), "a mesh"))
         count = len(self._list(self.header, "nodes"))
         children = tuple(self._index(child, count, "a node") for child in self._list(table, "children"))
         return Node(_text(table.get("name")), _matrix(table, what), mesh, children)
+
+    def _leave_out_weights(self, node: dict[str, Any]) -> None:
+        """Note morph targets that move the vertices of a node's mesh."""
+        mesh = self._at("meshes", node["mesh"])
+        weights = node.get("weights", mesh.get("weights", []))
+        if isinstance(weights, list) and any(weights):
+            self.notes.append(f"node {in_quotes(str(node.get('name', '')))} has morph targets: it is taken without")
 
     def _mesh(self, k: int, table: Any) -> RawMesh | None:
         """The triangles of a mesh; None where it has none."""
