@@ -36,6 +36,24 @@ def test_the_peak_torque_of_a_driven_joint():
     assert state(wheel(sine(30.0, 0.5), level="kinematic"), "torque", joint="spin", limit=1.0)[0] == "undecided"
 
 
+def test_a_drive_beside_the_curve_of_its_motor():
+    """sin and cos of one phase are an ellipse of speed and effort; a straight curve touches it where both shares are
+    1/√2: it is exceeded by √2 where either end of the curve is the amplitude."""
+    made = wheel(sine(30.0, 0.5))
+    speed = math.radians(30.0) * math.pi
+    peak = 0.01 * math.radians(30.0) * math.pi**2
+    for scale, wanted in ((1.002 * math.sqrt(2.0), "met"), (0.998 * math.sqrt(2.0), "violated")):
+        line = {"speeds": [0.0, scale * speed], "efforts": [scale * peak, 0.0]}
+        assert state(made, "torque_speed", joint="spin", **line)[0] == wanted
+    # a motor that keeps its torque up to its greatest speed: each side of the box by itself
+    for fast, strong, wanted in ((1.002, 1.002, "met"), (0.998, 1.002, "violated"), (1.002, 0.998, "violated")):
+        box = {"speeds": [0.0, 0.5 * fast * speed, fast * speed], "efforts": [strong * peak] * 3}
+        found, finding = state(made, "torque_speed", joint="spin", **box)
+        assert found == wanted
+        assert wanted == "met" or "at " in finding.remedy
+    assert state(wheel(), "torque_speed", joint="spin", speeds=[0.0, 1.0], efforts=[1.0, 0.0])[0] == "undecided"
+
+
 def test_a_run_that_stopped_proves_only_what_it_saw():
     made = wheel(sine(30.0, 0.5))
     stopped = replace(made, simulation=replace(made.simulation, status="stopped", reason="singular"))

@@ -201,6 +201,8 @@ OF_THEIR_OWN = {
               lambda _: requiring(rubbing_arm(), "efficiency", joint="shoulder", minimum=0.5)),
     "KF435": (lambda _: requiring(rubbing_arm(), "self_locking", joint="shoulder"),
               lambda _: requiring(rubbing_arm(1e3), "self_locking", joint="shoulder")),
+    "KF436": (lambda _: requiring(wheel(RUN), "torque_speed", joint="spin", speeds=[0.0, 9.0], efforts=[1e-3, 0.0]),
+              lambda _: requiring(wheel(RUN), "torque_speed", joint="spin", speeds=[0.0, 9.0], efforts=[1.0, 0.0])),
     "KF424": (lambda _: requiring(arm(), "hold", joint="shoulder", limit=1.0),
               lambda _: requiring(arm(), "hold", joint="shoulder", limit=10.0)),
     "KF425": (lambda _: requiring(wheel(RUN), "torque", joint="spin", limit=1e-3),

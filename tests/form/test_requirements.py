@@ -45,6 +45,15 @@ WRONG = {
     ),
     "tolerance that says nothing": (DIRECTION + "tolerance = 1\n" + CONE, "says nothing", 4),
     "reaction without limit": ('kind = "reaction"\njoint = "j"', "neither force nor torque", 0),
+    "curve of other lengths": (
+        'kind = "torque_speed"\njoint = "j"\nspeeds = [0, 1]\nefforts = [2, 1, 0]', "2 speeds and 3 efforts", 4,
+    ),
+    "curve that begins late": (
+        'kind = "torque_speed"\njoint = "j"\nspeeds = [1, 2]\nefforts = [2, 1]', "ascend from 0", 3,
+    ),
+    "curve that grows": (
+        'kind = "torque_speed"\njoint = "j"\nspeeds = [0, 2]\nefforts = [1, 2]', "grow with speed", 4,
+    ),
     "balance without axis": (
         'kind = "balance"\nof = "b"\naxis = [0, 0, 1]\nlimit = 1', "neither a joint nor axis and point", 0,
     ),

@@ -23,6 +23,7 @@ CODES = {
     "reach": "KF421", "follow": "KF422", "clear": "KF423", "hold": "KF424", "torque": "KF425", "speed": "KF426",
     "reaction": "KF427", "mass": "KF428", "centre_of_mass": "KF429", "inertia": "KF430", "balance": "KF431",
     "retained": "KF432", "fit": "KF433", "efficiency": "KF434", "self_locking": "KF435",
+    "torque_speed": "KF436",
 }  # fmt: skip
 
 

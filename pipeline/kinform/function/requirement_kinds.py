@@ -158,6 +158,32 @@ class Speed(JointLimit):
 
 
 @dataclass(frozen=True, eq=False)
+class TorqueSpeed(Kind):
+    """Effort and speed of a joint's drive stay below a curve: (n,) speeds (rad/s or m/s), ascending from 0, and what it
+    can give at each (N·m or N), never more than at the one before."""
+
+    kind = "torque_speed"
+    joint: str
+    speeds: Array
+    efforts: Array
+
+    def used(self, speed: Array, effort: Array) -> Array:
+        """(T,) by how much the points (|speed|, |effort|) would have to shrink towards the origin to lie on the curve:
+        1 there, less below it. Beyond the greatest speed the curve falls to no effort at all."""
+        unit = np.array([self.speeds[-1], self.efforts[0]])
+        curve = np.column_stack([self.speeds, self.efforts]) / unit
+        if curve[-1, 1] > 0.0:
+            curve = np.vstack([curve, [1.0, 0.0]])
+        points = np.abs(np.column_stack([speed, effort])) / unit
+        # seen from the origin the curve turns from the axis of efforts to that of speeds
+        angles = np.arctan2(curve[:, 0], curve[:, 1])
+        edge = np.searchsorted(angles, np.arctan2(points[:, 0], points[:, 1]), side="left").clip(1, len(curve) - 1)
+        start, along = curve[edge - 1], curve[edge] - curve[edge - 1]
+        normal = np.column_stack([-along[:, 1], along[:, 0]])
+        return np.asarray((normal * points).sum(axis=1) / (normal * start).sum(axis=1))
+
+
+@dataclass(frozen=True, eq=False)
 class Reaction(Kind):
     """A joint carries at most a force (N), at most a torque (N·m), in the simulation."""
 

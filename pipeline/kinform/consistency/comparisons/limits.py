@@ -18,7 +18,7 @@ from kinform.consistency.outcome import Answer, Margin, met, undecided, violated
 from kinform.consistency.requirements import simulated, single_joint
 from kinform.foundation.words import number, quoted, telling
 from kinform.function.amounts import Amount, amount_of
-from kinform.function.requirement_kinds import JointLimit
+from kinform.function.requirement_kinds import JointLimit, TorqueSpeed
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
 from kinform.model.simulation import Simulation
@@ -134,7 +134,7 @@ def coarse(simulation: Simulation) -> bool:
 
 
 def run_of_joint(
-    context: Context, requirement: JointLimit, *, dynamic: bool = False
+    context: Context, requirement: JointLimit | TorqueSpeed, *, dynamic: bool = False
 ) -> tuple[Joint, Simulation, int] | Answer:
     """The joint of a requirement, the run, and the joint's column in it; or why there is none. Needs kinematics."""
     joint = single_joint(context, requirement.joint)

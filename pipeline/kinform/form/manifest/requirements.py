@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from kinform.form.constants import ROWS_MOST
 from kinform.form.manifest.common import Finite, Name, NonNegative, Pair, Positive, Quantity, Reference, Table, Vector
 
 Length = Quantity("length")
@@ -132,6 +133,20 @@ class Speed(_Require):
     when_run: bool = Field(False, description="true: a limit of the joint, asked about only when there is a run")
 
 
+class TorqueSpeed(_Require):
+    """What a drive gives, and how fast, stays below the curve of its motor during the simulation."""
+
+    kind: Literal["torque_speed"]
+    joint: Annotated[Reference, Joint] = Field(description="a [[function.joint]] that is driven")
+    speeds: Annotated[list[NonNegative], Quantity("joint_value"), Field(min_length=2, max_length=ROWS_MOST)] = Field(
+        description="degrees or lengths a second, ascending from 0; the last is the greatest speed"
+    )
+    efforts: Annotated[list[NonNegative], Field(min_length=2, max_length=ROWS_MOST)] = Field(
+        description="N·m or N that the drive can give at each of the speeds, straight between them; none greater than "
+        "the one before"
+    )
+
+
 class Reaction(_Require):
     """The peak reaction in a joint during the simulation stays below a limit."""
 
@@ -207,6 +222,7 @@ Require = Annotated[
     | SelfLocking
     | Torque
     | Speed
+    | TorqueSpeed
     | Reaction
     | Mass
     | CentreOfMass

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -65,7 +66,8 @@ def _converted(reader: FunctionReader, kind: str, value: Any, table: BaseModel, 
         resolve = reader.joint if kind == "joint" else reader.place
         return [resolve(name, *path) for name in value] if isinstance(value, list) else resolve(value, *path)
     if kind == "joint_value":
-        return value * reader.value_scale(scope.prefix + getattr(table, "joint", ""), *path)
+        scale = reader.value_scale(scope.prefix + getattr(table, "joint", ""), *path)
+        return [item * scale for item in value] if isinstance(value, list) else value * scale
     if kind == "joint_values":
         poses = [{reader.joint(joint, *path): v for joint, v in pose.items()} for pose in value]
         return [{joint: v * reader.value_scale(joint, *path) for joint, v in pose.items()} for pose in poses]
@@ -90,8 +92,21 @@ def _faults(table: Any) -> Iterator[Fault]:
             yield "it limits neither force nor torque", "add force, in N, or torque, in N·m", None
     elif isinstance(table, tables.Balance):
         yield from _balance_faults(table)
+    elif isinstance(table, tables.TorqueSpeed):
+        yield from _curve_faults(table)
     if isinstance(table, tables.Clear | tables.Fit) and table.between is not None and len(set(table.between)) < 2:
         yield f"both sides are {in_quotes(table.between[0])}", "name two different ones", "between"
+
+
+def _curve_faults(table: tables.TorqueSpeed) -> Iterator[Fault]:
+    if len(table.speeds) != len(table.efforts):
+        given = f"it has {len(table.speeds)} speeds and {len(table.efforts)} efforts"
+        yield given, "give an effort for each of the speeds", "efforts"
+    if table.speeds[0] != 0.0 or any(b <= a for a, b in pairwise(table.speeds)):
+        yield "its speeds do not ascend from 0", "begin with 0, the stalled drive, and list each speed once", "speeds"
+    if 0.0 in table.efforts[:-1] or any(b > a for a, b in pairwise(table.efforts)):
+        wrong = "its efforts grow with speed, or are 0 before its greatest speed"
+        yield wrong, "give what the drive can do at each speed, up to the greatest", "efforts"
 
 
 def _bound_faults(table: tables.Mass | tables.Inertia | tables.Fit) -> Iterator[Fault]:

@@ -15,6 +15,7 @@ from kinform.reports.constants import LEAST_GAP
 ANGLES = ("half_angle", "angle_tolerance")
 LENGTHS = ("tolerance", "distance")
 DIRECTIONS = ("axis", "direction")
+CURVES = ("speeds", "efforts")
 """Values of requirements by what they measure."""
 UNITS = {
     ("mass", "minimum"): "kg", ("mass", "maximum"): "kg", ("balance", "limit"): "kg·m",
@@ -106,6 +107,8 @@ def _value_words(assembly: Assembly, requirement: Requirement, key: str, value: 
                 if k != "type" and k not in HIDDEN and v is not None]  # fmt: skip
         return kind + ", ".join(rest)
     if isinstance(value, list):
+        if key in CURVES:
+            return f"({words.counted(len(value), 'value')})"
         if value and isinstance(value[0], str):
             return " and ".join(value)
         if value and isinstance(value[0], list | dict):
