@@ -70,6 +70,8 @@ def written(folder, seconds, driven):
     return manifest
 
 
+LONG = 200.0
+"""s of motion that are compiled."""
 FLOOR = "import numpy, h5py, fcl, manifold3d, pydantic, typer"
 
 
@@ -88,6 +90,22 @@ def rows(quick: bool) -> Iterator[Row]:
             words = f"importing the packages alone {min(floor[1:]):.2f} s; without bytecode {worked[0]:.2f} s"
             aim = 1.2 if design == "seeker_2dof" else None
             yield Row(f"{design} from nothing to the verdict", min(worked[1:]), aim, "s", words, peak())
+        yield compiling(Path(scratch) / "long", caches)
+
+
+def compiling(folder: Path, caches: Path) -> Row:
+    """The solver in the first run on a machine that is long enough to be compiled; beside it the same run again."""
+    manifest, solver, whole = written(folder, LONG, driven=True), [], []
+    shutil.rmtree(caches / "numba", ignore_errors=True)
+    for k in range(2):
+        _, worked, told = started(caches, "-c", RUN, "run", str(manifest), "-o", str(folder / f"{k}.h5"))
+        found = re.search(r"^solver (\S+) True", told, re.M)
+        if found is None:
+            raise RuntimeError(f"{LONG:g} s of {SEEKER.name} are too short to be compiled:\n{told}")
+        solver.append(float(found[1]))
+        whole.append(worked)
+    words = f"compiled before {solver[1]:.2f} s; whole commands {whole[0]:.1f} and {whole[1]:.1f} s"
+    return Row(f"{LONG:g} s of {SEEKER.name}, solver, compiling", solver[0], 8.0, "s", words, peak())
 
 
 def main(arguments) -> None:

@@ -183,12 +183,12 @@ def of_growth(quick: bool, large: bool) -> Iterator[Row]:
         yield Row(f"two wavy blocks of {LARGE:,} facets: memory", seen[-1]["MB"], LARGE_MB, "MB")
 
 
-def rows(quick: bool, robots: Path | None = None, large: bool = False) -> Iterator[Row]:
-    """All rows."""
+def rows(quick: bool, robots: Path | None = None, large: bool | None = None) -> Iterator[Row]:
+    """All rows; `large`: with 5.4 million facets, by default unless it is to be quick."""
     named = os.environ.get("KINFORM_ROBOTS")
     yield from of_robots(robots or (Path(named) if named else None))
     yield from of_small_parts(quick)
-    yield from of_growth(quick, large)
+    yield from of_growth(quick, not quick if large is None else large)
 
 
 def main(arguments: list[str]) -> None:
