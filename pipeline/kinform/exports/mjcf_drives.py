@@ -6,14 +6,22 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
-from kinform.behaviour import Constant, DcMotor, EffortDrive, Gear, LoadComponent, MotionDrive, Servo, VoltageController
-from kinform.behaviour.primitives import Ball
+from kinform.behaviour import (
+    Constant,
+    DcMotor,
+    EffortDrive,
+    Gear,
+    JointComponent,
+    LoadComponent,
+    MotionDrive,
+    Servo,
+    VoltageController,
+)
 from kinform.behaviour.shafts import Controller
 from kinform.behaviour.signals import Signal
 from kinform.exports.constants import BANDWIDTH
 from kinform.exports.names import XML, identifiers
+from kinform.exports.reflected import Carried, carried
 from kinform.exports.robot import Robot, RobotLink
 
 
@@ -57,10 +65,14 @@ def actuators(robot: Robot, links: Sequence[RobotLink], lost: list[str]) -> list
                 continue
             at = {"name": names[drive.name], "joint": robot.joint_names[link.coordinate(drive.freedom)], "bound": None}
             if isinstance(drive, MotionDrive):
-                inertia = _inertia_on(robot, link, drive.freedom)
-                gains = {"kp": inertia * BANDWIDTH**2, "kv": 2.0 * inertia * BANDWIDTH}
-                out.append(at | gains | {"type": "position", "start": drive.signal.value(0.0)})
-                lost.append(f"{drive.subject}: its motion follows a law; it is a position servo that holds the start")
+                moved = carried(robot.model, joint.subject, drive.freedom) or Carried(1.0, 0.0)
+                gains = {"kp": moved.inertia * BANDWIDTH**2, "kv": 2.0 * moved.inertia * BANDWIDTH}
+                aside = moved.gravity / gains["kp"]
+                out.append(at | gains | {"type": "position", "start": drive.signal.value(0.0) + aside})
+                lost.append(
+                    f"{drive.subject}: its motion follows a law; it is a position servo of {BANDWIDTH / math.tau:g} Hz "
+                    f"that holds the start{_aimed(aside, joint, drive.freedom)}"
+                )
             elif isinstance(drive, EffortDrive):
                 out.append(at | {"type": "motor", "start": drive.signal.value(0.0)})
                 if not isinstance(drive.signal, Constant):
@@ -108,26 +120,13 @@ def _motor(robot: Robot, motor: DcMotor, lost: list[str]) -> dict[str, Any]:
     return {"type": "general", "gain": ratio, "drag": drag, "start": supply.signal.value(0.0)}
 
 
-def _inertia_on(robot: Robot, link: RobotLink, freedom: int) -> float:
-    """What a freedom of a joint moves if all others hold still (kg·m² or kg), at the pose of the meshes."""
-    (motion,) = (motion for motion in link.link.motions if motion.coordinate == freedom)
-    primitive = motion.primitive
-    assert not isinstance(primitive, Ball)
-    total, carried = 0.0, [link]
-    queue = [k for k, other in enumerate(robot.links) if other is link]
-    while queue:
-        k = queue.pop()
-        queue += robot.tree.children(k)
-        carried += [robot.links[child] for child in robot.tree.children(k)]
-    for other in carried:
-        if other.mass is None:
-            continue
-        if not primitive.omega.any():
-            total += other.mass
-            continue
-        arm = np.cross(primitive.omega, other.centre + other.link.origin - primitive.point)
-        total += float(other.mass * arm @ arm + primitive.omega @ other.inertia @ primitive.omega)
-    return total if total > 0.0 else 1.0
+def _aimed(aside: float, joint: JointComponent, freedom: int) -> str:
+    """What carries gravity at the start, in words."""
+    if aside == 0.0:
+        return ""
+    turns = joint.kind.coordinates[freedom][1]
+    size = f"{math.degrees(aside):.3g}°" if turns else f"{1e3 * aside:.3g} mm"
+    return f", aimed {size} aside so that it carries gravity there"
 
 
 def load(robot: Robot, given: LoadComponent) -> dict[str, Any]:
