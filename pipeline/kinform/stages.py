@@ -16,6 +16,7 @@ from kinform.design import Design
 from kinform.errors import OpenSidesError, StageError
 from kinform.form.sources import AS_IT_IS, Reading
 from kinform.foundation.progress import Progress
+from kinform.model.collisions import JointRange
 from kinform.model.fingerprints import Fingerprints
 from kinform.model.function import SimulationRequest
 from kinform.reuse import fingerprints, lineage
@@ -156,9 +157,12 @@ def simulate(
     def move(view: Assembly) -> Result:
         from kinform import simulation
 
+        stopping = view.simulation is not None and view.simulation.stops == "found"
+        reach = _ranges(design, view) if stopping or wanted else None
         behaviour = simulation.port_model(
-            view, kinematics, masses, level=level, contacts=design.contacts, surfaces=design.surfaces
-        )
+            view, kinematics, masses, level=level, contacts=design.contacts, surfaces=design.surfaces,
+            reach=reach or (),
+        )  # fmt: skip
 
         def run(view: Assembly, progress: Progress | None = None) -> Simulation:
             return simulation.simulate(
@@ -170,7 +174,7 @@ def simulate(
             return run(replace(view, simulation=replace(request, step=request.step / times)))
 
         return Result(
-            {"behaviour": behaviour, "simulation": _with_collisions(design, view, run(view, progress), wanted, finer)}
+            {"behaviour": behaviour, "simulation": _with_collisions(design, view, run(view, progress), reach, finer)}
         )
 
     settings = {"whether ranges are asked for": "yes" if wanted else "no", "level": level}
@@ -230,10 +234,14 @@ def _read(
 
 
 def _with_collisions(
-    design: Design, view: Assembly, run: Simulation, ranges: bool, finer: Callable[[int], Simulation]
+    design: Design,
+    view: Assembly,
+    run: Simulation,
+    ranges: tuple[JointRange, ...] | None,
+    finer: Callable[[int], Simulation],
 ) -> Simulation:
-    """The run with its collisions and, with `ranges`, how far joints go, as far as there are meshes. `finer` gives the
-    run with so many times as many output times."""
+    """The run with its collisions and how far joints go, as far as there are meshes. `finer` gives the run with so many
+    times as many output times."""
     if not design.surfaces or design.kinematics is None or all(part.mesh is None for part in view.parts):
         return run
     if len(run.time) > 1:
@@ -243,8 +251,13 @@ def _with_collisions(
             view, design.surfaces, design.contacts, design.kinematics, run, finer=finer
         )  # fmt: skip
         run = replace(run, collisions=met, uncollided=untested)
-    if ranges:
-        from kinform import collisions
+    return run if ranges is None else replace(run, ranges=ranges)
 
-        run = replace(run, ranges=collisions.ranges(view, design.surfaces, design.contacts, design.kinematics))
-    return run
+
+def _ranges(design: Design, view: Assembly) -> tuple[JointRange, ...] | None:
+    """How far joints go; None where there are no meshes to stop them."""
+    if not design.surfaces or design.kinematics is None or all(part.mesh is None for part in view.parts):
+        return None
+    from kinform import collisions
+
+    return collisions.ranges(view, design.surfaces, design.contacts, design.kinematics)

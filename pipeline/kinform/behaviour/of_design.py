@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +21,7 @@ from kinform.behaviour.sliding import sliding_joints
 from kinform.foundation.words import quoted
 from kinform.function import resolve_joint, stated_ranges
 from kinform.model.assembly import Assembly
+from kinform.model.collisions import JointRange
 from kinform.model.contacts import Contacts
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.mass import MassReport
@@ -75,13 +77,14 @@ def build(
     gears: bool = False,
     contacts: Contacts | None = None,
     surfaces: Mapping[str, MeshSurfaces] | None = None,
+    reach: Sequence[JointRange] = (),
 ) -> Behaviour:
     """The port model: bodies and ground, joints, drives, loads, and with `gears` the couplings of
     `[function]`, which geometry does not show.
 
     Joints that are ambiguous or general are failures, as are drives on freedoms that do not exist; where `[simulation]`
     is partial such joints are rigid instead, and what acts on them is left out. From `contacts` and `surfaces`
-    friction has its radii and its materials.
+    friction has its radii and its materials. `reach`: how far joints go, where they are to stop where meshes meet.
     """
     builder = _Builder()
     partial = assembly.simulation is not None and assembly.simulation.partial
@@ -146,11 +149,10 @@ def build(
             geared.append((gear.subject, [name for name, by in imposed.replaced.items() if by == number]))
         elif gears or number in imposed.replaced.values():
             failures.append(("coupling of " + " and ".join(wanted.every), why))
-    if assembly.simulation is not None and assembly.simulation.stops == "range":
-        for name, (lower, upper) in stated_ranges(assembly, kinematics):
-            if name in modelled and modelled[name].kind.rates == 1 and not np.all(np.isinf([lower, upper])):
-                stop = EndStop(f"stop {name}", name, lower, upper, assembly.simulation.restitution)
-                builder.add(stop, shaft=f"shaft {name}")
+    for name, (lower, upper) in _stops(assembly, kinematics, reach):
+        if name in modelled and modelled[name].kind.rates == 1 and not np.all(np.isinf([lower, upper])):
+            restitution = assembly.simulation.restitution if assembly.simulation is not None else 0.0
+            builder.add(EndStop(f"stop {name}", name, lower, upper, restitution), shaft=f"shaft {name}")
     for number, load in enumerate(assembly.function.loads, start=1):
         component_load, body_name, why = make_load(assembly, kinematics, mass, load, number)
         if component_load is not None:
@@ -168,6 +170,21 @@ def build(
     nested = nest(system, homes(system, parts))
     said = () if gears else tuple(_imposed(subject, replaced) for subject, replaced in geared)
     return Behaviour(system, nested, tuple(failures), tuple(forces_missing), tuple(held), said)
+
+
+def _stops(
+    assembly: Assembly, kinematics: Kinematics, reach: Sequence[JointRange]
+) -> Iterator[tuple[str, tuple[float, float]]]:
+    """Joints with where they stop (rad or m), as the request asks."""
+    asked = assembly.simulation.stops if assembly.simulation is not None else ""
+    if asked == "range":
+        yield from stated_ranges(assembly, kinematics)
+    for item in reach if asked == "found" else ():
+        lower, upper = (
+            free if end.status != "found" or end.value is None else float(end.value)
+            for end, free in ((item.lower, -math.inf), (item.upper, math.inf))
+        )
+        yield str(item.joint), (lower, upper)
 
 
 def _imposed(subject: str, replaced: Sequence[str]) -> Reason:

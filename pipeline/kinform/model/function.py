@@ -234,7 +234,7 @@ class SimulationRequest:
     partial: bool = False
     """Whether joints that are not understood are held while the rest moves."""
     stops: str = ""
-    """"range": joints stop at the ends of their stated ranges; "": they pass them."""
+    """"range": joints stop at the ends of their stated ranges; "found": where meshes meet; "": they pass them."""
     restitution: Ratio = 0.0
     """Of these stops: the share of the speed that an impact leaves."""
     assumed: tuple[str, ...] = ()

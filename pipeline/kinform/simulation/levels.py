@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from kinform.behaviour import Behaviour, Friction, RigidBody, System
+from kinform.behaviour import Behaviour, EndStop, Friction, RigidBody, System
 from kinform.function import FREEDOMS, acted_freedom, resolve_joint
 from kinform.model.assembly import Assembly
 from kinform.model.function import Drive
@@ -116,6 +116,24 @@ def notes_of_freedoms(assembly: Assembly, kinematics: Kinematics) -> Iterator[st
         meant = acted_freedom(assembly, kinematics, name, freedom)
         if meant.joint is not None and meant.freedom is not None and meant.because:
             yield f"{what} {name} acts on its {FREEDOMS[meant.joint.type][meant.freedom]}: {meant.because}"
+
+
+def notes_of_stops(assembly: Assembly, system: System) -> Iterator[str]:
+    """Where joints stop because meshes meet there, and which have no such end."""
+    if assembly.simulation is None or assembly.simulation.stops != "found":
+        return
+    stops = {stop.subject: stop for stop in system.components if isinstance(stop, EndStop)}
+    for joint in system.joints:
+        if joint.kind.rates != 1:
+            continue
+        stop, turns = stops.get(joint.subject), joint.kind.coordinates[0][1]
+        ends = [] if stop is None else [end for end in (stop.lower, stop.upper) if math.isfinite(end)]
+        shown = [f"{math.degrees(end):.4g}°" if turns else f"{1e3 * end:.4g} mm" for end in ends]
+        if shown:
+            alone = "its parts meet there when it is moved from the pose of the meshes, alone or with its loops"
+            yield f"{joint.subject} stops at {' and '.join(shown)}: {alone}"
+        else:
+            yield f"{joint.subject} has no stop: no end of its range was found"
 
 
 def notes_of_teeth(kinematics: Kinematics) -> Iterator[str]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from kinform.behaviour import Behaviour, build
 from kinform.model.assembly import Assembly
+from kinform.model.collisions import JointRange
 from kinform.model.contacts import Contacts
 from kinform.model.kinematics import Kinematics
 from kinform.model.mass import MassReport
@@ -26,12 +27,13 @@ def port_model(
     level: str | None = None,
     contacts: Contacts | None = None,
     surfaces: Mapping[str, MeshSurfaces] | None = None,
+    reach: Sequence[JointRange] = (),
 ) -> Behaviour:
-    """The port model that `simulate` solves at that level, whatever is wrong with it."""
+    """The port model that `simulate` solves at that level, whatever is wrong with it; `reach`: how far joints go."""
     asked = asked_level(assembly, level)
     joints = simulated_joints(assembly, kinematics, asked)
     gears = are_gears_ideal(assembly, asked)
-    return build(assembly, joints, mass, gears=gears, contacts=contacts, surfaces=surfaces)
+    return build(assembly, joints, mass, gears=gears, contacts=contacts, surfaces=surfaces, reach=reach)
 
 
 def asked_level(assembly: Assembly, level: str | None) -> str | None:

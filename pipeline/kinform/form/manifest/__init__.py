@@ -57,8 +57,10 @@ class SimulationTable(Table):
         False,
         description="hold the joints that are not understood, and move the rest: what that shows is not verified",
     )
-    stops: Literal["range"] | None = Field(
-        None, description="joints with one freedom stop at the ends of their stated ranges; default they pass them"
+    stops: Literal["range", "found"] | None = Field(
+        None,
+        description="joints with one freedom stop at the ends of their stated ranges, or, with found, where parts meet "
+        "when each is moved from the pose of the meshes; default they pass them",
     )
     restitution: Annotated[float, Field(ge=0.0, le=1.0)] = Field(
         0.0, description="of these stops: share of the speed that an impact leaves"
