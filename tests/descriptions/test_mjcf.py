@@ -172,6 +172,16 @@ def test_included_files_have_lines_of_their_own(tmp_path):
         form.load(path)
 
 
+def test_a_folder_beside_is_not_inside_though_its_name_begins_alike(tmp_path):
+    """`robot2` is no folder of `robot`."""
+    for name in ("robot", "robot2"):
+        (tmp_path / name).mkdir()
+    path = write(tmp_path / "robot", text().replace("<worldbody>", '<include file="../robot2/more.xml"/><worldbody>'))
+    (tmp_path / "robot2" / "more.xml").write_text("<mujoco/>")
+    with pytest.raises(InputError, match="lies outside the folder"):
+        form.load(path)
+
+
 REPLICAS = """<mujoco><compiler angle="{angle}" eulerseq="{sequence}"/><worldbody><body name="base">
 <geom name="hub" size="0.1"/>
 <replicate count="11" offset="0.1 0.02 0" euler="{a} {b} {c}" sep="-">

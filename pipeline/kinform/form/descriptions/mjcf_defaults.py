@@ -40,7 +40,7 @@ class Includes:
         shown = Path(self._xml.file).parent / name
         above = element.getparent()
         place = above.index(element)
-        if not str(path.resolve()).startswith(str(self._meshes.home.resolve())):
+        if not path.resolve().is_relative_to(self._meshes.home.resolve()):
             self._xml.complain(element, f"the include {in_quotes(name)} lies outside the folder", "move it there")
         elif not name or not path.is_file():
             self._xml.complain(element, f"the include {in_quotes(name)} does not exist", "correct its file")
