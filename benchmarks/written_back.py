@@ -5,10 +5,10 @@
 one density, and the intended joints (`complete = true`, the largest part of either side named) go through import,
 contacts, joints, mass and `export --to urdf`. Every joint of the original is looked for in that URDF (which calls
 joints by their bodies), each once: its axis at the pose of the meshes within 0.5° and 0.2 mm, and the mass of the
-link that it carries within 2 % of that of the original's parts. Closing joints of loops do not count. `--contacts
-FOLDER` takes contacts that were made before, from `<robot>-score-function.h5` there. `-v` lists what disagrees, with
-both masses; a link with an open mesh has no mass that is known. Exit 0 when all agree, or, with the reason, where there
-is no corpus.
+link that it carries within 2 % of that of the original's parts. Closing joints of loops are stated last and do not
+count: no URDF has them. Of a ball its centre is compared. `--contacts FOLDER` takes contacts that were made before, from
+`<robot>-score-function.h5` there. `-v` lists what disagrees, with both masses; a link with an open mesh has no mass
+that is known. Exit 0 when all agree, or, with the reason, where there is no corpus.
 """
 
 from __future__ import annotations
@@ -98,11 +98,15 @@ def _near(off: tuple[float, float]) -> bool:
 
 
 def away(joint: dict[str, Any], found: tuple[Any, Any, str]) -> tuple[float, float]:
-    """Degrees and metres by which the axis of a URDF's joint is off."""
+    """Degrees and metres by which the axis of a URDF's joint is off; of a ball, whose three turns have one centre, the
+    metres by which the centre is.
+    """
     axis, point, _ = found
     wanted = np.array(joint["axis"], float) / np.linalg.norm(joint["axis"])
     angle = math.degrees(math.asin(min(1.0, float(np.linalg.norm(np.cross(axis, wanted))))))
     gap = point - np.array(joint["origin"], float)
+    if joint["type"] == "spherical":
+        return 0.0, float(np.linalg.norm(gap))
     slides = joint["type"] in ("prismatic", "planar")
     return angle, 0.0 if slides else float(np.linalg.norm(gap - (gap @ wanted) * wanted))
 
@@ -136,13 +140,20 @@ def manifest(robot: Path, truth: dict[str, Any]) -> str:
         mesh = json.dumps(part["file"])
         lines += ["[[part]]", f"name = {json.dumps(part['name'])}", f"mesh = {mesh}", f"density = {DENSITY}"]
     lines += ["[function]", "complete = true"]
-    for joint in truth["joints"]:
-        if joint["type"] == "fixed":
+    sides = [(joint, joint["parent_group"], joint["child_group"]) for joint in truth["joints"]]
+    # those that close loops come last: a tree is written of the joints that are stated first
+    sides += [(loop, loop["group_a"], loop["group_b"]) for loop in truth["loops"]]
+    for joint, first, second in sides:
+        type_ = {"continuous": "revolute"}.get(joint.get("type"), joint.get("type"))
+        if type_ in (None, "unstated", "weld", "fixed"):
             continue
-        type_ = "revolute" if joint["type"] == "continuous" else joint["type"]
-        sides = [largest[joint["parent_group"]], largest[joint["child_group"]]]
-        lines += ["[[function.joint]]", f"name = {json.dumps(joint['name'])}", f"between = {json.dumps(sides)}"]
-        lines += [f'type = "{type_}"', f"axis = {json.dumps(joint['axis'])}", f"point = {json.dumps(joint['origin'])}"]
+        between = json.dumps([largest[first], largest[second]])
+        lines += ["[[function.joint]]", f"name = {json.dumps(joint['name'])}", f"between = {between}"]
+        lines += [f'type = "{type_}"']
+        if joint.get("axis") and type_ != "spherical":
+            lines += [f"axis = {json.dumps(joint['axis'])}"]
+        if type_ not in ("prismatic", "planar"):
+            lines += [f"point = {json.dumps(joint.get('origin', joint.get('point')))}"]
     return "\n".join(lines) + "\n"
 
 

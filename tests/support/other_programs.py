@@ -73,7 +73,7 @@ def posed(model, seed):
     """Random coordinates, or where there are loops those of our run: values by URDF joint, and poses (4, 4) of link
     frames by body."""
     random = np.random.default_rng(seed)
-    mechanism, tree = model.mechanism, grow(model.system, KINDS)
+    mechanism, tree = model.mechanism, grow(model.system, KINDS, model.stated)
     q, values = mechanism.start, {}
     for link in tree.links:
         if link.joint is None or link.joint.kind.rates == 0:
@@ -123,7 +123,7 @@ def origin(found, name):
     from kinform.exports.mjcf import CLOSABLE
     from kinform.exports.tree import grow
 
-    links = grow(found.system, CLOSABLE).links
+    links = grow(found.system, CLOSABLE, found.stated).links
     return next(link.origin for link in links if link.body.subject == name)
 
 

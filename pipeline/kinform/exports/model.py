@@ -72,6 +72,8 @@ class ExportModel:
     """By name of body."""
     ranges: dict[str, tuple[float, float]]
     """(lower, upper) rad or m of joints with one freedom, ±inf for a free side, by name of joint."""
+    stated: dict[str, tuple[bool, int]]
+    """By name of joint, of those that the function states: whether it only closes a loop, and its place among them."""
     adrift: tuple[str, ...]
     """Bodies that no joints connect with the ground, sorted."""
     missing: tuple[str, ...]
@@ -165,10 +167,21 @@ def export_model(design: Design) -> ExportModel:
         v=v,
         start=_starts(mechanism, q, v),
         ranges=_ranges(assembly, kinematics, behaviour.system.joints),
+        stated=_stated(assembly, kinematics),
         adrift=tuple(sorted(adrift)),
         missing=_missing(behaviour, adrift),
         elsewhere=_elsewhere(behaviour.system),
     )
+
+
+def _stated(assembly: Assembly, kinematics: Kinematics) -> dict[str, tuple[bool, int]]:
+    """Joints as the function states them, in its order; one that it states twice by the first."""
+    out: dict[str, tuple[bool, int]] = {}
+    for place, intended in enumerate(assembly.function.joints):
+        joint = resolve_joint(assembly, kinematics, intended.name).joint
+        if joint is not None:
+            out.setdefault(joint.name, (intended.closure, place))
+    return out
 
 
 def _initial(mechanism: Mechanism, run: Simulation | None) -> tuple[Array, Array]:

@@ -169,7 +169,7 @@ class Robot:
 
 def robot_of(model: ExportModel, language: Language = XML, closable: Collection[str] = ()) -> Robot:
     """The tree of a model, with names for the language."""
-    tree = grow(model.system, closable)
+    tree = grow(model.system, closable, model.stated)
     shapes = shapes_of(model)
     names = identifiers((link.body.subject for link in tree.links), language)
     called = {name for joint in model.system.joints for name in (joint.subject, *coordinate_names(joint))}

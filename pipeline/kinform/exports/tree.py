@@ -7,7 +7,7 @@ run through from its second body has its motions reversed: the axes change sign,
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -89,9 +89,12 @@ class Tree:
         return tuple(k for k, other in enumerate(self.links) if other.parent == link)
 
 
-def grow(system: System, closable: Collection[str] = ()) -> Tree:
+def grow(system: System, closable: Collection[str] = (), stated: Mapping[str, tuple[bool, int]] | None = None) -> Tree:
     """The tree of a system: that of our simulation; with `closable` kinds of joints, one whose loops are closed
-    by joints of these kinds on which nothing acts, where there is a choice.
+    by joints of these kinds on which nothing acts, where there is a choice; and of these by those that the designer
+    states as closing, then by joints that nobody states, then by the last stated.
+
+    `stated`, by name of joint: whether it is stated as closing, and its place among those stated.
     """
     bodies, joints = system.bodies, system.joints
     index = {body.name: k for k, body in enumerate(bodies)}
@@ -102,7 +105,9 @@ def grow(system: System, closable: Collection[str] = ()) -> Tree:
     order = _as_simulated(len(bodies), pairs, [j.kind.rates == 0 for j in joints], index[system.ground.name])
     if closable:
         spare = [joint.kind.name in closable and not system.actors(joint.name) for joint in joints]
-        order.sort(key=lambda k: (joints[k].kind.rates > 0, spare[k]))
+        said = stated or {}
+        place_of = [said.get(joint.subject, (False, len(said))) for joint in joints]
+        order.sort(key=lambda k: (joints[k].kind.rates > 0, spare[k], *place_of[k]))
     for k in order:
         a, b = pairs[k]
         if joints[k].kind.rates == 0:
