@@ -1,8 +1,10 @@
 """Bodies from function on random machines of bolted stacks, bearings, pins and horns: `python benchmarks/machines.py`.
 
-Each joint names any part of either side at random. Exact: every part is in its body, but for pins, bushes and balls,
-which may be in either of two, and the mobility is the number of joints. Fused: two bodies are one. Silent: a part in
-the wrong body is not listed as one that could go either way. Proposed: joints that would be proposed without function.
+Each joint names any part of either side at random. Exact: every part is in its body, but for pins, bushes, balls and
+cages, which may be in either of two, and the mobility is the number of joints. Fused: two bodies are one. Silent: a
+part in the wrong body is not listed as one that could go either way. Proposed: joints that would be proposed without
+function. `--rings`: four-bars of such decks instead, with cages in their bearings, whose mobility is 1 and whose joints
+name the largest part of either side. `--size 0.001`: each so large (m), else 0.1 to 10 mm a unit at random.
 `--parts 1000` instead derives one chain of about so many parts, and prints how long contacts and bodies take.
 Exit 0: at least 99 % exact, none fused.
 """
@@ -19,6 +21,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "fixtures"))
 from random_assemblies.draw import Draw
 from random_assemblies.machine_verdict import assembly_of, judge
 from random_assemblies.machines import machine
+from random_assemblies.rings import ring
 
 from kinform import contacts, kinematics, surfaces
 from kinform.kinematics import propose
@@ -31,16 +34,19 @@ def main() -> int:
     parser.add_argument("--cases", type=int, default=100)
     parser.add_argument("--first", type=int, default=10_000)
     parser.add_argument("--parts", type=int)
+    parser.add_argument("--rings", action="store_true")
+    parser.add_argument("--size", type=float, help="m, of each machine's box; else at random")
     options = parser.parse_args()
-    return large(options.parts) if options.parts else cases(options.first, options.cases)
+    return large(options.parts) if options.parts else cases(options)
 
 
-def cases(first: int, count: int) -> int:
+def cases(options: argparse.Namespace) -> int:
     """All cases, and what came of them."""
+    first, count = options.first, options.cases
     exact = fused = silent = joints = hit = proposed = true = 0
     for seed in range(first, first + count):
-        made = machine(Draw([seed]))
-        assembly = assembly_of(made, seed)
+        made = (ring if options.rings else machine)(Draw([seed]))
+        assembly = assembly_of(made, seed, options.size)
         found = {p.mesh.digest: surfaces.recover(p.mesh, assembly.tolerances) for p in assembly.parts if p.mesh}
         touching = contacts.find(assembly, found)
         verdict = judge(made, kinematics.derive(assembly, found, touching))

@@ -11,6 +11,7 @@ import pytest
 from random_assemblies.draw import Draw
 from random_assemblies.machine_verdict import assembly_of, judge
 from random_assemblies.machines import machine
+from random_assemblies.rings import ring
 from support.solids import box, part, rod
 
 from kinform import contacts, kinematics, surfaces
@@ -21,6 +22,7 @@ from kinform.kinematics.partition.one_body import joined_by_cost, one_body
 from kinform.kinematics.partition.standard_parts import standard_parts
 
 SEEDS = [3, 4, 9, 11]
+CAGED = 11
 
 
 @cache
@@ -35,6 +37,16 @@ def touching(seed):
 def test_bodies_are_those_of_the_machine_whichever_parts_are_named(seed):
     made, assembly, found, contact = touching(seed)
     assert judge(made, kinematics.derive(assembly, found, contact)).exact
+
+
+def test_a_loop_of_decks_with_a_caged_bearing_comes_apart_at_its_joints_at_a_millimetre():
+    made = ring(Draw([CAGED]))
+    assert any(name.startswith("cage") for name in made.solids)
+    assembly = assembly_of(made, CAGED, size=0.001)
+    found = {p.mesh.digest: surfaces.recover(p.mesh, assembly.tolerances) for p in assembly.parts}
+    K = kinematics.derive(assembly, found, contacts.find(assembly, found))
+    verdict = judge(made, K)
+    assert verdict.exact and verdict.mobility == 1, verdict
 
 
 @pytest.mark.parametrize("seed", SEEDS)
