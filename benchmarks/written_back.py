@@ -7,8 +7,8 @@ contacts, joints, mass and `export --to urdf`. Every joint of the original is lo
 joints by their bodies), each once: its axis at the pose of the meshes within 0.5° and 0.2 mm, and the mass of the
 link that it carries within 2 % of that of the original's parts. Closing joints of loops are stated last and do not
 count: no URDF has them. Of a ball its centre is compared. `--contacts FOLDER` takes contacts that were made before,
-from `<robot>-score-function.h5` there. `-v` lists what disagrees, with both masses; a link with an open mesh has no mass
-that is known. Exit 0 when all agree, or, with the reason, where there is no corpus.
+from `<robot>-score-function.h5` there. `-v` lists what disagrees, with both masses; a link with an open mesh has no
+mass that is known. Exit 0 when all agree, or, with the reason, where there is no corpus.
 """
 
 from __future__ import annotations
