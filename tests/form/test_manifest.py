@@ -170,3 +170,13 @@ def test_the_schema_describes_every_table():
 def test_a_value_of_a_joint_that_is_not_stated_has_no_unit_and_is_refused(tmp_path, table, line):
     found = problems(tmp_path, HEAD + '[[part]]\nname = "a"\n' + table)
     assert line in [at for at, message in found if '"a~b" turns or slides is not stated' in message]
+
+
+def test_an_initial_position_may_be_solved_for(tmp_path):
+    motion = '[simulation.initial."a~b"]\nposition = {}\nvelocity = 3\n'
+    (value,) = read(tmp_path, TWO + motion.format('"closest"')).simulation.initial
+    assert (value.solved, value.position, value.velocity) == (True, 0.0, 3.0)
+    (value,) = read(tmp_path, TWO + motion.format("20")).simulation.initial
+    assert (value.solved, value.position) == (False, 20.0)
+    ((line, message),) = problems(tmp_path, TWO + motion.format('"nearest"'))
+    assert line == 10 and "closest" in message

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from support.devices import Z, body, device, drive, initial, joint, rod, sine
@@ -165,6 +167,23 @@ def test_two_four_bars_in_a_row_pass_their_collinear_pose_as_the_benchmark_does(
     assert run.energy[0, 0] == pytest.approx(1.5, rel=1e-12)
     np.testing.assert_allclose(place(run, "r0", [0, 1, 0])[:2], [0.32845810, 0.94451854], atol=1e-6)
     assert any("singular pose" in note for note in run.assumptions)
+
+
+def test_a_position_that_is_solved_for_is_where_the_loop_puts_it():
+    """The crank at 60°, the slider thrown along: x = r cos θ + √(l² − r² sin² θ), and the crank's rate from dx/dθ."""
+    r, rod_length, angle = 0.1, 0.3, np.radians(60.0)
+    solved = replace(initial("base~slider", 0.0, 0.2), solved=True)
+    made = slider_crank(r, rod_length, initial=(initial("base~crank", 60.0), solved), duration=0.02, step=0.01,
+                        gravity=np.zeros(3))  # fmt: skip
+    run = simulate(*made)
+    assert run.status == "done", run.reason
+    at = {name: k for k, name in enumerate(run.joint_names)}
+    root = np.sqrt(rod_length**2 - (r * np.sin(angle)) ** 2)
+    moved = r * np.cos(angle) + root - (r + rod_length)
+    slope = -r * np.sin(angle) * (1.0 + r * np.cos(angle) / root)
+    assert abs(run.joint_position[0, at["base~slider"]]) == pytest.approx(-moved, rel=1e-9)
+    assert abs(run.joint_velocity[0, at["base~crank"]]) == pytest.approx(0.2 / abs(slope), rel=1e-9)
+    assert any("base~slider starts at" in note for note in run.assumptions)
 
 
 def test_a_crank_that_cannot_turn_through_stops_with_its_time_and_reason():

@@ -218,6 +218,8 @@ class InitialValue:
     line: int | None
     freedom: str = ""
     """As of `Drive`."""
+    solved: bool = False
+    """Whether the position is solved for: what loops leave of it, followed from the pose of the meshes."""
 
 
 @dataclass(frozen=True, eq=False)

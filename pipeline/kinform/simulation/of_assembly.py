@@ -128,7 +128,7 @@ def _stated_values(
         slot = slots[joint.subject]
         stated[joint.subject] = Stated(
             value.joint, slot.q.start + on.freedom, slot.v.start + on.freedom,
-            unit * value.position, unit * value.velocity,
+            unit * value.position, unit * value.velocity, value.solved,
         )  # fmt: skip
     return tuple(stated.values()), tuple(failures)
 

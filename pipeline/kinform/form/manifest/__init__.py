@@ -39,7 +39,11 @@ __all__ = [
 class Initial(Table):
     """`[simulation.initial.JOINT]`."""
 
-    position: Finite = Field(0.0, description="degrees or lengths; 0 is the pose of the meshes")
+    position: Finite | Literal["closest"] = Field(
+        0.0,
+        description='degrees or lengths; 0 is the pose of the meshes. "closest": as the loops have it for the other '
+        "values, followed from there",
+    )
     velocity: Finite = Field(0.0, description="degrees or lengths a second")
     freedom: FreedomName | None = Field(None, description=WHICH_FREEDOM)
 

@@ -286,8 +286,10 @@ class FunctionReader:
         for name, value in sorted(table.initial.items()):
             path = ("simulation", "initial", name)
             joint, where = self.joint(name, *path), self.scope.where(*path)
-            numbers = value.position, value.velocity, self.scope.metres
-            initial.append(InitialValue(joint, *numbers, *where, value.freedom or ""))
+            solved = isinstance(value.position, str)
+            position = 0.0 if isinstance(value.position, str) else value.position
+            numbers = position, value.velocity, self.scope.metres
+            initial.append(InitialValue(joint, *numbers, *where, value.freedom or "", solved))
         gravity = np.array(table.gravity, dtype=float)
         defaults = tuple(sorted({"duration", "step", "gravity"} - table.model_fields_set))
         where = self.scope.where("simulation")

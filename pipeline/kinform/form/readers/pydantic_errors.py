@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import islice
 from typing import Any
 
@@ -22,7 +22,7 @@ _UNITS = 'lengths have no default unit: write units = "mm" (or m, cm, um, in, ft
 def report(error: ValidationError, raw: dict[str, Any], lines: Lines, file: str, problems: Problems) -> None:
     """Add each of pydantic's errors to the problems."""
     schema = _schema()
-    for item in islice(error.errors(include_url=False), PROBLEMS_MOST + 1):
+    for item in islice(_one_a_union(error.errors(include_url=False), raw), PROBLEMS_MOST + 1):
         path = _real_path(item["loc"], raw)
         tagged = item["type"].startswith("union_tag")
         where = _label(path if item["type"] == "missing" or tagged else path[:-1], raw)
@@ -31,6 +31,32 @@ def report(error: ValidationError, raw: dict[str, Any], lines: Lines, file: str,
         owner = _node(schema, item["loc"][:-1])
         message, remedy = _words(item, path, where, node, owner)
         problems.add(message, lines.file(key) or file, lines.line(key), remedy)
+
+
+def _one_a_union(errors: Sequence[Any], raw: dict[str, Any]) -> Iterator[Any]:
+    """The errors, those of several types that a key may have as one: the deepest, else that it is none of them."""
+    members: dict[Path, list[Any]] = {}
+    for item in errors:
+        members.setdefault(_union_of(item["loc"], raw), []).append(item)
+    for union, items in members.items():
+        if len({item["loc"][len(union) : len(union) + 1] for item in items}) < 2 or not union:
+            yield from items
+            continue
+        deepest = max(len(_real_path(item["loc"], raw)) for item in items)
+        if deepest > len(union):
+            yield from (item for item in items if len(_real_path(item["loc"], raw)) == deepest)
+        else:
+            yield items[0] | {"type": "no_member", "loc": union}
+
+
+def _union_of(loc: tuple[str | int, ...], raw: Any) -> Path:
+    """The key whose value may have several types, one of which the location names; () where it names none."""
+    value: Any = raw
+    for i, step in enumerate(loc):
+        if not _has(value, step):
+            return () if isinstance(value, dict) else tuple(loc[:i])
+        value = value[step]
+    return ()
 
 
 @functools.cache
@@ -63,6 +89,8 @@ def _words(item: Any, path: Path, where: str, node: dict[str, Any], owner: dict[
         choices = [c.strip("'") for c in context["expected_tags"].split(", ")]
         remedy = did_you_mean(str(context["tag"]), choices, f"the values of {tag}")
         return f"{where}: {tag} cannot be {in_quotes(context['tag'])}", remedy
+    if kind == "no_member":
+        return f"{where}: {name} cannot be {_value(item['input'])}", f"{name} is: {expected}"
     if kind == "literal_error":
         choices = node.get("enum") or [node.get("const", "")]
         remedy = did_you_mean(str(item["input"]), [str(c) for c in choices], "the choices")

@@ -35,6 +35,8 @@ class Stated:
     v: int
     position: float
     velocity: float
+    solved: bool = False
+    """The position is not stated: loops give it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +60,7 @@ def begin(
     notes = _contradictions(actuation, stated)
     led = set(actuation.led.tolist())
     loose = [value for value in stated if value.v not in led]
-    places = [value for value in loose if value.position != 0.0 or value.velocity == 0.0]
+    places = [value for value in loose if not value.solved and (value.position != 0.0 or value.velocity == 0.0)]
     target = np.concatenate([actuation.led_values(0.0), [value.position for value in places]])
     q = mechanism.start
     if np.any(target != 0.0):
@@ -71,6 +73,12 @@ def begin(
             names = ", ".join(mechanism.joints_of(path.v))
             return Start(q, np.zeros(mechanism.rates), notes, (names, f"initial positions: {why}"))
         q = follower.q
+    notes += tuple(
+        f"{value.name} starts at {q[value.q]:.6g} (rad or m, as kinform counts it), as the loops have it closest to "
+        "the pose of the meshes"
+        for value in loose
+        if value.solved
+    )
     moving = [value for value in loose if value.velocity != 0.0]
     if moving and not coasting:
         names = ", ".join(sorted(value.name for value in moving))
@@ -154,6 +162,7 @@ def _contradictions(actuation: Actuation, stated: tuple[Stated, ...]) -> tuple[s
     for value in stated:
         for k in np.flatnonzero(actuation.led == value.v):
             wanted, law = (value.position, value.velocity), (values[k], rates[k])
+            wanted = (law[0], wanted[1]) if value.solved else wanted
             if not np.allclose(wanted, law, rtol=constants.CONTRADICTION, atol=constants.CONTRADICTION_LEAST):
                 notes.append(f"{value.name} starts where its motion law puts it, not at its initial value")
     return tuple(notes)
