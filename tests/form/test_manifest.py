@@ -179,4 +179,4 @@ def test_an_initial_position_may_be_solved_for(tmp_path):
     (value,) = read(tmp_path, TWO + motion.format("20")).simulation.initial
     assert (value.solved, value.position) == (False, 20.0)
     ((line, message),) = problems(tmp_path, TWO + motion.format('"nearest"'))
-    assert line == 10 and "closest" in message
+    assert line == 10 and message.endswith('position cannot be "nearest"')
