@@ -10,7 +10,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.at_work import at_work_on
-from kinform.foundation.graphs.graph import shortest_path
+from kinform.foundation.graphs.graph import UnionFind, shortest_path
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_model, fcl_pose
 from kinform.foundation.words import counted, quoted
 from kinform.kinematics.partition import constants
@@ -99,7 +99,7 @@ def partition(
 
 
 def _placed(assembly: Assembly, graph: Graph, labelling: Labelling) -> dict[PartName, Placed]:
-    """Every part in its body; what touches nothing in that of the nearest part."""
+    """Every part in its body; what touches none of them, with what it touches, in that of the nearest part."""
     margin = margins(labelling.labels, graph.seeds, graph.edges)
     labels = list(labelling.labels)
     placed: dict[PartName, Placed] = {}
@@ -120,11 +120,26 @@ def _placed(assembly: Assembly, graph: Graph, labelling: Labelling) -> dict[Part
         along = tuple(sorted(part for n in m.along for part in members[n] if part != name))
         placed[name] = Placed(name, label, "cut", m.cost, m.label, along, m.plain < constants.EITHER_WAY)
     models: dict[PartName, fcl.BVHModel] = {}
-    for name in lost:
-        near = _nearest(assembly, name, known, models)
-        label = placed[near].body if near is not None else 0
-        placed[name] = Placed(name, label, "nearest", 0.0, None, (), either=True)
+    for cluster in _touching(graph, lost):
+        ways = [(*found, name) for name in cluster if (found := _nearest(assembly, name, known, models)) is not None]
+        label = placed[min(ways)[1]].body if ways else 0
+        for name in cluster:
+            placed[name] = Placed(name, label, "nearest", 0.0, None, (), either=True)
     return placed
+
+
+def _touching(graph: Graph, names: Sequence[PartName]) -> list[list[PartName]]:
+    """Of these parts those that touch one another, as balls and their cage: they stay together."""
+    index = {name: k for k, name in enumerate(names)}
+    sets = UnionFind(len(names))
+    for name in names:
+        for pair in graph.pairs_of.get(name, ()):
+            if pair[0] in index and pair[1] in index:
+                sets.union(index[pair[0]], index[pair[1]])
+    out: dict[int, list[PartName]] = {}
+    for name in names:
+        out.setdefault(sets.find(index[name]), []).append(name)
+    return list(out.values())
 
 
 def _doubtful(graph: Graph, labelling: Labelling) -> set[int]:
@@ -179,8 +194,8 @@ def _unparted(
 
 def _nearest(
     assembly: Assembly, name: PartName, among: Sequence[PartName], models: dict[PartName, fcl.BVHModel]
-) -> PartName | None:
-    """The part whose surface is nearest, of the few whose boxes are; the first by name of several."""
+) -> tuple[float, PartName] | None:
+    """Metres to the part whose surface is nearest, of the few whose boxes are; the first by name of several."""
     low, high = _box(assembly, name)
     apart = []
     for other in among:
@@ -196,7 +211,7 @@ def _nearest(
             with at_work_on(name, other):
                 distance = fcl_distance(own, _object(assembly, other, models))
             best = min(best or (np.inf, other), (distance, other))
-    return None if best is None else best[1]
+    return best
 
 
 def _box(assembly: Assembly, name: PartName) -> tuple[Array, Array]:
