@@ -173,9 +173,10 @@ def test_included_files_have_lines_of_their_own(tmp_path):
 
 
 def test_a_folder_beside_is_not_inside_though_its_name_begins_alike(tmp_path):
-    """`robot2` is no folder of `robot`."""
+    """`robot2` is no folder of the package `robot`."""
     for name in ("robot", "robot2"):
         (tmp_path / name).mkdir()
+    (tmp_path / "robot" / "package.xml").write_text("<package><name>robot</name></package>")
     path = write(tmp_path / "robot", text().replace("<worldbody>", '<include file="../robot2/more.xml"/><worldbody>'))
     (tmp_path / "robot2" / "more.xml").write_text("<mujoco/>")
     with pytest.raises(InputError, match="lies outside the folder"):
