@@ -22,6 +22,8 @@ from kinform.kinematics.partition.one_body import joined_by_cost, one_body
 from kinform.kinematics.partition.standard_parts import standard_parts
 
 SEEDS = [3, 4, 9, 11]
+NAMED_ANYHOW = [100, 104, 119, 129]
+"""Rings whose joints name different parts of one body; of the last two, names connect all joints, to a chain."""
 CAGED = 133
 """Whose cage is as near to one ring as its balls are to the other."""
 
@@ -41,7 +43,7 @@ def test_bodies_are_those_of_the_machine_whichever_parts_are_named(seed):
 
 
 def test_a_loop_of_decks_with_a_caged_bearing_comes_apart_at_its_joints_at_a_millimetre():
-    made = ring(Draw([CAGED]))
+    made = ring(Draw([CAGED]), largest=True)
     assert any(name.startswith("cage") for name in made.solids)
     assembly = assembly_of(made, CAGED, size=0.001)
     found = {p.mesh.digest: surfaces.recover(p.mesh, assembly.tolerances) for p in assembly.parts}
@@ -84,6 +86,15 @@ def test_the_judge_tells_a_part_in_another_body():
     first, second = K.bodies[:2]
     moved = (replace(first, parts=first.parts[1:]), replace(second, parts=(*second.parts, first.parts[0])))
     assert not judge(made, replace(K, bodies=(*moved, *K.bodies[2:]))).exact
+
+
+@pytest.mark.parametrize("seed", NAMED_ANYHOW)
+def test_bodies_round_a_loop_are_those_of_the_machine_whichever_parts_are_named(seed):
+    made = ring(Draw([seed]))
+    assembly = assembly_of(made, seed)
+    found = {p.mesh.digest: surfaces.recover(p.mesh, assembly.tolerances) for p in assembly.parts}
+    verdict = judge(made, kinematics.derive(assembly, found, contacts.find(assembly, found)))
+    assert verdict.exact and verdict.mobility == 1, verdict
 
 
 def test_names_that_firm_contact_joins_are_one_body_unless_joints_hang_them_together():

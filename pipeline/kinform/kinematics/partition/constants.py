@@ -61,6 +61,9 @@ PARTED = 100.0
 HELD_ACROSS = 250.0
 """Price beyond which contact that was parted, a flat beside the axis or more, says that bodies guessed from different
 names are not sure."""
+CLOSED_SHARE = 1e-3
+"""Share of the largest up to which singular values, and rates, of stated joints round a loop count as zero: axes are
+written with three digits or more."""
 MOVES_TRIED = 6
 """Of the bodies that a name may be moved to, so many are tried: those that contact joins most firmly."""
 MOST_CUTS = 600

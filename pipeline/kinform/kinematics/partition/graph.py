@@ -8,10 +8,12 @@ from functools import cached_property
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.partition import constants
 from kinform.kinematics.partition.labelling import Edge, Labels
+from kinform.kinematics.partition.loops import Loops
 from kinform.kinematics.partition.one_body import Hold, joined_by_cost, one_body
 from kinform.kinematics.partition.parting import PartPair, Prices, joint_twists, prices
 from kinform.model.assembly import Assembly
@@ -96,8 +98,9 @@ def graph_of(
     for name in parts:
         sets.union(number[by_root.setdefault(merger.root(name), name)], number[name])
     at = {number[by_root[root]]: label for root, label in label_of.items()}
-    least = one_body(sets, at, _holds(number, costs, contacts.patches), sides)
-    final, close = _searched(sets, number, at, sides, costs, contacts.patches, least)
+    loops = _loops(assembly, joints, sides)
+    least = one_body(sets, at, _holds(number, costs, contacts.patches), sides, loops)
+    final, close = _searched(sets, number, at, sides, costs, contacts.patches, least, loops)
     kept = {label: k for k, label in enumerate(sorted(set(final)))}
     new = [kept[label] for label in final]
     sides = [(new[a], new[b]) for a, b in sides]
@@ -123,6 +126,7 @@ def _searched(
     costs: Prices,
     patches: Sequence[Patch],
     least: Sequence[int],
+    loops: Loops,
 ) -> tuple[list[int], set[int]]:
     """Which labels are one body, beginning with those that are by contact (`least`), and which could be joined
     otherwise; pieces have one label at most."""
@@ -133,7 +137,19 @@ def _searched(
         _edges(pieces, sides, costs, patches),
         sides,
         least,
+        loops,
     )
+
+
+def _loops(assembly: Assembly, joints: Sequence[IntendedJoint], sides: Sequence[Labels]) -> Loops:
+    """What tells which loops may be closed."""
+    hanging = UnionFind(1 + max((max(pair) for pair in sides), default=-1))
+    for pair in sides:
+        hanging.union(*pair)
+    connected = len({hanging.find(label) for pair in sides for label in pair}) <= 1
+    boxes = np.array([part.mesh.placed_box(part.X_WP) for part in assembly.parts if part.mesh is not None])
+    size = norm(boxes[:, 1].max(axis=0) - boxes[:, 0].min(axis=0)) if len(boxes) else 0.0
+    return Loops([joint_twists(joint) for joint in joints], sides, size, connected)
 
 
 def _pieces(
