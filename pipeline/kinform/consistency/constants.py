@@ -118,6 +118,9 @@ NO_TURN = 1e-6
 
 LOOP_RESIDUAL = 1e-6
 """Residual relative to the size of the assembly (m), and absolute (rad)."""
+DAMPED_UNSEEN = 1e-6
+"""Share of the energy exchanged that went with vibrations which the solver damped, up to which the motion is known:
+they had a thousandth of its speeds. A choice."""
 ENERGY_DRIFT = 1e-3
 """Drift relative to the energy exchanged."""
 ENERGY_SOLVED = 1e-6

@@ -18,6 +18,7 @@ from kinform.consistency.comparisons.couplings import coupled_through
 from kinform.consistency.comparisons.intended_joints import Comparison, bodies_of, compare_joint
 from kinform.consistency.comparisons.links import Weighed, weighed
 from kinform.consistency.comparisons.plausibility import Doubt, doubts
+from kinform.consistency.constants import DAMPED_UNSEEN
 from kinform.consistency.outcome import Answer, Outcome, inconclusive, skipped, triple
 from kinform.design import Design
 from kinform.model.assembly import Assembly, MassOverride, Mesh, Part
@@ -31,7 +32,7 @@ from kinform.model.simulation import Simulation
 Stage = TypeVar("Stage")
 Need = Literal[
     "meshes", "solid meshes", "closed meshes", "stated masses", "sizes", "contacts", "kinematics", "mass",
-    "attempt", "simulation", "motion", "comparisons", "stated mobility", "stated joints", "stated ranges",
+    "attempt", "simulation", "motion", "forces", "comparisons", "stated mobility", "stated joints", "stated ranges",
     "stated couplings",
     "stated drives", "stated loads", "stated assumptions", "stated initial values", "inferred fasteners",
     "several parts", "stated mobility of sub-assemblies", "descriptions", "weighed shapes", "collision geometry",
@@ -83,6 +84,8 @@ NOT_RUN: dict[Need, str] = {
     "attempt": "the simulation has not been run: run `kinform simulate`",
 }
 """By stage: why a rule that needs its result is inconclusive."""
+DAMPED = "vibrations that the solver could not follow were damped (KF508)"
+"""Why rules that would have to know them are inconclusive."""
 
 
 @dataclass(frozen=True)
@@ -201,9 +204,8 @@ class Context:
                 return missing
             held = ", ".join(dict.fromkeys(subject for subject, _ in attempt.failures))
             return inconclusive(f"the simulation is partial: {held}: held, because not understood")
-        if need == "motion":
-            still = skipped("nothing moved")
-            return self.lacks("simulation") or (still if len(self.simulation.time) < 2 else None)
+        if need in ("motion", "forces"):
+            return self.lacks("simulation") or self._unseen(need)
         if need == "comparisons":
             no_geometry = skipped("all joints come from the function itself: there is no geometry to compare")
             missing = self.lacks("stated joints") or self.lacks("kinematics")
@@ -217,6 +219,15 @@ class Context:
         result = self.design.simulation if need == "attempt" else getattr(self.design, need)
         run = result is not None and not (isinstance(result, Simulation) and result.status == "not requested")
         return None if run else inconclusive(NOT_RUN[need])
+
+    def _unseen(self, need: Need) -> Outcome | None:
+        """Why a simulation does not show the motion, or the forces."""
+        run = self.simulation
+        if need == "motion" and len(run.time) < 2:
+            return skipped("nothing moved")
+        if need == "motion" and run.damped_share > DAMPED_UNSEEN:
+            return inconclusive(f"{DAMPED}: the motion is known without them only")
+        return inconclusive(f"{DAMPED}: their forces are not known") if need == "forces" and run.dampings else None
 
     def _result(self, need: Need, result: Stage | None) -> Stage:
         """The result of a stage, which is not lacking."""

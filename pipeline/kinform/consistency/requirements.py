@@ -104,6 +104,9 @@ def simulated(context: Context, *, dynamic: bool = False) -> Simulation | Answer
         return undecided(f"the simulation was refused: {simulation.reason}", "See KF501.")
     if dynamic and simulation.level != "dynamic":
         return undecided(f"the simulation is {simulation.level}: it has no forces", DYNAMIC)
+    unseen = (context.lacks("forces") if dynamic else context.lacks("motion")) if simulation.dampings else None
+    if unseen is not None:
+        return undecided(unseen.reason, "See KF508.")
     return simulation
 
 

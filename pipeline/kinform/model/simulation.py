@@ -40,6 +40,18 @@ class DriveUse:
     """Root of the mean square of the power over time."""
 
 
+@dataclass(frozen=True)
+class Damping:
+    """Vibrations of springs that the solver damped, as following them would have taken more steps than it may take."""
+
+    since: Annotated[float, "s"]
+    """s."""
+    frequency: Annotated[float, "Hz"]
+    """Hz, of the fastest."""
+    energy: Annotated[float, "J"]
+    """J that went with them."""
+
+
 @dataclass(frozen=True, eq=False)
 class Simulation:
     """T output times, B bodies, n joint coordinates (order: joint_names with joint_offset).
@@ -117,6 +129,8 @@ class Simulation:
     """(T, B) of that the error at the node of each body's frame; no times below dynamic."""
     balance_shafts: Annotated[Array, "1"] = field(default_factory=lambda: np.zeros((0, 0)))
     """(T, n) the error at the node on the shaft of each joint coordinate."""
+    dampings: tuple[Damping, ...] = ()
+    """What the solver damped, in the order of time; its energy is in the work of `energy`."""
     ranges: tuple[JointRange, ...] | None = None
     """How far joints go until something stops them; None: not computed."""
     collisions: tuple[Collision, ...] | None = None
@@ -128,6 +142,16 @@ class Simulation:
     def partial(self) -> bool:
         """Whether it ran, to its end or not, with joints held that are not understood: it proves nothing."""
         return bool(self.failures) and self.status in ("partial", "stopped")
+
+    @property
+    def damped(self) -> float:
+        """J that went with vibrations which the solver damped."""
+        return sum(one.energy for one in self.dampings)
+
+    @property
+    def damped_share(self) -> float:
+        """Of the energy exchanged in the run."""
+        return self.damped / max(self.damped, float(np.ptp(self.energy, axis=0).max())) if self.damped > 0.0 else 0.0
 
     def __repr__(self) -> str:
         level = f" {self.level}" if self.level else ""

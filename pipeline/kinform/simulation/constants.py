@@ -241,13 +241,37 @@ NODE_ROUNDING = 1e-16
 CROSSED_GAP = 1e-12
 """What is open at a pose in which branches cross exactly (rad, shares of the length): the polynomial's rounding."""
 
-# solver.implicit: stiff models.
+# solver.stiffness, solver.implicit: stiff models, and vibrations too fast to be followed.
 
 FAST_DECAY = 0.4
 """Decay within a step, as an exponent, from which on it is what limits the step."""
+VIBRATES = 0.05
+"""Phase (rad) of a vibration within a step from which on it is what limits the step: with the tolerances it is 0.3 to
+1, whatever the amplitude, as that of a vibration which matters is far above them."""
 JACOBIAN_STEP = 1e-6
 """Share of a number of the state (of 1 at least) by which it is changed for the derivative: the third root of a
 rounding, at which rounding and curvature disturb central differences alike, but for a factor of six."""
+DAMPING_STEP = 100.0
+"""Phase (rad) of the fastest vibration in a step that damps it, by 0.03; one of a tenth of its frequency by 0.3, one of
+a thousandth by 1e-9 of itself."""
+DAMPS = 30.0
+"""Phase from which on a step counts as damping: by 0.1."""
+DAMPING_STEPS = 16
+"""Steps that damp: a vibration to 1e-16 at least of what it was."""
+WITHOUT_CONTROL = 1e3
+"""Relative and absolute error a step that no step has: errors do not control the steps that damp."""
+DAMPING_SETTLED = 1e-10
+"""Newton's last correction in such a step, over the state and 1."""
+DAMPING_NEWTON = 0.03
+"""The same as a share of the change by the step before."""
+STIFF_ROUNDING = 1e-12
+"""Rounding of a position (rad, lengths): times the frequency it is what rates are known to; ten thousand last bits."""
+STIFF_NEWTON = 0.01
+"""Newton's last correction over the error allowed, where rates are only known to such roundings."""
+DAMPED_AHEAD = 2000
+"""Implicit steps still to go from which on a vibration that has come up again is damped again."""
+MOST_DAMPINGS = 1000
+"""Times that vibrations are damped in one run: after it they come up too often."""
 FIRST_IMPLICIT_STEP = 1e-6
 """s: short enough for decays that begin; Radau lengthens it tenfold a step."""
 REAL_ROOT = 1e-12

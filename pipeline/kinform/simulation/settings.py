@@ -16,7 +16,8 @@ class SolverSettings:
     atol: float = 1e-12
     """Absolute error a step, rad or m."""
     method: str = "auto"
-    """explicit; implicit; auto: explicit, and implicit once a stiff model would take it too many steps."""
+    """explicit; implicit; auto: explicit, and implicit once a stiff model would take it too many steps. Vibrations too
+    fast to be followed are damped in either but the explicit."""
     ahead: int = 20_000
     """So many: an implicit step costs what dozens of explicit ones do."""
     implicit_rtol: float = 1e-8

@@ -93,4 +93,4 @@ def _shared(shared: Sharing) -> Finding:
     )
 
 
-RULE = Rule("KF506", "joint-would-separate", "warning", __doc__, check, needs=("contacts", "kinematics", "simulation"))
+RULE = Rule("KF506", "joint-would-separate", "warning", __doc__, check, needs=("contacts", "kinematics", "forces"))

@@ -58,6 +58,7 @@ LAYOUT = Layout(
     Numbers("drive_speed"),
     Table("readings"),
     Numbers("sensed"),
+    Table("dampings"),
     Texts("assumptions"),
     Table("failures"),
     *COLLISIONS,

@@ -146,6 +146,7 @@ def publish(
         residual=_residuals(mechanism, record.q, states),
         rank=_ranks(mechanism, states, free),
         assumptions=(*assumptions, *record.notes),
+        dampings=record.dampings,
         joint_acceleration=_in_columns(mechanism, record.acceleration),
         balance=np.full(len(record.time), np.nan),
     )

@@ -47,7 +47,8 @@ evaluations, times the step, exceeds 3 for 15 steps in a row, as DOP853 tests fo
 that finds nothing, so a run is looked at every 250 steps in any case. The eigenvalues of the derivative then
 decide: where one decays as fast as the steps are short, and 20,000 of them are still to go
 (`SolverSettings.ahead`), Radau IIA of order 5 goes on (`implicit`; volume II, section IV.8), with looser tolerances
-and the same projection.
+and the same projection. Where instead the springs vibrate so fast that the steps left would be used up, and outputs
+do not show it, the same method first damps the vibration (`stiffness.vibration`, `paces`).
 
 Two examples, as they were computed at the default tolerances. A point mass on a bar of 1 m is let go 1 rad below
 level. Steps grow 2.5-fold from 1 ms (errors of 3e-11 to 5e-7), then settle near 0.09 s:

@@ -15,11 +15,12 @@ from kinform.simulation.kernel import layout
 from kinform.simulation.kernel.calls import by_articulated_bodies, engine, is_loaded, ready
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.settings import Conduct
-from kinform.simulation.solver.implicit import is_stiff, run_implicit
+from kinform.simulation.solver.implicit import run_implicit
 from kinform.simulation.solver.leap import leap
 from kinform.simulation.solver.record import Record
 from kinform.simulation.solver.run_state import Run
 from kinform.simulation.solver.start import Start
+from kinform.simulation.solver.stiffness import is_stiff, vibration
 from kinform.simulation.solver.stops import Contact
 
 
@@ -80,8 +81,10 @@ class _Driver:
             run.look_ahead(status != layout.NEARING)
             if status == layout.STOPPED:
                 why = self.contact.strike()
-            elif status in (layout.STIFFENED, layout.SPENT, layout.PAUSED) and self._stiff():
-                why = run_implicit(run, self.contact, self._report)
+            elif status in (layout.STIFFENED, layout.SPENT, layout.PAUSED) and self._looks():
+                fastest = self._fastest()
+                stiff = fastest > 0.0 or is_stiff(run)
+                why = run_implicit(run, self.contact, self._report, fastest) if stiff else self._problem(status)
             else:
                 why = self._problem(status)
             if why:
@@ -106,14 +109,20 @@ class _Driver:
         done = (run.clock[layout.NOW] - run.times[0]) / (run.times[-1] - run.times[0])
         return made >= self.plain or (int(tally[layout.STEPS]) >= SHOWN and made > LONGER * self.plain * done)
 
-    def _stiff(self) -> bool:
-        """Whether to go on implicitly; looked at now and then."""
+    def _looks(self) -> bool:
+        """Whether it is time to ask if the implicit method is to go on."""
         run = self.run
         run.tally[layout.STIFF] = 0
         if run.settings.method == "explicit" or run.tally[layout.STEPS] < self.looked + LOOK:
             return False
         self.looked = int(run.tally[layout.STEPS])
-        return is_stiff(run)
+        return True
+
+    def _fastest(self) -> float:
+        """The vibration that would use up the steps that are left; 0 without."""
+        run = self.run
+        left = run.settings.steps - int(run.tally[layout.STEPS])
+        return vibration(run, float(run.clock[layout.STEP]), float(left))
 
     def _stalled(self) -> bool:
         """Whether STALL steps have brought the run on by less than a share of it that would ever end."""

@@ -1,8 +1,4 @@
-"""Stiff models: how they are recognised, and the implicit method that goes on with them.
-
-At tight tolerances the error estimate of an explicit method keeps its steps well inside the region of
-stability, so that the usual test at its edge finds nothing. The eigenvalues of the derivative do: a decay
-as fast as the steps are short, in a run that has many steps to go.
+"""The implicit method that goes on with stiff models, and that damps vibrations which would take too many steps.
 
 The method is Radau IIA of order 5 on the kernel's derivative. Loops are closed again after every accepted step, as on
 the explicit path (Hairer and Wanner, Solving Ordinary Differential Equations II, sections IV.8 and VII.2).
@@ -19,70 +15,39 @@ import numpy as np
 from kinform.model.arrays import Array
 from kinform.simulation import constants
 from kinform.simulation.kernel import layout
+from kinform.simulation.solver.paces import Controlled, Damped, lasting
 from kinform.simulation.solver.run_state import Run
 from kinform.simulation.solver.stops import Contact
 
 
-def is_stiff(run: Run) -> bool:
-    """Whether the present state decays along some direction within about a step."""
-    t, step = float(run.clock[layout.NOW]), float(run.clock[layout.STEP])
-    if step <= 0.0 or (run.clock[layout.END] - t) / step < run.settings.ahead:
-        return False
-    matrix = _jacobian(run, t, run.y)
-    if not np.all(np.isfinite(matrix)):
-        return False
-    values = np.linalg.eigvals(matrix)
-    return bool(np.any((-values.real * step > constants.FAST_DECAY) & (np.abs(values.imag) < -values.real)))
-
-
-def _jacobian(run: Run, t: float, at: Array) -> Array:
-    """Central differences of the derivative by the state (size,), at a state."""
-    size = len(at)
-    out = np.zeros((size, size))
-    ends = np.zeros((2, size))
-    for k in range(size):
-        h = constants.JACOBIAN_STEP * max(1.0, abs(at[k]))
-        for side, sign in enumerate((1.0, -1.0)):
-            y = at.copy()
-            y[k] += sign * h
-            run.derivative(t, y, ends[side])
-        out[:, k] = (ends[0] - ends[1]) / (2.0 * h)
-    run.tally[layout.FRESH] = 1
-    return out
-
-
-def run_implicit(run: Run, contact: Contact, report: Callable[[], None]) -> str:
-    """Integrate from the present state to the end of the stretch; why it stopped, or ""."""
-    note = f"from t = {run.clock[layout.NOW]:.4g} s on the model is stiff and solved by an implicit method"
-    if not any("implicit method" in told for told in run.notes):
-        run.notes.append(note)
+def run_implicit(run: Run, contact: Contact, report: Callable[[], None], fastest: float = 0.0) -> str:
+    """Integrate from the present state to the end of the stretch; why it stopped, or "". A vibration of angular
+    frequency `fastest` (1/s), where it is not 0, is damped first."""
+    if not fastest and not any("implicit method" in told for told in run.notes):
+        run.notes.append(
+            f"from t = {run.clock[layout.NOW]:.4g} s on the model is stiff and solved by an implicit method"
+        )
     while run.clock[layout.NOW] < run.clock[layout.END]:
-        why = _until_change(run, contact, report)
+        why = _until_change(run, contact, report, Damped(run, fastest) if fastest else Controlled(run))
         if why:
             return why
+        fastest = lasting(run)
     return ""
 
 
-def _until_change(run: Run, contact: Contact, report: Callable[[], None]) -> str:
-    """Integrate until the end of the stretch or an end stop."""
-    from scipy.integrate import Radau
-
-    settings, end = run.settings, float(run.clock[layout.END])
+def _until_change(run: Run, contact: Contact, report: Callable[[], None], pace: Controlled | Damped) -> str:
+    """Integrate until the end of the stretch, an end stop, or where another pace is to go on."""
+    settings = run.settings
 
     def rates(t: float, y: Array) -> Array:
         dy = np.zeros_like(y)
         # A trial state may be far from any motion; what is not finite makes the method shorten its step.
         return dy if run.derivative(t, y.copy(), dy) > 0.0 else np.full_like(y, np.nan)
 
-    start = float(run.clock[layout.NOW])
-    solver: Any = Radau(
-        rates, start, run.y.copy(), end, rtol=settings.implicit_rtol, atol=settings.implicit_atol,
-        first_step=min(constants.FIRST_IMPLICIT_STEP, end - start), max_step=contact.longest(),
-        jac=lambda t, y: _jacobian(run, t, y),
-    )  # fmt: skip
+    solver = pace.solver(rates, contact.longest())
     while solver.status == "running":
         contact.remember()
-        before = float(solver.t)
+        before, y = float(solver.t), run.y.copy()
         try:
             with np.errstate(all="ignore"):
                 solver.step()
@@ -93,9 +58,9 @@ def _until_change(run: Run, contact: Contact, report: Callable[[], None]) -> str
             return f"at t = {solver.t:.6g} s the motion becomes too fast to follow, also by the implicit method"
         hit, place = _passed(run, solver, before)
         dense = solver.dense_output()
-        _sample(run, dense, place)
-        run.y[:] = dense(place) if hit >= 0 else solver.y
-        run.clock[layout.NOW] = place
+        _sample(run, dense, pace, place)
+        run.y[:] = pace.corrected(dense(place)) if hit >= 0 else solver.y
+        run.clock[layout.NOW], run.clock[layout.STEP] = place, solver.h_abs
         run.tally[layout.HIT] = hit
         if contact.release_if_pulled():
             return ""
@@ -110,6 +75,8 @@ def _until_change(run: Run, contact: Contact, report: Callable[[], None]) -> str
             solver.y = run.y.copy()
             solver.f = rates(place, solver.y)
         report()
+        if pace.ends(solver, y, place - before):
+            return ""
         if run.tally[layout.STEPS] > settings.steps:
             return f"at t = {place:.6g} s {settings.steps} steps were used up: the model is stiff"
     return ""
@@ -156,9 +123,9 @@ class _Beyond:
         return [float(begin + x * (end - begin)) for x in real if 0.0 < x < 1.0]
 
 
-def _sample(run: Run, dense: Any, until: float) -> None:
+def _sample(run: Run, dense: Any, pace: Controlled | Damped, until: float) -> None:
     """Outputs up to a time in the last step."""
     while run.tally[layout.NEXT] < len(run.times) and run.times[run.tally[layout.NEXT]] <= until:
         t = float(run.times[run.tally[layout.NEXT]])
-        run.sample(t, np.ascontiguousarray(dense(t)), run.out[run.tally[layout.NEXT]])
+        run.sample(t, np.ascontiguousarray(pace.corrected(dense(t))), run.out[run.tally[layout.NEXT]])
         run.tally[layout.NEXT] += 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 
 from kinform.model.arrays import Array, Flags
+from kinform.model.simulation import Damping
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,12 +43,13 @@ class Record:
     stopped: str
     notes: tuple[str, ...] = ()
     """What is to be known of the run, in sentences."""
+    dampings: tuple[Damping, ...] = ()
     friction: FrictionRecord | None = None
     """None without any."""
 
     def until(self, end: int, why: str) -> Record:
         """The first `end` output times, at which the run stopped for the reason `why`."""
-        whole = ("stopped", "notes", "friction")
+        whole = ("stopped", "notes", "dampings", "friction")
         cut = {f.name: getattr(self, f.name)[:end] for f in fields(self) if f.name not in whole}
         friction = self.friction
         if friction is not None:

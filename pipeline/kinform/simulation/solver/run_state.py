@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.model.arrays import Array, Ints
+from kinform.model.simulation import Damping
 from kinform.simulation.constants import APPROACHED, FAR_BEHIND, FIRST_STEP, PASSED_BEFORE_STOP, STIFF_PATIENCE
 from kinform.simulation.kernel import layout
 from kinform.simulation.kernel.calls import Engine, engine
@@ -41,6 +42,8 @@ class Run:
         self.clock[layout.NARROW] = dynamics.mechanism.narrow
         self.clock[layout.APPROACH] = APPROACHED
         self.notes: list[str] = []
+        self.dampings: list[Damping] = []
+        """Vibrations that the method has damped."""
         dynamics.place(start.q, start.v)
 
     def advance(self) -> int:
@@ -127,6 +130,17 @@ class Run:
         """Whether branches of the motion meet at the present pose, as far as lengths are known."""
         return self.dynamics.mechanism.folds(self.dynamics.tables.unpack(self.y)[0], self.dynamics.rank)
 
+    def _notes_of_dampings(self) -> tuple[str, ...]:
+        """What is to be said of vibrations that the method has damped."""
+        if not self.dampings:
+            return ()
+        frequency, lost = max(one.frequency for one in self.dampings), sum(one.energy for one in self.dampings)
+        return (
+            f"from t = {self.dampings[0].since:.4g} s on vibrations of the springs, of up to {frequency:.4g} Hz, are "
+            f"damped by the method, as following them would take more than {self.settings.steps} steps: "
+            f"{lost:.4g} J go with them, and what is computed is the motion about which they swing",
+        )
+
     def record(self, stopped: str) -> Record:
         """What there is, with a warning where the loops came close to a singular pose."""
         done = int(self.tally[layout.NEXT])
@@ -145,5 +159,5 @@ class Run:
         return Record(
             time=self.times[:done].copy(), q=q, v=v, acceleration=acceleration, effort=driven + needed, needed=needed,
             extra=self.out[:done, q.shape[1] + n : size - 1].copy(), work=self.out[:done, size - 1].copy(),
-            stopped=stopped, notes=tuple(notes),
+            stopped=stopped, notes=(*notes, *self._notes_of_dampings()), dampings=tuple(self.dampings),
         )  # fmt: skip

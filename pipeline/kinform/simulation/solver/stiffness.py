@@ -1,0 +1,66 @@
+"""Why a run takes many steps: what decays or vibrates far faster than it moves.
+
+At tight tolerances the error estimate of an explicit method keeps its steps well inside the region of
+stability, so that the usual test at its edge finds nothing. The eigenvalues of the derivative do: a decay
+as fast as the steps are short, in a run that has many steps to go.
+
+A vibration that springs make is in the eigenvalues at the same pose at rest: those of a mechanism that merely turns
+fast are imaginary as well, and vanish there.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinform.model.arrays import Array
+from kinform.simulation import constants
+from kinform.simulation.kernel import layout
+from kinform.simulation.solver.run_state import Run
+
+
+def is_stiff(run: Run) -> bool:
+    """Whether the present state decays along some direction within about a step."""
+    t, step = float(run.clock[layout.NOW]), float(run.clock[layout.STEP])
+    if step <= 0.0 or (run.clock[layout.END] - t) / step < run.settings.ahead:
+        return False
+    values = _eigenvalues(run, t, run.y)
+    return bool(np.any((-values.real * step > constants.FAST_DECAY) & (np.abs(values.imag) < -values.real)))
+
+
+def vibration(run: Run, step: float, budget: float) -> float:
+    """Angular frequency (1/s) of the fastest vibration of the springs, where it is what keeps steps as short as `step`
+    (s), outputs are too far apart to show it, and following it to the end would take more than `budget` of such steps;
+    else 0."""
+    t, last = float(run.clock[layout.NOW]), float(run.times[-1])
+    if step <= 0.0 or (last - t) / step <= budget:
+        return 0.0
+    q, v = run.dynamics.tables.unpack(run.y)
+    still, states = run.y.copy(), run.dynamics.tables.states
+    still[: -1 - states] = run.dynamics.tables.pack(q, np.zeros_like(v))[: -1 - states]
+    values = _eigenvalues(run, t, still)
+    swings = np.abs(values.imag)[np.abs(values.imag) > np.abs(values.real)]
+    fastest = float(swings.max(initial=0.0))
+    shown = (last - float(run.times[0])) / (len(run.times) - 1)
+    return fastest if fastest * step > constants.VIBRATES and fastest * shown > 2.0 * np.pi else 0.0
+
+
+def jacobian(run: Run, t: float, at: Array) -> Array:
+    """(size, size) central differences of the derivative by the state `at`."""
+    size = len(at)
+    out = np.zeros((size, size))
+    ends = np.zeros((2, size))
+    for k in range(size):
+        h = constants.JACOBIAN_STEP * max(1.0, abs(at[k]))
+        for side, sign in enumerate((1.0, -1.0)):
+            y = at.copy()
+            y[k] += sign * h
+            run.derivative(t, y, ends[side])
+        out[:, k] = (ends[0] - ends[1]) / (2.0 * h)
+    run.tally[layout.FRESH] = 1
+    return out
+
+
+def _eigenvalues(run: Run, t: float, at: Array) -> Array:
+    """Of the derivative at a state; none where it is not finite."""
+    matrix = jacobian(run, t, at)
+    return np.asarray(np.linalg.eigvals(matrix)) if np.all(np.isfinite(matrix)) else np.zeros(0)
