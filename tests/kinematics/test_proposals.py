@@ -59,3 +59,16 @@ def test_a_ball_on_a_pin_is_a_ball_joint():
     assert type_ == "spherical"
     assert np.linalg.norm(one.point) < 1e-5
     assert ("lever",) in sides
+
+
+def test_a_bolt_turns_nothing_that_only_touches_its_head():
+    """A block that leaves room for the hexagon of one of the bolts could turn with it on the plate."""
+    low, high = box(-60, 60, -20, 20, -4, 0), box(-40, 40, -20, 20, 0, 4)
+    places = [(-30, -10), (-30, 10), (30, -10), (30, 10)]
+    bolts = {
+        f"bolt_{k}": (rod(1.5, -4, 4, 32) + rod(2.7, 4, 6.2, 6)).translate((x, y, 0)) for k, (x, y) in enumerate(places)
+    }
+    block = box(10, 31, 4, 16, 4, 9)
+    for bolt in bolts.values():
+        low, high, block = low - bolt, high - bolt, block - bolt
+    assert proposed(low=low, high=high, block=block, **bolts) == []

@@ -53,7 +53,7 @@ __all__ = [
     "stated_proposals",
 ]
 
-CODE_VERSION = 35
+CODE_VERSION = 36
 """Bumped when the results of this stage change for the same input."""
 
 __getattr__ = first_used(

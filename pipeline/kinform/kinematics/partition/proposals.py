@@ -79,8 +79,10 @@ def propose(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: 
     found: dict[int, list[Sides]] = {}
 
     def bearing(number: int, several: list[Sides]) -> list[Sides]:
-        """Those where either side has a part that touches about the axis, and more than standard parts."""
-        return [both for both in several if all(borne[number] & set(s) and not standard.keys() >= set(s) for s in both)]
+        """Those where either side has a part that touches about the axis, no screw that only holds it, and more than
+        standard parts."""
+        own = borne[number] - holders
+        return [both for both in several if all(own & set(s) and not standard.keys() >= set(s) for s in both)]
 
     for most in constants.PROPOSED:
         for number, axis in enumerate(axes):

@@ -1,14 +1,12 @@
 """Standard parts by name, shape and copies: screws, nuts, washers, pins, circlips, balls, bearings.
 
-A name is split at everything that is no letter or digit and looked up in the words that catalogues and standards use
-in several languages; of a number only what stands after DIN, ISO or GB counts. By shape, a screw is a head and a
-longer, thinner shank about one axis, a washer a flat ring, a pin a plain rod, a ball a sphere; as knobs, wheels and
-spacers have these shapes, too, they count only with copies of the same part, or with the drive of a screw.
+By name as `standard_names` tells. By shape, a screw is a head and a longer, thinner shank about one axis, a washer a
+flat ring, a pin a plain rod, a ball a sphere; as knobs, wheels and spacers have these shapes, too, they count only
+with copies of the same part, or with the drive of a screw.
 """
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -18,43 +16,12 @@ import numpy as np
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.words import counted
 from kinform.kinematics.partition import constants
+from kinform.kinematics.partition.standard_names import kind_by_name
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Part
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces, Surface
 
-WORDS = {
-    "screw": "screw screws bolt bolts capscrew setscrew grubscrew shcs bhcs fhcs schraube schrauben zylinderschraube "
-    "senkschraube linsenschraube sechskantschraube gewindestift vis vite viti tornillo tornillos perno parafuso skruv "
-    "skrue schroef sruba śruba vint винт болт 螺丝 螺钉 螺栓 ネジ ねじ ボルト",
-    "nut": "nut nuts hexnut locknut mutter muttern sechskantmutter ecrou écrou dado tuerca porca moer nakretka гайка "
-    "螺母 ナット",
-    "washer": "washer washers scheibe unterlegscheibe federring rondelle rondella arandela arruela bricka шайба 垫圈 "
-    "ワッシャ",
-    "pin": "dowel dowels dowelpin stift zylinderstift passstift goupille pasador штифт 销",
-    "rivet": "rivet rivets niet nieten rivetto remache rebite заклепка 铆钉",
-    "circlip": "circlip circlips seeger seegerring sicherungsring eclip snapring retainingring circlips 卡簧",
-    "ball": "kugel bille sfera",
-    "bearing": "bearing bearings lager kugellager wälzlager waelzlager roulement cuscinetto rodamiento rolamento "
-    "подшипник 轴承 ベアリング",
-}
-"""Words of names, by kind."""
-STANDARDS = {
-    "screw": "din84 din85 din912 din913 din914 din915 din916 din931 din933 din963 din965 din7380 din7500 din7984 "
-    "din7985 din7991 iso1207 iso2009 iso4014 iso4017 iso4026 iso4027 iso4028 iso4029 iso4762 iso7045 iso7046 iso7047 "
-    "iso7380 iso10642 iso14579 iso14583 gb701 gb703 gb5781 gb5782 gb5783",
-    "nut": "din439 din555 din562 din934 din936 din985 din6923 iso4032 iso4034 iso4035 iso7040 iso7042 iso10511 gb6170 "
-    "gb6172",
-    "washer": "din125 din126 din127 din433 din6798 din7349 din9021 iso7089 iso7090 iso7091 iso7092 iso7093 iso7094 "
-    "gb971 gb93",
-    "pin": "din1 din7 din1481 din6325 din7343 din7346 iso2338 iso2339 iso8734 iso8735 iso8752 gb1191",
-    "circlip": "din471 din472 din6799 gb8941 gb8931",
-    "rivet": "din660 din661 iso15973 iso15977",
-    "bearing": "din625 din628 din720",
-}
-"""Numbers of standards, by kind."""
-_KIND_OF = {word: kind for kind, words in WORDS.items() for word in words.split()}
-_KIND_OF_NUMBER = {number: kind for kind, numbers in STANDARDS.items() for number in numbers.split()}
 HOLDERS = ("screw", "nut", "washer", "rivet", "circlip")
 """Kinds that hold other parts together; pins may be pivots."""
 
@@ -87,20 +54,8 @@ def _alike(part: Part) -> tuple[int, float]:
 
 
 def _by_name(name: str) -> StandardPart | None:
-    """By the last word of the name that says what it is: "bearing screw" is a screw."""
-    leaf = name.rsplit("/", 1)[-1]
-    words = [word for word in re.split(r"[\W_]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", leaf).lower()) if word]
-    for k, word in enumerate(words[:-1]):
-        if word in ("din", "iso", "gb", "en"):
-            digits = words[k + 1] if words[k + 1] not in ("t", "en", "iso") else words[min(k + 2, len(words) - 1)]
-            kind = _KIND_OF_NUMBER.get(("din" if word == "din" else "gb" if word == "gb" else "iso") + digits)
-            if kind is not None:
-                return StandardPart(kind, f"named {word.upper()} {digits}")
-    for word in reversed(words):
-        kind = _KIND_OF.get(word) or _KIND_OF_NUMBER.get(word)
-        if kind is not None:
-            return StandardPart(kind, f"named '{word}'")
-    return None
+    found = kind_by_name(name)
+    return None if found is None else StandardPart(*found)
 
 
 def by_shape(surfaces: Sequence[Surface], copies: int) -> StandardPart | None:
