@@ -15,7 +15,7 @@ from kinform.simulation.kernel.loops import gather
 
 from kinform.simulation.kernel.layout import (  # isort: skip
     COUNTS, LINKS, COLUMNS, CLOSURES, MODE, SCALE, GEARS, ROWS, VECTORS,
-    RANK, LED, RATES, PARENT, LINK, BEFORE, SIGNAL, WEIGHT, TENSOR, CHOSEN, ORDER, PLACE, STANDING, WAY,
+    RANK, LED, RATES, PARENT, LINK, BEFORE, SIGNAL, METER, WEIGHT, TENSOR, CHOSEN, ORDER, PLACE, STANDING, WAY,
     MOVED, LED_RATE, MASSLESS_RATE,
     REFERENCE,
     Nums, Work,
@@ -63,7 +63,7 @@ def way(ints: Ints, nums: Nums) -> None:
     and writes what they make of each rate: all that is not led has mass to move, or follows from a row."""
     n, rank, led = ints[COUNTS][0][RATES], ints[COUNTS][0][RANK], ints[COUNTS][0][LED]
     links, columns = (np.array(ints[table], dtype=np.int64) for table in (LINKS, COLUMNS))
-    columns, mode = columns.reshape(n, 3), ints[MODE]
+    columns, mode = columns.reshape(n, METER + 1), ints[MODE]
     heavy: Any = (np.array(nums[LINKS])[:, [WEIGHT, *range(TENSOR, TENSOR + 12, 4)]] > 0.0).any(axis=1)
     for link in range(len(links) - 1, 0, -1):
         heavy[links[link, PARENT]] |= heavy[link]

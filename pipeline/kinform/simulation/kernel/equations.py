@@ -7,7 +7,7 @@ import math
 from kinform.model.arrays import Ints
 from kinform.simulation.constants import FACTORS_STALE, MOST_CORRECTIONS, SLOW_CORRECTION, TORN_GAP
 from kinform.simulation.kernel.articulated import resist
-from kinform.simulation.kernel.forces import between, drive, law, loads
+from kinform.simulation.kernel.forces import between, drive, law, loads, meter
 from kinform.simulation.kernel.loops import gained, gap_of
 from kinform.simulation.kernel.masses import cholesky, inertias, mass_matrix, solve_cholesky, wrenches
 from kinform.simulation.kernel.motion import place_links, twist_links
@@ -15,7 +15,7 @@ from kinform.simulation.kernel.reduction import factor, settle
 
 from kinform.simulation.kernel.layout import (  # isort: skip
     COUNTS, LINKS, COLUMNS, CLOSURES, SIGNALS, SPRINGS, MODE, CONSTANTS, GEARS, PIECES, STATE, MASS, VECTORS,
-    RANK, LED, POSITIONS, STATES, RATES, LENGTH, LAST, KIND, Q, FIRST, WIDTH, SCREW, SIGNAL, TWIST, GAIN, WRENCH,
+    RANK, LED, POSITIONS, STATES, RATES, LENGTH, LAST, KIND, Q, FIRST, WIDTH, SCREW, SIGNAL, METER, TWIST, GAIN, WRENCH,
     CHOSEN, WAY, FORCE, ACC, NEED, GAP, KEPT, PULLED,
     Row, Table, Index, Nums, Work,
 )  # fmt: skip
@@ -58,6 +58,9 @@ def derivative(ints: Ints, nums: Nums, work: Work, t: float, y: Row, dy: Row) ->
     power += between(ints[SPRINGS], nums[SPRINGS], state)
     if not articulated:
         mass_matrix(ints, work, True)
+    for k in range(n):
+        if columns[k][METER] >= 0:
+            meter(dy, columns[k][METER], 0.0, 0.0)
     margin = 1.0
     if rank == 0 and led == 0 and not articulated:
         if not cholesky(matrix, n):
@@ -82,6 +85,8 @@ def derivative(ints: Ints, nums: Nums, work: Work, t: float, y: Row, dy: Row) ->
         for k in range(n):
             if columns[k][SIGNAL] >= 0:
                 power += vectors[NEED][k] * y[first + k]
+                if columns[k][METER] >= 0:
+                    meter(dy, columns[k][METER], vectors[NEED][k], y[first + k])
     for i in range(1, len(links)):
         at, k = links[i][Q], first + links[i][FIRST]
         if links[i][KIND] == SCREW:

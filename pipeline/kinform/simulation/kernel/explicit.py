@@ -41,7 +41,7 @@ from kinform.simulation.kernel.steps import interpolate, prepare, roundings, slo
 
 from kinform.simulation.kernel.layout import (  # isort: skip
     COUNTS, STOPS, VECTORS, STAGES, TIMES, OUT,
-    RANK, POSITIONS, RATES, SIZE, STOP_Q, STOP_V, SENSE, HELD, AT_END, TRIED, NEW, FAILED,
+    RANK, POSITIONS, RATES, SIZE, METERS, STOP_Q, STOP_V, SENSE, HELD, AT_END, TRIED, NEW, FAILED,
     ACC, NEED, GIVEN, KEPT,
     NOW, END, STEP, CLOSED, OPEN, MARGIN, TIGHTEST, KEEP, LEAST, PATIENCE, CROSSING, SPAN, REACHED, ERROR, WEAR,
     GROWTH, MARGINS, APPROACH,
@@ -197,7 +197,10 @@ def fastest_decay(ints: Ints, work: Work, clock: Row, tally: Counts) -> float:
     """Fastest decay (1/s) that the last two evaluations of the step show; tally[STIFF] counts the steps in a row that
     it keeps short."""
     slopes, rough, moved = work[STAGES], 0.0, 0.0
-    for i in range(ints[COUNTS][0][SIZE]):
+    size, meters = ints[COUNTS][0][SIZE], ints[COUNTS][0][METERS]
+    for i in range(size):
+        if size - 1 - meters <= i < size - 1:
+            continue
         change, way = slopes[AT_END][i] - slopes[AT_END - 1][i], slopes[NEW][i] - slopes[TRIED][i]
         rough += change * change
         moved += way * way

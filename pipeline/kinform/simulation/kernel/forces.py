@@ -12,8 +12,8 @@ from kinform.simulation.kernel.vectors import add, along, cross, dot, place, six
 
 from kinform.simulation.kernel.layout import (  # isort: skip
     COUNTS, SIGNALS, ACTORS, LOADS, PIECES,
-    POSITIONS, RATES, TWIST, WRENCH, DOES, AT_Q, AT_V, LAW, FIRST_STATE, SECOND_STATE, EFFORT, SPRING, DAMPER, SERVO,
-    MOTOR, STRAIGHT, WAVE, SHAPE, FIRST_PIECE, PIECE_COUNT,
+    POSITIONS, RATES, TWIST, WRENCH, DOES, AT_Q, AT_V, LAW, FIRST_STATE, SECOND_STATE, METERED, EFFORT, SPRING, DAMPER,
+    SERVO, MOTOR, STRAIGHT, WAVE, SHAPE, FIRST_PIECE, PIECE_COUNT,
     FORCE, GIVEN, TURNING, FACTOR, ELASTIC, GAS, CUSHION, NEAR_STRAIGHT, LAST_GAS,
     MEASURE, TORSION, DAMPED, TORSION_DAMPED, TRIAD,
     Row, Table, Index, Nums, Vector,
@@ -58,6 +58,13 @@ def control(ints: Ints, nums: Nums, k: int, t: float, y: Row, dy: Row) -> float:
     return float(min(max(wanted, -limit), limit))
 
 
+def meter(dy: Row, at: int, effort: float, v: float) -> None:
+    """Rates of the three integrals from `at` on, of what an effort on a shaft at the rate v does."""
+    dy[at] = effort * effort
+    dy[at + 1] = effort * v
+    dy[at + 2] = dy[at + 1] * dy[at + 1]
+
+
 def drive(ints: Ints, nums: Nums, vectors: Table, t: float, y: Row, dy: Row) -> float:
     """Efforts on the shafts, into [FORCE] and [GIVEN]; rates of the actors' states go to dy. The power that they put
     in, springs apart, which store."""
@@ -92,6 +99,8 @@ def drive(ints: Ints, nums: Nums, vectors: Table, t: float, y: Row, dy: Row) -> 
             effort = constant * current
         vectors[FORCE][actor[AT_V]] += effort
         vectors[GIVEN][actor[AT_V]] += effort
+        if actor[METERED] >= 0:
+            meter(dy, actor[METERED], effort, v)
         if does != SPRING:
             power += effort * v
     return power

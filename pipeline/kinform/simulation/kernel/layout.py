@@ -7,7 +7,7 @@ The kernel takes `ints` and `nums`, the constants of a mechanism, and `work`, sc
 two-dimensional tables, lists of rows where they are not compiled: few arguments of few types are what keeps
 compilation short. Rates are numbered in the order of the tree, so that what carries a rate has a lower number.
 
-State: y = (q, v, x, w): positions, rates, states of controllers and motors, work put in so far.
+State: y = (q, v, x, m, w): positions, rates, states of controllers and motors, meters of drives, work put in so far.
 
 The names of the types below are what the signatures of the compiled functions are made from (`compiled`). Not compiled,
 tables are lists of rows, which Python reads and writes several times faster than arrays.
@@ -41,8 +41,9 @@ STATE, SCREWS, MASS, ROWS, HALF, REDUCED, VECTORS, STAGES, DENSE, MOTIONS, CARRI
 where they are articulated bodies (`articulated`)."""
 
 # ints[COUNTS][0]
-RANK, LED, POSITIONS, STATES, RATES, SIZE = range(6)
-"""RANK of the loops for the rates that are not led; LED: how many rates are led; SIZE of the state."""
+RANK, LED, POSITIONS, STATES, RATES, SIZE, METERS = range(7)
+"""RANK of the loops for the rates that are not led; LED: how many rates are led; STATES: meters included; SIZE of the
+state; METERS: how many of its numbers, before the last, are integrals of what drives do, on which nothing depends."""
 
 # nums[CONSTANTS][0]
 GRAVITY, LENGTH, LAST = 0, 3, 4
@@ -58,8 +59,10 @@ SCREW, BALL, LLAB = range(3)
 AXIS, POINT, SLIDE, WEIGHT, COM, TENSOR = 0, 3, 6, 9, 10, 13
 
 # ints[COLUMNS]
-LINK, BEFORE, SIGNAL = range(3)
-"""BEFORE: the rate before on the chain to the ground, −1 for none. SIGNAL: that leads it, −1 for none."""
+LINK, BEFORE, SIGNAL, METER = range(4)
+"""BEFORE: the rate before on the chain to the ground, −1 for none. SIGNAL: that leads it, −1 for none. METER: the first
+of three numbers of the state, integrals over time of the square of what leads it, of its power, and of the square of
+that; −1 for none."""
 
 # work[STATE]
 ROT, POS, TWIST, GAIN, WRENCH, INERT = 0, 9, 12, 18, 24, 30
@@ -87,9 +90,9 @@ REACTION, INVERSE, SURPLUS, HANDLE_WIDTH = 6, 12, 13, 14
 """REACTION: inertia times the screw. INVERSE: of what the rate moves. SURPLUS: effort that is left for it."""
 
 # ints[ACTORS], and their kinds.
-DOES, AT_Q, AT_V, LAW, FIRST_STATE, SECOND_STATE = range(6)
+DOES, AT_Q, AT_V, LAW, FIRST_STATE, SECOND_STATE, METERED = range(7)
 EFFORT, SPRING, DAMPER, SERVO, MOTOR, CONTROLLED = range(6)
-"""CONTROLLED: a motor with a controller."""
+"""METERED: as METER of rates. CONTROLLED: a motor with a controller."""
 
 # ints[LOADS]: the link, whether it turns with it, and the signal that it is multiplied by.
 TURNING, FACTOR = 1, 2

@@ -21,7 +21,7 @@ from kinform.simulation.kernel.equations import derivative, project, torn
 
 from kinform.simulation.kernel.layout import (  # isort: skip
     COUNTS, STAGES, DENSE, COEFFICIENTS,
-    RANK, SIZE, B_ROW, C_ROW, E3_ROW, E5_ROW, D_ROW, AT_END, TRIED, NEW, ROUND, FAILED,
+    RANK, SIZE, METERS, B_ROW, C_ROW, E3_ROW, E5_ROW, D_ROW, AT_END, TRIED, NEW, ROUND, FAILED,
     NOW, RTOL, ATOL, CLOSED, NEAR, MARGIN, TIGHTEST, LEAST, SPAN, MARGINS,
     SLOPES,
     Row, Counts, Nums, Work,
@@ -77,6 +77,7 @@ def stage(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: Row,
 def try_step(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: Row) -> float:
     """Slopes of the step from y and the new state; its error over the tolerance, FAILED where it has none."""
     slopes, new, size, h = work[STAGES], work[STAGES][NEW], ints[COUNTS][0][SIZE], clock[SPAN]
+    meters = ints[COUNTS][0][METERS]
     b_row, e3_row, e5_row = nums[COEFFICIENTS][B_ROW], nums[COEFFICIENTS][E3_ROW], nums[COEFFICIENTS][E5_ROW]
     clock[LEAST] = 1.0
     for s in range(1, 12):
@@ -94,6 +95,8 @@ def try_step(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: R
             three += e3_row[j] * value
             five += e5_row[j] * value
         new[i] = y[i] + h * total
+        if size - 1 - meters <= i < size - 1:
+            continue
         # What rounding does to a slope no step can do better than.
         allowed = clock[ATOL] + clock[RTOL] * max(abs(y[i]), abs(new[i])) + h * ROUGHER_SLOPES * slopes[ROUND][i]
         three, five = three / allowed, five / allowed
@@ -103,7 +106,7 @@ def try_step(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: R
         return 0.0
     # Near a singular pose rounding errors of the accelerations grow: no step can do better than they.
     noise = max(1.0, ROUNDING_NOISE / max(clock[LEAST], LEAST_NOISY_MARGIN) / clock[RTOL])
-    return float(h * fifth / math.sqrt((fifth + THIRD_ORDER_SHARE * third) * size) / noise)
+    return float(h * fifth / math.sqrt((fifth + THIRD_ORDER_SHARE * third) * (size - meters)) / noise)
 
 
 def prepare(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: Row) -> None:

@@ -40,7 +40,9 @@ class Tables:
     v_order: Ints
     """(n,) the same of rates."""
     states: int
-    """How many states controllers and motors have."""
+    """How many states controllers and motors have, and meters."""
+    meters: int
+    """How many of these are meters, at their end."""
 
     @cached_property
     def addresses(self) -> tuple[Ints, Ints, Ints]:

@@ -84,6 +84,8 @@ class Actuation:
                 else:
                     self._take(system, slots[joint.subject], actor)
         self._lead(self._led, mechanism.rates)
+        self.metered = tuple(sorted({*self.led.tolist(), *(stop.v for stop in self.stops)}))
+        """Rates whose leading is metered: what stops lead at times too."""
         link_of = dict(zip(mechanism.bodies, mechanism.link_of, strict=True))
         self.loads = [
             Push(
@@ -160,6 +162,27 @@ class Actuation:
         """(k,) prescribed accelerations."""
         return np.array([signal.acceleration(t) for signal in self.signals])
 
+    @property
+    def controlled(self) -> int:
+        """How many states controllers and motors have."""
+        return sum(sum(actor.states) for actor in self.actors)
+
+    @property
+    def meters(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """First of three integrals in the state (`layout.METER`), of each rate that is metered and of each actor; −1
+        for frictions, whose effort is not known while they stick."""
+        at = self.first_state + self.controlled
+        rates = tuple(range(at, at + 3 * len(self.metered), 3))
+        actors, at = [], at + 3 * len(self.metered)
+        for actor in self.actors:
+            actors.append(at if actor.friction < 0 else -1)
+            at += 3 if actor.friction < 0 else 0
+        return rates, tuple(actors)
+
+    def meter_of(self, rate: int) -> int:
+        """First of the three integrals of a rate that is metered."""
+        return self.meters[0][self.metered.index(rate)]
+
     def held(self, stop: Stop, signal: Signal) -> Actuation:
         """The same with the joint of the stop held on the signal."""
         return self._with_led([*self._led, (stop.q, stop.v, signal, stop.joint)])
@@ -174,7 +197,7 @@ class Actuation:
         keep = [k for k, actor in enumerate(self.actors) if actor.friction >= 0 or actor.does == layout.SPRING]
         out.actors = [self.actors[k] for k in keep]
         out.frictions = [replace(one, actor=keep.index(one.actor)) for one in self.frictions]
-        out.stops = []
+        out.stops, out.metered = [], ()
         out._lead([], len(self.free) + len(self.led))
         return out
 

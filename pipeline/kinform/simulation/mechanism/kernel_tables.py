@@ -29,7 +29,11 @@ def tabulate(mechanism: Mechanism, system: System, gravity: Array, actuation: Ac
     for v, signal in zip(actuation.led, actuation.signals, strict=True):
         columns[order.rate[v], layout.SIGNAL] = signals.add(signal)
         led += 1
-    actors, actor_numbers, states = _actors(actuation, order, signals)
+    actors, actor_numbers = _actors(actuation, order, signals)
+    for v, at in zip(actuation.metered, actuation.meters[0], strict=True):
+        columns[order.rate[v], layout.METER] = at
+    meters = 3 * sum(at >= 0 for at in (*actuation.meters[0], *actuation.meters[1]))
+    states = actuation.controlled + meters
     loads, load_numbers = (
         _rows([(load.link, int(load.turning), _factor(load, signals)) for load in actuation.loads], 3),
         np.array([[*load.force, *load.torque, *load.point] for load in actuation.loads]).reshape(-1, 9),
@@ -50,8 +54,8 @@ def tabulate(mechanism: Mechanism, system: System, gravity: Array, actuation: Ac
     mode[layout.PLACE, :n] = np.argsort(mode[layout.ORDER, :n])
     numbers = np.array([[*gravity, mechanism.length, np.inf, 0.0, 0.0, 0.0]])
     ints = (
-        np.array([[rank, led, nq, states, n, size]]), order.links(), columns, closures, np.zeros((0, 1)), actors,
-        loads, springs, mode, stops,
+        np.array([[rank, led, nq, states, n, size, meters]]), order.links(), columns, closures, np.zeros((0, 1)),
+        actors, loads, springs, mode, stops,
     )  # fmt: skip
     nums = (
         numbers, _links(mechanism, system, order), scale, _frames(mechanism), values, actor_numbers, load_numbers,
@@ -67,7 +71,7 @@ def tabulate(mechanism: Mechanism, system: System, gravity: Array, actuation: Ac
     return Tables(
         tuple(np.ascontiguousarray(table, dtype=np.int64) for table in ints),
         tuple(np.ascontiguousarray(table, dtype=np.float64) for table in nums),
-        work, order.q_order, order.v_order, states,
+        work, order.q_order, order.v_order, states, meters,
     )  # fmt: skip
 
 
@@ -119,7 +123,7 @@ class _Order:
     def columns(self) -> Ints:
         """Rows of ints[COLUMNS], nothing led."""
         links = self.links()
-        out = np.full((len(self.v_order), 3), -1, dtype=np.int64)
+        out = np.full((len(self.v_order), 4), -1, dtype=np.int64)
         for link in range(1, len(links)):
             first, width = links[link, layout.FIRST], links[link, layout.WIDTH]
             before = links[links[link, layout.PARENT], layout.TIP]
@@ -218,19 +222,19 @@ def _pieces(signal: Table | Spline) -> list[tuple[float, ...]]:
     return [(times[0] - 1.0, 0.0, 0.0, 0.0, ends[0]), *inner, (times[-1], 0.0, 0.0, 0.0, ends[1])]
 
 
-def _actors(actuation: Actuation, order: _Order, signals: _Signals) -> tuple[Ints, Array, int]:
-    """Rows of ints[ACTORS] and nums[ACTORS], and how many states they have."""
+def _actors(actuation: Actuation, order: _Order, signals: _Signals) -> tuple[Ints, Array]:
+    """Rows of ints[ACTORS] and nums[ACTORS]."""
     first = actuation.first_state
     rows, numbers, states = [], [], 0
-    for actor in actuation.actors:
+    for actor, meter in zip(actuation.actors, actuation.meters[1], strict=True):
         own = []
         for wanted in actor.states:
             own.append(first + states if wanted else -1)
             states += int(wanted)
         law = -1 if actor.signal is None else signals.add(actor.signal)
-        rows.append((actor.does, int(order.place[actor.q]), int(order.rate[actor.v]), law, *own))
+        rows.append((actor.does, int(order.place[actor.q]), int(order.rate[actor.v]), law, *own, meter))
         numbers.append([*actor.numbers, *(0.0,) * (8 - len(actor.numbers))])
-    return _rows(rows, 6), np.array(numbers, dtype=np.float64).reshape(-1, 8), states
+    return _rows(rows, 7), np.array(numbers, dtype=np.float64).reshape(-1, 8)
 
 
 @cache

@@ -1,5 +1,10 @@
 """What each drive did in a dynamic run: effort, its root mean square, power. For motion drives this is
-the inverse dynamics: what a motor must give."""
+the inverse dynamics: what a motor must give.
+
+Root mean squares and work are integrals that the solver carries in its state, so they do not depend on the output times
+(`layout.METER`); of frictions, whose state may change within an output step, they are those over the outputs. Peaks are
+those at output times.
+"""
 
 from __future__ import annotations
 
@@ -27,8 +32,11 @@ def drive_fields(dynamics: Dynamics, record: Record) -> dict[str, Any]:
     if not len(record.time):
         return {}
     acted = list(_acted(dynamics, record))
-    on = _rates(dynamics.mechanism)
-    uses = tuple(_use(record.time, on[v], kind, effort, record.v[:, v]) for v, kind, effort in acted)
+    on, meters = _rates(dynamics.mechanism), sum(dynamics.actuation.meters, ())
+    uses = tuple(
+        _use(record, on[v], kind, effort, v, at - dynamics.actuation.first_state)
+        for (v, kind, effort), at in zip(acted, meters, strict=True)
+    )
     efforts = np.array([effort for _, _, effort in acted]).reshape(len(acted), len(record.time)).T
     return {"drives": uses, "drive_effort": efforts, "drive_speed": record.v[:, [v for v, _, _ in acted]]}
 
@@ -37,7 +45,7 @@ def _acted(dynamics: Dynamics, record: Record) -> Iterator[tuple[int, str, Array
     """The rate, kind and (T,) effort of each drive."""
     actuation = dynamics.actuation
     stops = {stop.v for stop in actuation.stops}
-    for v in sorted({*actuation.led.tolist(), *stops}):
+    for v in actuation.metered:
         kind = "stop" if v in stops and v not in actuation.led else "motion"
         yield v, kind, record.needed[:, v]
     states = 0
@@ -61,18 +69,24 @@ def _rates(mechanism: Mechanism) -> dict[int, tuple[str, int, bool]]:
     }
 
 
-def _use(time: Array, on: tuple[str, int, bool], kind: str, effort: Array, rate: Array) -> DriveUse:
+def _use(record: Record, on: tuple[str, int, bool], kind: str, effort: Array, v: int, meter: int) -> DriveUse:
+    """`meter`: the first of its integrals among the states of `record.extra`; negative without."""
+    time, rate = record.time, record.v[:, v]
     power = effort * rate
     span = float(time[-1] - time[0])
-
-    def rms(values: Array) -> float:
+    if meter >= 0:
+        squared, work, squared_power = (record.extra[-1] - record.extra[0])[meter : meter + 3].tolist()
+    else:
         with np.errstate(over="ignore"):  # of a run that overflows
-            mean = float(np.trapezoid(values**2, time)) / span if span > 0.0 else float(values[0] ** 2)
-        return float(np.sqrt(mean))
+            squared, work, squared_power = (float(np.trapezoid(x, time)) for x in (effort**2, power, power**2))
+
+    def rms(integral: float, start: float) -> float:
+        # Below zero by rounding, where nothing acts.
+        return float(np.sqrt(max(integral, 0.0) / span)) if span > 0.0 else abs(start)
 
     return DriveUse(
-        on[0], kind, float(np.abs(effort).max()), rms(effort), float(power.max()), float(np.trapezoid(power, time)),
-        on[1], on[2], float(np.abs(rate).max()), rms(power),
+        on[0], kind, float(np.abs(effort).max()), rms(squared, float(effort[0])), float(power.max()), work,
+        on[1], on[2], float(np.abs(rate).max()), rms(squared_power, float(power[0])),
     )  # fmt: skip
 
 

@@ -35,8 +35,7 @@ class Controlled:
     def solver(self, rates: Rates, longest: float) -> Any:
         """The method from the present state to the end of the stretch, with steps of `longest` (s) at most."""
         run, settings = self.run, self.run.settings
-        atol = _finest(run) if run.dampings else settings.implicit_atol
-        solver = _radau(run, rates, settings.implicit_rtol, atol, constants.FIRST_IMPLICIT_STEP, longest)
+        solver = _radau(run, rates, settings.implicit_rtol, _finest(run), constants.FIRST_IMPLICIT_STEP, longest)
         if run.dampings:
             solver.newton_tol = constants.STIFF_NEWTON
         return solver
@@ -61,7 +60,7 @@ class Damped:
     def solver(self, rates: Rates, longest: float) -> Any:
         """As of `Controlled`."""
         step, free = constants.DAMPING_STEP / self.fastest, constants.WITHOUT_CONTROL
-        solver = _radau(self.run, rates, free, free, step, min(step, longest))
+        solver = _radau(self.run, rates, free, np.full_like(self.run.y, free), step, min(step, longest))
         solver.newton_tol = constants.DAMPING_NEWTON / free
         return solver
 
@@ -80,7 +79,8 @@ class Damped:
         solver.y = run.y.copy()
         run.dampings[-1] = replace(run.dampings[-1], energy=run.dampings[-1].energy + lost)
         # Newton need not be more exact than what the step leaves of the vibration.
-        change = float(np.sqrt(np.mean(((run.y - before) / (1.0 + np.abs(before)))[:-1] ** 2)))
+        head = len(before) - 1 - run.dynamics.tables.meters
+        change = float(np.sqrt(np.mean(((run.y - before) / (1.0 + np.abs(before)))[:head] ** 2)))
         settled = max(constants.DAMPING_SETTLED, constants.DAMPING_NEWTON * change)
         solver.newton_tol = settled / constants.WITHOUT_CONTROL
         self.made += int(self.fastest * span > constants.DAMPS)
@@ -94,7 +94,7 @@ def lasting(run: Run) -> float:
     return vibration(run, float(run.clock[layout.STEP]), constants.DAMPED_AHEAD)
 
 
-def _radau(run: Run, rates: Rates, rtol: float, atol: Array | float, first: float, longest: float) -> Any:
+def _radau(run: Run, rates: Rates, rtol: float, atol: Array, first: float, longest: float) -> Any:
     from scipy.integrate import Radau
 
     begin, end = float(run.clock[layout.NOW]), float(run.clock[layout.END])
@@ -114,11 +114,12 @@ def _balance(run: Run, y: Array) -> float:
 
 def _finest(run: Run) -> Array:
     """(size,) absolute errors a step: of rates no less than what rounding of positions leaves where springs have made
-    vibrations of the frequencies that were damped."""
+    vibrations of the frequencies that were damped; of meters any."""
     tables = run.dynamics.tables
     q, v = tables.unpack(run.y)
-    fastest = 2.0 * np.pi * max(one.frequency for one in run.dampings)
+    fastest = 2.0 * np.pi * max((one.frequency for one in run.dampings), default=0.0)
     out = np.full_like(run.y, run.settings.implicit_atol)
+    out[len(out) - 1 - tables.meters : -1] = np.inf
     head = len(out) - 1 - tables.states
     rates = tables.pack(np.zeros_like(q), np.full_like(v, constants.STIFF_ROUNDING * fastest))
     out[:head] = np.maximum(rates[:head], out[:head])

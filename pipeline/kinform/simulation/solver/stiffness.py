@@ -45,11 +45,11 @@ def vibration(run: Run, step: float, budget: float) -> float:
 
 
 def jacobian(run: Run, t: float, at: Array) -> Array:
-    """(size, size) central differences of the derivative by the state `at`."""
+    """(size, size) central differences of the derivative by the state `at`. Nothing depends on meters and work."""
     size = len(at)
     out = np.zeros((size, size))
     ends = np.zeros((2, size))
-    for k in range(size):
+    for k in range(size - 1 - run.dynamics.tables.meters):
         h = constants.JACOBIAN_STEP * max(1.0, abs(at[k]))
         for side, sign in enumerate((1.0, -1.0)):
             y = at.copy()

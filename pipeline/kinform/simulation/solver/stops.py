@@ -63,7 +63,9 @@ class Contact:
             run.notes.append(f"{stop.joint} reaches its end stop at t = {t:.6g} s; impacts {kept}")
         change, after = impact
         q[stop.q] = stop.limit
-        run.y[-1] += float(change @ matrix @ (v + 0.5 * change))
+        work = float(change @ matrix @ (v + 0.5 * change))
+        run.y[-1] += work
+        run.y[self.run.dynamics.actuation.meter_of(stop.v) + 1] += work
         v = v + change
         rounding = constants.STOP_MOVES * max(1.0, float(np.abs(after).max()))
         leaving = [each for each, pace in zip(stops, after, strict=True) if pace < -rounding]
