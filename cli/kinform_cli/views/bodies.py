@@ -20,7 +20,7 @@ def render(design: Design) -> RenderableType:
     kinematics = design.kinematics
     assert kinematics is not None
     title = counted(len(kinematics.bodies), "body", "bodies")
-    rows = Rows("body", "parts", "made one by", title=title, names=["body"], texts=["parts", "made one by"])
+    rows = Rows("body", "parts", "made one by", title=title, texts=["body", "parts", "made one by"])
     single = [b for b in kinematics.bodies if (*map(str, b.parts),) == (str(b.name),) and not (b.merged or b.ground)]
     titles = body_titles(design.assembly, kinematics)
     for body in kinematics.bodies:

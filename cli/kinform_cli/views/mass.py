@@ -19,7 +19,8 @@ from kinform_cli.text import NONE, Lengths, number
 def bodies(design: Design) -> RenderableType:
     """One row a body."""
     assert design.mass is not None
-    return _table("Mass of bodies", design.mass.bodies, Lengths.of(design.assembly))
+    table = _table("Mass of bodies", design.mass.bodies, Lengths.of(design.assembly))
+    return stacked(table, *_unclear(design))
 
 
 def render(design: Design) -> RenderableType:
@@ -41,6 +42,20 @@ def render(design: Design) -> RenderableType:
         listed = {(item.name, item.reason) for item in unknown}
         items += [f"  {part}: {message}" for part, message in report.problems if (part, message) not in listed]
     return stacked(*items)
+
+
+def _unclear(design: Design) -> list[RenderableType]:
+    """How much of the mass could be in another body, where bodies follow from the function."""
+    members = () if design.kinematics is None else design.kinematics.membership
+    unclear = {one.part for one in members if one.either}
+    assert design.mass is not None
+    masses = [row.mass for row in design.mass.parts if row.name in unclear]
+    if not unclear:
+        return []
+    total = sum(mass for mass in masses if mass is not None)
+    weight = f"{number(total)} kg" if total >= HEAVY else f"{number(1e3 * total)} g"
+    known = f", {weight} in all" if masses and None not in masses else ""
+    return [Text(f"{words.counted(len(unclear), 'part')}{known}, could be in another body: kinform show F.h5 bodies")]
 
 
 def _table(title: str, rows: Sequence[MassProperties], lengths: Lengths) -> RenderableType:

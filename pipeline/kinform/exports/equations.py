@@ -90,7 +90,7 @@ def equations_of(model: ExportModel) -> Equations:
     """The independent equations of a model, and what is to be said of them."""
     tree = grow(model.system)
     closures, gears, free, led = _independent_equations(model, tree)
-    lost, remarks = [*model.lost, *model.dry, *_singular(model)], list(model.teeth)
+    lost, remarks = [*model.lost, *model.dry, *_singular(model)], [*model.taken, *model.teeth]
     held = _held_rates(model, free, lost, remarks)
     closed = {closure.joint.subject for closure in closures}
     lost += [

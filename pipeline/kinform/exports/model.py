@@ -18,6 +18,7 @@ from kinform.behaviour.signals import STEADY
 from kinform.design import Design
 from kinform.errors import StageError
 from kinform.foundation.algebra.spatial import quaternions
+from kinform.foundation.words import quoted
 from kinform.function import resolve_joint, stated_ranges
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
@@ -85,6 +86,21 @@ class ExportModel:
     def lost(self) -> tuple[str, ...]:
         """What formats other than the port model itself do not carry, whatever they can say."""
         return (*self.missing, *self.elsewhere)
+
+    @property
+    def taken(self) -> tuple[str, ...]:
+        """What follows from the stated joints and not from contact, in sentences: bodies, and joints that no contact
+        holds."""
+        members = self.kinematics.membership
+        if not members:
+            return ()
+        unclear = [one.part for one in members if one.either]
+        more = f"; {quoted(unclear)} could be in another" if unclear else ""
+        stated = {joint.name for joint in self.kinematics.joints if joint.status == "stated"}
+        joints = [
+            f"{one.subject}: as stated, no contact holds it" for one in self.system.joints if one.subject in stated
+        ]
+        return (f"which parts are one body follows from the stated joints{more}", *joints)
 
     @property
     def dry(self) -> tuple[str, ...]:

@@ -133,8 +133,8 @@ class Robot:
 
     @property
     def remarks(self) -> list[str]:
-        """What is to be said of ranges that are not known, and of teeth."""
-        return [*self.unranged, *self.model.teeth]
+        """What is to be said of bodies and joints that are taken as stated, ranges that are not known, and teeth."""
+        return [*self.model.taken, *self.unranged, *self.model.teeth]
 
     @property
     def loads(self) -> tuple[LoadComponent, ...]:

@@ -53,7 +53,7 @@ __all__ = [
     "stated_proposals",
 ]
 
-CODE_VERSION = 36
+CODE_VERSION = 37
 """Bumped when the results of this stage change for the same input."""
 
 __getattr__ = first_used(

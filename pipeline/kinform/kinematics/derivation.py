@@ -136,7 +136,7 @@ def derive(
         assembly=assembly,
         graph=JointGraph(bodies, aligned),
         size=size,
-        clusters=_clusters(assembly, hints),
+        clusters=bodies if found is not None else _clusters(assembly, hints),
         patches=patches,
         strict={name: answer.strict for name, answer in answers_of.items() if answer.strict is not None},
         balls=touching_balls(assembly, surfaces, contacts.patches),

@@ -52,14 +52,16 @@ def _finding(c: Comparison) -> Finding:
         intended=intended.type + (f" about {direction(intended.axis)}" if intended.axis is not None else ""),
         place=c.point if c.point is not None else intended.point,
         declared=intended,
-        remedy=_remedy(intended.type, found),
+        remedy=_remedy(intended.type, found, taken=c.state == "taken"),
     )
 
 
-def _remedy(wanted: str, found: str) -> str:
-    if wanted == "revolute" and found == "cylindrical":
-        return "Give the shaft shoulders or clips that hold it along the axis."
-    return "Model what holds the joint, or state `complete = true` in [function] if it is in no mesh."
+def _remedy(wanted: str, found: str, *, taken: bool) -> str:
+    shaft = wanted == "revolute" and found == "cylindrical"
+    hold = "Give the shaft shoulders or clips that hold it along the axis" if shaft else "Model what holds the joint"
+    if taken:
+        return f'It is taken as stated. {hold}; if that is in no mesh, `[check.severity] KF414 = "note"`.'
+    return f"{hold}." if shaft else f"{hold}, or state `complete = true` in [function] if it is in no mesh."
 
 
 RULE = Rule("KF414", "joint-not-held", "error", __doc__, check, needs=("comparisons",))

@@ -195,7 +195,8 @@ class _Search:
         """Whether a joint has something that goes round its axis only if two labels are one: what none may part else,
         or what is inside of one body else."""
         before, after = self.on_axes(now), self.on_axes(way)
-        if {joint for joint, _ in after} - {joint for joint, _ in before}:
+        having, others = {joint for joint, _ in before}, {ends for _, ends in before}
+        if any(joint not in having and ends not in others for joint, ends in after):
             return True
         labels, current = self.cut(now)
         ends = [(edge, labels[edge.ends[0]], labels[edge.ends[1]]) for edge in current]
