@@ -31,13 +31,16 @@ if TYPE_CHECKING:
     from kinform.kinematics.questions.intended_freedoms import IntendedAnswer, IntendedMotion, intended_answers
     from kinform.kinematics.questions.joint_insight import Insight, insight
     from kinform.kinematics.questions.motion_query import QueryAnswer, QueryBlocker, query
+    from kinform.kinematics.questions.near_motion import Correction, NearMotion, near_motions
 
 __all__ = [
     "CODE_VERSION",
+    "Correction",
     "Insight",
     "IntendedAnswer",
     "IntendedMotion",
     "Motions",
+    "NearMotion",
     "QueryAnswer",
     "QueryBlocker",
     "coupling_aside",
@@ -47,6 +50,7 @@ __all__ = [
     "intended_answers",
     "is_higher",
     "mobility_within",
+    "near_motions",
     "propose",
     "proposed_joints",
     "query",
@@ -76,5 +80,8 @@ __getattr__ = first_used(
         "QueryAnswer": "questions.motion_query",
         "QueryBlocker": "questions.motion_query",
         "query": "questions.motion_query",
+        "Correction": "questions.near_motion",
+        "NearMotion": "questions.near_motion",
+        "near_motions": "questions.near_motion",
     },
 )

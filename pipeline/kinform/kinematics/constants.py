@@ -558,3 +558,32 @@ PRESERVED_SHARE = 0.03
 ADMITTED = 0.02
 """Share of an intended motion that the freedoms of a contact may miss and still admit it: a degree, or a fiftieth of
 the contact's size; axes are compared more finely where the types agree (KF403, KF404)."""
+
+# questions.near_motion: what a small correction of one joint would free.
+
+NEARLY = 0.02
+"""Singular value of the closure over the greatest, below which a motion is nearly made: that of a hinge 2 % of the size
+beside its place."""
+NEARLY_APART = 10.0
+"""The next singular value has to be greater by 1/(NEARLY · this), which is five times: else it is no single motion. A
+choice."""
+MOST_CORRECTED = 0.02
+"""Greatest correction: rad, or shares of the size of the loops. What is off by more is another design."""
+AS_SMALL = 1.5
+"""Corrections up to so many times the least are told with it: any of them may be what is wrong."""
+MOST_NEAR_RATES = 40
+"""Joint rates of a block that is asked: each joint takes some hundred poses of it."""
+NEAR_STEPS = (-0.2, -0.1, 0.1, 0.2)
+"""Steps along the motion, of its rates together (rad, or shares of the size), at which loops have to close."""
+NEAR_ROUNDS = 12
+"""Rounds of Gauss and Newton; four or five are usual."""
+NEAR_DIFFERENCE = 1e-5
+"""Half the difference of a correction by which its effect is found."""
+NEAR_RANK = 1e-9
+"""Relative singular value below which unknowns are left as they are."""
+NEAR_STRAYED = 1.0
+"""Correction at which the search is given up."""
+NEAR_SETTLED = 1e-13
+"""Change of a round after which nothing more is gained."""
+NEAR_CLOSED = 1e-10
+"""rad, and shares of the size, by which loops may be open that close."""

@@ -19,6 +19,6 @@ if TYPE_CHECKING:
 
 __all__ = ["CODE_VERSION", "Course", "Probe", "SolverSettings", "port_model", "simulate", "simulate_system"]
 
-CODE_VERSION: int = 20
+CODE_VERSION: int = 21
 
 __getattr__ = first_used(__name__, {"Course": "of_system", "Probe": "outcome.sensing", "simulate_system": "of_system"})

@@ -9,13 +9,16 @@ Why it matters: one freedom too few and the mechanism jams; one too many and som
 drive holds.
 
 What to do: `kinform show F.h5 mobility` lists the freedoms and what moves in each. Findings on single
-joints (KF203, KF204, KF401, KF402) are usually the cause: begin there.
+joints (KF203, KF204, KF401, KF402) are usually the cause: begin there. Where a freedom is missing because one joint of
+the loops is a little out of place, the joints are named any one of which would only have to be corrected, and by how
+much: a redundant loop, as that of three parallel cranks, bears no such error.
 
 Example: a gimbal that shall turn about two axes has three freedoms, because the pitch shaft has no shoulder.
 """
 
 from __future__ import annotations
 
+from kinform.consistency.comparisons.near import nearly_moves
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive
 from kinform.consistency.rule import Rule
@@ -34,13 +37,16 @@ def check(context: Context) -> Outcome:
     if mobility.effective == intended:
         return decided(reason=f"{counted(intended, 'freedom')}, as intended")
     whole, line = context.assembly.source, context.function.mobility_line
+    near = nearly_moves(context) if mobility.effective < intended else ""
+    usual = "See the freedoms with `kinform show F.h5 mobility`; correct the joints, or `mobility`."
     finding = RULE.finding(
         (context.assembly.name,),
-        f"the assembly has {counted(mobility.effective, 'freedom')}, intended are {intended}{_details(kinematics)}",
+        f"the assembly has {counted(mobility.effective, 'freedom')}, intended are {intended}{_details(kinematics)}"
+        + (f": {near}" if near else ""),
         found=str(mobility.effective),
         intended=str(intended),
         declared=Source(whole.file, whole.line if line is None else line),
-        remedy="See the freedoms with `kinform show F.h5 mobility`; correct the joints, or `mobility`.",
+        remedy="Correct the joint that is out of place." if near else usual,
     )
     return decided([finding])
 

@@ -18,6 +18,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from kinform.consistency.comparisons.actuated import loose_carriers
+from kinform.consistency.comparisons.near import nearly_moves
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive
 from kinform.consistency.rule import Declared, Rule
@@ -46,7 +47,8 @@ def _finding(context: Context, subject: str, reason: str) -> Finding:
     asked = request if request is not None and request.file is not None else None
     level = request.level if request is not None else None
     carried = next(filter(None, (loose_carriers(context, name) for name in names)), "")
-    why = f"{reason}; {carried}" if carried else reason
+    near = nearly_moves(context) if "loops cannot move" in reason and not context.lacks("kinematics") else ""
+    why = "; ".join(filter(None, (reason, carried, near)))
     return RULE.finding(
         names,
         f"{quoted(names)} {'is' if len(names) == 1 else 'are'} not simulated: {why}",

@@ -96,10 +96,10 @@ def _block(
     if geared is not None:
         kept, ratios = geared
         members = [joints[k] for k in kept]
-        system = loop_system([edges[k] for k in kept], [j.twists for j in members], _frame(members, size), ratios)
+        system = loop_system([edges[k] for k in kept], [j.twists for j in members], block_frame(members, size), ratios)
         certificate = _certificate([joint.name for joint in members], system)
         return certificate and replace(certificate, joints=names)
-    frame = _frame(joints, size)
+    frame = block_frame(joints, size)
     system = loop_system(edges, [joint.twists for joint in joints], frame)
     rows, columns = 6 * len(system.loops), system.coordinates
     if rows * columns * min(rows, columns) > MOST_BLOCK_WORK:
@@ -140,9 +140,9 @@ def _without_gears(
     return kept, [(place[a], place[b], ratio) for (a, b), ratio in gears]
 
 
-def _frame(joints: Sequence[Joint], size: float) -> Frame:
-    """Centre and size of a block. Points of joints that meet have no size of their own: then a share of
-    the assembly's counts, as for the first-order count."""
+def block_frame(joints: Sequence[Joint], size: float) -> Frame:
+    """Centre and size (m) of a block of loops; `size` (m) of the assembly. Points of joints that meet have no size of
+    their own: then a share of the assembly's counts, as for the first-order count."""
     placed = [j.point for j in joints if j.point is not None and j.type in PLACED]
     placed = placed or [j.point for j in joints if j.point is not None]
     if not placed:

@@ -1,0 +1,36 @@
+"""What joints are out of place, where loops do not move and nearly would."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinform.consistency.context import Context
+from kinform.consistency.requirements import stated_as
+from kinform.foundation.words import angle, length, listed, number
+from kinform.kinematics import Correction, NearMotion, near_motions
+
+MOST_NAMED = 4
+"""Corrections that are named of one motion."""
+
+
+def nearly_moves(context: Context) -> str:
+    """Sentences on the joints, any one of which only has to be corrected a little for loops to move; "" without."""
+    return "; ".join(_sentence(context, near) for near in near_motions(context.kinematics))
+
+
+def _sentence(context: Context, near: NearMotion) -> str:
+    names = [stated_as(context, name)[0] for name in near.moves]
+    shown = near.corrections[:MOST_NAMED]
+    ways = [f"'{stated_as(context, one.joint)[0]}' were {_way(context, one)}" for one in shown]
+    more = len(near.corrections) - len(shown)
+    rest = f" (or one of {more} more)" if more else ""
+    few = names if len(names) <= MOST_NAMED + 1 else [*names[:MOST_NAMED], f"{len(names) - MOST_NAMED} more"]
+    return f"the loops of {listed(few)} would move if {' or '.join(ways)}{rest}"
+
+
+def _way(context: Context, one: Correction) -> str:
+    if one.tilt:
+        return f"tilted by {angle(one.tilt)}"
+    size = float(np.linalg.norm(one.shift))
+    along = ", ".join(number(x, 2) for x in np.round(one.shift / size, 3) + 0.0)
+    return f"{length(size, context.assembly.units, 2)} elsewhere, towards ({along})"

@@ -1,0 +1,195 @@
+"""Which joint stands wrong where loops nearly move: the least correction of one joint after which they do.
+
+Loops whose closure equations have one singular value far below all others have a motion that they nearly make, and that
+something off by as little forbids: a hinge a hundredth of a millimetre beside its place, an axis a tenth of a degree
+askew. For each joint that may be it, unknowns are its correction and the poses of the block at a few steps along that
+motion, both ways; equations are that all loops close there (Gauss and Newton). Where they can be met, the joint so
+corrected is asked for its motions like any other (`mobility.local_dimension`): what only turns a lock into a shaky
+pose is no correction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from kinform.foundation.algebra.vectors import norm, perpendicular
+from kinform.foundation.graphs.graph import blocks
+from kinform.kinematics import constants
+from kinform.kinematics.axes.snapping import LINES
+from kinform.kinematics.loops.joint_graph import JointGraph
+from kinform.kinematics.loops.loop_kinematics import LoopSystem, loop_system
+from kinform.kinematics.mobility.finite_motion import block_frame
+from kinform.kinematics.mobility.local_dimension import local_motions
+from kinform.kinematics.pair.joint import twists_of
+from kinform.model.arrays import Array
+from kinform.model.kinematics import Joint, Kinematics
+from kinform.model.names import JointName
+
+
+@dataclass(frozen=True, eq=False)
+class Correction:
+    """What one joint would have to be moved by for the loops to move: a shift or a tilt."""
+
+    joint: JointName
+    shift: Array
+    """(3,) m, of its point; zero for a tilt."""
+    tilt: float
+    """rad, of its axis; 0 for a shift."""
+    effect: float
+    """Shift, or tilt times the size of the loops (m): what corrections are compared by."""
+
+
+@dataclass(frozen=True, eq=False)
+class NearMotion:
+    """A motion that loops nearly make."""
+
+    moves: tuple[JointName, ...]
+    """Joints that would move."""
+    corrections: tuple[Correction, ...]
+    """The least first; any one of them would do."""
+
+
+def near_motions(kinematics: Kinematics) -> tuple[NearMotion, ...]:
+    """Motions that a small correction of one joint would free, block by block of loops; without those of blocks that
+    have ambiguous or general joints, or are large."""
+    graph = JointGraph(kinematics.bodies, kinematics.joints)
+    found = []
+    for block in blocks(len(graph.bodies), graph.edges):
+        joints = [graph.joints[k] for k in block]
+        doubtful = any(joint.type == "general" or joint.status == "ambiguous" for joint in joints)
+        if len(block) > 1 and not doubtful and sum(joint.freedoms for joint in joints) <= constants.MOST_NEAR_RATES:
+            near = _of_block([graph.edges[k] for k in block], joints, kinematics)
+            if near is not None:
+                found.append(near)
+    return tuple(found)
+
+
+@dataclass(frozen=True, eq=False)
+class _Block:
+    """A block of loops and the motion (n,) that it nearly makes, in coordinates of its loop system."""
+
+    edges: Sequence[tuple[int, int]]
+    joints: Sequence[Joint]
+    size: float
+    """m: of the assembly."""
+    way: Array
+
+    def system(self, joints: Sequence[Joint]) -> LoopSystem:
+        """The loops with these joints, in the frame of the block as it is."""
+        return loop_system(self.edges, [joint.twists for joint in joints], block_frame(self.joints, self.size))
+
+    def freedoms(self, joints: Sequence[Joint]) -> int:
+        """Of motions over a distance; 0 where that is not known."""
+        return local_motions(self.system(joints)).dimension or 0
+
+
+def _of_block(edges: Sequence[tuple[int, int]], joints: Sequence[Joint], kinematics: Kinematics) -> NearMotion | None:
+    """The motion that a block of loops nearly makes, where a joint can be corrected so that it does."""
+    size = _size(kinematics)
+    frame = block_frame(joints, size)
+    system = loop_system(edges, [joint.twists for joint in joints], frame)
+    matrix = system.close(np.zeros((1, system.coordinates))).jacobian[0]
+    _, values, right = np.linalg.svd(matrix)
+    rank = int(np.count_nonzero(values > constants.CLOSED * values.max(initial=1e-300)))
+    if rank < 2 or values[rank - 1] > constants.NEARLY * min(values[0], constants.NEARLY_APART * values[rank - 2]):
+        return None
+    block = _Block(edges, joints, size, right[rank - 1])
+    now = block.freedoms(joints)
+    found = []
+    for k, joint in enumerate(joints):
+        for tilts in (False, True):
+            found += [one for one in [_correction(block, k, _ways(joint, tilts), now, tilts)] if one is not None]
+    if not found:
+        return None
+    # Equal ones, as the two ends of a crank, by their names: rounding is no order.
+    found.sort(key=lambda one: (float(f"{one.effect:.3g}"), one.joint, one.tilt))
+    least = [one for one in found if one.effect <= constants.AS_SMALL * found[0].effect]
+    rates = np.abs(block.way)
+    moving = np.unique(system.joint[rates > constants.MOVING_JOINT * rates.max()])
+    return NearMotion(tuple(joints[k].name for k in moving), tuple(least))
+
+
+def _size(kinematics: Kinematics) -> float:
+    """m: extent of the joints."""
+    points = np.array([joint.point for joint in kinematics.joints if joint.point is not None])
+    return max(norm(np.ptp(points, axis=0)), 1e-9) if len(points) else 1.0
+
+
+def _ways(joint: Joint, tilts: bool) -> list[Array]:
+    """(3,) unit directions in which a joint may be shifted, or its axis tilted."""
+    if joint.type == "spherical":
+        return [] if tilts else list(np.eye(3))
+    if joint.axis is None or joint.type not in (*LINES, "prismatic", "planar", "universal"):
+        return []
+    return list(perpendicular(joint.axis)) if tilts or joint.type in LINES else []
+
+
+def _moved(joint: Joint, ways: Sequence[Array], amounts: Array, tilts: bool) -> Joint:
+    """The joint, shifted (m) or tilted (rad) by so much in these ways."""
+    change = sum((amount * way for amount, way in zip(amounts, ways, strict=True)), np.zeros(3))
+    axis, point = joint.axis, joint.point
+    if tilts:
+        assert axis is not None
+        axis = (axis + change) / norm(axis + change)
+    elif point is not None:
+        point = point + change
+    return replace(joint, axis=axis, point=point, twists=twists_of(joint.type, axis, point, joint.pitch, joint.axis2))
+
+
+def _correction(block: _Block, k: int, ways: Sequence[Array], now: int, tilts: bool) -> Correction | None:
+    """The least correction of joint k of the block in these ways after which it has more freedoms than `now`."""
+    if not ways:
+        return None
+    joint, length = block.joints[k], block_frame(block.joints, block.size).length
+    unit = 1.0 if tilts else length
+
+    def corrected(amounts: Array) -> list[Joint]:
+        joints = list(block.joints)
+        joints[k] = _moved(joint, ways, unit * amounts, tilts)
+        return joints
+
+    amounts = _solved(lambda amounts: block.system(corrected(amounts)), block.way, len(ways))
+    if amounts is None or not 0.0 < norm(amounts) <= constants.MOST_CORRECTED:
+        return None
+    if block.freedoms(corrected(amounts)) <= now:
+        return None
+    change = sum((amount * way for amount, way in zip(amounts, ways, strict=True)), np.zeros(3))
+    effect = length * norm(amounts)
+    return Correction(joint.name, np.zeros(3) if tilts else length * change, norm(amounts) if tilts else 0.0, effect)
+
+
+def _solved(system_with, way: Array, count: int) -> Array | None:  # type: ignore[no-untyped-def]
+    """(count,) amounts at which all loops close at steps along the way; None where they do not."""
+    n = len(way)
+    steps = np.array(constants.NEAR_STEPS)
+    q, amounts = steps[:, None] * way, np.zeros(count)
+    for _ in range(constants.NEAR_ROUNDS):
+        closed = system_with(amounts).close(q)
+        rows = closed.residual.shape[1] + 1
+        matrix = np.zeros((len(steps) * rows, len(steps) * n + count))
+        missed = np.zeros(len(steps) * rows)
+        beside = []
+        for c in range(count):
+            h = np.zeros(count)
+            h[c] = constants.NEAR_DIFFERENCE
+            up, down = (system_with(amounts + sign * h).close(q).residual for sign in (1.0, -1.0))
+            beside.append((up - down) / (2.0 * constants.NEAR_DIFFERENCE))
+        for s in range(len(steps)):
+            at = slice(s * rows, (s + 1) * rows - 1)
+            matrix[at, s * n : (s + 1) * n] = closed.jacobian[s]
+            matrix[at, len(steps) * n :] = np.stack([column[s] for column in beside], axis=1)
+            # As far along the way as the step says.
+            matrix[(s + 1) * rows - 1, s * n : (s + 1) * n] = way
+            missed[at], missed[(s + 1) * rows - 1] = closed.residual[s], way @ q[s] - steps[s]
+        change = -np.linalg.lstsq(matrix, missed, rcond=constants.NEAR_RANK)[0]
+        q += change[: len(steps) * n].reshape(q.shape)
+        amounts = amounts + change[len(steps) * n :]
+        if not np.all(np.isfinite(change)) or norm(amounts) > constants.NEAR_STRAYED:
+            return None
+        if np.abs(change).max() < constants.NEAR_SETTLED:
+            break
+    closed = system_with(amounts).close(q)
+    return amounts if np.abs(closed.residual).max() < constants.NEAR_CLOSED else None
