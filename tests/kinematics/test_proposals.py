@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from manifold3d import Manifold
@@ -12,9 +14,10 @@ from kinform import contacts, surfaces
 from kinform.kinematics import propose
 
 
-def proposed(**solids):
+def proposed(ground=None, **solids):
     """(type, sides) of what is proposed."""
     whole = assembly(*(part(name, solid, np.eye(4)) for name, solid in solids.items()))
+    whole = replace(whole, ground=ground)
     found = {p.mesh.digest: surfaces.recover(p.mesh, whole.tolerances) for p in whole.parts}
     return [(one.type, one.sides, one) for one in propose(whole, found, contacts.find(whole, found))]
 
@@ -34,6 +37,13 @@ def test_a_pivot_is_proposed_among_screw_holes_too(radius):
     assert (type_, sides) == ("revolute", (("base",), ("arm",)))
     assert np.linalg.norm(one.axis[:2]) < 1e-9
     assert np.linalg.norm(one.point[:2]) < 1e-9
+
+
+@pytest.mark.parametrize(("ground", "moves", "share"), [(None, "arm", 18), ("base", "arm", 18), ("arm", "base", 82)])
+def test_what_moves_is_not_the_ground(ground, moves, share):
+    ((_, sides, one),) = proposed(ground, base=BASE, arm=ARM)
+    assert sides[1] == (moves,)
+    assert one.words == f"moves 1 part, {share} % of the volume: '{moves}'"
 
 
 def test_what_lies_on_an_axis_does_not_hide_the_joint_there():

@@ -356,6 +356,9 @@ def test_proposed_joints_move_what_they_would_and_their_toml_is_copied(derive_de
         state = "window.kinformViewer.state"
         turned = page.run(f"{state}.shown.map((pose) => Math.max(...pose.map((x, k) => Math.abs(x - (k % 5 === 0)))))")
         assert sorted(angle > 0.1 for angle in turned) == [False, True]
+        assert page.run(f"{state}.scene.joints.map((_, k) => {state}.jointHidden(k))") == [False]  # what it moves
+        page.run(f"{state}.motion.moving = []")
+        assert page.run(f"{state}.scene.joints.map((_, k) => {state}.jointHidden(k))") == [True]
         table = tomllib.loads(page.run("document.querySelector('[data-toml=all]').textContent"))["function"]
         assert table["complete"] is True
         (joint,) = table["joint"]

@@ -43,9 +43,12 @@ class Proposal:
     point: Array
     """(3,) m."""
     sides: Sides
-    """The parts that would move relative to each other; the larger side first."""
+    """The parts that would move relative to each other: first the side with the ground, where that is stated, else the
+    larger one."""
     share: float
     """Volume of the smaller side, of all."""
+    moved: float
+    """Volume of the second side, of all."""
     borne: frozenset[PartName]
     """Parts that touch about the axis."""
 
@@ -53,7 +56,7 @@ class Proposal:
     def words(self) -> str:
         """What it would move."""
         moving = sorted(self.sides[1])
-        return f"moves {counted(len(moving), 'part')}, {100 * self.share:.2g} % of the volume: {quoted(moving)}"
+        return f"moves {counted(len(moving), 'part')}, {100 * self.moved:.2g} % of the volume: {quoted(moving)}"
 
     def between(self, volume: Mapping[PartName, float]) -> tuple[PartName, PartName]:
         """The largest part of either side that touches about the axis: other joints may part the side further."""
@@ -103,6 +106,7 @@ def propose(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: 
         for number, several in sorted(found.items())
         for sides in several
     ]
+    ground = set() if assembly.ground is None else set(assembly.parts_of(assembly.ground))
     total = sum(volume.values()) or 1.0  # parts without any volume: nothing is substantial
     shares = [min(sum(volume[name] for name in side) for side in sides) / total for _, sides, _ in ways]
     out = []
@@ -111,7 +115,9 @@ def propose(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: 
         twice = any(not _one(other, joint) and graph.alike(sides, theirs) for other, theirs, _ in ways)
         if not twice and share >= constants.BESIDE * largest:
             assert joint.point is not None
-            out.append(Proposal(joint.type, joint.axis, joint.point, sides, share, touching))
+            turned = sides if not ground & set(sides[1]) else sides[::-1]
+            moved = graph.size(turned[1]) / total
+            out.append(Proposal(joint.type, joint.axis, joint.point, turned, share, moved, touching))
     return _once(sorted(out, key=lambda one: (-one.share, one.sides)))
 
 

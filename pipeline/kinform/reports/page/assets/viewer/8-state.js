@@ -119,7 +119,12 @@ class State {
   }
 
   jointHidden(k) {
-    return this.joint >= 0 ? this.joint !== k : this.finding >= 0 && !this.scene.findings[this.finding].joints.includes(this.scene.joints[k].name);
+    if (this.joint >= 0) return this.joint !== k;
+    const { name, bodies } = this.scene.joints[k];
+    if (this.finding >= 0) return !this.scene.findings[this.finding].joints.includes(name);
+    // of a joint that may be meant, only what lies between its sides
+    const moves = this.motion?.kind === "proposal" ? bodies.map((body) => this.motion.moving.includes(body)) : [true, false];
+    return moves[0] === moves[1];
   }
 
   patchHidden(item) {
