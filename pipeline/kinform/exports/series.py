@@ -14,6 +14,7 @@ from kinform.exports.model import ExportModel
 from kinform.function import as_intended, designers_joints
 from kinform.model.arrays import Array
 from kinform.model.simulation import Simulation
+from kinform.simulation import amplitude_spectrum
 
 
 def export(model: ExportModel) -> Exported:
@@ -22,7 +23,9 @@ def export(model: ExportModel) -> Exported:
     Joints have the names and the sense that the function gives them. One with several coordinates has them as
     NAME.angle.position and so on. `reactions.csv`: NAME on BODY.force.x … .torque.z, about the joint's point in world
     axes, on the second body. `drives.csv`: N JOINT KIND.effort, .speed, .power. `sensors.csv`: NAME.position.x and so
-    on. What redundancy leaves open is called "(not determined)". Raises ExportError without a motion.
+    on. `spectra.csv`: Hz, then the amplitudes of sensors and of efforts of drives (`kinform.simulation.spectra`), where
+    there are enough outputs. What redundancy leaves open is called "(not determined)". Raises ExportError without a
+    motion.
     """
     run = model.simulation
     if run is None:
@@ -36,6 +39,8 @@ def export(model: ExportModel) -> Exported:
         files["drives.csv"] = _table(*_drives(seen))
     if run.readings:
         files["sensors.csv"] = _table(*_sensors(run))
+    if spectra := _spectra(seen):
+        files["spectra.csv"] = _table(*spectra)
     return Exported(files)
 
 
@@ -72,6 +77,20 @@ def _sensors(run: Simulation) -> tuple[list[str], Array]:
         name = ".".join(filter(None, (reading.sensor, reading.quantity.replace(" ", "_"), reading.component)))
         header.append(name if reading.known else name + _OPEN)
     return header, np.hstack([run.time[:, None], run.sensed])
+
+
+def _spectra(run: Simulation) -> tuple[list[str], Array] | None:
+    """Of what has one."""
+    named = [*zip(_sensors(run)[0][1:], run.sensed.T, strict=True)] if run.readings else []
+    if run.drives and len(run.drive_effort):
+        names, columns = _drives(run)
+        named += [(name, column) for name, column in zip(names, columns.T, strict=True) if name.endswith(".effort")]
+    found = [(name, amplitude_spectrum(run.time, values)) for name, values in named]
+    kept = [(name, spectrum) for name, spectrum in found if spectrum is not None]
+    if not kept:
+        return None
+    amplitudes = [spectrum.amplitude for _, spectrum in kept]
+    return ["frequency", *(name for name, _ in kept)], np.column_stack([kept[0][1].frequency, *amplitudes])
 
 
 def _bodies(run: Simulation) -> tuple[list[str], Array]:

@@ -147,8 +147,17 @@ MOST_COLUMNS = 300
 """Columns of a curve; in each the least and the greatest value are kept."""
 MOST_PLOTS = 48
 """Plots of one group."""
+MOST_SPECTRA = 24
+"""Spectra, and envelopes, of a page."""
 MOST_POINTS = 600
 """Points of an effort over its speed: twice the columns of a curve over time, as it may pass each twice."""
+SPECTRUM_DECADES = 4
+"""Decades of amplitude that a spectrum shows: sensors are rarely better, and the lobes of the window fade
+below."""
+LEAST_FREQUENCIES = 24
+"""Frequencies that a spectrum shows at least; else twice as many as stand above its lowest decade."""
+NO_SPECTRUM = 1e-9
+"""Share of the greatest value below which amplitudes are rounding."""
 MOST_EVENTS = 40
 """Collisions that are marked in a plot."""
 TICKS = 4.0

@@ -16,9 +16,19 @@ from kinform.simulation.subject import port_model
 if TYPE_CHECKING:
     from kinform.simulation.of_system import Course, simulate_system
     from kinform.simulation.outcome.sensing import Probe
+    from kinform.simulation.spectra import Spectrum, amplitude_spectrum, envelope
 
-__all__ = ["CODE_VERSION", "Course", "Probe", "SolverSettings", "port_model", "simulate", "simulate_system"]
+__all__ = [
+    "CODE_VERSION", "Course", "Probe", "SolverSettings", "Spectrum", "amplitude_spectrum", "envelope", "port_model",
+    "simulate", "simulate_system",
+]  # fmt: skip
 
 CODE_VERSION: int = 21
 
-__getattr__ = first_used(__name__, {"Course": "of_system", "Probe": "outcome.sensing", "simulate_system": "of_system"})
+__getattr__ = first_used(
+    __name__,
+    {
+        "Course": "of_system", "Probe": "outcome.sensing", "simulate_system": "of_system",
+        "Spectrum": "spectra", "amplitude_spectrum": "spectra", "envelope": "spectra",
+    },
+)  # fmt: skip

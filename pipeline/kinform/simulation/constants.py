@@ -356,3 +356,21 @@ MOST_SWITCHES = 100_000
 """Changes between sticking and slipping before a run gives up."""
 SWITCHES_AT_ONCE = 8
 """Changes at one and the same time, for each friction, before a run gives up: three are ordinary."""
+
+# --- spectra ----------------------------------------------------------------------------------------------------------
+
+UNEVEN = 1e-6
+"""Share of the first step by which others may differ from it: times are sums of steps, with their rounding."""
+LEAST_SAMPLES = 16
+"""Samples of a spectrum, at least: the window alone is four of its frequencies wide."""
+LEAST_LINE = 3e-2
+"""Share of the greatest amplitude that a line has at least: the lobes of the window beside a line have up to 2.7 % of
+it."""
+NO_LINE = 1e-9
+"""Share of the greatest sample below which a line is rounding."""
+MOST_LINES = 3
+"""Lines that are named."""
+LEAST_PERIODS = 8.0
+"""Periods below which an envelope says no more than the curve."""
+LEAST_IN_PERIOD = 4.0
+"""Samples of a period, at least, for its extremes to be among them."""

@@ -1,4 +1,4 @@
-"""Plots of a run: joint values with their limits, sensors, efforts of drives, reactions, energy."""
+"""Plots of a run: joint values with their limits, sensors, efforts of drives, reactions, energy, spectra, envelopes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from kinform.model.arrays import Ints
 from kinform.model.simulation import Simulation
 from kinform.reports import constants
 from kinform.reports.page.curves import Plot, Series, number, plot_svg
-from kinform.reports.page.sizing import sizing_svgs
+from kinform.reports.page.sizing import SIZED, sizing_svgs
+from kinform.reports.page.spectra import AROUND, METHOD, envelope_plots, spectrum_svg
 from kinform.reports.page.subjects import wanted_names
 from kinform.reports.values.runs import coordinates
 
@@ -44,8 +45,19 @@ def plot_groups(design: Design) -> list[tuple[str, list[str], str]]:
                 else ""
             )
             out.append((heading, [plot_svg(plot, run.time, events) for plot in found[: constants.MOST_PLOTS]], left))
-    sized = sizing_svgs(design, run)
-    return [*out, ("Effort over speed of the drives", sized, "")] if sized else out
+    sized = sizing_svgs(design, run, titles)
+    if sized:
+        out.append(("Effort over speed of the drives", sized, ""))
+    repeating = [*_sensors(design, run), *_driven(run, titles)][: constants.MOST_SPECTRA]
+    spectra = [svg for svg in (spectrum_svg(plot, run.time) for plot in repeating) if svg]
+    enveloped = [plot for one in repeating for plot in envelope_plots(one, run.time)][: constants.MOST_SPECTRA]
+    if spectra:
+        out.append(("Spectra of sensors and drives", spectra, METHOD))
+    if enveloped:
+        out.append(
+            ("Envelopes of sensors and drives", [plot_svg(plot, run.time, events) for plot in enveloped], AROUND)
+        )
+    return out
 
 
 _CELL = (
@@ -147,6 +159,23 @@ def _sensor_unit(unit: str, units: str, metres: float) -> tuple[float, str]:
     if unit == "m" or unit.startswith("m/"):
         return 1.0 / metres, units + unit[1:]
     return 1.0, unit
+
+
+def _driven(run: Simulation, titles: dict[str, str]) -> list[Plot]:
+    """What each drive gives that a motor or cylinder stands for."""
+    if len(run.drive_effort) != len(run.time):
+        return []
+    return [
+        _with_prefix(
+            Plot(
+                f"{titles.get(use.joint, use.joint)}: {use.kind.replace('_', ' ')}",
+                "N" if use.slides else "N·m",
+                (Series("", run.drive_effort[:, k] + 0.0),),
+            )
+        )
+        for k, use in enumerate(run.drives)
+        if use.kind in SIZED
+    ]
 
 
 def _reactions(run: Simulation, titles: dict[str, str]) -> list[Plot]:

@@ -7,7 +7,7 @@ the other two it takes it up.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from html import escape
 
 import numpy as np
@@ -23,9 +23,9 @@ SIZED = ("motion", "effort", "servo", "dc_motor")
 """Kinds of drives that a motor or cylinder stands for."""
 
 
-def sizing_svgs(design: Design, run: Simulation) -> list[str]:
-    """A plot of each drive that moved or held something; turns in revolutions a minute, slides in the design's units
-    a second."""
+def sizing_svgs(design: Design, run: Simulation, titles: Mapping[str, str]) -> list[str]:
+    """A plot of each drive that moved or held something, called as `titles` call its joint; turns in revolutions a
+    minute, slides in the design's units a second."""
     metres = metres_per(design.assembly.units)
     out = []
     for k, use in enumerate(run.drives):
@@ -34,11 +34,11 @@ def sizing_svgs(design: Design, run: Simulation) -> list[str]:
         speed, unit = (1.0 / metres, f"{design.assembly.units}/s") if use.slides else (30.0 / math.pi, "1/min")
         curve = run.drive_speed[:, k] * speed + 0.0, run.drive_effort[:, k] + 0.0
         if np.isfinite(curve).all():
-            out.append(_figure(use, *curve, unit, "N" if use.slides else "N·m"))
+            out.append(_figure(titles.get(use.joint, use.joint), use, *curve, unit, "N" if use.slides else "N·m"))
     return out
 
 
-def _figure(use: DriveUse, speeds: Array, efforts: Array, speed_unit: str, unit: str) -> str:
+def _figure(title: str, use: DriveUse, speeds: Array, efforts: Array, speed_unit: str, unit: str) -> str:
     across = ticks_of(Plot("", "", (Series("", np.append(speeds, 0.0)),)))
     upright = ticks_of(Plot("", "", (Series("", np.append(efforts, 0.0)),), (("", use.rms),)))
 
@@ -62,7 +62,7 @@ def _figure(use: DriveUse, speeds: Array, efforts: Array, speed_unit: str, unit:
     parts += [line("limit", sides, (y(use.rms), y(use.rms)))]
     parts += [text(constants.PLOT_RIGHT, y(use.rms) - 4.0, f"RMS {number(use.rms)}", "end")]
     parts.append(f'<path class="curve curve-0" d="{_course(x, y, speeds, efforts)}"/>')
-    name = f"{use.joint}: {use.kind.replace('_', ' ')}"
+    name = f"{title}: {use.kind.replace('_', ' ')}"
     facts = (
         f"peak {number(use.peak)} {unit}, RMS {number(use.rms)} {unit}, up to {number(float(np.abs(speeds).max()))} "
         f"{speed_unit}, peak {number(use.peak_power)} W, RMS {number(use.rms_power)} W"
