@@ -120,6 +120,8 @@ MOST_MOVES = 12
 """Joints that were moved that are listed; the JSON has them all. A choice."""
 INSET = 2
 """Blanks before the columns that stand below what heads them; a choice."""
+NAMED_PAIRS = 3
+"""Pairs of parts that are named where all have one reason."""
 
 # text
 

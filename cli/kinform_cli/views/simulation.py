@@ -13,7 +13,7 @@ from kinform.foundation.words import counted
 from kinform.function import as_intended, designers_joints
 from kinform.model.simulation import Simulation
 from kinform.reports.values.runs import coordinates
-from kinform_cli.constants import BALANCED, REST
+from kinform_cli.constants import BALANCED, NAMED_PAIRS, REST
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths, degrees, number, quantity
 from kinform_cli.views import series
@@ -126,7 +126,14 @@ def _collisions(run: Simulation, lengths: Lengths) -> list[RenderableType]:
         f"at {lengths.point(item.place)} {lengths.unit}"
         for item in run.collisions or ()
     ]
-    return [*out, *(f"collision of {a} and {b} unknown: {why}" for a, b, why in run.uncollided)]
+    pairs: dict[str, list[str]] = {}
+    for a, b, why in run.uncollided:
+        pairs.setdefault(why, []).append(f"{a} and {b}")
+    for why, names in pairs.items():
+        more = len(names) - NAMED_PAIRS
+        rest = f"; and {counted(more, 'pair')} more" if more > 0 else ""
+        out.append(f"collision unknown of {'; '.join(names[:NAMED_PAIRS])}{rest}: {why}")
+    return [*out]
 
 
 def _energy(run: Simulation) -> str:
