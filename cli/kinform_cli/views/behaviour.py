@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -147,6 +148,7 @@ _PARAMETERS: dict[type[Component], Callable[[Any, Lengths], str]] = {
     Servo: lambda c, u: f"target {_signal(c.target)} rad or m, {_controller(c.controller)}",
     DcMotor: lambda c, u: (
         f"{number(c.resistance)} Ω, {number(c.inductance)} H, {number(c.constant)} N·m/A, gear {number(c.gear)}"
+        + (f", at most {number(c.current_limit)} A" if math.isfinite(c.current_limit) else "")
     ),
     VoltageSource: lambda c, u: f"{_signal(c.signal)} V",
     VoltageController: lambda c, u: f"target {_signal(c.target)} rad or m, {_controller(c.controller)}",

@@ -28,6 +28,7 @@ from kinform.behaviour.shafts import (
     MotionDrive,
     Servo,
     Spring,
+    VoltageController,
     VoltageSource,
 )
 from kinform.behaviour.signals import STEADY, Constant, Signal, signal
@@ -118,9 +119,7 @@ def _actors(drive: Drive, on: OneFreedom, name: str, found: Mapping[str, Sliding
     if drive.kind == "friction":
         return (_friction(drive, on, name, found),)
     if drive.kind == "servo":
-        gains = {key: _number(drive, key, 0.0) for key in ("ki", "kd")}
-        controller = Controller(_number(drive, "kp"), **gains, limit=_limit(drive))
-        return (Servo(name, drive.joint, _signal(drive, sign * scale), controller, **at),)
+        return (Servo(name, drive.joint, _signal(drive, sign * scale), _controller(drive), **at),)
     if drive.kind == "dc_motor":
         return _motor(drive, on, name)
     raise ValueError("this kind is not simulated")
@@ -154,19 +153,26 @@ def _signal(drive: Drive, scale: float) -> Signal:
 
 
 def _motor(drive: Drive, on: OneFreedom, name: str) -> tuple[Component, ...]:
-    """The motor and the source of its voltage, which has the designer's sense."""
+    """The motor and the source of its voltage, or its controller; both have the designer's sense."""
     sign = on.sign
     resistance, constant = _number(drive, "resistance"), _number(drive, "constant")
     inductance, gear = _number(drive, "inductance", 0.0), _number(drive, "gear", 1.0)
     if resistance <= 0.0 or inductance < 0.0:
         raise ValueError("its resistance must be positive, its inductance not negative")
-    motor = DcMotor(name, drive.joint, resistance, inductance, constant, gear, **on.fields)
+    limit = _number(drive, "current_limit") if "current_limit" in drive.parameters else math.inf
+    motor = DcMotor(name, drive.joint, resistance, inductance, constant, gear, limit, **on.fields)
+    if "kp" in drive.parameters:
+        if not on.valued:
+            raise ValueError("a ball's turn about one direction has a rate and no value to be controlled")
+        target = _signal(drive, sign * drive.scale(on.turns))
+        return motor, VoltageController(f"controller of {name}", drive.joint, target, _controller(drive), **on.fields)
     voltage = signal(drive.law, float(sign)) if drive.law is not None else Constant(sign * _number(drive, "voltage"))
     return motor, VoltageSource(f"voltage of {name}", drive.joint, voltage)
 
 
-def _limit(drive: Drive) -> float:
-    return _number(drive, "limit") if "limit" in drive.parameters else math.inf
+def _controller(drive: Drive) -> Controller:
+    limit = _number(drive, "limit") if "limit" in drive.parameters else math.inf
+    return Controller(_number(drive, "kp"), _number(drive, "ki", 0.0), _number(drive, "kd", 0.0), limit)
 
 
 def _number(drive: Drive, key: str, default: float | None = None) -> float:

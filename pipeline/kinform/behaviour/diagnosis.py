@@ -25,7 +25,7 @@ from kinform.behaviour.shafts import Actor, Controller, DcMotor, EndStop, Fricti
 from kinform.behaviour.signals import LAWS, Table
 
 _SIGNALS = tuple(LAWS.values())
-_UNBOUNDED = ("lower", "upper", "limit")
+_UNBOUNDED = ("lower", "upper", "limit", "current_limit")
 """Values that may be infinite."""
 
 
@@ -70,6 +70,8 @@ def _faults_of_values(component: Component) -> Iterator[str]:
         yield "its column of gas and its exponent must be positive"
     if isinstance(component, DcMotor) and (component.resistance <= 0.0 or component.inductance < 0.0):
         yield "its resistance must be positive, its inductance not negative"
+    if isinstance(component, DcMotor) and not component.current_limit > 0.0:
+        yield "the limit of its current must be positive"
     if isinstance(component, JointComponent):
         yield from _faults_of_geometry(component)
 

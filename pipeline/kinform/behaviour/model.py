@@ -267,12 +267,14 @@ class Model:
         inductance: float,
         constant: float,
         gear: float = 1.0,
+        current_limit: float = math.inf,
         *,
         freedom: int | None = None,
     ) -> None:
-        """A DC motor on the joint: Ω, H, N·m/A, turns of the motor a turn of the joint."""
+        """A DC motor on the joint: Ω, H, N·m/A, turns of the motor a turn of the joint, A."""
         on = self._on(joint, freedom)
-        self.add(shafts.DcMotor(name, name, resistance, inductance, constant, gear, **on), shaft=joint)
+        motor = shafts.DcMotor(name, name, resistance, inductance, constant, gear, current_limit, **on)
+        self.add(motor, shaft=joint)
 
     def voltage(self, name: str, motor: Where, signal: Signal) -> None:
         """The voltage across the terminals of a motor, V."""

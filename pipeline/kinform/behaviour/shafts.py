@@ -146,7 +146,8 @@ class OnShaftAndTerminals(OnShaft):
 class DcMotor(OnShaftAndTerminals):
     """Motor with a gear: electric terminals (voltage across, current through) and a shaft. Two equations.
 
-    L di/dt = V − R i − k g ω, effort = k g i; no friction, no inertia of its own.
+    L di/dt = V − R i − k g ω, effort = k g i; no friction, no inertia of its own: these have a body as its rotor. A
+    supply that limits the current keeps |i| within the limit, and the integral of its controller rests there.
     """
 
     resistance: Annotated[float, "Ω"]
@@ -157,6 +158,8 @@ class DcMotor(OnShaftAndTerminals):
     """k: N·m/A, which equals V·s/rad."""
     gear: Annotated[float, "1 or rad/m"]
     """g: motor turns a turn of the joint, or radians of the motor a metre."""
+    current_limit: Annotated[float, "A"] = math.inf
+    """The greatest current that the supply gives, either way."""
 
 
 @dataclass(frozen=True, eq=False)

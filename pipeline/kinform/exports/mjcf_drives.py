@@ -110,6 +110,8 @@ def _motor(robot: Robot, motor: DcMotor, lost: list[str]) -> dict[str, Any]:
     """A motor whose current follows its voltage at once; controlled by that, or by its controller's target."""
     if motor.inductance:
         lost.append(f"{motor.subject}: the inductance of its motor ({motor.inductance:g} H)")
+    if math.isfinite(motor.current_limit):
+        lost.append(f"{motor.subject}: the limit of its motor's current ({motor.current_limit:g} A)")
     ratio = motor.constant * motor.gear / motor.resistance
     drag = ratio * motor.constant * motor.gear
     supply = robot.model.system.supply(motor.name)

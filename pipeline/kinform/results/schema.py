@@ -191,6 +191,7 @@ UNKNOWN: tuple[str, ...] = (
 """Beginnings of the columns that may hold what is no number: not known."""
 ENDLESS: tuple[str, ...] = (
     "joints/membership.margin", "joints/meshings.reach_", "behaviour/gear.lower", "behaviour/gear.upper",
-    "behaviour/end_stop.", "behaviour/servo.", "behaviour/voltage_controller.", "assembly/function/joints.range_",
+    "behaviour/end_stop.", "behaviour/servo.", "behaviour/voltage_controller.", "behaviour/dc_motor.current_limit",
+    "assembly/function/joints.range_",
 )  # fmt: skip
 """Beginnings of the columns that may be infinite: nothing bounds them."""

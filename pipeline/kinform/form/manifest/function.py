@@ -170,7 +170,7 @@ class Servo(_Drive):
 
 
 class DcMotor(_Drive):
-    """A DC motor with a gear; the voltage is a number or a law."""
+    """A DC motor with a gear; the voltage is a number, a law, or what a position controller (`kp`) makes of its law."""
 
     kind: Literal["dc_motor"]
     resistance: Positive = Field(description="ohm")
@@ -178,7 +178,14 @@ class DcMotor(_Drive):
     constant: Positive = Field(description="N·m/A, which equals V·s/rad")
     gear: Finite = Field(1.0, description="motor turns a turn of the joint; not zero")
     voltage: Finite | None = Field(None, description="volt; or give a law")
-    law: LawTable | None = Field(None, description="volt over time; in place of voltage")
+    law: LawTable | None = Field(
+        None, description="volt over time, in place of voltage; with kp the target position, degrees or lengths"
+    )
+    current_limit: Positive | None = Field(None, description="greatest current of the supply, ampere")
+    kp: Positive | None = Field(None, description="controls the position of the joint: V/rad or V/m")
+    kd: NonNegative = Field(0.0, description="V·s/rad or V·s/m")
+    ki: NonNegative = Field(0.0, description="V/(rad·s) or V/(m·s)")
+    limit: Positive | None = Field(None, description="greatest voltage of the controller")
 
 
 Drive = Annotated[Motion | Effort | Spring | Damper | Friction | Servo | DcMotor, Field(discriminator="kind")]

@@ -197,14 +197,24 @@ class FunctionReader:
             )
             law = self._law(getattr(table, "law", None), *path, "law")
             if table.kind == "dc_motor":
-                if (law is None) == (table.voltage is None):
-                    self.scope.complain("a dc_motor needs either voltage or law", "give one of them", *path)
-                if table.gear == 0.0:
-                    self.scope.complain("the gear of a dc_motor is zero", "give motor turns a turn", *path, "gear")
+                self._motor(table, law is not None, *path)
             joint = self.joint(table.joint, *path, "joint")
             parameters = {key: float(value) for key, value in stated.items()}
             where = self.scope.where(*path)
             yield Drive(joint, table.kind, law, parameters, self.scope.metres, *where, table.freedom or "")
+
+    def _motor(self, table: Any, law: bool, *path: str | int) -> None:
+        """What the keys of a dc_motor say about each other."""
+        if table.kp is None:
+            for key in ("ki", "kd", "limit"):
+                if getattr(table, key):
+                    self.scope.complain(f"{key} is of a controller, which has no kp", "give kp too", *path, key)
+        if table.kp is not None and (table.voltage is not None or not law):
+            self.scope.complain("a controlled dc_motor needs a law, its target, and no voltage", "see kp", *path)
+        elif law == (table.voltage is not None):
+            self.scope.complain("a dc_motor needs either voltage or law", "give one of them", *path)
+        if table.gear == 0.0:
+            self.scope.complain("the gear of a dc_motor is zero", "give motor turns a turn", *path, "gear")
 
     def frictions(self) -> Iterator[MaterialFriction]:
         """`[[friction]]`."""

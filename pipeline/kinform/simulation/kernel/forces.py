@@ -90,12 +90,19 @@ def drive(ints: Ints, nums: Nums, vectors: Table, t: float, y: Row, dy: Row) -> 
                 voltage, _, _ = law(nums[SIGNALS], nums[PIECES], actor[LAW], t)
             else:
                 voltage = control(ints, nums, k, t, y, dy)
-            constant = number[2] * number[3]
+            constant, most = number[2] * number[3], number[8]
             if current_at >= 0:
                 current = y[current_at]
-                dy[current_at] = (voltage - number[0] * current - constant * v) / number[1]
+                rate = (voltage - number[0] * current - constant * v) / number[1]
+                limited = abs(current) >= most and rate * current > 0.0
+                dy[current_at] = 0.0 if limited else rate
             else:
                 current = (voltage - constant * v) / number[0]
+                limited = abs(current) > most
+            current = min(max(current, -most), most)
+            # No integral grows that asks for more current than there is (anti-windup).
+            if limited and actor[SECOND_STATE] >= 0 and dy[actor[SECOND_STATE]] * current > 0.0:
+                dy[actor[SECOND_STATE]] = 0.0
             effort = constant * current
         vectors[FORCE][actor[AT_V]] += effort
         vectors[GIVEN][actor[AT_V]] += effort

@@ -242,8 +242,9 @@ def _acts(system: System, joint: str, q: int, v: int, actor: shafts.Actor) -> Ac
     motor = (actor.resistance, actor.inductance, actor.constant, actor.gear)
     supply, current = system.supply(name), actor.inductance > 0.0
     if isinstance(supply, shafts.VoltageSource):
-        return Acts(name, joint, q, v, layout.MOTOR, supply.signal, motor, (current, False))
-    numbers = (*motor, *_gains(supply.controller))
+        numbers = (*motor, *(0.0,) * 4, actor.current_limit)
+        return Acts(name, joint, q, v, layout.MOTOR, supply.signal, numbers, (current, False))
+    numbers = (*motor, *_gains(supply.controller), actor.current_limit)
     return Acts(name, joint, q, v, layout.CONTROLLED, supply.target, numbers, (current, supply.controller.ki != 0.0))
 
 

@@ -233,8 +233,8 @@ def _actors(actuation: Actuation, order: _Order, signals: _Signals) -> tuple[Int
             states += int(wanted)
         law = -1 if actor.signal is None else signals.add(actor.signal)
         rows.append((actor.does, int(order.place[actor.q]), int(order.rate[actor.v]), law, *own, meter))
-        numbers.append([*actor.numbers, *(0.0,) * (8 - len(actor.numbers))])
-    return _rows(rows, 7), np.array(numbers, dtype=np.float64).reshape(-1, 8)
+        numbers.append([*actor.numbers, *(0.0,) * (9 - len(actor.numbers))])
+    return _rows(rows, 7), np.array(numbers, dtype=np.float64).reshape(-1, 9)
 
 
 @cache

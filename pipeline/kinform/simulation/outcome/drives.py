@@ -110,9 +110,9 @@ def _effort(actor: Acts, record: Record, states: list[Array | None]) -> Array:
 
     if actor.does == layout.SERVO:
         return controlled(numbers, states[0])
-    resistance, _, constant, gear = numbers[:4]
+    resistance, _, constant, gear, *_, most = numbers
     current = states[0]
     if current is None:
-        voltage = level if actor.does == layout.MOTOR else controlled(numbers[4:], states[1])
+        voltage = level if actor.does == layout.MOTOR else controlled(numbers[4:8], states[1])
         current = (voltage - constant * gear * v) / resistance
-    return np.asarray(constant * gear * current)
+    return np.asarray(constant * gear * np.clip(current, -most, most))
