@@ -68,6 +68,7 @@ def _why(answer: Answer, units: str) -> str:
     if answer.gap is not None:
         told.append(f"boxes {words.length(answer.gap, units)} apart" if answer.gap > 0.0 else "the boxes meet")
     if answer.angle is not None and answer.answer in ("agrees", "contradicts"):
-        off = "" if answer.offset is None else f", {words.length(answer.offset, units, 3)} beside"
-        told.append(f"axis {words.angle(answer.angle, 3)} off{off}")
+        # To a nanometre and its angle: finer is rounding, which differs from one processor to the next.
+        off = "" if answer.offset is None else f", {words.length(round(answer.offset, 9), units, 3)} beside"
+        told.append(f"axis {words.angle(round(answer.angle, 9), 3)} off{off}")
     return "; ".join(told)

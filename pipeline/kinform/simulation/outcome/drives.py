@@ -3,7 +3,7 @@ the inverse dynamics: what a motor must give.
 
 Root mean squares and work are integrals that the solver carries in its state, so they do not depend on the output times
 (`layout.METER`); of frictions, whose state may change within an output step, they are those over the outputs. Peaks are
-those at output times.
+those at output times, or the root mean square where that is more.
 """
 
 from __future__ import annotations
@@ -84,8 +84,10 @@ def _use(record: Record, on: tuple[str, int, bool], kind: str, effort: Array, v:
         # Below zero by rounding, where nothing acts.
         return float(np.sqrt(max(integral, 0.0) / span)) if span > 0.0 else abs(start)
 
+    # Between outputs an effort was greater than at all of them, where its mean is.
+    mean = rms(squared, float(effort[0]))
     return DriveUse(
-        on[0], kind, float(np.abs(effort).max()), rms(squared, float(effort[0])), float(power.max()), work,
+        on[0], kind, max(float(np.abs(effort).max()), mean), mean, float(power.max()), work,
         on[1], on[2], float(np.abs(rate).max()), rms(squared_power, float(power[0])),
     )  # fmt: skip
 
