@@ -11,6 +11,7 @@ from kinematics.test_partition import ARM, joint, stack
 from random_assemblies.draw import Draw
 from random_assemblies.machine_verdict import assembly_of, judge
 from random_assemblies.machines import machine
+from random_assemblies.rings import ring
 from support.assemblies import assembly
 from support.solids import box, part, rod
 
@@ -176,3 +177,15 @@ def test_machines_without_names(seed):
         assert with_sides(stated(whole, *some[::-1]), touching)[1] == sides
         assert judge(drawn, kinematics.derive(named, found, touching)).exact
     assert told
+
+
+@pytest.mark.parametrize("seed", [120, 123])
+def test_a_ring_of_bodies_without_any_name(seed):
+    """It comes apart at all joints at once; in 120 a bearing's ring was held at the side that it was found at."""
+    drawn = ring(Draw([seed]), largest=True)
+    whole = assembly_of(drawn, seed, sides=0)
+    found = {p.mesh.digest: surfaces.recover(p.mesh, whole.tolerances) for p in whole.parts}
+    touching = contacts.find(whole, found)
+    named, sides = with_sides(whole, touching)
+    assert with_sides(stated(whole, *whole.function.joints[::-1]), touching)[1] == sides
+    assert judge(drawn, kinematics.derive(named, found, touching)).exact

@@ -99,6 +99,8 @@ the true ones of ten robots lie within 0.094 (0 mostly), the wrong one of the ha
 ROUND_OFF = 0.1
 """A part goes round an axis where the middle of its surface lies beside it by less than this share of its spread, and
 its spread differs by less than this share from one direction to another."""
+ROUNDS = 4
+"""So many times the ways of joints round a loop are looked for, each beside those of the others."""
 WAYS_NAMED = 4
 """So many ways of parting are named where it is not clear which is meant."""
 SAME_AXIS = np.radians(1.0)

@@ -5,13 +5,16 @@ Joints whose sides are known cut first. A way of parting is taken where every ot
 the price of a pocket (other bodies next to what it parts might have that, too), where it breaks no contact that no
 joint may part, where it touches near the joint's point, and where it does not just take out a single part that goes
 round the axis, as the ring of a bearing does. It divides the bodies that the other joints leave, and
-rearranges none of them. What was taken while other joints were open is asked again with all of them.
+rearranges none of them. What was taken while other joints were open is asked again with all of them. Round a loop no
+joint parts anything by itself: there the cheapest ways of all are tried together, and taken if each is clear beside the
+others.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 
@@ -45,17 +48,16 @@ def with_sides(assembly: Assembly, contacts: Contacts) -> tuple[Assembly, tuple[
     }
     waiting = [k for k, joint in enumerate(joints) if not joint.between[1]]
     taken = _taken(ways, stated, waiting)
-    known = stated | {k: way.names for k, way in taken.items()}
     if len(taken) > 1:  # some were taken while others were open
-        parted = ways.parted(known)
-        for k in list(taken):
-            clear = _clear(ways, k, {j: names for j, names in known.items() if j != k})
-            if clear is None or {parted.body[name] for name in clear[0].names} != set(parted.sides[k]):
-                del taken[k]
+        confirmed = _confirmed(ways, stated, taken)
+        taken = {k: way for k, way in taken.items() if k in confirmed}
+    if len(taken) < len(waiting):
+        taken |= _together(ways, stated, taken, waiting)
+    known = stated | {k: way.names for k, way in taken.items()}
     if len(taken) < len(waiting):
         known = stated | {k: way.names for k, way in taken.items()}
         raise OpenSidesError({joints[k].name: _problem(ways, k, known) for k in waiting if k not in taken})
-    found = _found(ways, known, taken)
+    found = _found(ways, _by_largest(ways, known, taken), taken)
     return replace(assembly, function=assembly.function.with_sides({one.joint: one.parts for one in found})), found
 
 
@@ -74,6 +76,46 @@ def _taken(ways: Ways, stated: Mapping[int, Names], waiting: Sequence[int]) -> d
         if not fresh:
             return taken
         taken |= fresh
+
+
+def _confirmed(ways: Ways, stated: Mapping[int, Names], taken: Mapping[int, Way]) -> set[int]:
+    """Those that are clear, and the same, when all others are known."""
+    known = dict(stated) | {k: way.names for k, way in taken.items()}
+    parted = ways.parted(known)
+    out = set()
+    for k in taken:
+        clear = _clear(ways, k, {j: names for j, names in known.items() if j != k})
+        if clear is not None and {parted.body[name] for name in clear[0].names} == set(parted.sides[k]):
+            out.add(k)
+    return out
+
+
+def _together(
+    ways: Ways, stated: Mapping[int, Names], taken: Mapping[int, Way], waiting: Sequence[int]
+) -> dict[int, Way]:
+    """Ways of those that are not clear by themselves, as round a loop: it comes apart at all of its joints at once.
+    The cheapest of each beside the others, again and again until they stay; none unless nothing is broken that no joint
+    may part, no two could change their places, and each is clear when all others are known."""
+    fixed = dict(stated) | {k: way.names for k, way in taken.items()}
+    guess: dict[int, Way] = {}
+    for _ in range(constants.ROUNDS):
+        before = {k: way.names for k, way in guess.items()}
+        for k in waiting:
+            if k not in taken:
+                others = {j: way.names for j, way in guess.items() if j != k}
+                found = ways.ways(k, fixed | others)
+                if not found:
+                    return {}
+                guess[k] = found[0]
+        if before == {k: way.names for k, way in guess.items()}:
+            break
+    whole = dict(taken) | guess
+    known = fixed | {k: way.names for k, way in guess.items()}
+    cost = ways.parted(known).cost
+    swapped = (known | {j: known[k], k: known[j]} for j, k in combinations(sorted(guess), 2))
+    if cost >= constants.BROKEN or any(ways.parted(one).cost - cost < constants.ONLY_WAY for one in swapped):
+        return {}
+    return guess if _confirmed(ways, stated, whole) == set(whole) else {}
 
 
 def _clear(ways: Ways, joint: int, known: Mapping[int, Names]) -> tuple[Way, float] | None:
@@ -154,7 +196,7 @@ def _found(ways: Ways, known: Mapping[int, Names], taken: Mapping[int, Way]) -> 
     out = []
     for k in sorted(taken):
         joint = ways.joints[k]
-        names = taken[k].names if "" in ways.assembly.function.complete else _bearing(ways, k, known)
+        names = known[k] if "" in ways.assembly.function.complete else _bearing(ways, k, known)
         first, second = sorted(names, key=lambda name: (steps.get(body[name], np.inf), -sizes[body[name]], name))
         parts: tuple[str, str] = (first, second)
         if joint.between[0]:
@@ -168,6 +210,22 @@ def _found(ways: Ways, known: Mapping[int, Names], taken: Mapping[int, Way]) -> 
         of = [counted(sizes[body[ways.assembly.parts_of(name)[0]]], "part") for name in parts]
         out.append(FoundSides(joint.name, parts, f"contact {where} parts {of[0]} from {of[1]}; {rest}"))
     return tuple(out)
+
+
+def _by_largest(ways: Ways, known: Mapping[int, Names], taken: Mapping[int, Way]) -> dict[int, Names]:
+    """The sides of all joints, those that were open named by the largest part of each body, if no more is parted then:
+    of a bearing's ring it is not known that it is of the side that it was found at."""
+    parted = ways.parted(known)
+    largest: dict[int | None, PartName] = {}
+    for name in sorted(ways.volume):
+        body = parted.body.get(name)
+        largest[body] = max(largest.get(body, name), name, key=lambda one: (ways.volume[one], one))
+    out = dict(known)
+    for k in taken:
+        first, second = parted.sides[k]
+        out[k] = (largest[first], largest[second])
+    again = ways.parted(out)
+    return out if again.count == parted.count and again.cost <= parted.cost else dict(known)
 
 
 def _bearing(ways: Ways, joint: int, known: Mapping[int, Names]) -> Names:
