@@ -7,11 +7,11 @@ import pytest
 from support.solids import box, rod, save
 
 import kinform
-from kinform.behaviour import Friction
+from kinform.behaviour import Friction, Model
 from kinform.errors import InputError
 from kinform.form import load
 from kinform.kinematics import functional
-from kinform.simulation import port_model
+from kinform.simulation import Course, port_model, simulate_system
 
 G = 9.81
 
@@ -181,3 +181,20 @@ def test_a_screw_of_sticks_takes_the_radius_and_the_flank_that_are_stated(tmp_pa
     slope = 0.005 / (2.0 * np.pi * 0.01)
     cosine = 1.0 / np.sqrt(1.0 + np.tan(np.radians(15.0)) ** 2 / (1.0 + slope**2))
     np.testing.assert_allclose((friction.axial, friction.torsion), (0.01 / cosine, -slope / cosine), rtol=1e-12)
+
+
+def test_a_friction_for_each_direction_of_a_plane_is_refused_and_one_alone_is_not():
+    """Coulomb friction of a plane opposes its velocity; one along u and one along v would hold them apart."""
+    runs = []
+    for freedoms in ((1,), (1, 2)):
+        model = Model()
+        model.ground("ground")
+        model.body("block", 2.0, (0, 0, 0), (0.01, 0.01, 0.01))
+        model.joint("plane", "ground", "block", "planar", axis=(0, 0, 1), point=(0, 0, 0))
+        for freedom in freedoms:
+            model.friction(f"friction {freedom}", "plane", effort=3.0, freedom=freedom)
+        runs.append(simulate_system(model.system(), Course(1.0, 0.5, np.array([3.0, 1.0, -9.81]))))
+    alone, crossed = runs
+    assert alone.status == "done"
+    assert crossed.status != "done"
+    assert "opposes the way in which it slides" in str((crossed.reason, crossed.failures))
