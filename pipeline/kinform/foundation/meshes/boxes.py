@@ -70,6 +70,7 @@ class FlatBoxes:
 
     def __init__(self, low: Array, high: Array):
         self.low, self.high = low, high
+        self._sides = [np.ascontiguousarray(side) for side in (*low.T, *high.T)]
         self._origin = low.min(axis=0, initial=np.inf)
         whole = np.maximum(high.max(axis=0, initial=-np.inf) - self._origin, 1e-300)
         side = int(np.clip(2.0 * np.sqrt(len(low)), 1, constants.GRID_FINEST))
@@ -96,9 +97,9 @@ class FlatBoxes:
         count = self._starts[key + 1] - start
         which = np.repeat(np.arange(len(points)), count)
         facets = self._facets[np.arange(len(which)) + np.repeat(start - np.cumsum(count) + count, count)]
-        x, y = points[which].T
-        low, high = self.low[facets], self.high[facets]
-        held = np.flatnonzero((low[:, 0] <= x) & (high[:, 0] >= x) & (low[:, 1] <= y) & (high[:, 1] >= y))
+        x, y = points[which, 0], points[which, 1]
+        left, lower, right, upper = (side[facets] for side in self._sides)
+        held = np.flatnonzero((left <= x) & (right >= x) & (lower <= y) & (upper >= y))
         return which[held], facets[held]
 
     def _cells(self, points: Array) -> Ints:
