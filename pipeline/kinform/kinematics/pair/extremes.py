@@ -5,6 +5,8 @@ So few rows stand for each patch in the constraint matrix, and in the cones of w
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 
 from kinform.foundation.algebra.vectors import norm, perpendicular
@@ -38,8 +40,12 @@ def extreme_samples(patch: Patch) -> Ints:
     level = np.round(height / (constants.SAME_PLACE * max(float(np.ptp(height)), 1e-300)))
     ends = [np.lexsort((p * level, q * turn, sector)) for p in (1.0, -1.0) for q in (1.0, -1.0)]
     ends += [np.lexsort((p * level, sector)) for p in (1.0, -1.0)]
-    first = np.flatnonzero(np.diff(sector[ends[0]], prepend=sector.min() - 1))
-    return np.unique(np.concatenate([order[first] for order in ends])).astype(np.int64)
+    ordered = sector[ends[0]]
+    first = np.flatnonzero(np.concatenate([[True], ordered[1:] != ordered[:-1]]))
+    bounds = np.zeros(len(points), dtype=np.bool_)
+    for order in ends:
+        bounds[order[first]] = True
+    return np.flatnonzero(bounds).astype(np.int64)
 
 
 def hull(points: Array, axis: Array) -> Ints:
@@ -58,7 +64,8 @@ def hull(points: Array, axis: Array) -> Ints:
         return np.array(sorted((int(along.argmin()), int(along.argmax()))), dtype=np.int64)
     corners = _around(flat)
     while len(corners) > 3:
-        here, before, after = flat[corners], flat[np.roll(corners, 1)], flat[np.roll(corners, -1)]
+        here = flat[corners]
+        before, after = here[_before(len(here))], here[_after(len(here))]
         edge, arm = after - before, here - before
         out = np.abs(edge[:, 0] * arm[:, 1] - edge[:, 1] * arm[:, 0])
         k = int(np.argmin(out))
@@ -75,8 +82,9 @@ def _around(flat: Array) -> Ints:
     Points inside of the polygon of those that lie farthest in `HULL_DIRECTIONS` are left out before they are sorted.
     """
     ends = (flat @ _ROUND).argmax(axis=0)
-    ends = ends[ends != np.roll(ends, 1)]
-    edge, arm = np.roll(flat[ends], -1, axis=0) - flat[ends], flat[:, None] - flat[ends]
+    ends = ends[ends != ends[_before(len(ends))]]
+    corners = flat[ends]
+    edge, arm = corners[_after(len(ends))] - corners, flat[:, None] - corners
     inside = (edge[:, 0] * arm[..., 1] - edge[:, 1] * arm[..., 0] > 0.0).all(axis=1)
     outer = np.flatnonzero(~inside)
     outer = outer[np.lexsort((outer, flat[outer, 1], flat[outer, 0]))]
@@ -96,6 +104,18 @@ def _around(flat: Array) -> Ints:
 
     last = len(places) - 1
     return outer[chain(range(last + 1)) + chain(range(last, -1, -1))]
+
+
+@functools.cache
+def _before(count: int) -> Ints:
+    """(count,) the place before each of a round: np.roll of an array of a few takes ten times as long as this."""
+    return (np.arange(count) - 1) % count
+
+
+@functools.cache
+def _after(count: int) -> Ints:
+    """(count,) the place after each of a round."""
+    return (np.arange(count) + 1) % count
 
 
 def _rim(normals: Array) -> Ints:

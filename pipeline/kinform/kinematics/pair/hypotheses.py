@@ -13,7 +13,7 @@ from typing import TypeVar
 import numpy as np
 
 from kinform.foundation.algebra.screws import rotation, translation
-from kinform.foundation.algebra.vectors import canonical, cross, foot, norm, perpendicular
+from kinform.foundation.algebra.vectors import canonical, cross, foot, norm, perpendicular, weighted_mean
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.wording import components
@@ -240,7 +240,7 @@ def _middle(evidence: Evidence, normal: Array, alignment: float) -> Array:
         i for i in evidence.items if i.patch.kind == "plane" and norm(cross(i.patch.axis, normal)) <= np.sin(alignment)
     ]
     points = np.concatenate([i.points for i in members])
-    return np.asarray(np.average(points, axis=0, weights=np.concatenate([i.weights for i in members])))
+    return weighted_mean(points, np.concatenate([i.weights for i in members]))
 
 
 def motion_words(motion: Motion) -> str:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.algebra.screws import twist_at_origin
-from kinform.foundation.algebra.vectors import canonical, cross, foot, norm, perpendicular
+from kinform.foundation.algebra.vectors import canonical, cross, foot, norm, perpendicular, weighted_mean
 from kinform.kinematics.constants import LEAST_MISALIGNMENT, SIGMAS
 from kinform.kinematics.pair.decision import Decision
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
@@ -57,7 +57,7 @@ def joint_from_decision(bodies: tuple[BodyName, BodyName], evidence: Evidence, d
     point = form.point
     if point is not None and form.axis is not None:
         weights = np.concatenate([item.weights for item in kept])
-        middle = np.average(np.concatenate([i.points for i in kept]), axis=0, weights=weights)
+        middle = weighted_mean(np.concatenate([i.points for i in kept]), weights)
         point = middle if form.type in ("prismatic", "planar") else foot(point, form.axis, middle)
     if form.type == "general":
         twists = twist_at_origin(decision.basis, frame).T
@@ -71,7 +71,7 @@ def joint_from_decision(bodies: tuple[BodyName, BodyName], evidence: Evidence, d
             patch=item.index,
             area=item.patch.area,
             share=item.area / total,
-            place=np.average(item.points, axis=0, weights=item.weights),
+            place=weighted_mean(item.points, item.weights),
             gap=item.patch.gap,
             forbids=motion_words(motion),
         )

@@ -1,0 +1,41 @@
+"""Samples that bound a patch: corners of hulls and ends of sectors, whatever else is asked before."""
+
+import numpy as np
+import pytest
+from scipy.optimize import nnls
+from scipy.spatial import ConvexHull
+from tests.support.patches import Z, cylinder, plane, ring
+
+from kinform.foundation.algebra.vectors import perpendicular, weighted_mean
+from kinform.kinematics.pair.extremes import extreme_samples, hull
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_corners_are_those_that_qhull_finds(seed):
+    rng = np.random.default_rng(seed)
+    points = rng.normal(size=(int(rng.integers(4, 200)), 3))
+    u, v = perpendicular(Z)
+    found = ConvexHull(np.stack([points @ u, points @ v], axis=1)).vertices
+    assert hull(points, Z).tolist() == sorted(found.tolist())
+
+
+def test_samples_of_a_patch_do_not_depend_on_those_asked_before():
+    patches = [plane(), ring(), cylinder(), cylinder(arc=(0.0, 2.0)), plane(size=(0.02, 1e-4)), ring(inner=0.001)]
+    first = [extreme_samples(patch).tobytes() for patch in patches]
+    order = np.random.default_rng(3).permutation(len(patches))
+    assert [extreme_samples(patches[k]).tobytes() for k in order] == [first[k] for k in order]
+
+
+def test_rows_of_a_cylinder_are_combinations_of_those_that_are_kept():
+    patch = cylinder(arc=(0.0, 2.5))
+    rows = np.hstack([np.cross(patch.points, patch.normals) / 0.01, patch.normals])
+    kept = extreme_samples(patch)
+    assert len(kept) < len(rows)
+    assert max(nnls(rows[kept].T, row)[1] for row in rows) < 1e-9
+
+
+@pytest.mark.parametrize("count", [1, 2, 7, 96, 1000])
+def test_weighted_mean_has_the_bits_of_numpy(count):
+    rng = np.random.default_rng(count)
+    points, weights = rng.normal(size=(count, 3)), rng.random(count) + 0.1
+    assert weighted_mean(points, weights).tobytes() == np.average(points, axis=0, weights=weights).tobytes()
