@@ -13,7 +13,15 @@ import pytest
 from support.once import common
 from support.places import FIXTURES, ROOT
 
-SENSITIVE = ("tests/simulation", "tests/kinematics", "tests/surfaces", "tests/fixtures", "tests/mass", "tests/docs")
+SENSITIVE = (
+    "tests/simulation",
+    "tests/kinematics",
+    "tests/surfaces",
+    "tests/fixtures",
+    "tests/mass",
+    "tests/docs",
+    "tests/collisions/test_ranges.py",
+)
 """What hangs on singular values, on integrations and on fits, and what is written and compared byte for byte."""
 ALIKE = ("seekers/seeker_2dof/seeker_2dof", "mechanisms/bennett/bennett", "mechanisms/four_bar/four_bar")
 

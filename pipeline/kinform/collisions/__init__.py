@@ -23,5 +23,5 @@ from kinform.collisions.run_collisions import along
 
 __all__ = ["CODE_VERSION", "along", "ranges"]
 
-CODE_VERSION: int = 11
+CODE_VERSION: int = 12
 """Raised when the same input would give other ranges or collisions."""

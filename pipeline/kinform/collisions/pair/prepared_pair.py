@@ -22,6 +22,7 @@ from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.vectors import perpendicular
 from kinform.foundation.at_work import at_work_on
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_pose
+from kinform.foundation.meshes.index import MeshIndex
 from kinform.model.arrays import Array, Ints
 from kinform.model.contacts import Patch
 from kinform.model.names import PartName
@@ -240,6 +241,17 @@ class PairTest:
                 slack = max(slack, sum(self._surfaces[k].surfaces[pair[k]].chord for k in (0, 1)))
         return Crossing(out, slack) if out else NONE
 
+    def _in_both(self, first: MeshIndex, second: MeshIndex, points: Array, other: Array) -> Ints:
+        """Which points (n, 3), in the frame of either part, are inside both: within rounding on the surface of one, and
+        inside the other, is inside. Facets that cross a flat face do so in its plane, and so do the middles between."""
+        least = constants.CROSSING_LEAST * self.size
+        within = np.column_stack([first.contains(points), second.contains(other)])
+        for index, places, k in ((first, points, 0), (second, other, 1)):
+            asked = np.flatnonzero(within[:, 1 - k] & ~within[:, k])
+            if len(asked):
+                within[asked, k] = index.whole().depths(places[asked])[0] <= least
+        return np.flatnonzero(within.all(axis=1))
+
     def depth(self, D: Array, segments: Array, least: float = 0.0, finer: int = 1) -> float:
         """m: how deep the parts go into each other between `segments` (n, 2, 3) where they cross, or points (n, 3)
         inside either; 0 where it is not above `least`. Asked at `finer` times as many places."""
@@ -259,8 +271,7 @@ class PairTest:
         other = (middles - X[:3, 3]) @ X[:3, :3]
         first, second = self._shapes.index(self.names[0]), self._shapes.index(self.names[1])
         with at_work_on(*self.names):
-            inside = np.flatnonzero(first.contains(middles))
-            inside = inside[second.contains(other[inside])]
+            inside = self._in_both(first, second, middles, other)
         inside = (
             inside[np.unique(np.linspace(0, len(inside) - 1, finer * constants.DEPTH_INSIDE).astype(int))]
             if len(inside)
