@@ -183,18 +183,19 @@ def test_a_screw_of_sticks_takes_the_radius_and_the_flank_that_are_stated(tmp_pa
     np.testing.assert_allclose((friction.axial, friction.torsion), (0.01 / cosine, -slope / cosine), rtol=1e-12)
 
 
-def test_a_friction_for_each_direction_of_a_plane_is_refused_and_one_alone_is_not():
-    """Coulomb friction of a plane opposes its velocity; one along u and one along v would hold them apart."""
+@pytest.mark.parametrize(("kind", "both"), [("planar", (1, 2)), ("cylindrical", (0, 1))])
+def test_a_friction_for_each_direction_of_a_surface_is_refused_and_one_alone_is_not(kind, both):
+    """Coulomb friction opposes the velocity of what slides; one along either direction would hold them apart."""
     runs = []
-    for freedoms in ((1,), (1, 2)):
+    for freedoms in (both[1:], both):
         model = Model()
         model.ground("ground")
         model.body("block", 2.0, (0, 0, 0), (0.01, 0.01, 0.01))
-        model.joint("plane", "ground", "block", "planar", axis=(0, 0, 1), point=(0, 0, 0))
+        model.joint("joint", "ground", "block", kind, axis=(0, 0, 1), point=(0, 0, 0))
         for freedom in freedoms:
-            model.friction(f"friction {freedom}", "plane", effort=3.0, freedom=freedom)
+            model.friction(f"friction {freedom}", "joint", effort=3.0, freedom=freedom)
         runs.append(simulate_system(model.system(), Course(1.0, 0.5, np.array([3.0, 1.0, -9.81]))))
     alone, crossed = runs
     assert alone.status == "done"
     assert crossed.status != "done"
-    assert "opposes the way in which it slides" in str((crossed.reason, crossed.failures))
+    assert "opposes the way in which a surface slides" in str((crossed.reason, crossed.failures))

@@ -21,12 +21,12 @@ def friction_not_determined(
     if dynamics.actuation.stops:
         why = "friction and end stops in one run are not simulated: what friction does during an impact is not known"
         return tuple((stop.joint, why) for stop in dynamics.actuation.stops[:1])
-    planes = {slot.name for slot in dynamics.mechanism.slots if slot.kind.name == "planar"}
-    joints = [one.joint for one in frictions]
-    crossed = next((joint for joint in joints if joint in planes and joints.count(joint) > 1), None)
-    if crossed is not None:
-        why = "friction of a plane opposes the way in which it slides: one for each of its directions is not that"
-        return ((crossed, f"{why}, and is not simulated"),)
+    kinds = {slot.name: slot.kind.name for slot in dynamics.mechanism.slots}
+    for joint in dict.fromkeys(one.joint for one in frictions):
+        freedoms = len({one.v for one in frictions if one.joint == joint})
+        if freedoms > 1 and kinds[joint] in ("planar", "cylindrical"):
+            why = "friction opposes the way in which a surface slides: one for each of its directions is not that"
+            return ((joint, f"{why}, and is not simulated"),)
     loaded = [one for one in frictions if one.friction.static > 0.0]
     if loaded and any(gear.pitch_point is not None for gear in dynamics.system.gears):
         why = "friction by load beside meshing teeth is not simulated: give it as an effort (effort = ...)"
