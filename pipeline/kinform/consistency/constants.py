@@ -30,6 +30,11 @@ QUIET = 1e-9
 BENT_ALIKE = 0.25
 """Share of its curvature that a peak's neighbours must have for a parabola to say how high it is; a choice."""
 
+# --- comparisons/near -------------------------------------------------------------------------------------------------
+
+MOST_CORRECTIONS = 4
+"""Corrections, and joints of the loops, that are named of one motion that loops nearly make: a choice."""
+
 # --- comparisons/plausibility -----------------------------------------------------------------------------------------
 
 LARGE = 20.0
@@ -114,7 +119,7 @@ NAMED_UNCLEAR = 8
 NO_TURN = 1e-6
 """Share of the greatest rate below which a freedom does not turn, or does not slide; a choice."""
 
-# --- rules/kf503_simulation_residual_large, rules/kf504_energy_not_balanced -------------------------------------------
+# --- rules/kf503_simulation_residual_large, rules/kf504_energy_not_balanced, rules/kf508_vibration_damped -------------
 
 LOOP_RESIDUAL = 1e-6
 """Residual relative to the size of the assembly (m), and absolute (rad)."""

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.consistency.constants import MOST_CORRECTIONS
 from kinform.consistency.context import Context
 from kinform.consistency.requirements import stated_as
 from kinform.foundation.words import angle, length, listed, number
 from kinform.kinematics import Correction, NearMotion, near_motions
-
-MOST_NAMED = 4
-"""Corrections that are named of one motion."""
 
 
 def nearly_moves(context: Context) -> str:
@@ -20,11 +18,12 @@ def nearly_moves(context: Context) -> str:
 
 def _sentence(context: Context, near: NearMotion) -> str:
     names = [stated_as(context, name)[0] for name in near.moves]
-    shown = near.corrections[:MOST_NAMED]
+    shown = near.corrections[:MOST_CORRECTIONS]
     ways = [f"'{stated_as(context, one.joint)[0]}' were {_way(context, one)}" for one in shown]
     more = len(near.corrections) - len(shown)
     rest = f" (or one of {more} more)" if more else ""
-    few = names if len(names) <= MOST_NAMED + 1 else [*names[:MOST_NAMED], f"{len(names) - MOST_NAMED} more"]
+    others = len(names) - MOST_CORRECTIONS
+    few = names if others <= 1 else [*names[:MOST_CORRECTIONS], f"{others} more"]
     return f"the loops of {listed(few)} would move if {' or '.join(ways)}{rest}"
 
 

@@ -10,7 +10,7 @@ pose is no correction.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -100,8 +100,8 @@ def _of_block(edges: Sequence[tuple[int, int]], joints: Sequence[Joint], kinemat
     now = block.freedoms(joints)
     found = []
     for k, joint in enumerate(joints):
-        for tilts in (False, True):
-            found += [one for one in [_correction(block, k, _ways(joint, tilts), now, tilts)] if one is not None]
+        each = (_correction(block, k, _ways(joint, tilts), now, tilts) for tilts in (False, True))
+        found += [one for one in each if one is not None]
     if not found:
         return None
     # Equal ones, as the two ends of a crank, by their names: rounding is no order.
@@ -161,7 +161,7 @@ def _correction(block: _Block, k: int, ways: Sequence[Array], now: int, tilts: b
     return Correction(joint.name, np.zeros(3) if tilts else length * change, norm(amounts) if tilts else 0.0, effect)
 
 
-def _solved(system_with, way: Array, count: int) -> Array | None:  # type: ignore[no-untyped-def]
+def _solved(system_with: Callable[[Array], LoopSystem], way: Array, count: int) -> Array | None:
     """(count,) amounts at which all loops close at steps along the way; None where they do not."""
     n = len(way)
     steps = np.array(constants.NEAR_STEPS)
