@@ -48,7 +48,7 @@ def test_what_moves_needs_no_correction():
     assert near_motions(four_bar()) == ()
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(
     st.sampled_from(sorted(CRANKS)), st.sampled_from(["base", "coupler"]), st.floats(0.0, 6.28),
     st.floats(2e-6, 3e-4), st.integers(0, 10_000), st.sampled_from([0.01, 1.0, 100.0]),

@@ -573,7 +573,7 @@ AS_SMALL = 1.5
 """Corrections up to so many times the least are told with it: any of them may be what is wrong."""
 MOST_NEAR_RATES = 40
 """Joint rates of a block that is asked: each joint takes some hundred poses of it."""
-NEAR_STEPS = (-0.2, -0.1, 0.1, 0.2)
+NEAR_STEPS = (-0.6, -0.3, 0.3, 0.6)
 """Steps along the motion, of its rates together (rad, or shares of the size), at which loops have to close."""
 NEAR_ROUNDS = 12
 """Rounds of Gauss and Newton; four or five are usual."""
@@ -585,5 +585,5 @@ NEAR_STRAYED = 1.0
 """Correction at which the search is given up."""
 NEAR_SETTLED = 1e-13
 """Change of a round after which nothing more is gained."""
-NEAR_CLOSED = 1e-10
+NEAR_CLOSED = 1e-12
 """rad, and shares of the size, by which loops may be open that close."""

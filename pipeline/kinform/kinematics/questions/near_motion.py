@@ -2,10 +2,10 @@
 
 Loops whose closure equations have one singular value far below all others have a motion that they nearly make, and that
 something off by as little forbids: a hinge a hundredth of a millimetre beside its place, an axis a tenth of a degree
-askew. For each joint that may be it, unknowns are its correction and the poses of the block at a few steps along that
-motion, both ways; equations are that all loops close there (Gauss and Newton). Where they can be met, the joint so
-corrected is asked for its motions like any other (`mobility.local_dimension`): what only turns a lock into a shaky
-pose is no correction.
+askew. So have loops that give to first order and then lock: a crank that is a little too long. For each joint that may
+be it, unknowns are its correction and the poses of the block at a few steps along that motion, both ways; equations are
+that all loops close there (Gauss and Newton). Where they can be met, the joint so corrected is asked for its motions
+like any other (`mobility.local_dimension`): what only turns a lock into a shaky pose is no correction.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from kinform.kinematics.loops.joint_graph import JointGraph
 from kinform.kinematics.loops.loop_kinematics import LoopSystem, loop_system
 from kinform.kinematics.mobility.finite_motion import block_frame
 from kinform.kinematics.mobility.local_dimension import local_motions
+from kinform.kinematics.mobility.second_order import Pose
 from kinform.kinematics.pair.joint import twists_of
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Kinematics
@@ -91,13 +92,16 @@ def _of_block(edges: Sequence[tuple[int, int]], joints: Sequence[Joint], kinemat
     size = _size(kinematics)
     frame = block_frame(joints, size)
     system = loop_system(edges, [joint.twists for joint in joints], frame)
-    matrix = system.close(np.zeros((1, system.coordinates))).jacobian[0]
-    _, values, right = np.linalg.svd(matrix)
-    rank = int(np.count_nonzero(values > constants.CLOSED * values.max(initial=1e-300)))
-    if rank < 2 or values[rank - 1] > constants.NEARLY * min(values[0], constants.NEARLY_APART * values[rank - 2]):
+    motions, way = local_motions(system), _nearly_free(system)
+    if way is None and len(motions.lost):
+        # The loops give a little, and lock.
+        way = motions.lost[0]
+    elif way is None and motions.dimension is None and motions.freedoms == 1:
+        # Perhaps they do: by so little that no step shows it.
+        way = Pose.at(system, np.zeros(system.coordinates)).free[0]
+    if way is None:
         return None
-    block = _Block(edges, joints, size, right[rank - 1])
-    now = block.freedoms(joints)
+    block, now = _Block(edges, joints, size, way), motions.dimension or 0
     found = []
     for k, joint in enumerate(joints):
         each = (_correction(block, k, _ways(joint, tilts), now, tilts) for tilts in (False, True))
@@ -110,6 +114,15 @@ def _of_block(edges: Sequence[tuple[int, int]], joints: Sequence[Joint], kinemat
     rates = np.abs(block.way)
     moving = np.unique(system.joint[rates > constants.MOVING_JOINT * rates.max()])
     return NearMotion(tuple(joints[k].name for k in moving), tuple(least))
+
+
+def _nearly_free(system: LoopSystem) -> Array | None:
+    """(n,) the motion that one singular value far below all others forbids; None where there is none."""
+    _, values, right = np.linalg.svd(system.close(np.zeros((1, system.coordinates))).jacobian[0])
+    rank = int(np.count_nonzero(values > constants.CLOSED * values.max(initial=1e-300)))
+    if rank < 2 or values[rank - 1] > constants.NEARLY * min(values[0], constants.NEARLY_APART * values[rank - 2]):
+        return None
+    return np.asarray(right[rank - 1])
 
 
 def _size(kinematics: Kinematics) -> float:

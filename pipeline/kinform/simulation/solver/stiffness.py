@@ -45,17 +45,22 @@ def vibration(run: Run, step: float, budget: float) -> float:
 
 
 def jacobian(run: Run, t: float, at: Array) -> Array:
-    """(size, size) central differences of the derivative by the state `at`. Nothing depends on meters and work."""
-    size = len(at)
+    """(size, size) central differences of the derivative by the state `at`. Nothing depends on meters and work.
+
+    Rows of meters are left zero: their great numbers, squares of efforts, would be taken for pivots where linear
+    equations are solved, and leave few digits of the others. They follow the rest by iteration.
+    """
+    size, meters = len(at), run.dynamics.tables.meters
     out = np.zeros((size, size))
     ends = np.zeros((2, size))
-    for k in range(size - 1 - run.dynamics.tables.meters):
+    for k in range(size - 1 - meters):
         h = constants.JACOBIAN_STEP * max(1.0, abs(at[k]))
         for side, sign in enumerate((1.0, -1.0)):
             y = at.copy()
             y[k] += sign * h
             run.derivative(t, y, ends[side])
         out[:, k] = (ends[0] - ends[1]) / (2.0 * h)
+    out[size - 1 - meters : size - 1] = 0.0
     run.tally[layout.FRESH] = 1
     return out
 
