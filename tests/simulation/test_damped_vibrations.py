@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from support.port_models import DOWN, four_bars
+from support.port_models import DOWN, four_bars, pendulum
 
 from kinform.behaviour import Constant, Model, Spring, Table
 from kinform.simulation import Course, SolverSettings, simulate_system
@@ -116,6 +116,28 @@ def test_what_merely_turns_fast_is_no_vibration():
         model.system(), Course(0.5, 0.05), initial={"first": (0.0, 3000.0), "second": (0.3, 500.0)}, settings=settings
     )
     assert run.status == "stopped" and "steps were used up" in run.reason and not run.dampings
+
+
+def test_a_pendulum_is_no_vibration_of_a_spring():
+    """It swings by gravity: with outputs too far apart to show it, and too few steps, it is not damped either."""
+    course, settings = Course(400.0, 10.0, DOWN), SolverSettings(steps=1500)
+    run = simulate_system(pendulum().system(), course, settings=settings)
+    assert run.status == "stopped" and "steps were used up" in run.reason and not run.dampings
+
+
+def test_what_turns_as_fast_as_a_spring_vibrates_ends_the_run():
+    """A block on a spring on an arm that whirls at a tenth of its frequency: no slow motion is left of it."""
+    model = Model()
+    model.ground("ground")
+    model.body("arm", 1.0, (0, 0, 0), (0.1, 0.1, 0.1))
+    model.body("block", MASS, (LENGTH, 0, 0), (1e-3, 1e-3, 1e-3))
+    model.joint("hinge", "ground", "arm", "revolute", point=(0, 0, 0), axis=(0, 1, 0))
+    model.joint("along", "arm", "block", "prismatic", axis=(1, 0, 0))
+    model.spring("spring", "along", stiffness=1e6)
+    pace = 0.1 * np.sqrt(1e6 / MASS)
+    start = {"hinge": (0.0, pace), "along": (1e-3, 0.0)}
+    run = simulate_system(model.system(), Course(50.0, 5.0, NONE), initial=start, settings=SolverSettings(steps=2000))
+    assert run.status == "stopped" and "nearly as fast" in run.reason
 
 
 def test_a_push_that_shakes_it_again_is_damped_again():

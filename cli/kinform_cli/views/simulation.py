@@ -121,7 +121,7 @@ def _ranges(run: Simulation, lengths: Lengths) -> list[RenderableType]:
 
 def _collisions(run: Simulation, lengths: Lengths) -> list[RenderableType]:
     """First contacts in the order of time, and the pairs of which nothing is known."""
-    out = [
+    out: list[RenderableType] = [
         f"collision: {' and '.join(item.parts)} at t = {number(item.time)} s, "
         f"at {lengths.point(item.place)} {lengths.unit}"
         for item in run.collisions or ()
@@ -133,7 +133,7 @@ def _collisions(run: Simulation, lengths: Lengths) -> list[RenderableType]:
         more = len(names) - NAMED_PAIRS
         rest = f"; and {counted(more, 'pair')} more" if more > 0 else ""
         out.append(f"collision unknown of {'; '.join(names[:NAMED_PAIRS])}{rest}: {why}")
-    return [*out]
+    return out
 
 
 def _energy(run: Simulation) -> str:

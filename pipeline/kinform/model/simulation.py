@@ -151,7 +151,8 @@ class Simulation:
     @property
     def damped_share(self) -> float:
         """Of the energy exchanged in the run."""
-        return self.damped / max(self.damped, float(np.ptp(self.energy, axis=0).max())) if self.damped > 0.0 else 0.0
+        size = abs(self.damped)
+        return size / max(size, float(np.ptp(self.energy, axis=0).max())) if size > 0.0 else 0.0
 
     def __repr__(self) -> str:
         level = f" {self.level}" if self.level else ""

@@ -268,6 +268,9 @@ STIFF_ROUNDING = 1e-12
 """Rounding of a position (rad, lengths): times the frequency it is what rates are known to; ten thousand last bits."""
 STIFF_NEWTON = 0.01
 """Newton's last correction over the error allowed, where rates are only known to such roundings."""
+DAMPING_GAIN = 1e-6
+"""Share of the kinetic energy that such steps may add: what they damp they never make more, and slow motion is kept far
+better."""
 DAMPED_AHEAD = 2000
 """Implicit steps still to go from which on a vibration that has come up again is damped again."""
 MOST_DAMPINGS = 1000

@@ -59,6 +59,11 @@ class Tables:
         """Length of the kernel's state."""
         return len(self.q_order) + len(self.v_order) + self.states + 1
 
+    @property
+    def metered(self) -> slice:
+        """Which numbers of the kernel's state are meters."""
+        return slice(self.size - 1 - self.meters, self.size - 1)
+
     def pack(self, q: Array, v: Array) -> Array:
         """The kernel's state with these positions and rates, all else zero."""
         y = np.zeros(self.size)

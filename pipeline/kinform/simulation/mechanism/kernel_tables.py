@@ -123,7 +123,7 @@ class _Order:
     def columns(self) -> Ints:
         """Rows of ints[COLUMNS], nothing led."""
         links = self.links()
-        out = np.full((len(self.v_order), 4), -1, dtype=np.int64)
+        out = np.full((len(self.v_order), layout.METER + 1), -1, dtype=np.int64)
         for link in range(1, len(links)):
             first, width = links[link, layout.FIRST], links[link, layout.WIDTH]
             before = links[links[link, layout.PARENT], layout.TIP]

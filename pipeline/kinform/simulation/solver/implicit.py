@@ -28,7 +28,8 @@ def run_implicit(run: Run, contact: Contact, report: Callable[[], None], fastest
             f"from t = {run.clock[layout.NOW]:.4g} s on the model is stiff and solved by an implicit method"
         )
     while run.clock[layout.NOW] < run.clock[layout.END]:
-        why = _until_change(run, contact, report, Damped(run, fastest) if fastest else Controlled(run))
+        pace = Damped(run, fastest) if fastest else Controlled(run)
+        why = _until_change(run, contact, report, pace) or pace.fault()
         if why:
             return why
         fastest = lasting(run)

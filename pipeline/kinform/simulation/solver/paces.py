@@ -49,12 +49,17 @@ class Controlled:
         self.made += 1
         return bool(self.run.dampings) and self.made % constants.LOOK == 0 and lasting(self.run) > 0.0
 
+    def fault(self) -> str:
+        """Why the run cannot be trusted after these steps: errors control them."""
+        return ""
+
 
 class Damped:
     """Steps in which a vibration of angular frequency `fastest` (1/s) dies out."""
 
     def __init__(self, run: Run, fastest: float):
-        self.run, self.fastest, self.made, self.kept = run, fastest, 0, _balance(run, run.y)
+        self.run, self.fastest, self.made = run, fastest, 0
+        self.kept, self.moving = _balance(run, run.y), _kinetic(run, run.y)
         run.dampings.append(Damping(float(run.clock[layout.NOW]), fastest / (2.0 * np.pi), 0.0))
 
     def solver(self, rates: Rates, longest: float) -> Any:
@@ -79,12 +84,27 @@ class Damped:
         solver.y = run.y.copy()
         run.dampings[-1] = replace(run.dampings[-1], energy=run.dampings[-1].energy + lost)
         # Newton need not be more exact than what the step leaves of the vibration.
-        head = len(before) - 1 - run.dynamics.tables.meters
-        change = float(np.sqrt(np.mean(((run.y - before) / (1.0 + np.abs(before)))[:head] ** 2)))
+        relative = (run.y - before) / (1.0 + np.abs(before))
+        change = float(np.sqrt(np.mean(relative[: run.dynamics.tables.metered.start] ** 2)))
         settled = max(constants.DAMPING_SETTLED, constants.DAMPING_NEWTON * change)
         solver.newton_tol = settled / constants.WITHOUT_CONTROL
         self.made += int(self.fastest * span > constants.DAMPS)
         return self.made == constants.DAMPING_STEPS
+
+    def fault(self) -> str:
+        """Why the run cannot be trusted after these steps; "" where it can. Steps that damp must not add energy, and
+        what goes on must be slow beside them."""
+        run, lost = self.run, self.run.dampings[-1].energy
+        _, v = run.dynamics.tables.unpack(run.y)
+        way = float(np.abs(v / run.dynamics.mechanism.scale).max(initial=0.0)) * constants.DAMPING_STEP / self.fastest
+        added = lost < -(constants.LEAST_DRIFT + constants.DAMPING_GAIN * (self.moving + _kinetic(run, run.y)))
+        if not added and way <= run.settings.stride:
+            return ""
+        hertz = self.fastest / (2.0 * np.pi)
+        return (
+            f"at t = {float(run.clock[layout.NOW]):.6g} s more than {run.settings.steps} steps would be needed: what "
+            f"moves beside springs that vibrate with {hertz:.4g} Hz is nearly as fast{run.loops()}"
+        )
 
 
 def lasting(run: Run) -> float:
@@ -106,10 +126,20 @@ def _radau(run: Run, rates: Rates, rtol: float, atol: Array, first: float, longe
 
 def _balance(run: Run, y: Array) -> float:
     """J: kinetic and potential energy of a state, less what was put in."""
+    return float(sum(_energies(run, y)) - y[-1])
+
+
+def _kinetic(run: Run, y: Array) -> float:
+    """J."""
+    return _energies(run, y)[0]
+
+
+def _energies(run: Run, y: Array) -> tuple[float, float]:
+    """J: kinetic and potential."""
     q, v = run.dynamics.tables.unpack(y)
     states = states_at(run.dynamics.mechanism, q[None], v[None], np.zeros_like(v)[None])
     kinetic, potential = run.dynamics.energy(q[None], states)
-    return float(kinetic[0] + potential[0] - y[-1])
+    return float(kinetic[0]), float(potential[0])
 
 
 def _finest(run: Run) -> Array:
@@ -119,7 +149,7 @@ def _finest(run: Run) -> Array:
     q, v = tables.unpack(run.y)
     fastest = 2.0 * np.pi * max((one.frequency for one in run.dampings), default=0.0)
     out = np.full_like(run.y, run.settings.implicit_atol)
-    out[len(out) - 1 - tables.meters : -1] = np.inf
+    out[tables.metered] = np.inf
     head = len(out) - 1 - tables.states
     rates = tables.pack(np.zeros_like(q), np.full_like(v, constants.STIFF_ROUNDING * fastest))
     out[:head] = np.maximum(rates[:head], out[:head])

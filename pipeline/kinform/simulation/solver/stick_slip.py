@@ -105,7 +105,7 @@ class _Driver:
         run, settings = self.run, self.run.settings
         # Nothing depends on meters: their errors do not shorten steps.
         atol = np.full_like(run.y, settings.atol)
-        atol[len(atol) - 1 - run.dynamics.tables.meters : -1] = np.inf
+        atol[run.dynamics.tables.metered] = np.inf
         solver = DOP853(self._slope, t, run.y.copy(), end, rtol=settings.rtol, atol=atol, max_step=self._longest())
         while solver.status == "running":
             solver.step()

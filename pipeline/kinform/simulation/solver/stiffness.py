@@ -4,8 +4,8 @@ At tight tolerances the error estimate of an explicit method keeps its steps wel
 stability, so that the usual test at its edge finds nothing. The eigenvalues of the derivative do: a decay
 as fast as the steps are short, in a run that has many steps to go.
 
-A vibration that springs make is in the eigenvalues at the same pose at rest: those of a mechanism that merely turns
-fast are imaginary as well, and vanish there.
+A vibration that springs make is in the eigenvalues at the same pose at rest and without gravity: those of a mechanism
+that merely turns fast, or swings as a pendulum, are imaginary as well, and vanish there.
 """
 
 from __future__ import annotations
@@ -37,7 +37,11 @@ def vibration(run: Run, step: float, budget: float) -> float:
     q, v = run.dynamics.tables.unpack(run.y)
     still, states = run.y.copy(), run.dynamics.tables.states
     still[: -1 - states] = run.dynamics.tables.pack(q, np.zeros_like(v))[: -1 - states]
+    gravity = run.dynamics.tables.nums[layout.CONSTANTS][0, layout.GRAVITY : layout.GRAVITY + 3]
+    pull = gravity.copy()
+    gravity[:] = 0.0
     values = _eigenvalues(run, t, still)
+    gravity[:] = pull
     swings = np.abs(values.imag)[np.abs(values.imag) > np.abs(values.real)]
     fastest = float(swings.max(initial=0.0))
     shown = (last - float(run.times[0])) / (len(run.times) - 1)
@@ -50,17 +54,17 @@ def jacobian(run: Run, t: float, at: Array) -> Array:
     Rows of meters are left zero: their great numbers, squares of efforts, would be taken for pivots where linear
     equations are solved, and leave few digits of the others. They follow the rest by iteration.
     """
-    size, meters = len(at), run.dynamics.tables.meters
+    size, metered = len(at), run.dynamics.tables.metered
     out = np.zeros((size, size))
     ends = np.zeros((2, size))
-    for k in range(size - 1 - meters):
+    for k in range(metered.start):
         h = constants.JACOBIAN_STEP * max(1.0, abs(at[k]))
         for side, sign in enumerate((1.0, -1.0)):
             y = at.copy()
             y[k] += sign * h
             run.derivative(t, y, ends[side])
         out[:, k] = (ends[0] - ends[1]) / (2.0 * h)
-    out[size - 1 - meters : size - 1] = 0.0
+    out[metered] = 0.0
     run.tally[layout.FRESH] = 1
     return out
 
