@@ -6,6 +6,7 @@ Knows nothing of geometry. Groups are runs of consecutive rows, given by their s
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 
 import numpy as np
 
@@ -16,9 +17,16 @@ class Ragged:
     """Rows of different length: the items of row i are items[starts[i]:starts[i + 1]]."""
 
     def __init__(self, rows: Ints, items: Ints, count: int):
-        order = np.argsort(rows, kind="stable")
-        self.items: Ints = items[order]
-        self.starts: Ints = np.searchsorted(rows[order], np.arange(count + 1)).astype(np.int64)
+        order = ascending(rows, count)
+        self.items: Ints = items.take(order)
+        self.starts: Ints = starts_of(rows.take(order), count)
+
+    @classmethod
+    def of_ordered(cls, rows: Ints, items: Ints, count: int) -> Ragged:
+        """Those of rows that ascend."""
+        out = cls.__new__(cls)
+        out.items, out.starts = items, starts_of(rows, count)
+        return out
 
     @classmethod
     def joined(cls, parts: Sequence[Ragged], offsets: Sequence[int]) -> Ragged:
@@ -36,13 +44,18 @@ class Ragged:
 
     def expand(self, rows: Ints) -> tuple[Ints, Ints]:
         """(position in `rows`, item) for every item of every row asked for, in order."""
-        start = self.starts[rows]
-        lengths = self.starts[rows + 1] - start
-        end = np.cumsum(lengths)
-        owner = np.repeat(np.arange(len(rows)), lengths)
-        at = np.repeat(start - end + lengths, lengths)
+        lengths = self._lengths.take(rows)
+        first = self.starts.take(rows)
+        first -= lengths.cumsum()
+        first += lengths
+        owner = np.arange(len(rows)).repeat(lengths)
+        at = first.take(owner)
         at += np.arange(len(at))
-        return owner, self.items[at]
+        return owner, self.items.take(at)
+
+    @cached_property
+    def _lengths(self) -> Ints:
+        return np.diff(self.starts)
 
 
 def slices(count: int, size: int) -> Iterator[slice]:
@@ -53,7 +66,21 @@ def slices(count: int, size: int) -> Iterator[slice]:
 
 def starts_of(groups: Ints, count: int) -> Ints:
     """Start of each of `count` groups in a sorted list of group numbers (count + 1 entries)."""
-    return np.searchsorted(groups, np.arange(count + 1)).astype(np.int64)
+    out = np.zeros(count + 1, np.int64)
+    np.cumsum(np.bincount(groups, minlength=count), out=out[1:])
+    return out
+
+
+def ascending(keys: Ints, count: int) -> Ints:
+    """The order that sorts keys from 0 to `count`, equal ones as they come: with its place each key is the only one of
+    its value, and sorting integers is faster than finding their order."""
+    size = len(keys)
+    if count * size > np.iinfo(np.int64).max:
+        return np.argsort(keys, kind="stable")
+    placed = keys * np.int64(size)
+    placed += np.arange(size)
+    placed.sort()
+    return placed - placed // size * size
 
 
 def heads(ordered: Ints) -> Flags:
@@ -65,7 +92,9 @@ def heads(ordered: Ints) -> Flags:
 
 def columns_of(table: Array, rows: Ints) -> Array:
     """These rows of a table, in memory column by column: what reads single columns afterwards is twice as fast."""
-    return np.ascontiguousarray(table.T).take(rows, axis=1).T
+    if len(rows) < len(table):
+        return np.asfortranarray(table.take(rows, axis=0))
+    return table.T.take(rows, axis=1).T
 
 
 def parted(keys: Ints, count: int) -> tuple[Ints, Ints]:
@@ -77,7 +106,7 @@ def parted(keys: Ints, count: int) -> tuple[Ints, Ints]:
 def distinct(keys: Ints) -> Ints:
     """The distinct keys, ascending: sorting integers is faster than numpy's hashing."""
     ordered = np.sort(keys)
-    return ordered[heads(ordered)]
+    return ordered.take(np.flatnonzero(heads(ordered)))
 
 
 def occurrences(keys: Ints) -> tuple[Ints, Ints]:

@@ -18,7 +18,7 @@ from kinform.model.tolerances import Tolerances
 from kinform.surfaces import constants
 from kinform.surfaces.constants import EPS32, THREAD_FACET
 from kinform.surfaces.describe import Description, curved, flat, freeform
-from kinform.surfaces.groups import distinct, members
+from kinform.surfaces.groups import ascending, distinct, members
 from kinform.surfaces.kinds.kind import Batch
 from kinform.surfaces.polygons.facets import Facets
 from kinform.surfaces.polygons.noise import Scale, Scales
@@ -101,12 +101,13 @@ def _canonical_order(vertices: Array, faces: Ints) -> tuple[Array, Ints, Ints]:
     by_place = np.lexsort(vertices.T[::-1])
     place = np.empty(len(vertices), np.int64)
     place[by_place] = np.arange(len(vertices))
-    renamed = place[faces]
-    first = np.argmin(renamed, axis=1)
-    rows = np.arange(len(faces))[:, None]
-    turned = renamed[rows, (first[:, None] + np.arange(3)) % 3]
-    order = np.lexsort(turned.T[::-1])
-    return vertices[by_place], turned[order], order
+    a, b, c = (place.take(faces[:, k]) for k in range(3))
+    first, second = (a <= b) & (a <= c), (b < a) & (b <= c)
+    corners = [np.where(first, x, np.where(second, y, z)) for x, y, z in ((a, b, c), (b, c, a), (c, a, b))]
+    order = ascending(corners[2], len(vertices))
+    for corner in (corners[1], corners[0]):
+        order = order.take(ascending(corner.take(order), len(vertices)))
+    return vertices.take(by_place, axis=0), np.stack([corner.take(order) for corner in corners], axis=1), order
 
 
 def _describe_all(starts: Sequence[_Start]) -> list[list[Description]]:

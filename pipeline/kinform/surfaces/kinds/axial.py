@@ -44,21 +44,24 @@ class Cylindrical(NamedTuple):
 def cylindrical(params: Params, points: Array) -> Cylindrical:
     """The coordinates of each point (N, 3) about its axis (N, 8).
 
-    Column by column: the hottest lines of the package, and broadcasting over rows of three costs twice that.
+    Rows of three are columns here: the hottest lines of the package, and broadcasting over rows costs twice that. Of
+    few points, steps of numpy cost more than numbers do, so there are as few as can be.
     """
-    ax, ay, az = params[:, 0], params[:, 1], params[:, 2]
-    x, y, z = points[:, 0] - params[:, 3], points[:, 1] - params[:, 4], points[:, 2] - params[:, 5]
-    t = x * ax + y * ay + z * az
-    x -= t * ax
-    y -= t * ay
-    z -= t * az
-    rho = np.sqrt(x * x + y * y + z * z)
-    scale = 1.0 / np.maximum(rho, 1e-300)
-    radial = np.empty((3, len(t))).T
-    np.multiply(x, scale, out=radial[:, 0])
-    np.multiply(y, scale, out=radial[:, 1])
-    np.multiply(z, scale, out=radial[:, 2])
-    return Cylindrical(t, rho, radial)
+    columns = params.T
+    axis = columns[:3]
+    away, each = np.empty((2, *columns[:3].shape))
+    np.subtract(points.T, columns[3:6], out=away)
+    np.multiply(away, axis, out=each)
+    t = each[0] + each[1]
+    t += each[2]
+    np.multiply(axis, t, out=each)
+    away -= each
+    np.multiply(away, away, out=each)
+    rho = each[0] + each[1]
+    rho += each[2]
+    np.sqrt(rho, out=rho)
+    away *= 1.0 / np.maximum(rho, 1e-300)
+    return Cylindrical(t, rho, away.T)
 
 
 def azimuths(params: Params, radial: Array) -> Array:
@@ -71,7 +74,7 @@ def angular_widths(batch: Batch, params: Params) -> Array:
     """(pairs,) angle about the axis that each polygon subtends."""
     owner, _ = batch.corners
     mine = columns_of(params, batch.region)
-    _, _, middle = cylindrical(mine, batch.patchwork.centre[batch.polygon])
+    _, _, middle = cylindrical(mine, batch.patchwork.middles(batch.polygon))
     _, rho, radial = cylindrical(columns_of(mine, owner), batch.points)
     cos = dot(radial, columns_of(middle, owner))
     sin = dot(radial, columns_of(cross(mine[:, :3], middle), owner))

@@ -109,7 +109,7 @@ class Batch:
             owner, vertex = self.corners
             total = np.int64(max(len(self.patchwork.vertices), 1))
             key, times = occurrences(self.region[owner] * total + vertex)
-            self._inner[least] = parted(key[times >= least], int(total))
+            self._inner[least] = parted(key.take(np.flatnonzero(times >= least)), int(total))
         return self._inner[least]
 
     def forget(self) -> None:
@@ -119,9 +119,10 @@ class Batch:
 
     def select(self, keep: Flags) -> Batch:
         """The batch without some of its pairs; itself, with what it has already found, where all are kept."""
-        if keep.all():
+        rows = np.flatnonzero(keep)
+        if len(rows) == len(keep):
             return self
-        return Batch(self.patchwork, self.region[keep], self.polygon[keep], self.count)
+        return Batch(self.patchwork, self.region.take(rows), self.polygon.take(rows), self.count)
 
 
 class Moving:
@@ -138,8 +139,8 @@ class Moving:
         self._mesh &= np.bincount(mesh, minlength=len(self._mesh)) > 0
         if self._mesh.all():
             return region, vertex
-        keep = self._mesh[mesh]
-        return region[keep], vertex[keep]
+        rows = np.flatnonzero(self._mesh[mesh])
+        return region.take(rows), vertex.take(rows)
 
     def taken(self, stepped: Params, params: Params) -> Params:
         """The parameters after a step: as they were where a mesh has ended."""
@@ -235,7 +236,7 @@ class DoublyCurved(Kind, Protocol):
     def widths(self, batch: Batch, params: Params) -> Array:
         """Twice the greatest angle between the normals at a polygon's middle and at a vertex of it."""
         owner, _ = batch.corners
-        middle = self.probe(columns_of(params, batch.region), batch.patchwork.centre[batch.polygon]).normal
+        middle = self.probe(columns_of(params, batch.region), batch.patchwork.middles(batch.polygon)).normal
         apart = self.probe(columns_of(params, batch.region[owner]), batch.points).normal - columns_of(middle, owner)
         square = np.zeros(len(batch.polygon))
         np.maximum.at(square, owner, dot(apart, apart))
@@ -245,8 +246,8 @@ class DoublyCurved(Kind, Protocol):
         """Vertices that enough of the region's polygons share, where they lie on the surface."""
         region, vertex = batch.inner_vertices(self.shared)
         distance = np.abs(self.probe(columns_of(params, region), batch.patchwork.at(vertex)).distance)
-        keep = distance < NEAR * tolerance[region]
-        return region[keep], vertex[keep]
+        rows = np.flatnonzero(distance < NEAR * tolerance[region])
+        return region.take(rows), vertex.take(rows)
 
 
 def distinct_angles(region: Ints, angle: Array, step: Array, count: int) -> Ints:

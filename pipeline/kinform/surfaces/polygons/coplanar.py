@@ -6,6 +6,8 @@ whose plane it lies to within its own thickness.
 
 from __future__ import annotations
 
+from typing import TypeAlias
+
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot, normalised
@@ -13,56 +15,81 @@ from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import constants
-from kinform.surfaces.groups import group_mean, group_sum
+from kinform.surfaces.groups import columns_of, group_mean, group_sum
 from kinform.surfaces.polygons.facets import Facets, angles
 from kinform.surfaces.polygons.noise import Scale, departures
 
+Moments: TypeAlias = tuple[Array, Array, Array]
+"""Area (P,), unit normal (P, 3) and centroid (P, 3) of polygons."""
 
-def coplanar_facets(mesh: Facets, scale: Scale, tolerances: Tolerances) -> Ints:
-    """Polygon of each facet: coplanar neighbours, checked against drift, then slivers."""
+
+def coplanar_facets(mesh: Facets, scale: Scale, tolerances: Tolerances) -> tuple[Ints, Moments]:
+    """Polygon of each facet: coplanar neighbours, checked against drift, then slivers; and the polygons' moments."""
     inner = np.flatnonzero(mesh.inner)
-    f0, f1, length = mesh.f0[inner], mesh.f1[inner], mesh.length[inner]
-    base = mesh.vertices[mesh.ends[inner, 0]]
+    f0, f1, length = mesh.f0.take(inner), mesh.f1.take(inner), mesh.length.take(inner)
+    base = mesh.at(mesh.ends[:, 0].take(inner))
     thin = mesh.altitude < constants.THIN_NOISES * scale.noise
     strict, flat = _flat_edges(mesh, inner, thin, scale, tolerances)
-    label = components(f0[flat], f1[flat], len(mesh.faces))
+    label = _linked(f0, f1, flat, len(mesh.faces))
     if scale.scatter > 0:
         label = _peel(mesh, label, f0[flat], f1[flat], scale)
         flat = flat & (label[f0] == label[f1])
+    found = moments(mesh, label)
     for stricter, limit in ((strict, constants.THIN_NOISES * scale.noise), (np.zeros_like(strict), scale.fit)):
-        bent = _flatness(mesh, label) > limit
+        bent = _flatness(mesh, label, found) > limit
         if not bent.any():
             break
         flat = np.where(bent[label[f0]], flat & stricter, flat)
-        label = components(f0[flat], f1[flat], len(mesh.faces))
-    label = _with_slivers(label, thin, f0, f1, length)
+        label = _linked(f0, f1, flat, len(mesh.faces))
+        found = moments(mesh, label)
+    before, label = label, _with_slivers(label, thin, f0, f1, length)
+    found = found if label is before else moments(mesh, label)
     for _ in range(constants.JOININGS):
-        _, mean, centre = moments(mesh, label)
-        a, b = label[f0], label[f1]
-        gap = np.maximum(np.abs(dot(mean[a], centre[b] - base)), np.abs(dot(mean[b], centre[a] - base)))
-        join = (a != b) & (angles(mean[a], mean[b]) < tolerances.coplanar) & (gap < scale.noise)
-        if not join.any():
+        join = _joined(label.take(f0), label.take(f1), base, found, tolerances.coplanar, scale.noise)
+        if not len(join):
             break
-        label = components(a[join], b[join], int(label.max()) + 1)[label]
-    return label
+        label = components(label[f0[join]], label[f1[join]], int(label.max()) + 1)[label]
+        found = moments(mesh, label)
+    return label, found
+
+
+def _linked(f0: Ints, f1: Ints, flat: Flags, count: int) -> Ints:
+    """Components of the facets under the flat ones of these edges."""
+    rows = np.flatnonzero(flat)
+    return components(f0.take(rows), f1.take(rows), count)
+
+
+def _joined(a: Ints, b: Ints, base: Array, found: Moments, turned: float, apart: float) -> Ints:
+    """Edges, of which `base` is a point and `a`, `b` the polygons, whose polygons are in one plane by their means."""
+    rows = np.flatnonzero(a != b)
+    _, normal, centre = found
+    normal, centre = np.asfortranarray(normal), np.asfortranarray(centre)
+    a, b, base = a.take(rows), b.take(rows), columns_of(base, rows)
+    for _ in range(2):
+        gap = np.abs(dot(columns_of(normal, a), columns_of(centre, b) - base))
+        near = np.flatnonzero(gap < apart)
+        a, b, base, rows = b.take(near), a.take(near), columns_of(base, near), rows.take(near)
+    return rows[angles(normal[a], normal[b]) < turned]
 
 
 def _flat_edges(
     mesh: Facets, inner: Ints, thin: Flags, scale: Scale, tolerances: Tolerances
 ) -> tuple[Flags, Flags]:  # fmt: skip
     """Which inner edges join coplanar facets beyond doubt, and which do as far as noise lets one tell."""
-    f0, f1, ends = mesh.f0[inner], mesh.f1[inner], mesh.ends[inner]
-    shared, base = ends.sum(axis=1), mesh.vertices[ends[:, 0]]
-    beyond0, beyond1 = (mesh.vertices[mesh.faces[f].sum(axis=1) - shared] - base for f in (f0, f1))
-    angle = angles(mesh.normal[f0], mesh.normal[f1])
-    height = np.maximum(np.abs(dot(mesh.normal[f0], beyond1)), np.abs(dot(mesh.normal[f1], beyond0)))
-    solid = ~(thin[f0] | thin[f1])
+    f0, f1 = mesh.f0.take(inner), mesh.f1.take(inner)
+    base = mesh.at(mesh.ends[:, 0].take(inner))
+    beyond0, beyond1 = (mesh.at(vertex) - base for vertex in mesh.opposite(inner))
+    normal0, normal1 = columns_of(mesh.normal, f0), columns_of(mesh.normal, f1)
+    angle = angles(normal0, normal1)
+    height = np.maximum(np.abs(dot(normal0, beyond1)), np.abs(dot(normal1, beyond0)))
+    solid = ~(thin.take(f0) | thin.take(f1))
     strict = solid & (angle < tolerances.coplanar) & (height < scale.fit)
     flat = strict | (solid & (height < scale.noise) & (angle < constants.COPLANAR_ANGLE))
     lost = max(constants.COPLANAR_SIGMAS * scale.scatter, constants.COPLANAR_ROUNDINGS * scale.rounding)
-    narrow0, narrow1 = (1 / np.maximum(mesh.altitude[f], 1e-300) for f in (f0, f1))
+    narrow0, narrow1 = (1 / np.maximum(mesh.altitude.take(f), 1e-300) for f in (f0, f1))
     turned = constants.COPLANAR_ANGLE + constants.TURNED_SIGMAS * lost / constants.COPLANAR_SIGMAS * (narrow0 + narrow1)
-    flat |= solid & (np.abs(departures(mesh, inner)) < lost) & (angle < np.minimum(turned, constants.MOST_TURNED))
+    open_ = np.flatnonzero(solid & ~flat & (angle < np.minimum(turned, constants.MOST_TURNED)))
+    flat[open_] = np.abs(departures(mesh, inner.take(open_))) < lost
     return strict, flat
 
 
@@ -84,16 +111,19 @@ def _with_slivers(label: Ints, thin: Flags, f0: Ints, f1: Ints, length: Array) -
     return label
 
 
-def _flatness(mesh: Facets, polygon: Ints) -> Array:
-    """Greatest distance of a polygon's vertices from its plane (P,)."""
-    _, normal, centre = moments(mesh, polygon)
-    owner = np.repeat(polygon, 3)
-    out = np.zeros(len(normal))
-    np.maximum.at(out, owner, np.abs(dot(mesh.vertices[mesh.faces.ravel()] - centre[owner], normal[owner])))
+def _flatness(mesh: Facets, polygon: Ints, found: Moments) -> Array:
+    """Greatest distance of a polygon's vertices from its plane (P,), of polygons of several facets."""
+    area, normal, centre = found
+    several = np.flatnonzero(np.bincount(polygon, minlength=len(area)).take(polygon) > 1)
+    owner = polygon.take(several)
+    normal, centre = columns_of(normal, owner), columns_of(centre, owner)
+    out = np.zeros(len(area))
+    for k in range(3):
+        np.maximum.at(out, owner, np.abs(dot(mesh.at(mesh.faces[:, k].take(several)) - centre, normal)))
     return out
 
 
-def moments(mesh: Facets, polygon: Ints) -> tuple[Array, Array, Array]:
+def moments(mesh: Facets, polygon: Ints) -> Moments:
     """Area, unit normal and centroid of each polygon, of the polygons (F,) that facets belong to."""
     count = int(polygon.max()) + 1 if len(polygon) else 0
     total: Array = np.bincount(polygon, mesh.area, count).astype(float)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -19,7 +20,7 @@ class Facets:
     faces: Ints
     area: Array
     normal: Array
-    """(F, 3) outward; zero for facets without area."""
+    """(F, 3) outward; zero for facets without area. In memory column by column, as `middle` is."""
     middle: Array
     """(F, 3)"""
     altitude: Array
@@ -36,34 +37,51 @@ class Facets:
     @classmethod
     def of(cls, vertices: Array, faces: Ints) -> Facets:
         """Those of faces (F, 3) over vertices (n, 3)."""
-        corners = vertices[faces]
-        sides = corners - corners[:, [1, 2, 0]]
-        across = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        columns = np.ascontiguousarray(vertices.T)
+        first, second, third = (columns.take(faces[:, k], axis=1).T for k in range(3))
+        along, back = second - first, third - first
+        across = cross(along, back)
         twice = np.sqrt(dot(across, across))
-        longest = np.sqrt(np.einsum("ijk,ijk->ij", sides, sides).max(axis=1, initial=0.0))
+        beyond = second - third
+        longest = np.sqrt(np.maximum(np.maximum(dot(along, along), dot(back, back)), dot(beyond, beyond)))
+        middle = (first + second + third) / 3.0
         table = edge_table(faces, len(vertices), by_corner=True)
         paired = table.starts[table.counts == 2]
         alone = np.ones(len(table.half_edges), bool)
         alone[paired] = alone[paired + 1] = False
-        first, second = table.half_edges[paired], table.half_edges[paired + 1]
-        leading = np.r_[first, table.half_edges[alone]]
+        one, other = table.half_edges[paired], table.half_edges[paired + 1]
+        leading = np.concatenate([one, table.half_edges[alone]])
         ends = np.stack([faces.ravel()[leading], faces[:, [1, 2, 0]].ravel()[leading]], axis=1)
-        along = vertices[ends[:, 0]] - vertices[ends[:, 1]]
+        along = (columns.take(ends[:, 0], axis=1) - columns.take(ends[:, 1], axis=1)).T
         inner = np.zeros(len(leading), bool)
-        inner[: len(first)] = table.forward[first] != table.forward[second]
+        inner[: len(one)] = table.forward[one] != table.forward[other]
         return cls(
             vertices=vertices,
             faces=faces,
             area=twice / 2,
-            normal=across / np.maximum(twice, 1e-300)[:, None],
-            middle=corners.mean(axis=1),
+            normal=np.asfortranarray(across / np.maximum(twice, 1e-300)[:, None]),
+            middle=middle,
             altitude=twice / np.maximum(longest, 1e-300),
             f0=leading // 3,
-            f1=np.r_[second // 3, np.full(len(leading) - len(first), -1)],
+            f1=np.concatenate([other // 3, np.full(len(leading) - len(one), -1)]),
             ends=ends,
             length=np.sqrt(dot(along, along)),
             inner=inner,
         )
+
+    def at(self, vertices: Ints) -> Array:
+        """(n, 3) coordinates of these vertices, in memory column by column."""
+        return self._columns.take(vertices, axis=1).T
+
+    @cached_property
+    def _columns(self) -> Array:
+        return np.ascontiguousarray(self.vertices.T)
+
+    def opposite(self, edges: Ints) -> tuple[Ints, Ints]:
+        """The vertices of the two facets of each of these inner edges that are not on it."""
+        total = self.faces[:, 0] + self.faces[:, 1] + self.faces[:, 2]
+        shared = self.ends[:, 0].take(edges) + self.ends[:, 1].take(edges)
+        return total.take(self.f0.take(edges)) - shared, total.take(self.f1.take(edges)) - shared
 
 
 def angles(n0: Array, n1: Array) -> Array:

@@ -19,6 +19,7 @@ from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import constants
+from kinform.surfaces.groups import columns_of
 from kinform.surfaces.polygons.facets import Facets
 
 
@@ -84,7 +85,7 @@ def departures(mesh: Facets, edges: Ints) -> Array:
     out = np.empty(len(edges))
     for start in range(0, len(edges), constants.RUN_OF_EDGES):
         run = slice(start, start + constants.RUN_OF_EDGES)
-        a, b, c, d = mesh.vertices[_corners(mesh, edges[run])]
+        a, b, c, d = (mesh.at(corner) for corner in _corners(mesh, edges[run]))
         u, v, w = b - a, c - a, d - a
         uv = cross(u, v)
         squares = np.zeros(len(a))
@@ -94,12 +95,9 @@ def departures(mesh: Facets, edges: Ints) -> Array:
     return out
 
 
-def _corners(mesh: Facets, edges: Ints) -> Ints:
-    """(4, n) both ends of each edge, and the third vertices of its facets."""
-    ends = mesh.ends[edges]
-    shared = ends.sum(axis=1)
-    opposite = [mesh.faces[f[edges]].sum(axis=1) - shared for f in (mesh.f0, mesh.f1)]
-    return np.stack([ends[:, 0], ends[:, 1], *opposite])
+def _corners(mesh: Facets, edges: Ints) -> tuple[Ints, Ints, Ints, Ints]:
+    """(n,) each: both ends of each edge, and the third vertices of its facets."""
+    return mesh.ends[:, 0].take(edges), mesh.ends[:, 1].take(edges), *mesh.opposite(edges)
 
 
 def scatter(mesh: Facets, smooth_edge: float) -> float:
@@ -108,7 +106,8 @@ def scatter(mesh: Facets, smooth_edge: float) -> float:
     Saddles mix signs too, but smoothly: what one vertex shows, its neighbours show as well.
     """
     inner = np.flatnonzero(mesh.inner)
-    near = inner[dot(mesh.normal[mesh.f0[inner]], mesh.normal[mesh.f1[inner]]) > np.cos(smooth_edge)]
+    facing = dot(columns_of(mesh.normal, mesh.f0[inner]), columns_of(mesh.normal, mesh.f1[inner]))
+    near = inner[np.flatnonzero(facing > np.cos(smooth_edge))]
     if not len(near):
         return 0.0
     off, count = departures(mesh, near), len(mesh.vertices)
@@ -143,8 +142,10 @@ def _irregular(mesh: Facets, inner: Ints, above: Array, below: Array) -> Array:
 
 def _calmest(mesh: Facets, value: Array, readable: Flags, share: float) -> float:
     """The value of vertices that is reached on so large a share of the area, from the smallest up."""
-    each = np.median(value[mesh.faces], axis=1)
-    weight = np.where(readable[mesh.faces].all(axis=1), mesh.area, 0.0)
+    first, second, third = (value.take(mesh.faces[:, k]) for k in range(3))
+    each = np.maximum(np.minimum(first, second), np.minimum(np.maximum(first, second), third))
+    whole = readable[mesh.faces[:, 0]] & readable[mesh.faces[:, 1]] & readable[mesh.faces[:, 2]]
+    weight = np.where(whole, mesh.area, 0.0)
     order = np.argsort(each, kind="stable")
     reached = np.cumsum(weight[order])
     return float(each[order][np.searchsorted(reached, share * reached[-1])]) if reached[-1] > 0 else 0.0

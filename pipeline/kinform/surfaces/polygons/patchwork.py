@@ -18,8 +18,8 @@ from kinform.foundation.algebra.vectors import cross, dot
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces.constants import FLAT_NOISES, MOST_SLACK, SLACK_ROUNDINGS
-from kinform.surfaces.groups import Ragged
-from kinform.surfaces.polygons.coplanar import coplanar_facets, moments
+from kinform.surfaces.groups import Ragged, columns_of, distinct, parted
+from kinform.surfaces.polygons.coplanar import coplanar_facets
 from kinform.surfaces.polygons.facets import Facets, angles
 from kinform.surfaces.polygons.noise import Scale
 
@@ -64,36 +64,48 @@ class Patchwork:
         """(N, 3) coordinates of these vertices, in memory column by column."""
         return self._columns.take(vertices, axis=1).T
 
+    def middles(self, polygons: Ints) -> Array:
+        """(N, 3) centroids of these polygons, in memory column by column."""
+        return self._centres.take(polygons, axis=1).T
+
+    @cached_property
+    def _centres(self) -> Array:
+        return np.ascontiguousarray(self.centre.T)
+
     @cached_property
     def _columns(self) -> Array:
         return np.ascontiguousarray(self.vertices.T)
 
     def other(self, edges: Ints, polygons: Ints) -> Ints:
         """The polygon on the other side of each edge."""
-        return np.where(self.a[edges] == polygons, self.b[edges], self.a[edges])
+        return self._sums.take(edges) - polygons
+
+    @cached_property
+    def _sums(self) -> Ints:
+        return self.a + self.b
 
     @classmethod
     def of(cls, mesh: Facets, scale: Scale, tolerances: Tolerances) -> Patchwork:
         """Polygons and edges of a welded mesh with diagonal 1."""
         vertices = mesh.vertices
-        polygon = coplanar_facets(mesh, scale, tolerances)
-        area, mean, centre = moments(mesh, polygon)
+        polygon, (area, mean, centre) = coplanar_facets(mesh, scale, tolerances)
         count = len(area)
         widest = np.zeros(count)
         np.maximum.at(widest, polygon, mesh.altitude)
         slack = np.minimum(SLACK_ROUNDINGS * scale.rounding / np.maximum(widest, 1e-300), MOST_SLACK)
         a = polygon[mesh.f0]
         b = np.where(mesh.inner, polygon[mesh.f1], -1)
-        keep = a != b
-        a, b, ends, length, inner = a[keep], b[keep], mesh.ends[keep], mesh.length[keep], mesh.inner[keep]
-        angle = np.full(len(a), np.pi)
-        angle[inner] = angles(mean[a[inner]], mean[b[inner]])
-        turn = dot(cross(mean[a], mean[b]), vertices[ends[:, 1]] - vertices[ends[:, 0]])
+        keep = np.flatnonzero(a != b)
+        a, b, ends = a.take(keep), b.take(keep), mesh.ends.take(keep, axis=0)
+        length, inner = mesh.length.take(keep), mesh.inner.take(keep)
+        mean_a, mean_b = columns_of(mean, a), columns_of(mean, b)
+        angle = np.where(inner, angles(mean_a, mean_b), np.pi)
+        turn = dot(cross(mean_a, mean_b), mesh.at(ends[:, 1]) - mesh.at(ends[:, 0]))
         width = np.minimum(area[a], area[b]) / np.maximum(length, 1e-300)
         flat = inner & ((angle < 2 * tolerances.coplanar) | (width * angle < FLAT_NOISES * scale.noise))
         sign = np.where(flat | ~inner, 0, np.where(turn > 0, 1, -1)).astype(np.int64)
         allowed = tolerances.smooth_edge + np.minimum(np.where(inner, slack[a] + slack[b], 0.0), MOST_SLACK)
-        vertex_key = np.unique(np.repeat(polygon, 3) * np.int64(len(vertices)) + mesh.faces.ravel())
+        vertex_key = distinct(np.repeat(polygon, 3) * np.int64(len(vertices)) + mesh.faces.ravel())
         numbers = np.arange(len(a))
         closed = np.flatnonzero(b >= 0)
         return cls(
@@ -105,7 +117,7 @@ class Patchwork:
             normal=mean,
             centre=centre,
             slack=slack,
-            corners=Ragged(vertex_key // max(len(vertices), 1), vertex_key % max(len(vertices), 1), count),
+            corners=Ragged.of_ordered(*parted(vertex_key, max(len(vertices), 1)), count),
             sides=Ragged(np.r_[a, b[closed]], np.r_[numbers, closed], count),
             a=a,
             b=b,

@@ -51,9 +51,9 @@ class Territory:
         work = self.patchwork
         region, polygon = parted(keys, work.count)
         owner, edge = self.links.expand(polygon)
-        target = work.other(edge, polygon[owner])
-        open_ = self.free[target]
-        return distinct(region[owner[open_]] * np.int64(work.count) + target[open_])
+        target = work.other(edge, polygon.take(owner))
+        open_ = np.flatnonzero(self.free.take(target))
+        return distinct(region.take(owner.take(open_)) * np.int64(work.count) + target.take(open_))
 
     def spread(self, surfaces: Candidates, batch: Batch, reach: Array, layers: int) -> Batch:
         """The batch with up to `layers` layers of conforming neighbours added."""
@@ -62,11 +62,11 @@ class Territory:
         front, recent = seen, seen
         for _ in range(layers):
             keys = self.neighbours(front)
-            keys = keys[~among(keys, seen) & ~among(keys, recent)]
+            keys = keys.take(np.flatnonzero(~(among(keys, seen) | among(keys, recent))))
             if not len(keys):
                 break
             trial = Batch.of_keys(self.patchwork, keys, batch.count)
-            front = keys[surfaces.conforms(trial, reach)]
+            front = keys.take(np.flatnonzero(surfaces.conforms(trial, reach)))
             if not len(front):
                 break
             gained.append(front)
@@ -97,5 +97,4 @@ def among(keys: Ints, ordered: Ints) -> Flags:
     """Whether each key is one of the ordered ones."""
     if not len(ordered):
         return np.zeros(len(keys), bool)
-    at = np.minimum(np.searchsorted(ordered, keys), len(ordered) - 1)
-    return np.asarray(ordered[at] == keys)
+    return np.asarray(ordered.take(ordered.searchsorted(keys), mode="clip") == keys)
