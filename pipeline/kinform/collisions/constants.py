@@ -14,6 +14,8 @@ import numpy as np
 
 SPHERES = 96
 """Spheres about the facets of a part."""
+SPHERES_FINE = 1500
+"""The same, where those come near."""
 SCRAPE = 1e-3
 """By so much parts may overlap as they slide along each other: by rounding of their files and by what is left over
 where joints were fitted."""
@@ -79,6 +81,9 @@ CROSSINGS_MOST = 200_000
 MATE_ROUNDING = 1e-6
 """By so much more than chord errors, gap and uncertainty points may be off the surface of a mate."""
 
+ALONG_AXIS = 0.9
+"""Cosine between axes of cylinders and of a turn, below which it is not told how far points are off."""
+
 # pair/advancement: the first crossing along a motion
 
 WORK = 4000
@@ -126,6 +131,32 @@ SCREW_TURNS_MOST = 400
 """Turns of a screw that are tried in all, where its threads end."""
 MEETING_MARGIN = 1e-6
 """Facets whose swept profiles come no nearer than this never meet."""
+
+# driving/swept_spheres: how far parts are certainly apart
+
+SPHERES_TOGETHER = 32
+"""Pairs of spheres that are looked at finer at once."""
+
+# driving/meeting_spans: where along a motion facets can meet
+
+DIVIDED_TO = 0.02
+"""Share of a turn, or of a part's length along a slide, that a facet spans at most, or it is divided."""
+DIVIDED_ROUNDS = 2
+"""So often they are asked which of them meet, and those divided further."""
+DIVIDED_AT_ONCE = 2
+"""Times that they are divided into four before they are asked."""
+DIVIDED_MOST = 60_000
+"""Pieces of a part at most."""
+PROFILE_CELLS = 250
+"""Profiles of one surface that are the same to so many parts of where both parts are, are taken together."""
+TESTED_MOST = 20_000_000
+"""Groups of one part times those of the other, up to which they are asked."""
+SPANS_MOST = 4_000_000
+"""Spans of pairs of groups in all."""
+PLACES = 8192
+"""Spans begin and end at so many places of a turn, or of the length of the longer part."""
+TESTED_TOGETHER = 64
+"""Groups of one that are asked at once."""
 
 # driving/loop_motion: the one motion of joints that loops tie together
 

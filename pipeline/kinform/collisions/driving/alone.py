@@ -10,15 +10,17 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from kinform.collisions.constants import MEETING_MARGIN, SCREW_TURNS, SCREW_TURNS_MOST, STOP_ANGLE, STOP_LENGTH
+from kinform.collisions.driving.meeting_spans import Spans, meeting_spans
 from kinform.collisions.driving.swept_profiles import Profile, meeting
-from kinform.collisions.pair.advancement import first_crossing
+from kinform.collisions.pair.advancement import NOTHING, first_crossing
 from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.distance_bounds import Wholes
+from kinform.collisions.pair.mate_surfaces import Kept
 from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.displacements import displacement
 from kinform.kinematics.mobility.guides import guide, joint_twist, preserved
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.kinematics import Joint
 from kinform.model.names import PartName
@@ -31,20 +33,35 @@ class _Candidate:
 
     def __init__(self, shapes: Shapes, names: Pair, profiles: tuple[Profile, Profile], twist: Array):
         self.names, self._shapes, self._profiles, self._twist = names, shapes, profiles, twist
+        self._turns = profiles[0].turns
         self._turning = float(twist[:3] @ twist[:3]) > 0.25
 
     def course(self, sign: int, radius: float | None = None) -> Course:
         """The motion to one side, for points no further from the axis than `radius` (m), by default all that can
         meet."""
+        meets = None
+        if radius is not None and self._meetings is not None:
+            meets = self._meetings.towards(sign)
         if radius is None:
             radius = min(profile.largest for profile in self._profiles)
         along = float(abs(self._twist[:3] @ self._twist[3:]))
         speed = math.hypot(radius, along) if self._turning else 1.0
-        return Course(lru_cache(maxsize=64)(lambda s: displacement(sign * s * self._twist)), lambda s: speed * s)
+        moved = lru_cache(maxsize=64)(lambda s: displacement(sign * s * self._twist))
+        return Course(moved, lambda s: speed * s, meets=meets)
 
     def wholes(self) -> Wholes:
         """The parts with all their facets."""
         return Wholes(self._shapes, *self.names)
+
+    def apart_until(self, sign: int, start: float, end: float) -> float:
+        """Up to which place from `start` to `end` the parts are certainly apart; `start` where that is not told."""
+        if self._turns is None:
+            return start
+        first, second = (
+            profile.spheres(self._shapes.spheres(name), self._shapes.part(name).X_WP)
+            for profile, name in zip(self._profiles, self.names, strict=True)
+        )
+        return first.apart_until(second, sign, start, end)
 
     @cached_property
     def test(self) -> tuple[PairTest, float] | None:
@@ -57,6 +74,23 @@ class _Candidate:
         mates = [patch for patch in shapes.patches(first, second) if preserved(patch, twists)]
         test = PairTest(shapes, first, second, facets, mates)
         return test, min(profile.radius(side) for profile, side in zip(self._profiles, facets, strict=True))
+
+    @cached_property
+    def _meetings(self) -> Spans | None:
+        """Where facets of a turn or slide can meet that count, other than along mates; None where that is not known."""
+        turns = self._turns
+        if self.test is None or turns is None or not self.test[0].mates:
+            return None
+        test, first = self.test[0], self._profiles[0]
+
+        def along(i: Ints, j: Ints, low: Array, high: Array) -> Flags:
+            return test.mates.surely_along((i, j), Kept(low, high, turns, first.frame @ test.X_WA, first.span))
+
+        parts = [
+            (profile.corners(facets), test.counted(k))
+            for k, (profile, facets) in enumerate(zip(self._profiles, test.facets, strict=True))
+        ]
+        return meeting_spans(parts, turns, MEETING_MARGIN * test.size, along)
 
 
 _Entry = tuple[_Candidate, float]
@@ -146,7 +180,8 @@ def _end(
         if candidate.test is not None:
             test, radius = candidate.test
             fine = STOP_ANGLE if turning else STOP_LENGTH * test.size
-            first = first_crossing(test, candidate.course(sign, radius), reach, fine, start=free)
+            course = candidate.course(sign, radius)
+            first = NOTHING if course.apart(free, reach) else first_crossing(test, course, reach, fine, start=free)
             if first.overlaps:
                 left_out.append(test.part_names)
             if first.exhausted is not None and (exhausted is None or first.exhausted < exhausted[0]):
@@ -179,10 +214,14 @@ def _in_order(
     touching, waiting = [], []
     for n, candidate in enumerate(candidates):
         wholes, course = candidate.wholes(), candidate.course(sign)
-        if wholes.touch(course.displacement(start)):
+        apart = candidate.apart_until(sign, start, reach)
+        if apart > start:
+            waiting.append((apart, n, wholes, course))
+        elif wholes.touch(course.displacement(start)):
             touching.append(candidate)
         else:
             waiting.append((start, n, wholes, course))
+    heapq.heapify(waiting)
     while waiting and waiting[0][0] < reach:
         s, n, wholes, course = heapq.heappop(waiting)
         s, short = wholes.step(course, s, reach)

@@ -9,6 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.collisions.constants import LEVEL
+from kinform.collisions.driving.swept_spheres import SweptSpheres
+from kinform.collisions.parts.spheres import Spheres
 from kinform.foundation.algebra.vectors import cross, perpendicular
 from kinform.foundation.meshes.boxes import facet_boxes
 from kinform.foundation.meshes.proximity import near_boxes
@@ -21,9 +23,15 @@ class Profile:
 
     def __init__(self, vertices: Array, faces: Ints, twist: Array):
         self._faces = faces
+        self._spheres: SweptSpheres | None = None
         self._turning = bool(twist[:3] @ twist[:3] > 0.25)
         axis = twist[:3] if self._turning else twist[3:]
         across = np.stack(perpendicular(axis), axis=1)
+        self.frame = np.eye(4)
+        """(4, 4) displacement of the world to where the axis is z."""
+        self.frame[:3, :3] = np.column_stack([across, axis]).T
+        if self._turning:
+            self.frame[:3, 3] = -self.frame[:3, :3] @ cross(axis, twist[3:])
         away = vertices - cross(axis, twist[3:]) if self._turning else vertices
         self._flat = away @ across
         self._radius = np.linalg.norm(self._flat, axis=1)
@@ -32,6 +40,12 @@ class Profile:
         """m: greatest distance from the axis of a turn."""
         rounding = LEVEL * max(self.largest, float(np.linalg.norm(twist[3:])))
         self._level = self._turning and abs(float(twist[:3] @ twist[3:])) < rounding
+
+    def spheres(self, spheres: Spheres, X_WP: Array) -> SweptSpheres:
+        """Spheres of the part, where the axis is z."""
+        if self._spheres is None:
+            self._spheres = SweptSpheres(spheres, self.frame @ X_WP, self._turning)
+        return self._spheres
 
     @property
     def span(self) -> tuple[float, float]:
@@ -59,10 +73,19 @@ class Profile:
                 low[:, k], high[:, k] = facet_boxes(self._flat[:, k], corners)
             return low, high
         high[:, 0] = facet_boxes(self._radius, corners)[1]
-        low[:, 0] = _nearest(self._flat[corners])
+        low[:, 0] = nearest(self._flat[corners])
         if self._level:
             low[:, 1], high[:, 1] = facet_boxes(self._heights, corners)
         return low, high
+
+    @property
+    def turns(self) -> bool | None:
+        """Whether it is a turn or a slide; None: a screw, of which heights are not kept."""
+        return self._turning if self._level or not self._turning else None
+
+    def corners(self, facets: Ints) -> Array:
+        """(n, 3, 3) m of facets' corners: across the axis and along it."""
+        return np.concatenate([self._flat, self._heights[:, None]], axis=1)[self._faces[facets]]
 
     def radius(self, facets: Ints) -> float:
         """m: greatest distance of some facets from the axis of a turn."""
@@ -87,7 +110,7 @@ def meeting(
     return facets[0][near[0]], facets[1][near[1]]
 
 
-def _nearest(flat: Array) -> Array:
+def nearest(flat: Array) -> Array:
     """(n,) distance of flat triangles (n, 3, 2) from the origin; 0 where it is inside."""
     x, y = flat[..., 0], flat[..., 1]
     u, v = np.roll(x, -1, axis=1) - x, np.roll(y, -1, axis=1) - y

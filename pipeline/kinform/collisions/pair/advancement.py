@@ -36,6 +36,9 @@ class First:
     """m: how deep the parts overlapped at the start, before they parted."""
 
 
+NOTHING = First(None, None, None)
+
+
 @dataclass(frozen=True, eq=False)
 class _Hit(First):
     hit: float
@@ -44,7 +47,7 @@ class _Hit(First):
 def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, start: float = 0.0) -> First:
     """The first crossing of a pair while s goes from `start` up to `end`, to within `fine`."""
     if test.empty:
-        return First(None, None, None)
+        return NOTHING
     resolution = max(
         constants.RESOLUTION * test.size, (course.travel(end) - course.travel(start)) / constants.WORK * 2.0
     )
@@ -53,6 +56,17 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
     left, stack = start, [end]
     while stack:
         right = stack[-1]
+        if course.meets is not None:
+            meets, until = course.meets(left)
+            if left < until < right:
+                stack.append(until)
+                right = until
+            if not meets:
+                entered = search.entered(left, right, end, fine, resolution) if right >= end else None
+                if entered is not None:
+                    return entered
+                left = search.skip(stack.pop())
+                continue
         way = course.travel(right) - course.travel(left)
         if (
             search.state(left).distance + search.state(right).distance
@@ -219,6 +233,14 @@ class _Search:
         self.since = {pair: self.since.get(pair, (left, right)) for pair in crossing.shared}
         if self.overlaps:
             self.overlaps, self._apart = bool(crossing), right
+        self._known = {key: state for key, state in self._known.items() if key >= right}
+        return right
+
+    def skip(self, right: float) -> float:
+        """Go on from `right`, where nothing can cross, nor on the way there."""
+        self.since = {}
+        if self.overlaps:
+            self.overlaps, self._apart = False, right
         self._known = {key: state for key, state in self._known.items() if key >= right}
         return right
 

@@ -21,6 +21,16 @@ class Course:
     nodes: Array | None = None
     """(T,) parameters, ascending, at which displacements cost little."""
 
+    meets: Callable[[float], tuple[bool, float]] | None = None
+    """Whether facets that count can meet at s, and up to where that stays so; None: not known."""
+
+    def apart(self, low: float, high: float) -> bool:
+        """Whether it is known that nothing that counts can meet between two parameters."""
+        if self.meets is None:
+            return False
+        meets, until = self.meets(low)
+        return not meets and until >= high
+
     def middle(self, low: float, high: float) -> float:
         """A parameter about half way between two: a node where there is one."""
         middle = 0.5 * (low + high)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence, Set
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from kinform.collisions.constants import MATE_ROUNDING
-from kinform.model.arrays import Array, Flags
+from kinform.collisions.constants import ALONG_AXIS, MATE_ROUNDING
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import MeshSurfaces, Surface
 
@@ -39,6 +41,9 @@ class Mates:
             pair for pair, patch in zip(self._pairs, patches, strict=True) if patch.kind in _SHAPELESS
         }
 
+    def __bool__(self) -> bool:
+        return bool(self._pairs)
+
     def along(self, pair: SurfacePair, segments: Array) -> Flags:
         """(n,) which segments (n, 2, 3) m lie on a mate that both surfaces belong to or border."""
         out = np.zeros(len(segments), dtype=bool)
@@ -51,6 +56,66 @@ class Mates:
             if away is not None:
                 out |= (away.reshape(-1, 2) <= slack).all(axis=1)
         return out
+
+    def surely_along(self, pairs: tuple[Ints, Ints], kept: Kept) -> Flags:
+        """(n,) which facets of surfaces `pairs` (n,) each lie along a mate wherever they cross as they turn or slide
+        by what their points keep."""
+        out = np.zeros(len(pairs[0]), dtype=bool)
+        for mate, slack in zip(self._pairs, self.slacks, strict=True):
+            if mate in self._bare:
+                out |= (pairs[0] == mate[0]) & (pairs[1] == mate[1])
+            border = [np.zeros(len(near), dtype=bool) for near in self._near]
+            for flags, near, surface in zip(border, self._near, mate, strict=True):
+                flags[list(near[surface])] = True
+            rows = np.flatnonzero(border[0][pairs[0]] & border[1][pairs[1]] & ~out)
+            if len(rows):
+                away = kept.furthest(self._surfaces.surfaces[mate[0]], rows)
+                out[rows] = away <= slack if away is not None else False
+        return out
+
+
+@dataclass(frozen=True, eq=False)
+class Kept:
+    """Boxes (n, 2), from `low` to `high`, of what points keep: distance from an axis and height, or the shadow along
+    it."""
+
+    low: Array
+    high: Array
+    turning: bool
+    X_KA: Array
+    """(4, 4) pose of the first part where z is the axis."""
+    span: tuple[float, float]
+    """m: of the first part along the axis."""
+
+    def furthest(self, surface: Surface, rows: Ints) -> Array | None:
+        """(k,) m that no point of some of the boxes is further from a surface of the first part; None where it is not
+        told."""
+        low, high = self.low[rows], self.high[rows]
+        point, axis = self.X_KA[:3, :3] @ surface.point + self.X_KA[:3, 3], self.X_KA[:3, :3] @ surface.axis
+        if surface.kind == "plane":
+            if self.turning:
+                middle, half = (f(low[:, 1], high[:, 1]) for f in (_middle, _half))
+                away = np.abs((middle - point[2]) * axis[2] - point[:2] @ axis[:2]) + half * abs(axis[2])
+                return np.asarray(away + np.hypot(*axis[:2]) * high[:, 0])
+            middle, half = _middle(low, high), _half(low, high)
+            along = _middle(*self.span), _half(*self.span)
+            away = np.abs((middle - point[:2]) @ axis[:2] + (along[0] - point[2]) * axis[2])
+            return np.asarray(away + half @ np.abs(axis[:2]) + along[1] * abs(axis[2]))
+        if surface.kind != "cylinder" or not self.turning or abs(axis[2]) < ALONG_AXIS:
+            return None
+        # the distance of its own axis from that of the turn is greatest at one end of the heights
+        shifts = [point[:2] + (side[:, 1, None] - point[2]) * axis[:2] / axis[2] for side in (low, high)]
+        shift = np.maximum(*(np.hypot(*shift.T) for shift in shifts))
+        outer, inner = high[:, 0] + shift, (low[:, 0] - shift) * abs(axis[2])
+        return np.asarray(np.maximum(outer - surface.radius, surface.radius - inner))
+
+
+def _middle(low: Any, high: Any) -> Any:
+    return 0.5 * (low + high)
+
+
+def _half(low: Any, high: Any) -> Any:
+    return 0.5 * np.abs(high - low)
 
 
 def _of(patch: Patch, first: str) -> SurfacePair:

@@ -64,10 +64,10 @@ class PairTest:
         self._meshes = (shapes.mesh(first), shapes.mesh(second))
         self._surfaces = (shapes.surfaces_of(first), shapes.surfaces_of(second))
         near = (shapes.borders(first), shapes.borders(second))
-        self._mates = Mates(first, mates, self._surfaces[0], near, self.size)
+        self.mates = Mates(first, mates, self._surfaces[0], near, self.size)
         self.scrape = shapes.allowed(first, second).length
         """m: less deep, parts scrape, as mates may."""
-        self.loose = max([self.scrape, *self._mates.slacks])
+        self.loose = max([self.scrape, *self.mates.slacks])
         """m: less deep, points of one may be in the other though the parts only mate."""
         self.empty = not (len(facets[0]) and len(facets[1]))
         if not self.empty:
@@ -235,11 +235,15 @@ class PairTest:
         slack = self.scrape
         for pair in sorted(set(zip(first_labels.tolist(), second_labels.tolist(), strict=True))):
             shared = segments[(first_labels == pair[0]) & (second_labels == pair[1])]
-            shared = shared[~self._mates.along(pair, shared)]
+            shared = shared[~self.mates.along(pair, shared)]
             if len(shared):
                 out[pair] = shared
                 slack = max(slack, sum(self._surfaces[k].surfaces[pair[k]].chord for k in (0, 1)))
         return Crossing(out, slack) if out else NONE
+
+    def counted(self, side: int) -> Ints:
+        """(n,) the surface of each facet that counts, of the first or second part (0, 1)."""
+        return np.asarray(self._surfaces[side].labels[self.facets[side]])
 
     def _in_both(self, first: MeshIndex, second: MeshIndex, points: Array, other: Array) -> Ints:
         """Which points (n, 3), in the frame of either part, are inside both: within rounding on the surface of one, and

@@ -1,0 +1,234 @@
+"""Where along a turn or a slide facets of two parts can meet: elsewhere nothing has to be followed.
+
+A facet that turns keeps its distances from the axis and its heights, and what it turns by adds to the angles that it
+spans; one that slides keeps its shadow, and goes on along the axis. Two facets whose profiles overlap meet only where
+their spans do. Wide facets are divided, so that a wall is met by its corners where only these reach far enough; those
+of one surface with nearly the same profile, as round a bore, are taken together, their spans as they are. Facets that
+overlap within what mates may be off, on the mate itself, are no collision wherever they are, and are left out.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.collisions.constants import (
+    DIVIDED_AT_ONCE,
+    DIVIDED_MOST,
+    DIVIDED_ROUNDS,
+    DIVIDED_TO,
+    PLACES,
+    PROFILE_CELLS,
+    SPANS_MOST,
+    TESTED_MOST,
+    TESTED_TOGETHER,
+)
+from kinform.collisions.driving.swept_profiles import nearest
+from kinform.model.arrays import Array, Flags, Ints
+
+TURN = 2.0 * math.pi
+
+Along = Callable[[Ints, Ints, Array, Array], Flags]
+"""Which facets of surfaces (n,) of one part and of the other, that overlap in boxes (n, 2), low and high, of what they
+keep, do so on a mate."""
+
+
+class Spans:
+    """Places of a motion, disjoint and ascending, at which something can meet; of a turn within (0, 2π)."""
+
+    def __init__(self, low: Array, high: Array, turning: bool):
+        self.low, self.high, self._turning = low, high, turning
+
+    @classmethod
+    def of(cls, low: Array, high: Array, turning: bool, step: float) -> Spans:
+        """Of spans in any order, some larger: they begin and end at multiples of `step`, so that it does not matter how
+        finely facets were divided or taken together."""
+        low, high = step * np.floor(low / step), step * np.ceil(high / step)
+        if turning:
+            wide = np.minimum(high - low, TURN)
+            low = low % TURN
+            high = low + wide
+            over = high > TURN
+            low, high = np.append(low, np.zeros(over.sum())), np.append(np.minimum(high, TURN), high[over] - TURN)
+        return cls(*_merged(low, high), turning)
+
+    def towards(self, sign: int) -> Callable[[float], tuple[bool, float]]:
+        """Whether something can meet at s ≥ 0 of a motion to one side, and up to where that stays so."""
+        low, high = (self.low, self.high) if sign > 0 else (-self.high[::-1], -self.low[::-1])
+        if self._turning:
+            first = 0 if sign > 0 else 1
+            low, high = (np.concatenate([side + TURN * k for k in range(first, first + 2)]) for side in (low, high))
+        edges = np.stack([low, high], axis=1).ravel().tolist()
+
+        def at(s: float) -> tuple[bool, float]:
+            n = bisect_right(edges, s)
+            return n % 2 == 1, edges[n] if n < len(edges) else math.inf
+
+        return at
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """Pieces of facets, of `surface` (n,) each, by their corners (n, 3, 3): across the axis and along it."""
+
+    corners: Array
+    surface: Ints
+    low: Array
+    high: Array
+    """(n, 2) boxes of what they keep: radius and height, or shadow."""
+    start: Array
+    stop: Array
+    """(n,) rad about the axis, or m along it, that they span; all round where they are on the axis."""
+
+    @classmethod
+    def of(cls, corners: Array, surface: Ints, turning: bool, margin: float) -> Pieces:
+        """Of corners (n, 3, 3)."""
+        flat, height = corners[..., :2], corners[..., 2]
+        bottom, top = height.min(axis=1), height.max(axis=1)
+        if not turning:
+            low, high = flat.min(axis=1), flat.max(axis=1)
+            return cls(corners, surface, low - margin, high + margin, bottom - margin, top + margin)
+        radius = nearest(flat)
+        low = np.stack([radius, bottom], axis=1)
+        high = np.stack([np.hypot(flat[..., 0], flat[..., 1]).max(axis=1), top], axis=1)
+        angle = np.arctan2(flat[..., 1], flat[..., 0])
+        apart = (angle - angle[:, :1] + math.pi) % TURN - math.pi
+        wide = margin / np.maximum(radius, 1e-300)
+        start, stop = angle[:, 0] + apart.min(axis=1) - wide, angle[:, 0] + apart.max(axis=1) + wide
+        whole = (stop - start >= math.pi) | (wide > 1.0)
+        start, stop = np.where(whole, 0.0, start % TURN), np.where(whole, TURN, start % TURN + stop - start)
+        return cls(corners, surface, low - margin, high + margin, start, stop)
+
+    def some(self, chosen: Flags) -> Pieces:
+        """Some of them."""
+        low, high, start, stop = (values[chosen] for values in (self.low, self.high, self.start, self.stop))
+        return Pieces(self.corners[chosen], self.surface[chosen], low, high, start, stop)
+
+    def divided(self, wide: Flags, turning: bool, margin: float) -> Pieces:
+        """Wide ones in four."""
+        if not wide.any():
+            return self
+        a, b, c = (self.corners[wide, k] for k in range(3))
+        ab, bc, ca = 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)
+        four = [np.stack(three, axis=1) for three in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
+        new, old = Pieces.of(np.concatenate(four), np.tile(self.surface[wide], 4), turning, margin), self.some(~wide)
+        return Pieces(
+            np.concatenate([old.corners, new.corners]), np.append(old.surface, new.surface),
+            np.concatenate([old.low, new.low]), np.concatenate([old.high, new.high]),
+            np.append(old.start, new.start), np.append(old.stop, new.stop),
+        )  # fmt: skip
+
+
+class _Groups:
+    """Pieces of one surface and nearly one profile taken together."""
+
+    def __init__(self, pieces: Pieces, origin: Array, cell: Array):
+        self._pieces = pieces
+        places = [np.clip((side - origin) / cell, 0, PROFILE_CELLS - 1) for side in (pieces.low, pieces.high)]
+        key = pieces.surface.astype(np.int64)
+        for column in np.concatenate(places, axis=1).astype(np.int64).T:
+            key = key * PROFILE_CELLS + column
+        self._order = np.argsort(key, kind="stable")
+        ordered = key[self._order]
+        self._starts = np.flatnonzero(np.append(True, ordered[1:] != ordered[:-1]))
+        rank = np.repeat(np.arange(len(self._starts)), np.diff(np.append(self._starts, len(key))))
+        self._rank = rank
+        self.of = np.empty(len(key), dtype=np.int64)
+        """(n,) the group of each piece."""
+        self.of[self._order] = rank
+        self.low = np.minimum.reduceat(pieces.low[self._order], self._starts)
+        self.high = np.maximum.reduceat(pieces.high[self._order], self._starts)
+        self.surface = pieces.surface[self._order[self._starts]]
+
+    def spans(self) -> tuple[Array, Array, Ints, Ints]:
+        """Where the spans (k,) of all groups start and stop, disjoint in each; the first of each group, and how many it
+        has."""
+        start, stop = self._pieces.start[self._order], self._pieces.stop[self._order]
+        # each group is shifted beyond those before it, and back
+        apart = 2.0 * (float(stop.max()) - float(start.min()))
+        low, high = _merged(start + apart * self._rank, stop + apart * self._rank)
+        group = np.floor((low - start.min()) / apart + 1e-9).astype(np.int64)
+        count = np.bincount(group, minlength=len(self.low))
+        return low - apart * group, high - apart * group, np.cumsum(count) - count, count
+
+
+def meeting_spans(parts: Sequence[tuple[Array, Ints]], turning: bool, margin: float, along: Along) -> Spans | None:
+    """Where facets of two parts, each by corners (n, 3, 3), across the axis and along it, and surfaces (n,), can meet
+    when the second turns or slides; nearer than `margin` (m) is met. None: they are too many to be told."""
+    sides = [Pieces.of(corners, surfaces, turning, margin) for corners, surfaces in parts]
+    whole = TURN if turning else max(margin, *(float(np.ptp(side.corners[..., 2])) for side in sides))
+    origin = np.maximum(*(side.low.min(axis=0) for side in sides))
+    cell = np.maximum(np.minimum(*(side.high.max(axis=0) for side in sides)) - origin, margin) / PROFILE_CELLS
+    groups, pairs = _met(sides, origin, cell, margin, along)
+    if groups is None:
+        return None
+    for _ in range(DIVIDED_ROUNDS):
+        kept = [
+            side.some((np.bincount(pairs[:, k], minlength=len(group.low)) > 0)[group.of])
+            for k, (side, group) in enumerate(zip(sides, groups, strict=True))
+        ]
+        sides = kept
+        for _ in range(DIVIDED_AT_ONCE):
+            wide = [side.stop - side.start > DIVIDED_TO * whole for side in sides]
+            sides = [side.divided(flags, turning, margin) for side, flags in zip(sides, wide, strict=True)]
+        if sides == kept:
+            break
+        finer, met = _met(sides, origin, cell, margin, along)
+        if finer is None:
+            break
+        groups, pairs = finer, met
+    return _united(*groups, pairs, turning, whole / PLACES)
+
+
+def _met(
+    sides: Sequence[Pieces], origin: Array, cell: Array, margin: float, along: Along
+) -> tuple[tuple[_Groups, _Groups] | None, Ints]:
+    """Groups of the pieces of both, and pairs (n, 2) of groups that meet; None where they are too many."""
+    none = np.zeros((0, 2), dtype=np.int64)
+    if max(len(side.low) for side in sides) > DIVIDED_MOST:
+        return None, none
+    first, second = (_Groups(side, origin, cell) for side in sides)
+    if len(first.low) * len(second.low) > TESTED_MOST:
+        return None, none
+    return (first, second), np.concatenate([none, *_overlapping(first, second, margin, along)])
+
+
+def _overlapping(first: _Groups, second: _Groups, margin: float, along: Along) -> Iterator[Ints]:
+    """(n, 2) groups of both whose boxes overlap, other than along mates, some at a time."""
+    for begin in range(0, len(first.low), TESTED_TOGETHER):
+        low, high = (side[begin : begin + TESTED_TOGETHER] for side in (first.low, first.high))
+        meets = np.ones((len(low), len(second.low)), dtype=bool)
+        for k in range(2):
+            meets &= (second.low[:, k] <= high[:, k, None]) & (second.high[:, k] >= low[:, k, None])
+        i, j = np.nonzero(meets)
+        i += begin
+        box = np.maximum(first.low[i], second.low[j]) + margin, np.minimum(first.high[i], second.high[j]) - margin
+        rest = ~along(first.surface[i], second.surface[j], *box)
+        yield np.stack([i[rest], j[rest]], axis=1)
+
+
+def _united(first: _Groups, second: _Groups, pairs: Ints, turning: bool, step: float) -> Spans | None:
+    """Where the spans of pairs of groups overlap."""
+    if not len(pairs):
+        return Spans(np.zeros(0), np.zeros(0), turning)
+    (start_a, stop_a, at_a, count_a), (start_b, stop_b, at_b, count_b) = first.spans(), second.spans()
+    i, j = pairs.T
+    count = count_a[i] * count_b[j]
+    if count.sum() > SPANS_MOST:
+        return None
+    pair = np.repeat(np.arange(len(pairs)), count)
+    rank = np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
+    a, b = at_a[i[pair]] + rank // count_b[j[pair]], at_b[j[pair]] + rank % count_b[j[pair]]
+    return Spans.of(start_a[a] - stop_b[b], stop_a[a] - start_b[b], turning, step)
+
+
+def _merged(low: Array, high: Array) -> tuple[Array, Array]:
+    """Spans that overlap as one, ascending."""
+    order = np.argsort(low, kind="stable")
+    low, high = low[order], np.maximum.accumulate(high[order])
+    begins = np.append(True, low[1:] > high[:-1])
+    return low[begins], high[np.append(np.flatnonzero(begins)[1:] - 1, len(high) - 1)]

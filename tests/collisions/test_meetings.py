@@ -1,0 +1,168 @@
+"""What is told of a turn or a slide at once: where facets can meet, how far parts are certainly apart, and what is no
+collision wherever the motion goes."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import fcl
+import numpy as np
+import pytest
+from support.slots import lever_between_pegs
+from support.solids import assembly, box, part, random_pose, rod
+
+from kinform import collisions, contacts, kinematics, surfaces
+from kinform.collisions.driving import alone
+from kinform.collisions.driving.meeting_spans import TURN, meeting_spans
+from kinform.collisions.driving.swept_profiles import Profile
+from kinform.collisions.driving.swept_spheres import SweptSpheres
+from kinform.collisions.pair.mate_surfaces import Kept
+from kinform.collisions.parts.spheres import Spheres
+from kinform.foundation.algebra.displacements import displacement
+from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_model, fcl_pose
+
+MARGIN = 1e-9
+
+
+def no_mates(i, j, low, high):
+    return np.zeros(len(i), dtype=bool)
+
+
+def twist_of(kind, X):
+    axis = X[:3, 2]
+    return np.append(axis, np.cross(X[:3, 3], axis)) if kind == "turn" else np.append(np.zeros(3), axis)
+
+
+def shards(rng, count, size, off):
+    """Triangles strewn about, as vertices and faces."""
+    places = rng.uniform(-1, 1, (count, 1, 3)) + off
+    return (places + rng.normal(scale=size, size=(count, 3, 3))).reshape(-1, 3), np.arange(3 * count).reshape(-1, 3)
+
+
+def distances(first, second, twist, places):
+    models = [fcl.CollisionObject(fcl_model(*mesh)) for mesh in (first, second)]
+    out = []
+    for s in places:
+        models[1].setTransform(fcl_pose(displacement(s * twist)))
+        out.append(fcl_distance(*models))
+    return np.array(out)
+
+
+@pytest.mark.parametrize("kind", ["turn", "slide"])
+@pytest.mark.parametrize("seed", range(6))
+def test_parts_meet_nowhere_but_where_it_is_said(kind, seed):
+    rng = np.random.default_rng(seed)
+    twist = twist_of(kind, random_pose(rng))
+    size = 0.02 if seed % 2 else 0.4
+    meshes = [shards(rng, 12, size, off) for off in (0.0, [0.9, 0.2, 0.1])]
+    profiles = [Profile(*mesh, twist) for mesh in meshes]
+    every = np.arange(12)
+    spans = meeting_spans([(p.corners(every), every) for p in profiles], kind == "turn", MARGIN, no_mates)
+    told = {sign: spans.towards(sign) for sign in (-1, 1)}
+    places = np.linspace(0.0, 3.1, 1500)
+    met = 0
+    for sign in (-1, 1):
+        live = np.array([told[sign](s)[0] for s in places])
+        touching = distances(*meshes, sign * twist, places) <= 0.0
+        met += touching.sum()
+        assert live[touching].all()
+        assert size > 0.1 or not live.all()
+        for s, meets in zip(places[::50], live[::50], strict=True):
+            until = told[sign](s)[1]
+            within = (places >= s) & (places < until)
+            assert (live[within] == meets).all()
+    if size > 0.1:
+        assert met
+
+
+def test_a_fine_ring_is_met_no_further_than_its_teeth_reach():
+    """Two small facets at 90° meet at a quarter of a turn, and for about as long as they are wide."""
+    first = np.array([[[1.0, 0, 0], [1.0, 0.01, 0], [1.0, 0.01, 0.01]]])
+    second = np.array([[[0, -1.0, 0], [0.01, -1.0, 0], [0.01, -1.0, 0.01]]])
+    spans = meeting_spans([(first, np.zeros(1, int)), (second, np.zeros(1, int))], True, MARGIN, no_mates)
+    assert len(spans.low) == 1
+    assert spans.low[0] <= np.pi / 2 <= spans.high[0]
+    assert spans.high[0] - spans.low[0] < 0.021 + 2 * TURN / 8192
+
+
+@pytest.mark.parametrize("kind", ["turn", "slide"])
+@pytest.mark.parametrize("seed", range(4))
+def test_spheres_never_say_apart_where_parts_meet(kind, seed):
+    rng = np.random.default_rng(seed)
+    twist = twist_of(kind, random_pose(rng))
+    meshes = [shards(rng, 300, 0.02, off) for off in (0.0, [0.5, 0.8, 2.0])]
+    frame = Profile(*meshes[0], twist).frame
+    held = [Spheres.of(SimpleNamespace(vertices=vertices, faces=faces)) for vertices, faces in meshes]
+    first, second = (SweptSpheres(spheres, frame, kind == "turn") for spheres in held)
+    places = np.linspace(0.0, 3.1, 800)
+    for sign in (-1, 1):
+        free = first.apart_until(second, sign, 0.0, 3.1)
+        apart = distances(*meshes, sign * twist, places)
+        assert (apart[places < free] > 0.0).all()
+        if free < 3.1:
+            # spheres are not much larger than what they hold
+            assert distances(*meshes, sign * twist, [free])[0] < 0.2
+
+
+@pytest.mark.parametrize("turning", [True, False])
+@pytest.mark.parametrize("kind", ["plane", "cylinder"])
+def test_points_are_no_further_from_a_mate_than_their_box_says(turning, kind):
+    rng = np.random.default_rng(5)
+    told = 0
+    for _ in range(40):
+        X = random_pose(rng)
+        axis = X[:3, :3].T @ [0, 0, 1.0] if turning or kind == "cylinder" else X[:3, :3].T @ [1.0, 0, 0]
+        axis = axis + rng.normal(scale=0.02, size=3)
+        axis /= np.linalg.norm(axis)
+        surface = SimpleNamespace(kind=kind, axis=axis, point=rng.normal(scale=0.1, size=3), radius=0.5)
+        low = rng.uniform(0.2, 0.5, (1, 2))
+        high = low + rng.uniform(0, 0.3, (1, 2))
+        bound = Kept(low, high, turning, X, (-1.0, 1.0)).furthest(surface, np.array([0]))
+        if bound is None:
+            continue
+        told += 1
+        a, b = rng.uniform(low[0], high[0], (2000, 2)).T
+        angle, height = rng.uniform(0, TURN, 2000), rng.uniform(-1, 1, 2000)
+        points = np.stack([a * np.cos(angle), a * np.sin(angle), b] if turning else [a, b, height], axis=1)
+        local = (points - X[:3, 3]) @ X[:3, :3] - surface.point
+        along = local @ axis
+        away = np.abs(along)
+        if kind == "cylinder":
+            away = np.abs(np.linalg.norm(local - along[:, None] * axis, axis=1) - 0.5)
+        assert away.max() <= bound[0] + 1e-12
+    assert told == (0 if kind == "cylinder" and not turning else 40)
+
+
+def searched(monkeypatch, solids):
+    """Pairs that are followed, with the poses that were tried of each, and the ranges."""
+    tried = {}
+
+    def counted(test, course, *args, **kwargs):
+        asked = []
+        whole = course.displacement
+        object.__setattr__(course, "displacement", lambda s: asked.append(s) or whole(s))
+        out = first_crossing(test, course, *args, **kwargs)
+        tried.setdefault(test.part_names, []).append(len(set(asked)))
+        return out
+
+    first_crossing = alone.first_crossing
+    monkeypatch.setattr(alone, "first_crossing", counted)
+    made = assembly(*(part(name, solid, np.eye(4), 1e-3) for name, solid in solids.items()), ground=None)
+    known = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
+    touching = contacts.find(made, known)
+    return tried, collisions.ranges(made, known, touching, kinematics.derive(made, known, touching))
+
+
+def test_a_shaft_between_its_collars_is_not_followed_round(monkeypatch):
+    block = box(-20, 20, -20, 20, 0, 20) - rod(10, -1, 21, 48)
+    shaft = rod(10, -3, 23, 48) + rod(14, -6, 0, 48) + rod(14, 20, 26, 48)
+    tried, ranges = searched(monkeypatch, {"block": block, "shaft": shaft})
+    assert [item.status for item in ranges] == ["unbounded"]
+    assert tried == {}
+
+
+def test_a_lever_is_followed_only_where_it_comes_to_its_pegs(monkeypatch):
+    tried, ranges = searched(monkeypatch, lever_between_pegs())
+    assert [item.status for item in ranges] == ["found"]
+    assert sorted(len(times) for times in tried.values()) == [2]
+    assert max(max(times) for times in tried.values()) < 60
