@@ -8,6 +8,7 @@ import pytest
 import kinform
 
 ZERO = "[[0, 0, 0], [0, 0, 0], [0, 0, 0]]"
+ROUND = "[[1, 0, 0], [0, 1, 0], [0, 0, 1]]"
 
 
 def _requirement(kind, **values):
@@ -115,6 +116,69 @@ def test_lowering_takes_the_torque_of_the_handbook_where_it_does_not_lock(tmp_pa
         findings, _ = _asked(tmp_path, text + _requirement("hold", joint='"spin"', limit=repr(float(limit))))
         assert ("KF424" in findings) != fits
     assert "without friction" in findings["KF424"].message
+
+
+TRAIN = """
+schema = 1
+[assembly]
+name = "train"
+units = "mm"
+ground = "frame"
+[[part]]
+name = "frame"
+PARTS
+[function]
+JOINTS
+[[function.coupling]]
+joints = ["motor", "middle"]
+ratio = 5
+efficiency = 0.9
+[[function.coupling]]
+joints = ["middle", "drum"]
+ratio = -20
+efficiency = FIRST
+BACK
+[[function.load]]
+part = "reel"
+torque = [0, 0, 3]
+[simulation]
+gravity = [0, 0, 0]
+level = "kinematic"
+"""
+
+
+def _train(tmp_path, kind, first=0.8, back="", joint="motor", **values):
+    joints = "".join(
+        f'[[function.joint]]\nname = "{name}"\nbetween = ["frame", "{body}"]\ntype = "revolute"\n'
+        f"axis = [0, 0, 1]\npoint = [{x}, 0, 0]\n"
+        for name, body, x in (("motor", "rotor", 0), ("middle", "wheel", 50), ("drum", "reel", 150))
+    )
+    parts = "".join(_part(name).replace(ZERO, ROUND) for name in ("rotor", "wheel", "reel"))
+    text = TRAIN.replace("PARTS", parts).replace("JOINTS", joints).replace("FIRST", str(first)).replace("BACK", back)
+    return _asked(tmp_path, text + _requirement(kind, joint=f'"{joint}"', **values))
+
+
+def test_efficiencies_of_a_train_multiply(tmp_path):
+    assert "KF434" not in _train(tmp_path, "efficiency", minimum=0.72 - 1e-9)[0]
+    findings, _ = _train(tmp_path, "efficiency", minimum=0.72 + 1e-9)
+    assert "72" in findings["KF434"].message
+
+
+def test_a_worm_in_a_train_locks_it(tmp_path):
+    """Teeth that rub alike both ways lock below one half; what is stated of the way back counts where it is."""
+    for first, back, locks in ((0.8, "", False), (0.49, "", True), (0.51, "", False)):
+        _, rules = _train(tmp_path, "self_locking", first, back)
+        assert (rules["KF435"].outcome == "passed") == locks
+    assert _train(tmp_path, "self_locking", 0.8, "efficiency_back = 0")[1]["KF435"].outcome == "passed"
+    assert "KF435" in _train(tmp_path, "self_locking", 0.4, "efficiency_back = 0.1")[0]
+
+
+def test_less_torque_holds_what_gears_hold_too(tmp_path):
+    """3 N·m over 100, less what both pairs of teeth hold: η′ = 2 - 1/η of each."""
+    exact = 0.03 * (2.0 - 1.0 / 0.9) * (2.0 - 1.0 / 0.8)
+    for limit, fits in ((exact * (1.0 + 1e-9), True), (exact * (1.0 - 1e-9), False)):
+        findings, _ = _train(tmp_path, "hold", limit=repr(float(limit)))
+        assert ("KF424" in findings) != fits
 
 
 LEVER = """

@@ -109,8 +109,9 @@ def _signal(signal: Signal) -> str:
 
 
 def _controller(controller: Controller) -> str:
-    gains = (f"{name} {number(getattr(controller, name))}" for name in ("kp", "ki", "kd"))
-    return ", ".join((*gains, f"limit {number(controller.limit)}"))
+    gains = [f"{name} {number(getattr(controller, name))}" for name in ("kp", "ki", "kd")]
+    speed = [f"speed up to {number(controller.speed_limit)} rad/s or m/s"] if controller.cascade else []
+    return ", ".join((*gains, f"limit {number(controller.limit)}", *speed))
 
 
 def _body(body: RigidBody, lengths: Lengths) -> str:
@@ -149,6 +150,9 @@ _PARAMETERS: dict[type[Component], Callable[[Any, Lengths], str]] = {
     DcMotor: lambda c, u: (
         f"{number(c.resistance)} Ω, {number(c.inductance)} H, {number(c.constant)} N·m/A, gear {number(c.gear)}"
         + (f", at most {number(c.current_limit)} A" if math.isfinite(c.current_limit) else "")
+        + (f", rotor {number(c.rotor_inertia)} kg·m²" if c.rotor_inertia else "")
+        + (f", rotor friction {number(c.rotor_friction)} N·m" if c.rotor_friction else "")
+        + _efficiency(c)
     ),
     VoltageSource: lambda c, u: f"{_signal(c.signal)} V",
     VoltageController: lambda c, u: f"target {_signal(c.target)} rad or m, {_controller(c.controller)}",
@@ -164,13 +168,21 @@ _PARAMETERS: dict[type[Component], Callable[[Any, Lengths], str]] = {
         f"{_triple(c.stiffness)} N/m, {_triple(c.torsion)} N·m/rad, {_triple(c.damping)} N·s/m, "
         f"{_triple(c.torsion_damping)} N·m·s/rad at {u.point(c.point)} {u.unit}"
     ),
-    Gear: lambda c, u: "a = " + " + ".join(f"{number(-factor)}·{port}" for port, factor in c.terms[1:]),
+    Gear: lambda c, u: (
+        "a = " + " + ".join(f"{number(-factor)}·{port}" for port, factor in c.terms[1:]) + _efficiency(c)
+    ),
     LoadComponent: lambda c, u: (
         f"{_triple(c.force)} N, {_triple(c.torque)} N·m at {u.point(c.point)} {u.unit}"
         f"{', turning with it' if c.turning else ''}"
         f"{'' if c.signal == STEADY else f', times {_signal(c.signal)}'}"
     ),
 }
+
+
+def _efficiency(gear: DcMotor | Gear) -> str:
+    if not gear.lossy:
+        return ""
+    return f", efficiency {number(gear.efficiency)}, back {number(gear.efficiency_back)}"
 
 
 def _length(metres: float, lengths: Lengths) -> str:

@@ -30,6 +30,7 @@ from kinform.behaviour.shafts import (
     Spring,
     VoltageController,
     VoltageSource,
+    rubbing_back,
 )
 from kinform.behaviour.signals import STEADY, Constant, Signal, signal
 from kinform.behaviour.sliding import Sliding
@@ -119,7 +120,7 @@ def _actors(drive: Drive, on: OneFreedom, name: str, found: Mapping[str, Sliding
     if drive.kind == "friction":
         return (_friction(drive, on, name, found),)
     if drive.kind == "servo":
-        return (Servo(name, drive.joint, _signal(drive, sign * scale), _controller(drive), **at),)
+        return (Servo(name, drive.joint, _signal(drive, sign * scale), _controller(drive, on.turns), **at),)
     if drive.kind == "dc_motor":
         return _motor(drive, on, name)
     raise ValueError("this kind is not simulated")
@@ -160,18 +161,30 @@ def _motor(drive: Drive, on: OneFreedom, name: str) -> tuple[Component, ...]:
     if resistance <= 0.0 or inductance < 0.0:
         raise ValueError("its resistance must be positive, its inductance not negative")
     limit = _number(drive, "current_limit") if "current_limit" in drive.parameters else math.inf
-    motor = DcMotor(name, drive.joint, resistance, inductance, constant, gear, limit, **on.fields)
-    if "kp" in drive.parameters:
+    motor = DcMotor(name, drive.joint, resistance, inductance, constant, gear, limit, *_rotor(drive), **on.fields)
+    if "kp" in drive.parameters or "position_gain" in drive.parameters:
         if not on.valued:
             raise ValueError("a ball's turn about one direction has a rate and no value to be controlled")
         target = _signal(drive, sign * drive.scale(on.turns))
-        return motor, VoltageController(f"controller of {name}", drive.joint, target, _controller(drive), **on.fields)
+        control = _controller(drive, on.turns)
+        return motor, VoltageController(f"controller of {name}", drive.joint, target, control, **on.fields)
     voltage = signal(drive.law, float(sign)) if drive.law is not None else Constant(sign * _number(drive, "voltage"))
     return motor, VoltageSource(f"voltage of {name}", drive.joint, voltage)
 
 
-def _controller(drive: Drive) -> Controller:
+def _rotor(drive: Drive) -> tuple[float, float, float, float]:
+    """Inertia and friction of a motor's rotor, efficiency of its gear and back."""
+    efficiency = _number(drive, "efficiency", 1.0)
+    inertia, friction = _number(drive, "rotor_inertia", 0.0), _number(drive, "rotor_friction", 0.0)
+    return inertia, friction, efficiency, _number(drive, "efficiency_back", rubbing_back(efficiency))
+
+
+def _controller(drive: Drive, turns: bool) -> Controller:
+    """The controller; its limit of speed is in degrees or lengths of the manifest a second."""
     limit = _number(drive, "limit") if "limit" in drive.parameters else math.inf
+    if "position_gain" in drive.parameters:
+        kp, ki, kd = (_number(drive, key, 0.0) for key in ("position_gain", "speed_integral", "speed_gain"))
+        return Controller(kp, ki, kd, limit, drive.scale(turns) * _number(drive, "speed_limit"))
     return Controller(_number(drive, "kp"), _number(drive, "ki", 0.0), _number(drive, "kd", 0.0), limit)
 
 
@@ -201,7 +214,9 @@ def make_gear(
     if not all(math.isfinite(one) for one in (ratio, *others)):
         return None, {}, "its ratio is not a number"
     name = " ".join([f"gear {number}", *coupling.every])
-    gear = Gear(name, name, ratio, others=dict(zip(ascii_lowercase[2:], others, strict=False)))
+    more = dict(zip(ascii_lowercase[2:], others, strict=False))
+    shares = coupling.efficiency, coupling.efficiency_back
+    gear = Gear(name, name, ratio, None, None, None, -math.inf, math.inf, more, *shares)
     return gear, {port.name: side.joint.subject for port, side in zip(gear.ports, sides, strict=True)}, ""
 
 

@@ -55,8 +55,8 @@ class JointComponent(Component):
 
 @dataclass(frozen=True, eq=False)
 class Gear(Component):
-    """value at a = ratio · value at b + Σ others · value at c, d, …; the efforts do no work between them. An equation a
-    port.
+    """value at a = ratio · value at b + Σ others · value at c, d, …; the efforts do no work between them, but for what
+    a gear of two ports loses. An equation a port.
 
     Where teeth do that, their force acts along one of two lines through the pitch point, whichever pushes. Planetary
     trains and differentials have three ports and more.
@@ -76,6 +76,15 @@ class Gear(Component):
     upper: JointValue = math.inf
     others: dict[str, float] = field(default_factory=dict)
     """By the names of the ports after b, which are c, d, …: the ratio of each."""
+    efficiency: Ratio = 1.0
+    """Share of the power put in at a that comes out at b; zero or less: a cannot drive b."""
+    efficiency_back: Ratio = 1.0
+    """Of the power put in at b, at a; one of the two is positive."""
+
+    @property
+    def lossy(self) -> bool:
+        """Whether it loses power."""
+        return self.efficiency != 1.0 or self.efficiency_back != 1.0
 
     @property
     def ports(self) -> tuple[Port, ...]:

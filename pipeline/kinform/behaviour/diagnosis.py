@@ -25,7 +25,7 @@ from kinform.behaviour.shafts import Actor, Controller, DcMotor, EndStop, Fricti
 from kinform.behaviour.signals import LAWS, Table
 
 _SIGNALS = tuple(LAWS.values())
-_UNBOUNDED = ("lower", "upper", "limit", "current_limit")
+_UNBOUNDED = ("lower", "upper", "limit", "current_limit", "speed_limit")
 """Values that may be infinite."""
 
 
@@ -55,6 +55,8 @@ def _faults_of_values(component: Component) -> Iterator[str]:
             continue  # what is not known of a body stands in the way of dynamics only
         if isinstance(value, Controller):
             yield from _numbers(value, "its ")
+            if not value.speed_limit > 0.0:
+                yield "the limit of its speed must be positive"
         elif isinstance(value, _SIGNALS):
             yield from _numbers(value, "its law: ")
             yield from _rows(value)
@@ -72,8 +74,23 @@ def _faults_of_values(component: Component) -> Iterator[str]:
         yield "its resistance must be positive, its inductance not negative"
     if isinstance(component, DcMotor) and not component.current_limit > 0.0:
         yield "the limit of its current must be positive"
+    if isinstance(component, DcMotor) and (component.rotor_inertia < 0.0 or component.rotor_friction < 0.0):
+        yield "the inertia and the friction of its rotor must not be negative"
+    if isinstance(component, DcMotor | Gear):
+        yield from _faults_of_efficiency(component)
     if isinstance(component, JointComponent):
         yield from _faults_of_geometry(component)
+
+
+def _faults_of_efficiency(component: DcMotor | Gear) -> Iterator[str]:
+    for name in ("efficiency", "efficiency_back"):
+        if getattr(component, name) > 1.0:
+            yield f"its {name.replace('_', ' ')} is {getattr(component, name):g}: at most 1"
+    driven = isinstance(component, Gear) and component.efficiency_back > 0.0
+    if component.efficiency <= 0.0 and not driven:
+        yield f"its efficiency is {component.efficiency:g}: what cannot be driven is no gear"
+    if isinstance(component, Gear) and component.lossy and component.others:
+        yield "its efficiency is stated, which is simulated of gears between two joints only"
 
 
 def _faults_of_friction(friction: Friction) -> Iterator[str]:

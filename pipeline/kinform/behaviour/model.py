@@ -240,17 +240,21 @@ class Model:
         pitch_point: ArrayLike | None = None,
         flanks: tuple[ArrayLike, ArrayLike] | None = None,
         others: Mapping[str, float] | None = None,
+        efficiency: float = 1.0,
+        efficiency_back: float | None = None,
     ) -> None:
         """The value of joint `a` is the ratio times that of joint `b`, and of `others`, by their names, each with its
         own ratio: planetary trains and differentials.
 
         `pitch_point` (3,) m and `flanks`, the directions (3,) in which either side of the teeth at `a` pushes those at
-        `b`, where the force between the teeth is to be known, and what it does to the bearings.
+        `b`, where the force between the teeth is to be known, and what it does to the bearings. `efficiency` from `a`
+        to `b`, and back: default that of teeth that rub alike both ways (`shafts.rubbing_back`).
         """
         flank, back = (None, None) if flanks is None else (_unit(side) for side in flanks)
         more = dict(zip(ascii_lowercase[2:], (others or {}).items(), strict=False))
         ratios = {port: factor for port, (_, factor) in more.items()}
-        gear = Gear(name, name, ratio, _vector(pitch_point), flank, back, others=ratios)
+        lost = efficiency, shafts.rubbing_back(efficiency) if efficiency_back is None else efficiency_back
+        gear = Gear(name, name, ratio, _vector(pitch_point), flank, back, -math.inf, math.inf, ratios, *lost)
         self.add(gear, a=a, b=b, **{port: joint for port, (joint, _) in more.items()})
 
     def servo(
@@ -269,11 +273,18 @@ class Model:
         gear: float = 1.0,
         current_limit: float = math.inf,
         *,
+        rotor_inertia: float = 0.0,
+        rotor_friction: float = 0.0,
+        efficiency: float = 1.0,
+        efficiency_back: float | None = None,
         freedom: int | None = None,
     ) -> None:
-        """A DC motor on the joint: Ω, H, N·m/A, turns of the motor a turn of the joint, A."""
+        """A DC motor on the joint: Ω, H, N·m/A, turns of the motor a turn of the joint, A; its rotor: kg·m², N·m; the
+        efficiency of its gear, and back: default that of teeth that rub alike both ways (`shafts.rubbing_back`)."""
+        back = shafts.rubbing_back(efficiency) if efficiency_back is None else efficiency_back
+        rotor = rotor_inertia, rotor_friction, efficiency, back
         on = self._on(joint, freedom)
-        motor = shafts.DcMotor(name, name, resistance, inductance, constant, gear, current_limit, **on)
+        motor = shafts.DcMotor(name, name, resistance, inductance, constant, gear, current_limit, *rotor, **on)
         self.add(motor, shaft=joint)
 
     def voltage(self, name: str, motor: Where, signal: Signal) -> None:

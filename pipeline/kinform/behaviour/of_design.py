@@ -12,6 +12,7 @@ import numpy as np
 from kinform.behaviour.acting import make_drive, make_gear, make_load, make_spring, mesh_gear
 from kinform.behaviour.components import Ground, JointComponent, RigidBody, System
 from kinform.behaviour.coupled import Imposed, imposed_couplings
+from kinform.behaviour.efficiencies import lossy, lost_nowhere, stated_losses
 from kinform.behaviour.homes import homes
 from kinform.behaviour.joints import KINDS, JointGeometry
 from kinform.behaviour.nested import nest
@@ -121,11 +122,13 @@ def build(
             (held if partial else failures).append((joint.name, why))
             continue
         builder.add(made, a=first, b=second, shaft=f"shaft {joint.name}")
+    losing = stated_losses(assembly, kinematics, imposed)
     modelled = {c.subject: c for c in builder.components if isinstance(c, JointComponent)}
     stiff = {name for name, _ in held}
     modelled = {name: joint for name, joint in modelled.items() if name not in stiff}
     for name, coupling in sorted(ties.items()):
         teeth = mesh_gear(coupling, modelled)
+        teeth = teeth if isinstance(teeth, str) else lossy(teeth, coupling, losing)
         if isinstance(teeth, str):
             if partial:
                 bodies = next(joint.bodies for joint in kinematics.joints if joint.name == name)
@@ -149,6 +152,7 @@ def build(
             geared.append((gear.subject, [name for name, by in imposed.replaced.items() if by == number]))
         elif gears or number in imposed.replaced.values():
             failures.append(("coupling of " + " and ".join(wanted.every), why))
+    forces_missing += lost_nowhere(losing, ties.values())
     for name, (lower, upper) in _stops(assembly, kinematics, reach):
         if name in modelled and modelled[name].kind.rates == 1 and not np.all(np.isinf([lower, upper])):
             restitution = assembly.simulation.restitution if assembly.simulation is not None else 0.0

@@ -14,6 +14,12 @@ from kinform.model.arrays import Array
 from kinform.model.quantities import XYZ, Direction, JointValue, Metres, Ratio
 
 
+def rubbing_back(efficiency: float) -> float:
+    """Efficiency of a gear driven the other way round, where its teeth rub alike both ways: 2 − 1/η, which is negative
+    below one half: it locks itself. nan for efficiencies that are not positive."""
+    return 2.0 - 1.0 / efficiency if efficiency > 0.0 else math.nan
+
+
 @dataclass(frozen=True)
 class OnShaft(Component):
     """Something on one freedom of the shaft of a joint: it gives no effort along the others. As many equations as the
@@ -118,13 +124,29 @@ class Friction(OnShaft):
 class Controller:
     """kp · e + ki · ∫e + kd · ė, e the target less the value, kept within ±limit.
 
-    The integral rests while the output is at its limit and would be pushed further.
+    With a limit of speed it is a loop of speed in one of position: kd · m + ki · ∫m, m what is missing of the speed
+    kp · e + rate of the target, kept within ±speed_limit. The integral rests while the output is at its limit and would
+    be pushed further.
     """
 
-    kp: Annotated[float, "V or N·m or N, a rad or m"]
+    kp: Annotated[float, "V or N·m or N, a rad or m; 1/s"]
     ki: Annotated[float, "as kp, a s"] = 0.0
     kd: Annotated[float, "as kp, times s"] = 0.0
     limit: Annotated[float, "V or N·m or N"] = math.inf
+    speed_limit: Annotated[float, "rad/s or m/s"] = math.inf
+    """The greatest speed that is asked for; inf: position is controlled without a loop of speed."""
+
+    @property
+    def cascade(self) -> bool:
+        """Whether it has a loop of speed."""
+        return math.isfinite(self.speed_limit)
+
+    @property
+    def without_speed_limit(self) -> Controller:
+        """What it is where its speed is not limited, but for the start of its integral."""
+        if not self.cascade:
+            return self
+        return Controller(self.kd * self.kp + self.ki, self.ki * self.kp, self.kd, self.limit)
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,8 +168,10 @@ class OnShaftAndTerminals(OnShaft):
 class DcMotor(OnShaftAndTerminals):
     """Motor with a gear: electric terminals (voltage across, current through) and a shaft. Two equations.
 
-    L di/dt = V − R i − k g ω, effort = k g i; no friction, no inertia of its own: these have a body as its rotor. A
-    supply that limits the current keeps |i| within the limit, and the integral of its controller rests there.
+    L di/dt = V − R i − k g ω. The rotor, of inertia J and with friction f, passes E = k g i − g f sign(ω) − g² J dω/dt
+    on to its gear, which gives the shaft η E where E drives, and E / η′ where the shaft does. The rotor's weight, and
+    what it does as a top, are left to the body that bears it. A supply that limits the current keeps |i| within the
+    limit, and the integral of its controller rests there.
     """
 
     resistance: Annotated[float, "Ω"]
@@ -160,6 +184,24 @@ class DcMotor(OnShaftAndTerminals):
     """g: motor turns a turn of the joint, or radians of the motor a metre."""
     current_limit: Annotated[float, "A"] = math.inf
     """The greatest current that the supply gives, either way."""
+    rotor_inertia: Annotated[float, "kg·m²"] = 0.0
+    """About the motor's axis."""
+    rotor_friction: Annotated[float, "N·m"] = 0.0
+    """Of the motor without load."""
+    efficiency: Ratio = 1.0
+    """η of its gear: share of the rotor's power that comes out at the shaft."""
+    efficiency_back: Ratio = 1.0
+    """η′: of the shaft's power that comes out at the rotor; zero or less: the shaft cannot drive it."""
+
+    @property
+    def armature(self) -> float:
+        """Inertia of the rotor as the shaft feels it: kg·m² or kg."""
+        return self.rotor_inertia * self.gear**2
+
+    @property
+    def lossy(self) -> bool:
+        """Whether its gear loses power."""
+        return self.efficiency != 1.0 or self.efficiency_back != 1.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,16 +10,16 @@ simulation uses. The coordinates that are left free are chosen so that they stay
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
-from kinform.behaviour import Actor, DcMotor, Gear, JointComponent, MotionDrive, RigidBody, smooth
+from kinform.behaviour import Actor, Gear, JointComponent, MotionDrive, RigidBody, smooth
 from kinform.behaviour.signals import Constant, Ramp, Signal, Sine, Spline, Table
 from kinform.exports.constants import CLOSE_CHOICE, LEAST_MOTION, POSES_OF_RUN
 from kinform.exports.model import ExportModel
+from kinform.exports.motors import left_out
 from kinform.exports.tree import Closing, Tree, grow
 from kinform.foundation.algebra.vectors import perpendicular
 from kinform.model.arrays import Array, Ints
@@ -103,11 +103,7 @@ def equations_of(model: ExportModel) -> Equations:
         actors = model.system.actors(joint.name)
         if joint.kind.name == "spherical":
             lost += [f"{actor.subject}: what acts about one direction of the ball {joint.subject}" for actor in actors]
-        lost += [
-            f"{actor.subject}: the limit of its motor's current ({actor.current_limit:g} A)"
-            for actor in actors
-            if isinstance(actor, DcMotor) and math.isfinite(actor.current_limit)
-        ]
+        lost += [said for actor in actors for said in left_out(model.system, actor)]
         motions = [actor for actor in actors if isinstance(actor, MotionDrive)]
         lost += [
             f"{actor.subject}: a second drive prescribes the motion of {joint.subject}"

@@ -41,6 +41,7 @@ class _Joint:
     stiffness: float = 0.0
     rest: float = 0.0
     friction: float = 0.0
+    armature: float = 0.0
 
 
 @dataclass(eq=False)
@@ -184,7 +185,8 @@ def _joint(robot: Robot, link: RobotLink, motion: Motion, position: Array) -> li
     if isinstance(primitive, Ball):
         return [_Joint(name, "ball", position, np.zeros(3))]
     k = motion.coordinate
-    on_it = (link.range if link.single else None, link.damping(k), link.stiffness(k), link.rest(k), link.friction(k))
+    limits = link.range if link.single else None
+    on_it = (limits, link.damping(k), link.stiffness(k), link.rest(k), link.friction(k), link.armature(k))
     if not primitive.omega.any():
         return [_Joint(name, "slide", position, primitive.slide, *on_it)]
     turn = _Joint(name, "hinge", position, primitive.omega, *on_it)

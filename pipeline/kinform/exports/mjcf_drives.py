@@ -20,6 +20,7 @@ from kinform.behaviour import (
 from kinform.behaviour.shafts import Controller
 from kinform.behaviour.signals import Signal
 from kinform.exports.constants import BANDWIDTH
+from kinform.exports.motors import limited, slowed
 from kinform.exports.names import XML, identifiers
 from kinform.exports.reflected import Carried, carried
 from kinform.exports.robot import Robot, RobotLink
@@ -90,6 +91,8 @@ def _servo(
     subject: str, target: Signal, controller: Controller, ratio: float, drag: float, lost: list[str]
 ) -> dict[str, Any]:
     """A position servo; `ratio`: effort for a unit of the controller's output, `drag`: damping beside it."""
+    lost += slowed(subject, controller)
+    controller = controller.without_speed_limit
     if not isinstance(target, Constant):
         lost.append(f"{subject}: the target of its controller follows a law; it is that at the start, at rest")
     if controller.ki:
@@ -110,8 +113,7 @@ def _motor(robot: Robot, motor: DcMotor, lost: list[str]) -> dict[str, Any]:
     """A motor whose current follows its voltage at once; controlled by that, or by its controller's target."""
     if motor.inductance:
         lost.append(f"{motor.subject}: the inductance of its motor ({motor.inductance:g} H)")
-    if math.isfinite(motor.current_limit):
-        lost.append(f"{motor.subject}: the limit of its motor's current ({motor.current_limit:g} A)")
+    lost += limited(motor)
     ratio = motor.constant * motor.gear / motor.resistance
     drag = ratio * motor.constant * motor.gear
     supply = robot.model.system.supply(motor.name)

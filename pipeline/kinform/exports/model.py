@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.behaviour import Behaviour, Component, JointComponent, RigidBody, System, build
-from kinform.behaviour.components import Bushing, GasSpring, SpringDamper
-from kinform.behaviour.shafts import EndStop, Friction
+from kinform.behaviour.components import Bushing, GasSpring, Gear, SpringDamper
+from kinform.behaviour.shafts import DcMotor, EndStop, Friction
 from kinform.behaviour.signals import STEADY
 from kinform.design import Design
 from kinform.errors import StageError
@@ -263,6 +263,12 @@ def _elsewhere(system: System) -> tuple[str, ...]:
         f"{component.subject}: {_ELSEWHERE[type(component)]}, which only json carries"
         for component in system.components
         if type(component) in _ELSEWHERE and not (isinstance(component, Friction) and component.static == 0.0)
+    ]
+    out += [
+        f"{one.subject}: the efficiency of its gear ({one.efficiency:g}, back {one.efficiency_back:g}), which only "
+        "json carries"
+        for one in system.components
+        if isinstance(one, Gear | DcMotor) and one.lossy
     ]
     changing = [load for load in system.loads if load.signal != STEADY]
     return (*out, *(f"{load.subject}: a load that changes over time, which only json carries" for load in changing))

@@ -285,6 +285,7 @@ def _motor(package: _Package, motor: DcMotor, shaft: str) -> None:
 
 def _controlled(controller: Controller, target: Signal) -> str:
     """Modifiers of a controller."""
+    controller = controller.without_speed_limit
     values = {"kp": controller.kp, "ki": controller.ki, "kd": controller.kd}
     if math.isfinite(controller.limit):
         values["bound"] = controller.limit

@@ -176,7 +176,8 @@ def _entries(record: type) -> tuple[_Entry, ...]:
 
 def _entry(record: type, field: dataclasses.Field[Any], hint: Any) -> _Entry:
     """By the type of the field: arrays are lists, and what is not known or not bounded is null."""
-    name, sparse = field.name, record is Gear and field.default is not dataclasses.MISSING
+    name = field.name
+    sparse = (record is Gear and field.default is not dataclasses.MISSING) or name in ("current_limit", "speed_limit")
     if hint is Signal and field.default is not dataclasses.MISSING:
         steady = field.default
         return _Entry(

@@ -79,7 +79,14 @@ class RobotLink:
             one.effort
             for one in self.actors
             if isinstance(one, Friction) and one.freedom == freedom and one.static == 0.0
-        )
+        ) + sum(motor.rotor_friction * abs(motor.gear) for motor in self._motors(freedom))
+
+    def armature(self, freedom: int) -> float:
+        """kg·m² or kg of the rotors of motors on a coordinate of its joint."""
+        return sum(motor.armature for motor in self._motors(freedom))
+
+    def _motors(self, freedom: int) -> list[DcMotor]:
+        return [one for one in self.actors if isinstance(one, DcMotor) and one.freedom == freedom]
 
     @property
     def springs(self) -> tuple[Spring, ...]:

@@ -85,6 +85,7 @@ def _actor(shaft: _Shaft, actor: Actor) -> None:
 
 
 def _gains(controller: Controller) -> Values:
+    controller = controller.without_speed_limit
     bound = number(controller.limit) if math.isfinite(controller.limit) else "unlimited"
     return {
         "kp": number(controller.kp), "ki": number(controller.ki), "kd": number(controller.kd), "bound": bound,

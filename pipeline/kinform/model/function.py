@@ -18,6 +18,8 @@ Stated = Annotated[float, "unit of the manifest"]
 """Where only the joint says whether it is an angle or a length."""
 PASSIVE = ("spring", "damper", "friction")
 """Kinds of drives that only answer to motion."""
+LOSING = {"efficiency", "efficiency_back", "rotor_friction"}
+"""Parameters of motors by which they lose power."""
 StatedRate = Annotated[float, "unit of the manifest a second"]
 
 
@@ -63,6 +65,15 @@ class Coupling:
     line: int | None
     others: dict[str, Any] = field(default_factory=dict)
     """By the names of further joints, of trains with three and more: the ratio of each."""
+    efficiency: Ratio = 1.0
+    """Of two joints: share of the work put in at the first that comes out at the second."""
+    efficiency_back: Ratio = 1.0
+    """Of the work put in at the second, at the first; zero or less: it locks itself."""
+
+    @property
+    def lossy(self) -> bool:
+        """Whether work is lost in it."""
+        return self.efficiency != 1.0 or self.efficiency_back != 1.0
 
     @property
     def terms(self) -> dict[str, float]:
@@ -197,6 +208,12 @@ class Function:
     def driven(self) -> bool:
         """Whether anything is to be moved: springs and dampers alone move nothing."""
         return any(drive.kind not in PASSIVE for drive in self.drives)
+
+    @property
+    def rubs(self) -> bool:
+        """Whether friction is stated, or what gears and rotors of motors lose."""
+        drives = any(drive.kind == "friction" or LOSING & drive.parameters.keys() for drive in self.drives)
+        return drives or any(coupling.lossy for coupling in self.couplings)
 
     @property
     def stated(self) -> bool:

@@ -31,3 +31,5 @@ SHARES_LOAD = 1e-6
 """Share of a motion (rad, or lengths) below which a joint takes no part in it."""
 MOVES_AT_REST = 1e-6
 """Share of gravity over the mechanism's length by which what is held may accelerate: rounding stays far below."""
+STAYS = 1e-12
+"""Share of the load that may be missing to hold it: rounding, of friction that just holds."""

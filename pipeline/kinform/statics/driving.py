@@ -28,7 +28,7 @@ from kinform.simulation.solver.friction_known import friction_not_determined
 from kinform.simulation.solver.run_state import Run
 from kinform.simulation.solver.slip import NotDeterminedError, Rub, dry
 from kinform.simulation.solver.start import Start, Stated, begin
-from kinform.statics.constants import MOVES_AT_REST, SHARES_LOAD
+from kinform.statics.constants import MOVES_AT_REST, SHARES_LOAD, STAYS
 
 
 @dataclass(frozen=True)
@@ -46,8 +46,8 @@ class Driving:
     @property
     def locked(self) -> bool:
         """Whether it stays without any drive."""
-        lower, upper = self.rest
-        return (lower is None or lower <= 0.0) and (upper is None or upper >= 0.0)
+        (lower, upper), nothing = self.rest, STAYS * abs(self.without)
+        return (lower is None or lower <= nothing) and (upper is None or upper >= -nothing)
 
     @property
     def least(self) -> float:

@@ -15,6 +15,10 @@ from kinform.statics.driving import Driving, driving
 
 STATE = "State masses, drives, joints and friction so that the load is determined."
 NO_FRICTION = "no friction is stated"
+REMEDY = (
+    'Add a [[function.drive]] with kind = "friction" for each joint that rubs, and the efficiency of each '
+    "[[function.coupling]] that loses power."
+)
 
 Poses = Sequence[Mapping[str, float]]
 
@@ -27,8 +31,8 @@ def driven_in(context: Context, name: str, poses: Poses) -> list[tuple[str, Driv
         return joint
     if context.lacks("mass"):
         return undecided("masses have not been computed", "Run `kinform mass`.")
-    if not any(drive.kind == "friction" for drive in context.function.drives):
-        return undecided(NO_FRICTION, 'Add a [[function.drive]] with kind = "friction" for each joint that rubs.')
+    if not context.function.rubs:
+        return undecided(NO_FRICTION, REMEDY)
     out = []
     for pose in poses or [{}]:
         shown = pose_words(context, pose)

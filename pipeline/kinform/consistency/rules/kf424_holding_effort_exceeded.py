@@ -53,7 +53,7 @@ def judge(context: Context, requirement: Hold) -> Answer:
         return joint
     if context.lacks("mass"):
         return undecided("masses have not been computed", "Run `kinform mass`.")
-    if any(drive.kind == "friction" for drive in context.function.drives):
+    if context.function.rubs:
         return _with_friction(context, requirement)
     chain = mechanism_of(context.assembly, context.kinematics)
     if isinstance(chain, str):

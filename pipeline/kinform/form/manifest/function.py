@@ -11,6 +11,8 @@ from kinform.form.manifest.common import Finite, JointType, Name, NonNegative, P
 from kinform.form.manifest.requirements import Require
 from kinform.form.manifest.springs import Bushing, GasSpring, PointSpring
 
+Share = Annotated[Finite, Field(gt=0.0, le=1.0)]
+
 
 class IntendedJointTable(Table):
     """`[[function.joint]]`: values are of the second of `between` about `axis`, relative to the first."""
@@ -43,6 +45,14 @@ class Coupling(Table):
     ratio: Finite | Annotated[list[Finite], Field(min_length=1, max_length=COUPLED_MOST - 1)] = Field(
         description="value(first) / value(second), values in degrees or lengths; not zero. With three joints and more "
         "a list: value(first) = ratio[0] · value(second) + ratio[1] · value(third) + …"
+    )
+    efficiency: Share = Field(
+        1.0, description="of two joints: share of the work put in at the first that comes out at the second"
+    )
+    efficiency_back: Annotated[Finite, Field(le=1.0)] | None = Field(
+        None,
+        description="of the work put in at the second, at the first; zero or less: the second cannot drive the first. "
+        "Default 2 - 1 / efficiency: teeth that rub alike both ways",
     )
 
 
@@ -158,15 +168,23 @@ class Friction(_Drive):
     )
 
 
+CASCADE = "1/s, in place of kp: a loop of speed in one of position; the speed asked for is this times the distance"
+FASTEST = "with position_gain: greatest speed asked for, degrees or lengths a second"
+
+
 class Servo(_Drive):
     """A position controller with limited effort."""
 
     kind: Literal["servo"]
     law: LawTable = Field(description="target position over time, degrees or lengths")
-    kp: Positive = Field(description="N·m/rad or N/m")
+    kp: Positive | None = Field(None, description="N·m/rad or N/m; or give position_gain")
     kd: NonNegative = Field(0.0, description="N·m·s/rad or N·s/m")
     ki: NonNegative = Field(0.0, description="N·m/(rad·s) or N/(m·s)")
     limit: Positive | None = Field(None, description="greatest effort, N·m or N")
+    position_gain: Positive | None = Field(None, description=CASCADE)
+    speed_limit: Positive | None = Field(None, description=FASTEST)
+    speed_gain: Positive | None = Field(None, description="with position_gain: N·m·s/rad or N·s/m")
+    speed_integral: NonNegative = Field(0.0, description="with position_gain: N·m/rad or N/m")
 
 
 class DcMotor(_Drive):
@@ -186,6 +204,18 @@ class DcMotor(_Drive):
     kd: NonNegative = Field(0.0, description="V·s/rad or V·s/m")
     ki: NonNegative = Field(0.0, description="V/(rad·s) or V/(m·s)")
     limit: Positive | None = Field(None, description="greatest voltage of the controller")
+    position_gain: Positive | None = Field(None, description=CASCADE)
+    speed_limit: Positive | None = Field(None, description=FASTEST)
+    speed_gain: Positive | None = Field(None, description="with position_gain: V·s/rad or V·s/m")
+    speed_integral: NonNegative = Field(0.0, description="with position_gain: V/rad or V/m")
+    rotor_inertia: NonNegative = Field(0.0, description="kg·m² about the motor's axis, before the gear")
+    rotor_friction: NonNegative = Field(0.0, description="N·m of the motor without load, before the gear")
+    efficiency: Share = Field(1.0, description="of the gear: share of the rotor's work that comes out at the joint")
+    efficiency_back: Annotated[Finite, Field(le=1.0)] | None = Field(
+        None,
+        description="of the joint's work, at the rotor; zero or less: the joint cannot drive it. Default "
+        "2 - 1 / efficiency: teeth that rub alike both ways",
+    )
 
 
 Drive = Annotated[Motion | Effort | Spring | Damper | Friction | Servo | DcMotor, Field(discriminator="kind")]

@@ -16,6 +16,7 @@ import numpy as np
 from kinform.form.constants import LARGEST_NUMBER, OUTPUTS, PARALLEL_AXES
 from kinform.form.files import DesignFiles
 from kinform.form.readers.csv_tables import law_rows
+from kinform.form.readers.drive_keys import complain_of_drive, efficiencies
 from kinform.form.readers.open_manifest import Scope
 from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.model.assembly import Assumption
@@ -177,7 +178,8 @@ class FunctionReader:
             scales = [self.value_scale(name, *path, "joints") for name in names]
             ratio, *more = (value * scales[0] / scale for value, scale in zip(ratios, scales[1:], strict=True))
             others = dict(zip(names[2:], more, strict=True))
-            yield Coupling((names[0], names[1]), ratio, *self.scope.where(*path), others)
+            shares = efficiencies(self.scope, table, *path)
+            yield Coupling((names[0], names[1]), ratio, *self.scope.where(*path), others, *shares)
 
     def value_scale(self, joint: str, *path: str | int) -> float:
         """Radians or metres in a manifest's value of the joint; a problem where it is not stated which it is."""
@@ -196,25 +198,11 @@ class FunctionReader:
                 exclude={"joint", "kind", "law", "freedom"}, exclude_none=True, exclude_unset=True
             )
             law = self._law(getattr(table, "law", None), *path, "law")
-            if table.kind == "dc_motor":
-                self._motor(table, law is not None, *path)
+            complain_of_drive(self.scope, table, law is not None, *path)
             joint = self.joint(table.joint, *path, "joint")
             parameters = {key: float(value) for key, value in stated.items()}
             where = self.scope.where(*path)
             yield Drive(joint, table.kind, law, parameters, self.scope.metres, *where, table.freedom or "")
-
-    def _motor(self, table: Any, law: bool, *path: str | int) -> None:
-        """What the keys of a dc_motor say about each other."""
-        if table.kp is None:
-            for key in ("ki", "kd", "limit"):
-                if getattr(table, key):
-                    self.scope.complain(f"{key} is of a controller, which has no kp", "give kp too", *path, key)
-        if table.kp is not None and (table.voltage is not None or not law):
-            self.scope.complain("a controlled dc_motor needs a law, its target, and no voltage", "see kp", *path)
-        elif law == (table.voltage is not None):
-            self.scope.complain("a dc_motor needs either voltage or law", "give one of them", *path)
-        if table.gear == 0.0:
-            self.scope.complain("the gear of a dc_motor is zero", "give motor turns a turn", *path, "gear")
 
     def frictions(self) -> Iterator[MaterialFriction]:
         """`[[friction]]`."""

@@ -177,7 +177,7 @@ def read(group: HeldGroup) -> Behaviour:
 
 def _read_kind(group: HeldGroup, kind: str) -> list[dict[str, Any]]:
     """The parameters of components of a kind; files of older versions lack some kinds, and the law of loads."""
-    later = defaults(COMPONENTS[kind])
+    later = defaults(COMPONENTS[kind]) | defaults(Controller)
     if kind in _LATER_KINDS and kind not in group:
         return []
     return read_rows(group, kind, PARAMETERS[kind], later | {"law"} if "signal" in later else later)
@@ -209,7 +209,7 @@ def _component(row: dict[str, Any], parameters: dict[str, Any], signals: list[Si
     if "law" in parameters:
         fields["signal" if "signal" in hints(cls) else "target"] = signals[parameters["law"]]
     if "controller" in hints(cls):
-        fields["controller"] = Controller(**{name: fields.pop(name) for name in hints(Controller)})
+        fields["controller"] = Controller(**{name: fields.pop(name) for name in hints(Controller) if name in fields})
     if cls is JointComponent:
         fields = {"kind": KINDS[parameters["type"]], "geometry": JointGeometry(**fields)}
     return cls(name=row["name"], subject=row["subject"], **fields)

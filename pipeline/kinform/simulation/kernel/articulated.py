@@ -19,11 +19,11 @@ from kinform.simulation.kernel.masses import cholesky, heavy, solve_cholesky
 from kinform.simulation.kernel.vectors import add, along, cross, dot, place, put, six, three
 
 from kinform.simulation.kernel.layout import (  # isort: skip
-    COUNTS, LINKS, MODE, CONSTANTS, STATE, SCREWS, ROWS, REDUCED, VECTORS, CARRIED, HANDLES,
+    COUNTS, LINKS, MODE, CONSTANTS, SCALE, STATE, SCREWS, ROWS, REDUCED, VECTORS, CARRIED, HANDLES,
     RANK, POSITIONS, RATES, GRAVITY, PARENT, KIND, FIRST, WIDTH, HEAVY, SCREW, POINT, SLIDE, WEIGHT, COM, TENSOR,
     TWIST, GAIN, WRENCH, INERT, ORDER, STANDING, MOVED, LED_RATE, MASSLESS_RATE,
     FORCE, ACC, NEED, GAP, TRIAL, RIGHT, KEPT, PULLED,
-    REFERENCE_POINT, SPATIAL, PULL, LOADED, GOING, RUNNING, REACTION, INVERSE, SURPLUS,
+    REFERENCE_POINT, SPATIAL, PULL, LOADED, GOING, RUNNING, REACTION, INVERSE, SURPLUS, ROTOR, ARMATURE,
     Row, Nums, Work,
 )  # fmt: skip
 
@@ -63,6 +63,7 @@ def refer(ints: Ints, nums: Nums, work: Work) -> None:
         for j in range(k, k + links[i][WIDTH]):
             put(handles[j], 0, *three(work[SCREWS][j], 0))
             put(handles[j], 3, 0.0, 0.0, 0.0)
+            handles[j][ROTOR] = nums[SCALE][j][ARMATURE]
         if links[i][KIND] == SCREW:
             put(handles[k], 3, *along(parent, numbers, SLIDE))
             w0, w1, w2 = three(handles[k], 0)
@@ -143,7 +144,7 @@ def respond(ints: Ints, work: Work, pulled: bool) -> None:
                     total -= handle[REACTION + c] * row[GOING + c]
                 x[k] = total * handle[INVERSE]
             elif kinds[k] == LED_RATE:
-                total = -effort[k]
+                total = handle[ROTOR] * x[k] - effort[k]
                 for c in range(6):
                     total += handle[c] * row[LOADED + c]
                     for j in range(6):
@@ -198,7 +199,7 @@ def articulate(ints: Ints, nums: Nums, work: Work) -> float:
         for k in range(links[i][FIRST] + links[i][WIDTH] - 1, links[i][FIRST] - 1, -1):
             if kinds[k] != MOVED:
                 continue
-            handle, moved = handles[k], 0.0
+            handle, moved = handles[k], handles[k][ROTOR]
             for c in range(6):
                 total = 0.0
                 for j in range(6):

@@ -16,7 +16,7 @@ from kinform.simulation.kernel.loops import gather
 from kinform.simulation.kernel.layout import (  # isort: skip
     COUNTS, LINKS, COLUMNS, CLOSURES, MODE, SCALE, GEARS, ROWS, VECTORS,
     RANK, LED, RATES, PARENT, LINK, BEFORE, SIGNAL, METER, WEIGHT, TENSOR, CHOSEN, ORDER, PLACE, STANDING, WAY,
-    MOVED, LED_RATE, MASSLESS_RATE,
+    MOVED, LED_RATE, MASSLESS_RATE, MASSLESS_COLUMN, ARMATURE,
     REFERENCE,
     Nums, Work,
 )  # fmt: skip
@@ -28,7 +28,7 @@ def choose(ints: Ints, nums: Nums, work: Work) -> None:
     n, rank = ints[COUNTS][0][RATES], ints[COUNTS][0][RANK]
     count = 6 * len(ints[CLOSURES]) + len(nums[GEARS])
     mode, scale = ints[MODE], np.array(nums[SCALE])
-    led, closing = np.array(ints[COLUMNS])[:, SIGNAL] >= 0, scale[:, 1] > 0.0
+    led, closing = np.array(ints[COLUMNS])[:, SIGNAL] >= 0, scale[:, MASSLESS_COLUMN] > 0.0
     mode[CHOSEN][:count] = range(count)
     mode[ORDER][:n] = range(n)
     mode[PLACE][:n] = range(n)
@@ -70,7 +70,8 @@ def way(ints: Ints, nums: Nums) -> None:
     depth = np.zeros(n)
     for k in range(n):
         depth[k] = 1 + (depth[columns[k, BEFORE]] if columns[k, BEFORE] >= 0 else 0)
-    standing = np.where(columns[:, SIGNAL] >= 0, LED_RATE, np.where(heavy[columns[:, LINK]], MOVED, MASSLESS_RATE))
+    moves = heavy[columns[:, LINK]] | (np.array(nums[SCALE]).reshape(n, ARMATURE + 1)[:, ARMATURE] > 0.0)
+    standing = np.where(columns[:, SIGNAL] >= 0, LED_RATE, np.where(moves, MOVED, MASSLESS_RATE))
     loose, rest = np.flatnonzero(standing == MASSLESS_RATE), n - rank
     rows = rank - len(loose)
     # Multiplications, of either: reduced mass matrices, or passes along the tree and a matrix of the rows.

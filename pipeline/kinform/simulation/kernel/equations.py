@@ -57,7 +57,7 @@ def derivative(ints: Ints, nums: Nums, work: Work, t: float, y: Row, dy: Row) ->
     power += loads(ints, nums, state, t)
     power += between(ints[SPRINGS], nums[SPRINGS], state)
     if not articulated:
-        mass_matrix(ints, work, True)
+        mass_matrix(ints, nums, work, True)
     for k in range(n):
         if columns[k][METER] >= 0:
             meter(dy, columns[k][METER], 0.0, 0.0)
@@ -191,7 +191,7 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float,
         if stale:
             if mode[WAY][0] == 0:
                 inertias(ints, nums, work)
-                mass_matrix(ints, work, False)
+                mass_matrix(ints, nums, work, False)
             margin = factor(ints, nums, work)
             if margin <= 0.0:
                 return size if margin == 0.0 else -1.0

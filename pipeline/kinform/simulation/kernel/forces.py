@@ -45,16 +45,20 @@ def control(ints: Ints, nums: Nums, k: int, t: float, y: Row, dy: Row) -> float:
     """Output of the controller of actor k; the rate of its integral, where it has one, goes to dy."""
     actor, numbers = ints[ACTORS][k], nums[ACTORS][k]
     q, v = y[actor[AT_Q]], y[ints[COUNTS][0][POSITIONS] + actor[AT_V]]
-    # kp, ki, kd and limit are the first numbers of a servo, and come after those of a motor.
+    # kp, ki, kd, limit and that of speed are the first numbers of a servo, and come after those of a motor.
     first, at = (0, actor[FIRST_STATE]) if actor[DOES] == SERVO else (4, actor[SECOND_STATE])
     target, rate, _ = law(nums[SIGNALS], nums[PIECES], actor[LAW], t)
-    wanted = numbers[first] * (target - q) + numbers[first + 2] * (rate - v)
-    limit = numbers[first + 3]
+    limit, most, missing = numbers[first + 3], numbers[first + 4], target - q
+    if most >= 0.0:
+        missing = min(max(numbers[first] * (target - q) + rate, -most), most) - v
+        wanted = numbers[first + 2] * missing
+    else:
+        wanted = numbers[first] * (target - q) + numbers[first + 2] * (rate - v)
     if at >= 0:
         wanted += numbers[first + 1] * y[at]
         # The integral rests while the output is at its limit and it would push further (anti-windup).
-        stuck = (wanted > limit and target > q) or (wanted < -limit and target < q)
-        dy[at] = 0.0 if stuck else target - q
+        stuck = (wanted > limit and missing > 0.0) or (wanted < -limit and missing < 0.0)
+        dy[at] = 0.0 if stuck else missing
     return float(min(max(wanted, -limit), limit))
 
 
@@ -90,7 +94,7 @@ def drive(ints: Ints, nums: Nums, vectors: Table, t: float, y: Row, dy: Row) -> 
                 voltage, _, _ = law(nums[SIGNALS], nums[PIECES], actor[LAW], t)
             else:
                 voltage = control(ints, nums, k, t, y, dy)
-            constant, most = number[2] * number[3], number[8]
+            constant, most = number[2] * number[3], number[9]
             if current_at >= 0:
                 current = y[current_at]
                 rate = (voltage - number[0] * current - constant * v) / number[1]

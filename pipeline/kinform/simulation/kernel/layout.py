@@ -58,6 +58,9 @@ SCREW, BALL, LLAB = range(3)
 # nums[LINKS]
 AXIS, POINT, SLIDE, WEIGHT, COM, TENSOR = 0, 3, 6, 9, 10, 13
 
+# nums[SCALE], of rates: what moves points about one length; whether it moves nothing; inertia of rotors on it.
+MASSLESS_COLUMN, ARMATURE = 1, 2
+
 # ints[COLUMNS]
 LINK, BEFORE, SIGNAL, METER = range(4)
 """BEFORE: the rate before on the chain to the ground, −1 for none. SIGNAL: that leads it, −1 for none. METER: the first
@@ -86,8 +89,9 @@ PULLED = 1
 REFERENCE_POINT, SPATIAL, PULL, LOADED, GOING, RUNNING, CARRIED_WIDTH = 0, 3, 39, 45, 51, 57, 60
 """SPATIAL: 6 × 6 inertia of what the link carries. PULL: the wrench that it needs itself. LOADED: with what it carries.
 GOING: its acceleration over that at constant rates; RUNNING: of its reference, at those."""
-REACTION, INVERSE, SURPLUS, HANDLE_WIDTH = 6, 12, 13, 14
-"""REACTION: inertia times the screw. INVERSE: of what the rate moves. SURPLUS: effort that is left for it."""
+REACTION, INVERSE, SURPLUS, ROTOR, HANDLE_WIDTH = 6, 12, 13, 14, 15
+"""REACTION: inertia times the screw. INVERSE: of what the rate moves. SURPLUS: effort that is left for it.
+ROTOR: inertia of rotors on it."""
 
 # ints[ACTORS], and their kinds.
 DOES, AT_Q, AT_V, LAW, FIRST_STATE, SECOND_STATE, METERED = range(7)

@@ -12,9 +12,9 @@ from kinform.model.arrays import Ints
 from kinform.simulation.kernel.vectors import add, along, cross, dot, place, put, six, three
 
 from kinform.simulation.kernel.layout import (  # isort: skip
-    LINKS, COLUMNS, CONSTANTS, STATE, SCREWS, MASS, VECTORS,
+    LINKS, COLUMNS, CONSTANTS, SCALE, STATE, SCREWS, MASS, VECTORS,
     GRAVITY, PARENT, FIRST, WIDTH, HEAVY, WEIGHT, COM, TENSOR, BEFORE, TWIST, GAIN, WRENCH, INERT,
-    FORCE,
+    FORCE, ARMATURE,
     Row, Table, Nums, Work,
 )  # fmt: skip
 
@@ -81,9 +81,9 @@ def wrenches(ints: Ints, nums: Nums, work: Work) -> None:
         put(link, WRENCH + 3, c0 + e0, c1 + e1, c2 + e2)
 
 
-def mass_matrix(ints: Ints, work: Work, with_forces: bool) -> None:
-    """Lower triangle of the mass matrix; with forces the wrenches of the links leave the efforts too. What
-    links carry is added to their inertias and wrenches."""
+def mass_matrix(ints: Ints, nums: Nums, work: Work, with_forces: bool) -> None:
+    """Lower triangle of the mass matrix, rotors included; with forces the wrenches of the links leave the efforts too.
+    What links carry is added to their inertias and wrenches."""
     links, before = ints[LINKS], ints[COLUMNS]
     state, screws, matrix, force = work[STATE], work[SCREWS], work[MASS], work[VECTORS][FORCE]
     for i in range(len(links) - 1, 0, -1):
@@ -100,6 +100,7 @@ def mass_matrix(ints: Ints, work: Work, with_forces: bool) -> None:
                 w0, w1, w2, l0, l1, l2 = six(screws[j], 0)
                 row[j] = dot(w0, w1, w2, n0, n1, n2) + dot(l0, l1, l2, f0, f1, f2)
                 j = before[j][BEFORE]
+            row[k] += nums[SCALE][k][ARMATURE]
         if p > 0:
             parent = state[p]
             for c in range(INERT, INERT + 10):

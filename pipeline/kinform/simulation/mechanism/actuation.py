@@ -14,8 +14,9 @@ from kinform.behaviour.signals import STEADY, Constant, Signal, Spline, smooth
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.kernel import layout
 from kinform.simulation.mechanism.elastic import Between
+from kinform.simulation.mechanism.losses import brush, gear_loss, motor_loss
 from kinform.simulation.mechanism.mechanism import Mechanism, Slot
-from kinform.simulation.mechanism.rubbing import Rubbing, rubbing_of
+from kinform.simulation.mechanism.rubbing import Lost, Rubbing, rubbing_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +76,8 @@ class Actuation:
         self.frictions: list[Rubbing] = []
         self._led: list[tuple[int, int, Signal, str]] = []
         self.springs: list[Between] = []
+        self.armature = np.zeros(mechanism.rates)
+        """(n,) kg·m² or kg of the rotors on each rate."""
         self._with_mass, self._until = with_mass, until
         slots = {slot.name: slot for slot in mechanism.slots}
         for joint in system.joints:
@@ -83,6 +86,7 @@ class Actuation:
                     self._rub(rubbing_of(mechanism, system, joint, actor), slots[joint.subject])
                 else:
                     self._take(system, slots[joint.subject], actor)
+        self._lose(system, slots)
         self._lead(self._led, mechanism.rates)
         self.metered = tuple(sorted({*self.led.tolist(), *(stop.v for stop in self.stops)}))
         """Rates whose leading is metered: what stops lead at times too."""
@@ -119,6 +123,8 @@ class Actuation:
                     self.stops.append(Stop(slot.name, q, v, sense, limit, actor.restitution))
         else:
             self.actors.append(_acts(system, slot.name, q, v, actor))
+            if isinstance(actor, shafts.DcMotor):
+                self._motor(system, actor, slot)
 
     def _rub(self, rubbing: Rubbing, slot: Slot) -> None:
         """Add friction, as an effort that the solver finds."""
@@ -129,6 +135,25 @@ class Actuation:
         acts = Acts(name, slot.name, rubbing.q, rubbing.v, layout.EFFORT, Constant(0.0), (), friction=number)
         self.frictions.append(replace(rubbing, actor=len(self.actors)))
         self.actors.append(acts)
+
+    def _motor(self, system: System, motor: shafts.DcMotor, slot: Slot) -> None:
+        """Add the rotor of a motor, the actor before, and what its gear loses."""
+        number, joint = len(self.actors) - 1, [one.subject for one in system.joints].index(slot.name)
+        self.armature[slot.v.start + motor.freedom] += motor.armature
+        rotor = len(self.frictions) if motor.rotor_friction > 0.0 else -1
+        if rotor >= 0:
+            self._rub(brush(motor, slot, joint), slot)
+        if motor.lossy:
+            self._rub(motor_loss(motor, Lost(motor=number, brush=rotor), slot, joint), slot)
+
+    def _lose(self, system: System, slots: dict[str, Slot]) -> None:
+        """Add what gears lose."""
+        for number, gear in enumerate(system.gears):
+            if gear.lossy:
+                side = 0 if gear.efficiency > 0.0 else 1
+                joint = system.joint_at(gear.name, "ab"[side])
+                slot = slots[joint.subject]
+                self._rub(gear_loss(gear, number, side, slot, system.joints.index(joint)), slot)
 
     def _followed(self, actor: shafts.MotionDrive, turns: bool) -> Signal:
         """The signal as a body with mass can follow it."""
@@ -196,7 +221,8 @@ class Actuation:
         out = copy.copy(self)
         keep = [k for k, actor in enumerate(self.actors) if actor.friction >= 0 or actor.does == layout.SPRING]
         out.actors = [self.actors[k] for k in keep]
-        out.frictions = [replace(one, actor=keep.index(one.actor)) for one in self.frictions]
+        motors = {number: keep.index(number) if number in keep else -1 for number in range(len(self.actors))}
+        out.frictions = [_renumbered(one, keep.index(one.actor), motors) for one in self.frictions]
         out.stops, out.metered = [], ()
         out._lead([], len(self.free) + len(self.led))
         return out
@@ -226,6 +252,14 @@ class Actuation:
         return total
 
 
+def _renumbered(one: Rubbing, actor: int, motors: dict[int, int]) -> Rubbing:
+    """The friction by other numbers of the actors, −1 for motors that are not among them."""
+    lost = one.lost
+    if lost is not None and lost.motor >= 0:
+        lost = replace(lost, motor=motors[lost.motor])
+    return replace(one, actor=actor, lost=lost)
+
+
 def _acts(system: System, joint: str, q: int, v: int, actor: shafts.Actor) -> Acts:
     """The actor as the kernel takes it."""
     name = actor.name
@@ -242,11 +276,12 @@ def _acts(system: System, joint: str, q: int, v: int, actor: shafts.Actor) -> Ac
     motor = (actor.resistance, actor.inductance, actor.constant, actor.gear)
     supply, current = system.supply(name), actor.inductance > 0.0
     if isinstance(supply, shafts.VoltageSource):
-        numbers = (*motor, *(0.0,) * 4, actor.current_limit)
+        numbers: tuple[float, ...] = (*motor, *(0.0,) * 5, actor.current_limit)
         return Acts(name, joint, q, v, layout.MOTOR, supply.signal, numbers, (current, False))
     numbers = (*motor, *_gains(supply.controller), actor.current_limit)
     return Acts(name, joint, q, v, layout.CONTROLLED, supply.target, numbers, (current, supply.controller.ki != 0.0))
 
 
-def _gains(controller: shafts.Controller) -> tuple[float, float, float, float]:
-    return controller.kp, controller.ki, controller.kd, controller.limit
+def _gains(controller: shafts.Controller) -> tuple[float, ...]:
+    most = controller.speed_limit if controller.cascade else -1.0
+    return controller.kp, controller.ki, controller.kd, controller.limit, most

@@ -54,6 +54,11 @@ class Dynamics:
         inverse = np.argsort(tables.v_order)
         return full[np.ix_(inverse, inverse)]
 
+    def on_bodies(self, effort: Array, acceleration: Array) -> Array:
+        """(…, n) of the efforts (…, n) on the shafts what the bodies get, at accelerations (…, n): all but what turns
+        rotors."""
+        return effort - self.actuation.armature * acceleration
+
     def weightless(self, q: Array) -> tuple[str, ...]:
         """Joints that take part in free motions without mass: their acceleration is undetermined."""
         mechanism, free = self.mechanism, self.actuation.free
@@ -67,8 +72,9 @@ class Dynamics:
         moving = free[np.abs(empty / scale[:, None]).max(axis=1, initial=0.0) > MOVES_WITHOUT_MASS]
         return mechanism.joints_of(moving)
 
-    def energy(self, q: Array, states: States) -> tuple[Array, Array]:
-        """(T,) kinetic, and potential energy relative to the pose of the meshes with springs (J)."""
+    def energy(self, q: Array, v: Array, states: States) -> tuple[Array, Array]:
+        """(T,) kinetic, and potential energy relative to the pose of the meshes with springs (J), at positions (T, nq)
+        and rates (T, n)."""
         X, V = states.poses[:, self.body_links], states.twists[:, self.body_links]
         R, p = X[..., :3, :3], X[..., :3, 3]
         com = (R @ self.com[:, :, None])[..., 0] + p
@@ -77,6 +83,8 @@ class Dynamics:
         local = (R.swapaxes(-1, -2) @ spin[..., None])[..., 0]
         turning = np.einsum("tbi,bij,tbj->t", local, self.inertia, local)
         kinetic = 0.5 * (turning + (speed**2).sum(axis=2) @ self.mass)
+        if self.actuation.armature.any():
+            kinetic = kinetic + 0.5 * v**2 @ self.actuation.armature
         height = -((com - self.com) @ self.gravity) @ self.mass
         return kinetic, height + self.actuation.stored(q, states.poses)
 
@@ -93,4 +101,4 @@ def _weigh(ints: Ints, nums: Nums, work: Work, y: Row) -> None:
     """The mass matrix at y."""
     motion.place_links(ints, nums, work, y)
     masses.inertias(ints, nums, work)
-    masses.mass_matrix(ints, work, False)
+    masses.mass_matrix(ints, nums, work, False)

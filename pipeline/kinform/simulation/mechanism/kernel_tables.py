@@ -46,7 +46,8 @@ def tabulate(mechanism: Mechanism, system: System, gravity: Array, actuation: Ac
     size = nq + n + states + 1
     count = 6 * len(closures) + len(mechanism.gear_v)
     width = max(n, count, nq, 2)
-    scale = np.column_stack([mechanism.scale, ~mechanism.moves[mechanism.link_of].any(axis=0)])[order.v_order]
+    massless = ~mechanism.moves[mechanism.link_of].any(axis=0) & (actuation.armature == 0.0)
+    scale = np.column_stack([mechanism.scale, massless, actuation.armature])[order.v_order]
     gears = np.hstack([mechanism.gear_v[:, order.v_order], mechanism.gear_q[:, order.q_order]])
     values, pieces = signals.tables()
     mode = np.zeros((7, width), dtype=np.int64)
@@ -233,8 +234,8 @@ def _actors(actuation: Actuation, order: _Order, signals: _Signals) -> tuple[Int
             states += int(wanted)
         law = -1 if actor.signal is None else signals.add(actor.signal)
         rows.append((actor.does, int(order.place[actor.q]), int(order.rate[actor.v]), law, *own, meter))
-        numbers.append([*actor.numbers, *(0.0,) * (9 - len(actor.numbers))])
-    return _rows(rows, 7), np.array(numbers, dtype=np.float64).reshape(-1, 9)
+        numbers.append([*actor.numbers, *(0.0,) * (10 - len(actor.numbers))])
+    return _rows(rows, 7), np.array(numbers, dtype=np.float64).reshape(-1, 10)
 
 
 @cache

@@ -19,6 +19,20 @@ from kinform.model.arrays import Array
 from kinform.simulation.mechanism.mechanism import Mechanism
 
 
+@dataclass(frozen=True)
+class Lost:
+    """Where the effort y is to be found that the friction of a gear follows from."""
+
+    gear: int = -1
+    """Among the gears of the system: what it gives one of its shafts."""
+    side: int = 0
+    """That shaft: 0 at a, 1 at b."""
+    motor: int = -1
+    """Or among the actors: less what the motor, rotor included, passes on to its joint."""
+    brush: int = -1
+    """The friction of the motor's rotor among the frictions; −1: it has none."""
+
+
 @dataclass(frozen=True, eq=False)
 class Rubbing:
     """The friction on one rate."""
@@ -37,6 +51,18 @@ class Rubbing:
     """The position along the axis; −1 where the joint does not slide."""
     actor: int = -1
     """Of the effort that stands for it, among the actors."""
+    lost: Lost | None = None
+    """Of what a gear loses (`mechanism.losses`), whose grip is |y|; None: a wrench in the joint presses."""
+    lean: float = 0.0
+    """Of these: how much more it is for y along the rate, and less against it, as a share of |y|."""
+
+    @property
+    def loaded(self) -> bool:
+        """Whether it follows from the wrenches in the joints."""
+        one = self.friction
+        if self.lost is not None:
+            return self.lost.gear >= 0
+        return bool(one.radial or one.axial or one.torsion)
 
     def grip(self, wrenches: Array, R: Array, q: Array) -> Array:
         """(k,) m·N or N of wrenches (k, 6) in world axes about the joint's point, at the rotation (3, 3) of the link
@@ -82,7 +108,7 @@ class Rubbing:
             return [np.eye(3)]
         return [np.outer((1.0, 0.0, 0.0), face) for face in (one.faces_u, one.faces_v)]
 
-    def limit(self, grip: Array | float, *, at_rest: bool) -> Array | float:
+    def limit(self, grip: float, *, at_rest: bool) -> float:
         """N·m or N of the grip: what it takes at most at rest, or what there is in motion."""
         one = self.friction
         return grip * one.static + one.static_effort if at_rest else grip * one.kinetic + one.effort

@@ -16,8 +16,8 @@ import numpy as np
 from kinform.model.arrays import Array
 from kinform.model.simulation import DriveUse
 from kinform.simulation.kernel import layout
-from kinform.simulation.mechanism.actuation import Acts
 from kinform.simulation.mechanism.dynamics import Dynamics
+from kinform.simulation.mechanism.efforts import effort_of
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.solver.record import Record
 
@@ -57,7 +57,8 @@ def _acted(dynamics: Dynamics, record: Record) -> Iterator[tuple[int, str, Array
         if actor.friction >= 0 and record.friction is not None:
             yield actor.v, "friction", record.friction.effort[:, actor.friction]
         else:
-            yield actor.v, _KINDS[actor.does], _effort(actor, record, columns)
+            effort = effort_of(actor, record.time, record.q[:, actor.q], record.v[:, actor.v], columns)
+            yield actor.v, _KINDS[actor.does], effort
 
 
 def _rates(mechanism: Mechanism) -> dict[int, tuple[str, int, bool]]:
@@ -90,31 +91,3 @@ def _use(record: Record, on: tuple[str, int, bool], kind: str, effort: Array, v:
         on[0], kind, max(float(np.abs(effort).max()), mean), mean, float(power.max()), work,
         on[1], on[2], float(np.abs(rate).max()), rms(squared_power, float(power[0])),
     )  # fmt: skip
-
-
-def _effort(actor: Acts, record: Record, states: list[Array | None]) -> Array:
-    """(T,) effort of an actor on its shaft."""
-    q, v, numbers = record.q[:, actor.q], record.v[:, actor.v], actor.numbers
-    if actor.does == layout.SPRING:
-        return np.asarray(numbers[0] * (numbers[1] - q))
-    if actor.does == layout.DAMPER:
-        return np.asarray(-numbers[0] * v)
-    assert actor.signal is not None
-    level = np.array([actor.signal.value(float(t)) for t in record.time])
-    if actor.does == layout.EFFORT:
-        return level
-    rate = np.array([actor.signal.rate(float(t)) for t in record.time])
-
-    def controlled(gains: tuple[float, ...], integral: Array | None) -> Array:
-        kp, ki, kd, limit = gains
-        wanted = kp * (level - q) + kd * (rate - v) + (0.0 if integral is None else ki * integral)
-        return np.asarray(np.clip(wanted, -limit, limit))
-
-    if actor.does == layout.SERVO:
-        return controlled(numbers, states[0])
-    resistance, _, constant, gear, *_, most = numbers
-    current = states[0]
-    if current is None:
-        voltage = level if actor.does == layout.MOTOR else controlled(numbers[4:8], states[1])
-        current = (voltage - constant * gear * v) / resistance
-    return np.asarray(constant * gear * np.clip(current, -most, most))

@@ -14,6 +14,7 @@ import numpy as np
 from kinform.behaviour.components import Gear, System
 from kinform.model.arrays import Array, Flags
 from kinform.simulation.mechanism.dynamics import Dynamics
+from kinform.simulation.mechanism.losses import multipliers
 from kinform.simulation.mechanism.states import States
 
 
@@ -60,11 +61,11 @@ def transmitted(dynamics: Dynamics, states: States, sign: Array, rest: Array) ->
     times, count = len(rest), len(system.gears)
     efforts, forces = np.zeros((times, count, 2)), np.full((times, count), np.nan)
     wrenches = np.zeros((times, len(index), 6))
-    multipliers = (rest * mechanism.scale) @ np.linalg.pinv(mechanism.gear_v * mechanism.scale)
+    factors = multipliers(mechanism, rest)
     for k, gear in enumerate(system.gears):
         joints = [system.joint_at(gear.name, port) for port in ("a", "b")]
         columns = [slots[joint.subject].v.start for joint in joints]
-        efforts[:, k] = multipliers[:, k, None] * mechanism.gear_v[k, columns]
+        efforts[:, k] = factors[:, k, None] * mechanism.gear_v[k, columns]
         sides = _sides(system, gear)
         if sides is None:
             continue

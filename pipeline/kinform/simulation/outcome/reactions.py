@@ -8,6 +8,7 @@ Kinematics and Dynamics, 1989, section 6.6, for the reactions; the choice is tha
 
 from __future__ import annotations
 
+import copy
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -44,7 +45,7 @@ def reactions(
     dynamics: Dynamics, states: States, times: Array, effort: Array, free: float, network: Network | None = None
 ) -> Reactions:
     """Wrenches of all joints for the efforts (T, n) on their shafts; `free` decides the rank of the loops. `network`:
-    that of the dynamics, which must be without teeth, where it is known already."""
+    that of the dynamics, where it is known already."""
     network = Network(dynamics) if network is None else network
     needed = network.spread(needs(dynamics, states, times))
     points = joint_points(dynamics, states)
@@ -54,8 +55,9 @@ def reactions(
     gears = transmitted(dynamics, states, network.sign, along_rates(network, states, wrenches) - effort)
     teeth = toothed(dynamics.system)
     if teeth.any():
-        network.gears = network.gears[~teeth]
-        wrenches = _in_chunks(network, dynamics, states, needed - gears.wrenches, points, effort, free)
+        shafts = copy.copy(network)
+        shafts.gears = network.gears[~teeth]
+        wrenches = _in_chunks(shafts, dynamics, states, needed - gears.wrenches, points, effort, free)
     return replace(wrenches, gears=gears)
 
 

@@ -46,9 +46,10 @@ def publish_dynamic(
 ) -> tuple[Simulation, States]:
     """The results with energy, reactions, their balance, and what the drives did; and the states of the links."""
     run, states = publish(dynamics.mechanism, record, level, notes, settings.free)
-    kinetic, potential = dynamics.energy(record.q, states)
-    wrenches = reactions(dynamics, states, record.time, record.effort, settings.free)
-    balance = imbalance(dynamics, states, record.time, wrenches, record.effort)
+    kinetic, potential = dynamics.energy(record.q, record.v, states)
+    effort = dynamics.on_bodies(record.effort, record.acceleration)
+    wrenches = reactions(dynamics, states, record.time, effort, settings.free)
+    balance = imbalance(dynamics, states, record.time, wrenches, effort)
     energy = np.column_stack([kinetic, potential, record.work])
     whole = replace(
         run,

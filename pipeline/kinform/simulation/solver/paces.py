@@ -138,7 +138,7 @@ def _energies(run: Run, y: Array) -> tuple[float, float]:
     """J: kinetic and potential."""
     q, v = run.dynamics.tables.unpack(y)
     states = states_at(run.dynamics.mechanism, q[None], v[None], np.zeros_like(v)[None])
-    kinetic, potential = run.dynamics.energy(q[None], states)
+    kinetic, potential = run.dynamics.energy(q[None], v[None], states)
     return float(kinetic[0]), float(potential[0])
 
 

@@ -24,7 +24,7 @@ from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.settings import Conduct
 from kinform.simulation.solver.record import FrictionRecord, Record
 from kinform.simulation.solver.run_state import Run
-from kinform.simulation.solver.slip import NotDeterminedError, dry, set_efforts
+from kinform.simulation.solver.slip import NotDeterminedError, set_efforts
 from kinform.simulation.solver.start import Start
 from kinform.simulation.solver.sticking import Hold, Sticking, grouped, ways
 
@@ -91,7 +91,7 @@ class _Driver:
     def _slope(self, t: float, y: Array) -> Array:
         """Derivative of the state, frictions found."""
         if self.state.acting:
-            dry(self.run, t, y, self.state.acting)
+            self.state.answer(t, y)
         else:
             set_efforts(self.run.dynamics, np.zeros(len(self.state.rubbings)))
         out = np.zeros_like(y)
@@ -202,12 +202,10 @@ class _Driver:
         run, state = self.run, self.state
         y = y.copy()
         run.project(t, y)
-        answer = dry(run, t, y, state.acting)
+        answer = state.answer(t, y)
         run.sample(t, y, run.out[k])
         self.efforts[k] = state.held_effort(answer)
-        self.limits[k] = [
-            one.limit(float(g), at_rest=True) for one, g in zip(state.rubbings, answer.grips, strict=True)
-        ]
+        self.limits[k] = state.limits(answer)
         self.sticking[k] = state.sticking
 
     def _longest(self) -> float:

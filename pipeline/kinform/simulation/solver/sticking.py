@@ -7,7 +7,7 @@ limits together do not hold it. One of the group is held then, and stands for al
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -119,7 +119,7 @@ class Sticking:
             self.senses[k] = 0
         if not undecided:
             return
-        v, a = self.rates(), dry(self.run, t, self.run.y, self.acting).accelerations
+        v, a = self.rates(), self.answer(t, self.run.y).accelerations
         for k in undecided:
             at = self.rubbings[k].v
             still = abs(v[at]) <= constants.STICK_ROUNDING * abs(a[at])
@@ -162,15 +162,28 @@ class Sticking:
         out = []
         for way in (1, -1):
             others = {k: Rub(way * sense, at_rest=True) for k, sense in senses.items() if k != hold.held}
-            answer = dry(self.run, t, y, self.acting | others)
+            answer = self.answer(t, y, others)
             needed = -way * float(answer.needed[one.v])
-            limit = float(one.limit(float(answer.grips[hold.held]), at_rest=True))
-            size = max(limit, abs(needed))
-            out.append((_share(limit - needed, size), way))
+            limit = self._limit(hold.held, answer, way)
+            out.append((_share(limit - needed, max(limit, abs(needed))), way))
             if not others:
-                out.append((_share(limit + needed, size), -way))
+                limit = self._limit(hold.held, answer, -way)
+                out.append((_share(limit + needed, max(limit, abs(needed))), -way))
                 break
         return out
+
+    def answer(self, t: float, y: Array, others: Mapping[int, Rub] | None = None) -> Answer:
+        """What all frictions do, `others` beside those that slip. Raises NotDeterminedError."""
+        return dry(self.run, t, y, self.acting | dict(others or {}), [hold.held for hold in self.holds])
+
+    def limits(self, answer: Answer) -> Array:
+        """(m,) what each friction takes at most at rest, against what it holds or the way in which it slips."""
+        efforts = self.held_effort(answer)
+        return np.array([self._limit(k, answer, 1 if effort <= 0.0 else -1) for k, effort in enumerate(efforts)])
+
+    def _limit(self, k: int, answer: Answer, way: int) -> float:
+        """What friction k takes at most at rest before it slips that way."""
+        return self.rubbings[k].limit(float(answer.grips[k] + way * answer.leans[k]), at_rest=True)
 
     def release(self, hold: Hold, way: int, t: float) -> None:
         """Let a group go one way. Raises NotDeterminedError where it then would not go there."""
@@ -179,9 +192,10 @@ class Sticking:
             self.senses[k] = way * sense
         self._change()
         one = self.rubbings[hold.held]
-        a = dry(self.run, t, self.run.y, self.acting).accelerations
-        scale = self.run.dynamics.mechanism.scale
-        if way * a[one.v] / scale[one.v] < -constants.DEAD_CENTRE * float(np.abs(a / scale).max()):
+        a, scale = self.answer(t, self.run.y).accelerations, self.run.dynamics.mechanism.scale
+        # At the moment of release all that moves it is balanced, but for rounding of what there is without friction.
+        size = max(float(np.abs(x / scale).max()) for x in (a, dry(self.run, t, self.run.y, {}).accelerations))
+        if way * a[one.v] / scale[one.v] < -constants.DEAD_CENTRE * size:
             raise NotDeterminedError(
                 f"at t = {t:.6g} s {one.joint} can neither stick nor slip: more friction than what moves it bears"
             )
