@@ -355,6 +355,8 @@ SAME_MOTION = 1e-9
 """Sine of the angle between the ways in which two frictions depend on the free motions, below which it is one."""
 DEAD_CENTRE = 1e-6
 """Share of a free motion below which a joint takes no part in it, as at a dead centre: its rate turns."""
+OTHER_WAY = 1e-6
+"""Share of a surface's speed along the direction that has friction from which on it slides along others too."""
 MOST_SWITCHES = 100_000
 """Changes between sticking and slipping before a run gives up."""
 SWITCHES_AT_ONCE = 8

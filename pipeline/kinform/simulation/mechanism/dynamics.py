@@ -57,7 +57,8 @@ class Dynamics:
     def on_bodies(self, effort: Array, acceleration: Array) -> Array:
         """(…, n) of the efforts (…, n) on the shafts what the bodies get, at accelerations (…, n): all but what turns
         rotors."""
-        return effort - self.actuation.armature * acceleration
+        armature = self.actuation.armature
+        return effort - armature * acceleration if armature.any() else effort
 
     def weightless(self, q: Array) -> tuple[str, ...]:
         """Joints that take part in free motions without mass: their acceleration is undetermined."""

@@ -47,7 +47,7 @@ def _acted(dynamics: Dynamics, record: Record) -> Iterator[tuple[int, str, Array
     stops = {stop.v for stop in actuation.stops}
     for v in actuation.metered:
         kind = "stop" if v in stops and v not in actuation.led else "motion"
-        yield v, kind, record.needed[:, v]
+        yield v, kind, record.needed[:, v] - (_held(dynamics, record, v) if kind == "stop" else 0.0)
     states = 0
     for actor in actuation.actors:
         columns = [
@@ -59,6 +59,16 @@ def _acted(dynamics: Dynamics, record: Record) -> Iterator[tuple[int, str, Array
         else:
             effort = effort_of(actor, record.time, record.q[:, actor.q], record.v[:, actor.v], columns)
             yield actor.v, _KINDS[actor.does], effort
+
+
+def _held(dynamics: Dynamics, record: Record, v: int) -> Array:
+    """(T,) of the effort that holds a rate what frictions give that stick."""
+    out = np.zeros(len(record.time))
+    if record.friction is not None:
+        for k, one in enumerate(dynamics.actuation.frictions):
+            if one.v == v:
+                out += np.where(record.friction.sticking[:, k], record.friction.effort[:, k], 0.0)
+    return out
 
 
 def _rates(mechanism: Mechanism) -> dict[int, tuple[str, int, bool]]:
@@ -77,6 +87,9 @@ def _use(record: Record, on: tuple[str, int, bool], kind: str, effort: Array, v:
     span = float(time[-1] - time[0])
     if meter >= 0:
         squared, work, squared_power = (record.extra[-1] - record.extra[0])[meter : meter + 3].tolist()
+        if kind == "stop" and record.friction is not None:
+            # The meter counts what friction held there too, without power.
+            squared = float(np.trapezoid(effort**2, time))
     else:
         with np.errstate(over="ignore"):  # of a run that overflows
             squared, work, squared_power = (float(np.trapezoid(x, time)) for x in (effort**2, power, power**2))

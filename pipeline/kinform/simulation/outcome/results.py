@@ -11,7 +11,7 @@ from kinform.behaviour.components import System
 from kinform.foundation.algebra.spatial import quaternions, rotation_vector
 from kinform.model.arrays import Array, Ints
 from kinform.model.simulation import Simulation
-from kinform.simulation.constants import LEAST_DRIFT, RANK_CHUNK, SNUG, SUMMED_DRIFT, TRUSTED_DRIFT
+from kinform.simulation.constants import LEAST_DRIFT, OTHER_WAY, RANK_CHUNK, SNUG, SUMMED_DRIFT, TRUSTED_DRIFT
 from kinform.simulation.mechanism.closure import counted
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.mechanism import Mechanism
@@ -53,7 +53,12 @@ def publish_dynamic(
     energy = np.column_stack([kinetic, potential, record.work])
     whole = replace(
         run,
-        assumptions=(*run.assumptions, *_notes_of_gaps(run.residual), *_notes_of_energy(run.time, energy)),
+        assumptions=(
+            *run.assumptions,
+            *_notes_of_gaps(run.residual),
+            *_notes_of_energy(run.time, energy),
+            *_notes_of_sliding(dynamics, record),
+        ),
         energy=energy,
         F_A=-wrenches.on_second,
         F_B=wrenches.on_second,
@@ -113,6 +118,24 @@ def _notes_of_energy(times: Array, energy: Array) -> tuple[str, ...]:
         f"from t = {times[wrong[0]]:.4g} s on the energy balance is off, at the end by {share:.2g} of the energy "
         "exchanged: the trajectory is not to be trusted from there on",
     )
+
+
+def _notes_of_sliding(dynamics: Dynamics, record: Record) -> tuple[str, ...]:
+    """What is to be said of surfaces with friction along one direction that slid along others too."""
+    slots, scale = {slot.name: slot for slot in dynamics.mechanism.slots}, dynamics.mechanism.scale
+    out = {}
+    for one in dynamics.actuation.frictions:
+        slot = slots[one.joint]
+        if one.lost is not None or slot.kind.name not in ("planar", "cylindrical"):
+            continue
+        paces = np.abs(record.v[:, slot.v] / scale[slot.v]).max(axis=0, initial=0.0)
+        others = np.delete(paces, one.v - slot.v.start)
+        if others.max() > OTHER_WAY * paces.max() > 0.0:
+            out[one.joint] = (
+                f"friction in {one.joint} opposes one of its freedoms alone, and it moved along others too: a surface "
+                "opposes the way in which it slides, so it is too great along the one, and missing along the others"
+            )
+    return tuple(out.values())
 
 
 def publish(

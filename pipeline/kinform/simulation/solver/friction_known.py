@@ -18,9 +18,6 @@ def friction_not_determined(
     frictions = dynamics.actuation.frictions
     if not frictions:
         return ()
-    if dynamics.actuation.stops:
-        why = "friction and end stops in one run are not simulated: what friction does during an impact is not known"
-        return tuple((stop.joint, why) for stop in dynamics.actuation.stops[:1])
     kinds = {slot.name: slot.kind.name for slot in dynamics.mechanism.slots}
     for joint in dict.fromkeys(one.joint for one in frictions):
         freedoms = len({one.v for one in frictions if one.joint == joint})

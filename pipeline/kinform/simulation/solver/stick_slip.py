@@ -10,7 +10,7 @@ friction in motion has a known direction, its size follows from the loads (`slip
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -20,8 +20,10 @@ from kinform.model.arrays import Array, Flags
 from kinform.simulation import constants
 from kinform.simulation.kernel import layout
 from kinform.simulation.kernel.calls import engine, ready
+from kinform.simulation.mechanism.actuation import Stop
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.settings import Conduct
+from kinform.simulation.solver.friction_stops import strike
 from kinform.simulation.solver.record import FrictionRecord, Record
 from kinform.simulation.solver.run_state import Run
 from kinform.simulation.solver.slip import NotDeterminedError, set_efforts
@@ -47,6 +49,13 @@ def run_with_friction(dynamics: Dynamics, start: Start, times: Array, conduct: C
     except NotDeterminedError as error:
         return driver.record(str(error))
     return driver.record("")
+
+
+@dataclass(frozen=True)
+class Struck:
+    """An end stop that is reached, by its number."""
+
+    stop: int
 
 
 class _Driver:
@@ -137,11 +146,15 @@ class _Driver:
                 self.progress(int(run.tally[layout.NEXT]), len(run.times))
         return float(solver.t), ""
 
-    def _switch(self, t: float, what: Hold | int, way: int) -> str:
-        """A group is let go, or comes to rest; why that ends the run, or ""."""
+    def _switch(self, t: float, what: Hold | Struck | int, way: int) -> str:
+        """A group is let go, or comes to rest, or a joint is at its end stop; why that ends the run, or ""."""
         run, state = self.run, self.state
         run.project(t, run.y)
-        if isinstance(what, Hold):
+        if isinstance(what, Struck):
+            why = strike(state, what.stop, t)
+            if why:
+                return why
+        elif isinstance(what, Hold):
             state.release(what, way, t)
             state.settle(t)
         else:
@@ -151,17 +164,29 @@ class _Driver:
             (t, count + 1) if t <= before + constants.LAST_OUTPUT * (run.times[-1] - run.times[0]) else (t, 1)
         )
         if (
-            self.at_once[1] > constants.SWITCHES_AT_ONCE * len(state.rubbings)
+            self.at_once[1] > constants.SWITCHES_AT_ONCE * (len(state.rubbings) + len(state.base.stops))
             or state.switches > constants.MOST_SWITCHES
         ):
             names = ", ".join(dict.fromkeys(one.joint for one in state.rubbings))
             return f"at t = {t:.6g} s friction in {names} changes between sticking and slipping without end"
         return ""
 
-    def _change(self, begin: float, end: float, dense: Dense) -> tuple[float, Hold | int, int] | None:
+    def _change(self, begin: float, end: float, dense: Dense) -> tuple[float, Hold | Struck | int, int] | None:
         """(time, what, which way) of the first change in a step; None where there is none."""
         state, tables = self.state, self.run.dynamics.tables
-        found: list[tuple[float, Hold | int, int]] = []
+        found: list[tuple[float, Hold | Struck | int, int]] = []
+        for number, stop in enumerate(state.base.stops):
+            if number in state.resting:
+                continue
+
+            def room(t: float, stop: Stop = stop) -> float:
+                return stop.sense * (stop.limit - float(tables.unpack(dense(t))[0][stop.q]))
+
+            # A joint that has just left its stop is there but for rounding.
+            least = min(room(begin), 0.0)
+            when = _falls(lambda t, room=room, least=least: room(t) - least, begin, end, constants.SLIP_PARTS)  # type: ignore[misc]
+            if when is not None:
+                found.append((when, Struck(number), 0))
         for k, sense in enumerate(state.senses):
             if sense:
                 at = state.rubbings[k].v

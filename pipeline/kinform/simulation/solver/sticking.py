@@ -2,7 +2,8 @@
 
 Frictions whose joints move by one and the same free motion (the bearings of a four-bar) are one group: they stick and
 slip together. At rest how they share the load is not determined; that the group slips is: when all of them at their
-limits together do not hold it. One of the group is held then, and stands for all.
+limits together do not hold it. One of the group is held then, and stands for all. Where a joint of the group rests at
+an end stop, the group is held too, and does not go beyond it (`friction_stops`).
 """
 
 from __future__ import annotations
@@ -23,9 +24,9 @@ from kinform.simulation.solver.run_state import Run
 from kinform.simulation.solver.slip import Answer, NotDeterminedError, Rub, dry
 
 
-def ways(dynamics: Dynamics, actuation: Actuation, q: Array, free: float) -> Array:
-    """(m, d) how the rates of the frictions, as shares of what moves points about one length, follow from the d free
-    motions at positions q (nq,); a row without length is led, or at a dead centre."""
+def ways(dynamics: Dynamics, actuation: Actuation, q: Array, free: float, rates: Sequence[int] | None = None) -> Array:
+    """(m, d) how the rates of the frictions (or these), as shares of what moves points about one length, follow from
+    the d free motions at positions q (nq,); a row without length is led, or at a dead centre."""
     mechanism = dynamics.mechanism
     loose = actuation.free
     scale, rows = mechanism.scale[loose], mechanism.closure_at(q)[:, loose]
@@ -33,9 +34,8 @@ def ways(dynamics: Dynamics, actuation: Actuation, q: Array, free: float) -> Arr
     rank = rank_of(rows, scale, free)
     null = np.zeros((mechanism.rates, len(loose) - rank))
     null[loose] = factor(rows, scale, rank).null if rows.size else np.diag(scale)
-    return np.array([null[one.v] / mechanism.scale[one.v] for one in actuation.frictions]).reshape(
-        len(actuation.frictions), null.shape[1]
-    )
+    rates = [one.v for one in actuation.frictions] if rates is None else rates
+    return np.array([null[v] / mechanism.scale[v] for v in rates]).reshape(len(rates), null.shape[1])
 
 
 def grouped(rows: Array) -> tuple[list[list[int]], list[int], list[int]]:
@@ -66,9 +66,12 @@ class Hold:
     """A group that sticks: the one that is held, and the senses (±1) of all as it moves one way."""
 
     group: int
+    """−1: a joint without friction that rests at an end stop."""
     held: int
     senses: tuple[tuple[int, int], ...]
     stop: Stop
+    blocked: int = 0
+    """Which way an end stop does not let it go; 0: it rests at none."""
 
 
 class Sticking:
@@ -82,7 +85,11 @@ class Sticking:
         self.senses = np.zeros(len(self.rubbings), dtype=np.int64)
         """Direction in which each slips; 0: it sticks, or what leads it stands still."""
         self.holds: list[Hold] = []
-        self.switches = 0
+        self.resting: list[int] = []
+        """End stops at which joints rest."""
+        self.switches = self.impacts = 0
+        self.struck: list[str] = []
+        """Joints that have struck an end stop."""
 
     @property
     def acting(self) -> dict[int, Rub]:
@@ -95,13 +102,23 @@ class Sticking:
         stuck = {k for hold in self.holds for k, _ in hold.senses}
         return [k in stuck for k in range(len(self.rubbings))]
 
+    @property
+    def bare(self) -> list[int]:
+        """End stops at which joints without friction rest."""
+        rubbed = {one.v for one in self.rubbings}
+        return [k for k in self.resting if self.base.stops[k].v not in rubbed]
+
     def group_of(self, k: int) -> int:
         """The group of a friction; −1 where it is led."""
         return next((g for g, group in enumerate(self.groups) if k in group), -1)
 
     def begin(self, t: float) -> None:
-        """Decide for all groups from the rates at the start. Raises NotDeterminedError."""
+        """Decide for all groups from the rates now. Raises NotDeterminedError."""
         v = self.rates()
+        self.holds, self.senses[:] = [], 0
+        for k in self.bare:
+            stop = self.base.stops[k]
+            self.holds.append(Hold(-1, -1, (), stop, stop.sense))
         for g, group in enumerate(self.groups):
             if np.all(v[[self.rubbings[k].v for k in group]] == 0.0):
                 self._hold(g)
@@ -124,6 +141,11 @@ class Sticking:
             at = self.rubbings[k].v
             still = abs(v[at]) <= constants.STICK_ROUNDING * abs(a[at])
             self.senses[k] = int(np.sign(a[at] if still else v[at]))
+
+    def let_all_go(self) -> None:
+        """Hold nothing, as in an impact."""
+        self.holds, self.senses[:] = [], 0
+        self._change()
 
     def rates(self) -> Array:
         """(n,) now."""
@@ -157,6 +179,14 @@ class Sticking:
 
     def margins(self, hold: Hold, t: float, y: Array) -> list[tuple[float, int]]:
         """(share of the limit that is left, which way) both ways in which a held group could go; negative: it slips."""
+        if hold.group < 0:
+            pull = hold.stop.sense * float(self.answer(t, y).needed[hold.stop.v])
+            return [(-pull, -hold.blocked), (np.inf, hold.blocked)]
+        free = self._ways_free(hold, t, y)
+        return [(np.inf if way == hold.blocked else margin, way) for margin, way in free]
+
+    def _ways_free(self, hold: Hold, t: float, y: Array) -> list[tuple[float, int]]:
+        """The same where no end stop blocks it."""
         senses = dict(hold.senses)
         one = self.rubbings[hold.held]
         out = []
@@ -188,9 +218,12 @@ class Sticking:
     def release(self, hold: Hold, way: int, t: float) -> None:
         """Let a group go one way. Raises NotDeterminedError where it then would not go there."""
         self.holds.remove(hold)
+        self.resting = [k for k in self.resting if self.base.stops[k].v != hold.stop.v]
         for k, sense in hold.senses:
             self.senses[k] = way * sense
         self._change()
+        if hold.group < 0:
+            return
         one = self.rubbings[hold.held]
         a, scale = self.answer(t, self.run.y).accelerations, self.run.dynamics.mechanism.scale
         # At the moment of release all that moves it is balanced, but for rounding of what there is without friction.
@@ -204,7 +237,13 @@ class Sticking:
         """(m,) efforts of all frictions, that of a held one being what holds its group."""
         out = answer.efforts.copy()
         for hold in self.holds:
-            out[hold.held] = answer.needed[self.rubbings[hold.held].v]
+            if hold.group < 0:
+                continue
+            needed = float(answer.needed[hold.stop.v])
+            if hold.blocked * needed < 0.0:
+                # What friction cannot take, pressed against an end stop, that takes.
+                needed = -hold.blocked * min(abs(needed), self._limit(hold.held, answer, hold.blocked))
+            out[hold.held] = needed
         return out
 
     def _takes_part(self, k: int) -> bool:
@@ -217,11 +256,14 @@ class Sticking:
 
     def _hold(self, g: int) -> None:
         rows, group = self._rows(), self.groups[g]
-        held = max(group, key=lambda k: float(np.linalg.norm(rows[k])))
+        against = {self.base.stops[k].v: self.base.stops[k].sense for k in self.resting}
+        at_stop = [k for k in group if self.rubbings[k].v in against]
+        held = max(at_stop or group, key=lambda k: float(np.linalg.norm(rows[k])))
         senses = tuple((k, 1 if float(rows[k] @ rows[held]) >= 0.0 else -1) for k in group)
         one = self.rubbings[held]
         value = float(self.run.dynamics.tables.unpack(self.run.y)[0][one.q])
-        self.holds.append(Hold(g, held, senses, Stop(one.joint, one.q, one.v, 1, value)))
+        blocked = against.get(one.v, 0)
+        self.holds.append(Hold(g, held, senses, Stop(one.joint, one.q, one.v, 1, value), blocked))
         self.senses[list(group)] = 0
 
     def _change(self) -> None:

@@ -50,8 +50,8 @@ class Contact:
         q, v = tables.unpack(run.y)
         loose = self._held([])
         rank = run.rank(loose.free)
-        null, matrix = _motions(run.dynamics, q, loose.free, rank), run.dynamics.mass_matrix(q)
-        impact = _impact(null, matrix, v, stops)
+        null, matrix = motions(run.dynamics, q, loose.free, rank), run.dynamics.mass_matrix(q)
+        impact = impact_on(null, matrix, v, stops)
         if impact is None:
             return (
                 f"at t = {t:.6g} s {stop.joint} reaches its end stop at {stop.limit:.6g} (rad or m), and what is "
@@ -96,7 +96,7 @@ class Contact:
         kept: list[Stop] = []
         for stop in wanted:
             free = self._held(kept).free
-            if np.linalg.norm(_motions(self.run.dynamics, q, free, self.run.rank(free))[stop.v]) > constants.STOP_MOVES:
+            if np.linalg.norm(motions(self.run.dynamics, q, free, self.run.rank(free))[stop.v]) > constants.STOP_MOVES:
                 kept.append(stop)
         actuation = self._held(kept)
         self.holding = kept
@@ -213,7 +213,7 @@ def beyond(stops: Sequence[Stop], q: Array) -> tuple[tuple[str, str], ...]:
     )
 
 
-def _motions(dynamics: Dynamics, q: Array, free: Ints, rank: int) -> Array:
+def motions(dynamics: Dynamics, q: Array, free: Ints, rank: int) -> Array:
     """(n, m) motions of the free rates that keep the loops closed."""
     mechanism = dynamics.mechanism
     null = np.zeros((mechanism.rates, len(free) - rank))
@@ -221,7 +221,7 @@ def _motions(dynamics: Dynamics, q: Array, free: Ints, rank: int) -> Array:
     return null
 
 
-def _impact(null: Array, matrix: Array, v: Array, stops: Sequence[Stop]) -> tuple[Array, Array] | None:
+def impact_on(null: Array, matrix: Array, v: Array, stops: Sequence[Stop]) -> tuple[Array, Array] | None:
     """Change (n,) of the rates at which no joint goes on beyond the stops it has met, and how fast it then goes there.
 
     None where no change of the motions `null` (n, m) brings that about; `matrix` (n, n) is that of the masses.
