@@ -92,6 +92,28 @@ def test_a_self_locking_gear_holds_any_load_and_can_be_driven_both_ways():
         assert way * run.joint_position[-1, 0] > 0.0
 
 
+def test_a_prescribed_motion_needs_what_the_gear_loses():
+    """Inverse dynamics, as the load drives and is driven."""
+    law, load = Sine(0.0, 1.0, 3.0, 0.0), 6.0
+    model = Model()
+    model.ground("ground")
+    for name, joint, inertia in (("A", "a", A), ("B", "b", B)):
+        model.body(name, 1.0, (0, 0, 0), (1, 1, inertia))
+        model.joint(joint, "ground", name, "revolute", point=(0, 0, 0), axis=SPIN)
+    model.gear("gear", "a", "b", RATIO, efficiency=0.8, efficiency_back=0.6)
+    model.motion("drive", "a", law)
+    model.effort("load", "b", Constant(load))
+    run = simulate_system(model.system(), Course(2.2, 0.1, NONE))
+    _sound(run)
+    v, a = (np.array([of(t) for t in run.time]) for of in (law.rate, law.acceleration))
+    passed = (load - B * a / RATIO) / RATIO
+    loss = -np.sign(v) * np.abs(passed) * np.where(passed * v > 0.0, 1.0 - 0.6, 1.0 / 0.8 - 1.0)
+    kinds = [use.kind for use in run.drives]
+    assert kinds == ["motion", "effort", "gear_loss"]
+    np.testing.assert_allclose(run.drive_effort[:, 0], A * a - passed - loss, atol=1e-12)
+    np.testing.assert_allclose(run.drive_effort[:, 2], loss, atol=1e-12)
+
+
 def _exact(efficiency, back, drive, load, times):
     """Value at a: the same gear by hand, each stretch of slipping or sticking on its own."""
     driving, driven = 1.0 / efficiency - 1.0, 1.0 - back

@@ -21,7 +21,7 @@ class DriveUse:
 
     joint: str
     kind: str
-    """motion, effort, spring, damper, friction, servo, dc_motor, stop."""
+    """motion, effort, spring, damper, friction, gear_loss, rotor (its friction), servo, dc_motor, stop."""
     peak: Effort
     """Greatest effort at an output time, N·m or N."""
     rms: Effort

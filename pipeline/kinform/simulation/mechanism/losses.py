@@ -10,6 +10,8 @@ gearboxes, 2nd Modelica conference, 2002). With η′ = 2 − 1/η, teeth that r
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from kinform.behaviour.components import Gear
@@ -45,7 +47,7 @@ def brush(motor: DcMotor, slot: Slot, joint: int) -> Rubbing:
     friction = Friction(
         f"rotor of {motor.name}", motor.subject, 0.0, 0.0, effort, effort, freedom=motor.freedom, rates=motor.rates
     )
-    return _on(friction, slot, joint)
+    return _on(friction, slot, joint, "rotor")
 
 
 def _loss(
@@ -54,12 +56,12 @@ def _loss(
     coefficient, lean = friction_of(*shares)
     name = f"loss of {gear.name}"
     friction = Friction(name, gear.subject, coefficient, coefficient, freedom=freedom, rates=rates)
-    return _on(friction, slot, joint, lost, lean)
+    return replace(_on(friction, slot, joint, "gear_loss"), lost=lost, lean=lean)
 
 
-def _on(friction: Friction, slot: Slot, joint: int, lost: Lost | None = None, lean: float = 0.0) -> Rubbing:
+def _on(friction: Friction, slot: Slot, joint: int, called: str) -> Rubbing:
     q, v = slot.q.start + friction.freedom, slot.v.start + friction.freedom
-    return Rubbing(friction, slot.name, joint, 0, np.zeros(3), q, v, -1, lost=lost, lean=lean)
+    return Rubbing(friction, slot.name, joint, 0, np.zeros(3), q, v, -1, called=called)
 
 
 def multipliers(mechanism: Mechanism, rest: Array) -> Array:

@@ -55,6 +55,8 @@ class Rubbing:
     """Of what a gear loses (`mechanism.losses`), whose grip is |y|; None: a wrench in the joint presses."""
     lean: float = 0.0
     """Of these: how much more it is for y along the rate, and less against it, as a share of |y|."""
+    called: str = "friction"
+    """What it is in results: also gear_loss and rotor."""
 
     @property
     def loaded(self) -> bool:

@@ -55,7 +55,8 @@ def _acted(dynamics: Dynamics, record: Record) -> Iterator[tuple[int, str, Array
         ]
         states += sum(actor.states)
         if actor.friction >= 0 and record.friction is not None:
-            yield actor.v, "friction", record.friction.effort[:, actor.friction]
+            lost = actuation.frictions[actor.friction]
+            yield actor.v, lost.called, record.friction.effort[:, actor.friction]
         else:
             effort = effort_of(actor, record.time, record.q[:, actor.q], record.v[:, actor.v], columns)
             yield actor.v, _KINDS[actor.does], effort
