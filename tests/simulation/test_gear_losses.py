@@ -47,7 +47,7 @@ def _pair(efficiency, back, at_a, at_b, *, swapped=False, until=0.5, step=0.05, 
 
 def _sound(run):
     assert run.status == "done", run.reason
-    assert np.abs(run.energy @ [1.0, 1.0, -1.0]).max() < 1e-9
+    assert np.ptp(run.energy @ [1.0, 1.0, -1.0]) < 1e-9
     assert run.balance.max() < 1e-9
 
 
