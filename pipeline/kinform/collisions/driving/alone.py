@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy as np
 from kinform.collisions.constants import MEETING_MARGIN, SCREW_TURNS, SCREW_TURNS_MOST, STOP_ANGLE, STOP_LENGTH
 from kinform.collisions.driving.meeting_spans import Spans, meeting_spans
 from kinform.collisions.driving.swept_profiles import Profile, meeting
+from kinform.collisions.driving.swept_spheres import SweptSpheres, first_touch
 from kinform.collisions.pair.advancement import NOTHING, first_crossing
 from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.distance_bounds import Wholes
@@ -55,13 +56,18 @@ class _Candidate:
 
     def apart_until(self, sign: int, start: float, end: float) -> float:
         """Up to which place from `start` to `end` the parts are certainly apart; `start` where that is not told."""
+        return start if self.spheres is None else self.spheres[0].apart_until(self.spheres[1], sign, start, end)
+
+    @cached_property
+    def spheres(self) -> tuple[SweptSpheres, SweptSpheres] | None:
+        """Spheres about both; None for a screw."""
         if self._turns is None:
-            return start
+            return None
         first, second = (
             profile.spheres(self._shapes.spheres(name), self._shapes.part(name).X_WP)
             for profile, name in zip(self._profiles, self.names, strict=True)
         )
-        return first.apart_until(second, sign, start, end)
+        return first, second
 
     @cached_property
     def test(self) -> tuple[PairTest, float] | None:
@@ -156,12 +162,16 @@ def _candidates(
     shapes: Shapes, profiles: dict[str, Profile], twist: Array, still: Sequence[str], moving: Sequence[str]
 ) -> list[_Candidate]:
     """Pairs whose parts sweep over places of each other."""
-    bounds = {name: profile.bounds for name, profile in profiles.items()}
+    if not (still and moving):
+        return []
+    (low, high), (from_, to) = (
+        (np.stack(sides) for sides in zip(*(profiles[name].bounds for name in names), strict=True))
+        for names in (still, moving)
+    )
+    near = (low[:, None] <= to).all(axis=2) & (from_ <= high[:, None]).all(axis=2)
     return [
-        _Candidate(shapes, (PartName(first), PartName(second)), (profiles[first], profiles[second]), twist)
-        for first in still
-        for second in moving
-        if np.all(bounds[first][0] <= bounds[second][1]) and np.all(bounds[second][0] <= bounds[first][1])
+        _Candidate(shapes, (PartName(still[i]), PartName(moving[j])), (profiles[still[i]], profiles[moving[j]]), twist)
+        for i, j in np.argwhere(near).tolist()
     ]
 
 
@@ -211,27 +221,38 @@ def _in_order(
 ) -> Generator[_Entry, float, None]:
     """Pairs that come near each other before `reach`, with how far they are certainly apart: those that come near first
     are first, and those that touch from the start, which are slow to follow, last. It is told how `reach` shrinks."""
-    touching, waiting = [], []
-    for n, candidate in enumerate(candidates):
-        wholes, course = candidate.wholes(), candidate.course(sign)
-        apart = candidate.apart_until(sign, start, reach)
-        if apart > start:
-            waiting.append((apart, n, wholes, course))
-        elif wholes.touch(course.displacement(start)):
-            touching.append(candidate)
-        else:
-            waiting.append((start, n, wholes, course))
+    touching: list[_Candidate] = []
+    waiting: list[tuple[float, int, Wholes | None]] = list(_apart(candidates, sign, start, reach))
     heapq.heapify(waiting)
     while waiting and waiting[0][0] < reach:
-        s, n, wholes, course = heapq.heappop(waiting)
+        s, n, wholes = heapq.heappop(waiting)
+        candidate = candidates[n]
+        course = candidate.course(sign)
+        if wholes is None:
+            wholes, s = candidate.wholes(), candidate.apart_until(sign, start, reach)
+            if s <= start and wholes.touch(course.displacement(start)):
+                touching.append(candidate)
+            elif s < reach:
+                heapq.heappush(waiting, (s, n, wholes))
+            continue
         s, short = wholes.step(course, s, reach)
         if short:
-            reach = yield candidates[n], s
+            reach = yield candidate, s
         elif s < reach:
-            heapq.heappush(waiting, (s, n, wholes, course))
+            heapq.heappush(waiting, (s, n, wholes))
     for candidate in touching:
         if start < reach:
             reach = yield candidate, start
+
+
+def _apart(candidates: Sequence[_Candidate], sign: int, start: float, end: float) -> Iterator[tuple[float, int, None]]:
+    """Those that may meet before `end`, by one sphere about each part: how far they are certainly apart."""
+    if not candidates or candidates[0].spheres is None:
+        yield from ((start, n, None) for n in range(len(candidates)))
+        return
+    first, second = (np.array([c.spheres[k].whole for c in candidates if c.spheres]).T for k in (0, 1))
+    apart = first_touch(first, second, candidates[0].spheres[0].turning, sign, start)
+    yield from ((float(apart[n]), int(n), None) for n in np.flatnonzero(apart < end))
 
 
 def _clear(profiles: Sequence[Profile]) -> float:

@@ -14,8 +14,9 @@ from kinform.model.assembly import Mesh
 
 @dataclass(frozen=True, eq=False)
 class Spheres:
-    """Middles (k, 3) and radii (k,) m of spheres that hold all facets of a part, part frame: few, and many."""
+    """Middles (k, 3) and radii (k,) m of spheres that hold all facets of a part, part frame: one, few, and many."""
 
+    whole: tuple[Array, Array]
     coarse: tuple[Array, Array]
     fine: tuple[Array, Array]
     first: Ints
@@ -32,7 +33,9 @@ class Spheres:
         coarse, fine = np.unique(coarse), np.unique(np.append(coarse, fine))
         corners, low, high = corners[order], low[order], high[order]
         few, many = (_about(corners, low, high, starts) for starts in (coarse, fine))
-        return cls(few, many, np.append(np.searchsorted(fine, coarse), len(fine)))
+        middle = 0.5 * (low.min(axis=0) + high.max(axis=0))
+        one = middle[None], np.array([(np.linalg.norm(few[0] - middle, axis=1) + few[1]).max()])
+        return cls(one, few, many, np.append(np.searchsorted(fine, coarse), len(fine)))
 
 
 def _about(corners: Array, low: Array, high: Array, starts: Ints) -> tuple[Array, Array]:
