@@ -15,9 +15,8 @@ from kinform import collisions, contacts, kinematics, surfaces
 from kinform.collisions.driving import alone
 from kinform.collisions.driving.meeting_spans import TURN, meeting_spans
 from kinform.collisions.driving.swept_profiles import Profile
-from kinform.collisions.driving.swept_spheres import SweptSpheres
+from kinform.collisions.driving.swept_spheres import first_touch
 from kinform.collisions.pair.mate_surfaces import Kept
-from kinform.collisions.parts.spheres import Spheres
 from kinform.foundation.algebra.displacements import displacement
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_model, fcl_pose
 
@@ -87,21 +86,28 @@ def test_a_fine_ring_is_met_no_further_than_its_teeth_reach():
 
 @pytest.mark.parametrize("kind", ["turn", "slide"])
 @pytest.mark.parametrize("seed", range(4))
-def test_spheres_never_say_apart_where_parts_meet(kind, seed):
+def test_spheres_touch_first_where_it_is_said(kind, seed):
     rng = np.random.default_rng(seed)
-    twist = twist_of(kind, random_pose(rng))
-    meshes = [shards(rng, 300, 0.02, off) for off in (0.0, [0.5, 0.8, 2.0])]
-    frame = Profile(*meshes[0], twist).frame
-    held = [Spheres.of(SimpleNamespace(vertices=vertices, faces=faces)) for vertices, faces in meshes]
-    first, second = (SweptSpheres(spheres, frame, kind == "turn") for spheres in held)
-    places = np.linspace(0.0, 3.1, 800)
+    spheres = [np.vstack([rng.uniform(-1, 1, (3, 300)), rng.uniform(0, 0.3, (1, 300))]) for _ in range(2)]
+    start = 0.0 if seed % 2 else 0.7
+    places = np.linspace(start, start + TURN if kind == "turn" else 4.0, 6000)
     for sign in (-1, 1):
-        free = first.apart_until(second, sign, 0.0, 3.1)
-        apart = distances(*meshes, sign * twist, places)
-        assert (apart[places < free] > 0.0).all()
-        if free < 3.1:
-            # spheres are not much larger than what they hold
-            assert distances(*meshes, sign * twist, [free])[0] < 0.2
+        first = first_touch(*spheres, kind == "turn", sign, start)
+        twist = np.zeros(6)
+        twist[2 if kind == "turn" else 5] = sign
+        moved = np.stack([displacement(s * twist) for s in places])
+        at = np.einsum("sij,jn->sin", moved[:, :3, :3], spheres[1][:3]) + moved[:, :3, 3:]
+        gap = np.linalg.norm(at - spheres[0][:3], axis=1) - spheres[0][3] - spheres[1][3]
+        met = gap <= 0.0
+        sure = np.where(met.any(axis=0), places[met.argmax(axis=0)], np.inf)
+        assert (first <= sure + 1e-9).all()
+        # what the steps do not resolve is a graze
+        step = places[1] - places[0]
+        early = first < sure - step
+        least = np.array([gap[np.searchsorted(places, f) - 1 :, n].min() for n, f in enumerate(first) if early[n]])
+        assert (least < 3 * step).all()
+        assert np.isfinite(first).any()
+        assert np.isinf(first).any()
 
 
 @pytest.mark.parametrize("turning", [True, False])

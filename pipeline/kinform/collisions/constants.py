@@ -14,8 +14,6 @@ import numpy as np
 
 SPHERES = 96
 """Spheres about the facets of a part."""
-SPHERES_FINE = 1500
-"""The same, where those come near."""
 SCRAPE = 1e-3
 """By so much parts may overlap as they slide along each other: by rounding of their files and by what is left over
 where joints were fitted."""
@@ -131,11 +129,6 @@ SCREW_TURNS_MOST = 400
 """Turns of a screw that are tried in all, where its threads end."""
 MEETING_MARGIN = 1e-6
 """Facets whose swept profiles come no nearer than this never meet."""
-
-# driving/swept_spheres: how far parts are certainly apart
-
-SPHERES_TOGETHER = 32
-"""Pairs of spheres that are looked at finer at once."""
 
 # driving/meeting_spans: where along a motion facets can meet
 

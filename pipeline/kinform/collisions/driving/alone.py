@@ -12,7 +12,7 @@ import numpy as np
 from kinform.collisions.constants import MEETING_MARGIN, SCREW_TURNS, SCREW_TURNS_MOST, STOP_ANGLE, STOP_LENGTH
 from kinform.collisions.driving.meeting_spans import Spans, meeting_spans
 from kinform.collisions.driving.swept_profiles import Profile, meeting
-from kinform.collisions.driving.swept_spheres import SweptSpheres, first_touch
+from kinform.collisions.driving.swept_spheres import first_touch
 from kinform.collisions.pair.advancement import NOTHING, first_crossing
 from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.distance_bounds import Wholes
@@ -33,8 +33,8 @@ class _Candidate:
     """A pair of parts that the motion could bring together, the second part being the one that moves."""
 
     def __init__(self, shapes: Shapes, names: Pair, profiles: tuple[Profile, Profile], twist: Array):
-        self.names, self._shapes, self._profiles, self._twist = names, shapes, profiles, twist
-        self._turns = profiles[0].turns
+        self.names, self._shapes, self.profiles, self._twist = names, shapes, profiles, twist
+        self.turns = profiles[0].turns
         self._turning = float(twist[:3] @ twist[:3]) > 0.25
 
     def course(self, sign: int, radius: float | None = None) -> Course:
@@ -44,7 +44,7 @@ class _Candidate:
         if radius is not None and self._meetings is not None:
             meets = self._meetings.towards(sign)
         if radius is None:
-            radius = min(profile.largest for profile in self._profiles)
+            radius = min(profile.largest for profile in self.profiles)
         along = float(abs(self._twist[:3] @ self._twist[3:]))
         speed = math.hypot(radius, along) if self._turning else 1.0
         moved = lru_cache(maxsize=64)(lambda s: displacement(sign * s * self._twist))
@@ -54,47 +54,32 @@ class _Candidate:
         """The parts with all their facets."""
         return Wholes(self._shapes, *self.names)
 
-    def apart_until(self, sign: int, start: float, end: float) -> float:
-        """Up to which place from `start` to `end` the parts are certainly apart; `start` where that is not told."""
-        return start if self.spheres is None else self.spheres[0].apart_until(self.spheres[1], sign, start, end)
-
-    @cached_property
-    def spheres(self) -> tuple[SweptSpheres, SweptSpheres] | None:
-        """Spheres about both; None for a screw."""
-        if self._turns is None:
-            return None
-        first, second = (
-            profile.spheres(self._shapes.spheres(name), self._shapes.part(name).X_WP)
-            for profile, name in zip(self._profiles, self.names, strict=True)
-        )
-        return first, second
-
     @cached_property
     def test(self) -> tuple[PairTest, float] | None:
         """With the facets that can meet, and how far these are from the axis at most; None where none can."""
         shapes, twists, (first, second) = self._shapes, self._twist[None], self.names
         margin = MEETING_MARGIN * min(shapes.mesh(first).diagonal, shapes.mesh(second).diagonal)
-        facets = meeting(*self._profiles, *shapes.moved_facets(first, second, twists), margin)
+        facets = meeting(*self.profiles, *shapes.moved_facets(first, second, twists), margin)
         if not (len(facets[0]) and len(facets[1])):
             return None
         mates = [patch for patch in shapes.patches(first, second) if preserved(patch, twists)]
         test = PairTest(shapes, first, second, facets, mates)
-        return test, min(profile.radius(side) for profile, side in zip(self._profiles, facets, strict=True))
+        return test, min(profile.radius(side) for profile, side in zip(self.profiles, facets, strict=True))
 
     @cached_property
     def _meetings(self) -> Spans | None:
         """Where facets of a turn or slide can meet that count, other than along mates; None where that is not known."""
-        turns = self._turns
+        turns = self.turns
         if self.test is None or turns is None or not self.test[0].mates:
             return None
-        test, first = self.test[0], self._profiles[0]
+        test, first = self.test[0], self.profiles[0]
 
         def along(i: Ints, j: Ints, low: Array, high: Array) -> Flags:
             return test.mates.surely_along((i, j), Kept(low, high, turns, first.frame @ test.X_WA, first.span))
 
         parts = [
             (profile.corners(facets), test.counted(k))
-            for k, (profile, facets) in enumerate(zip(self._profiles, test.facets, strict=True))
+            for k, (profile, facets) in enumerate(zip(self.profiles, test.facets, strict=True))
         ]
         return meeting_spans(parts, turns, MEETING_MARGIN * test.size, along)
 
@@ -229,12 +214,10 @@ def _in_order(
         candidate = candidates[n]
         course = candidate.course(sign)
         if wholes is None:
-            wholes, s = candidate.wholes(), candidate.apart_until(sign, start, reach)
+            wholes = candidate.wholes()
             if s <= start and wholes.touch(course.displacement(start)):
                 touching.append(candidate)
-            elif s < reach:
-                heapq.heappush(waiting, (s, n, wholes))
-            continue
+                continue
         s, short = wholes.step(course, s, reach)
         if short:
             reach = yield candidate, s
@@ -247,11 +230,11 @@ def _in_order(
 
 def _apart(candidates: Sequence[_Candidate], sign: int, start: float, end: float) -> Iterator[tuple[float, int, None]]:
     """Those that may meet before `end`, by one sphere about each part: how far they are certainly apart."""
-    if not candidates or candidates[0].spheres is None:
+    if not candidates or candidates[0].turns is None:
         yield from ((start, n, None) for n in range(len(candidates)))
         return
-    first, second = (np.array([c.spheres[k].whole for c in candidates if c.spheres]).T for k in (0, 1))
-    apart = first_touch(first, second, candidates[0].spheres[0].turning, sign, start)
+    first, second = (np.array([candidate.profiles[k].sphere for candidate in candidates]).T for k in (0, 1))
+    apart = first_touch(first, second, candidates[0].turns, sign, start)
     yield from ((float(apart[n]), int(n), None) for n in np.flatnonzero(apart < end))
 
 

@@ -6,11 +6,12 @@ shadow: facets whose boxes in these coordinates are apart never meet, over the w
 
 from __future__ import annotations
 
+import math
+from functools import cached_property
+
 import numpy as np
 
 from kinform.collisions.constants import LEVEL
-from kinform.collisions.driving.swept_spheres import SweptSpheres
-from kinform.collisions.parts.spheres import Spheres
 from kinform.foundation.algebra.vectors import cross, perpendicular
 from kinform.foundation.meshes.boxes import facet_boxes
 from kinform.foundation.meshes.proximity import near_boxes
@@ -23,7 +24,6 @@ class Profile:
 
     def __init__(self, vertices: Array, faces: Ints, twist: Array):
         self._faces = faces
-        self._spheres: SweptSpheres | None = None
         self._turning = bool(twist[:3] @ twist[:3] > 0.25)
         axis = twist[:3] if self._turning else twist[3:]
         across = np.stack(perpendicular(axis), axis=1)
@@ -41,11 +41,14 @@ class Profile:
         rounding = LEVEL * max(self.largest, float(np.linalg.norm(twist[3:])))
         self._level = self._turning and abs(float(twist[:3] @ twist[3:])) < rounding
 
-    def spheres(self, spheres: Spheres, X_WP: Array) -> SweptSpheres:
-        """Spheres of the part, where the axis is z."""
-        if self._spheres is None:
-            self._spheres = SweptSpheres(spheres, self.frame @ X_WP, self._turning)
-        return self._spheres
+    @cached_property
+    def sphere(self) -> Array:
+        """(4,) a sphere about it: where its middle is, across the axis and along it, and its radius (m)."""
+        low, high = self._flat.min(axis=0), self._flat.max(axis=0)
+        bottom, top = self.span
+        middle = 0.5 * (low + high), 0.5 * (bottom + top)
+        away = ((self._flat - middle[0]) ** 2).sum(axis=1) + (self._heights - middle[1]) ** 2
+        return np.array([*middle[0], middle[1], (1.0 + LEVEL) * math.sqrt(float(away.max()))])
 
     @property
     def span(self) -> tuple[float, float]:

@@ -29,7 +29,7 @@ class Wholes:
         self._to_first = np.linalg.inv(shapes.part(first).X_WP)
         self._X_WB = shapes.part(second).X_WP
         self._size = min(shapes.mesh(first).diagonal, shapes.mesh(second).diagonal)
-        self._spheres = shapes.spheres(first).coarse, shapes.spheres(second).coarse
+        self._spheres = shapes.spheres(first), shapes.spheres(second)
         self._steps = 0
 
     @cached_property

@@ -8,11 +8,10 @@ from functools import cached_property
 import fcl
 import numpy as np
 
-from kinform.collisions.constants import SCRAPE, SCRAPE_ANGLES
+from kinform.collisions.constants import SCRAPE, SCRAPE_ANGLES, SPHERES
 from kinform.collisions.parts.slippage import Allowed, OwnMotions, Slippage
-from kinform.collisions.parts.spheres import Spheres
 from kinform.foundation.algebra.vectors import cross
-from kinform.foundation.meshes.boxes import box_corners
+from kinform.foundation.meshes.boxes import box_corners, together
 from kinform.foundation.meshes.fcl_adapter import partial_model
 from kinform.foundation.meshes.index import MeshIndex, MeshStore
 from kinform.model.arrays import Array, Flags, Ints
@@ -35,7 +34,7 @@ class Shapes:
     _borders: dict[str, list[set[int]]] = field(default_factory=dict)
     _models: dict[tuple[str, bytes], fcl.BVHModel] = field(default_factory=dict)
     _store: MeshStore = field(default_factory=MeshStore)
-    _spheres: dict[str, Spheres] = field(default_factory=dict)
+    _spheres: dict[str, tuple[Array, Array]] = field(default_factory=dict)
     _patches: dict[tuple[str, str], list[Patch]] | None = None
     _parts: dict[str, Part] = field(default_factory=dict)
 
@@ -115,11 +114,11 @@ class Shapes:
             self._models[key] = partial_model(mesh.vertices, mesh.faces[facets])
         return self._models[key]
 
-    def spheres(self, name: str) -> Spheres:
-        """Spheres that hold the facets of a part, part frame."""
+    def spheres(self, name: str) -> tuple[Array, Array]:
+        """Middles (k, 3) and radii (k,) m of spheres that hold the facets of a part, part frame."""
         mesh = self.mesh(name)
         if mesh.digest not in self._spheres:
-            self._spheres[mesh.digest] = Spheres.of(mesh)
+            self._spheres[mesh.digest] = _spheres(mesh)
         return self._spheres[mesh.digest]
 
     def moved_facets(self, first: str, second: str, twists: Array) -> tuple[Ints, Ints]:
@@ -141,3 +140,16 @@ class Shapes:
             for patch in self.contacts.patches if self.contacts is not None else ():
                 self._patches.setdefault(patch.parts, []).append(patch)
         return self._patches.get((min(first, second), max(first, second)), [])
+
+
+def _spheres(mesh: Mesh) -> tuple[Array, Array]:
+    """About facets that lie together."""
+    corners = mesh.vertices[mesh.faces]
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    order = together(low, high)
+    starts = np.unique(np.linspace(0, len(order), SPHERES, endpoint=False).astype(int))
+    low, high = np.minimum.reduceat(low[order], starts), np.maximum.reduceat(high[order], starts)
+    middle = 0.5 * (low + high)
+    rank = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(order))))
+    away = np.linalg.norm(corners[order] - middle[rank, None], axis=2).max(axis=1)
+    return middle, np.maximum.reduceat(away, starts)
