@@ -424,6 +424,9 @@ WIDE = (8.0, 4.0, 2.0, 1.0, 1.0)
 HELIX_STEP = 0.85
 """rad: greatest angle of an edge about the axis: a thread has eight vertices a turn, at least."""
 
+ARC = 1.1
+"""Length of such an edge along its helix, in its own lengths, at most: 1.031, with room."""
+
 LEAST_ARC = 0.05
 """Arc of an edge along a helix, in rises, at least."""
 

@@ -12,6 +12,9 @@ import numpy as np
 
 from kinform.model.arrays import Array, Flags, Ints
 
+MANY = 4096
+"""Numbers from which on two fast sorts take less time than one that keeps the order of equal ones."""
+
 
 class Ragged:
     """Rows of different length: the items of row i are items[starts[i]:starts[i + 1]]."""
@@ -36,6 +39,12 @@ class Ragged:
         first = np.cumsum([0, *(len(part.items) for part in parts)])
         starts = [part.starts[:-1] + at for part, at in zip(parts, first, strict=False)]
         out.starts = np.concatenate([*starts, first[-1:]])
+        return out
+
+    def carrying(self, items: Ints) -> Ragged:
+        """Rows as long as these, of other items."""
+        out = type(self).__new__(type(self))
+        out.items, out.starts = items, self.starts
         return out
 
     def lengths(self, rows: Ints) -> Ints:
@@ -83,6 +92,21 @@ def ascending(keys: Ints, count: int) -> Ints:
     return placed - placed // size * size
 
 
+def in_order(groups: Ints, values: Array, count: int) -> Ints:
+    """The order that sorts values by their group, from 0 to `count`, then by size; equal ones come in any."""
+    if len(values) < MANY:
+        return np.lexsort((values, groups))
+    order = np.argsort(values)
+    return order.take(ascending(groups.take(order), count))
+
+
+def renumbered(numbers: Ints, count: int) -> tuple[Ints, int]:
+    """Numbers from 0 to `count` without gaps, in the same order, and how many there are."""
+    seen = np.zeros(count, bool)
+    seen[numbers] = True
+    return (seen.cumsum() - 1).take(numbers), int(np.count_nonzero(seen))
+
+
 def heads(ordered: Ints) -> Flags:
     """(n,) which of the ordered keys are the first of their value."""
     out = np.ones(len(ordered), bool)
@@ -106,17 +130,17 @@ def parted(keys: Ints, count: int) -> tuple[Ints, Ints]:
 def distinct(keys: Ints) -> Ints:
     """The distinct keys, ascending: sorting integers is faster than numpy's hashing."""
     ordered = np.sort(keys)
-    return ordered.take(np.flatnonzero(heads(ordered)))
+    return ordered.take(heads(ordered).nonzero()[0])
 
 
 def occurrences(keys: Ints) -> tuple[Ints, Ints]:
     """The distinct keys, ascending, and how often each occurs."""
     ordered = np.sort(keys)
-    first = np.flatnonzero(heads(ordered))
+    first = heads(ordered).nonzero()[0]
     times = np.empty(len(first), np.int64)
     np.subtract(first[1:], first[:-1], out=times[:-1])
     times[-1:] = len(ordered) - first[-1:]
-    return ordered[first], times
+    return ordered.take(first), times
 
 
 def group_sum(groups: Ints, values: Array, count: int) -> Array:
@@ -126,6 +150,17 @@ def group_sum(groups: Ints, values: Array, count: int) -> Array:
     for k in range(flat.shape[1]):
         out[:, k] = np.bincount(groups, flat[:, k], count)
     return out.reshape((count, *values.shape[1:]))
+
+
+def group_moments(groups: Ints, columns: Sequence[Array] | Array, count: int, weight: Array | None = None) -> Array:
+    """(count, k, k) sum of w x xᵀ of the rows of each group, x given as k columns (n,)."""
+    size = len(columns)
+    out: Array = np.empty((count, size, size))
+    for i in range(size):
+        weighed = columns[i] if weight is None else weight * columns[i]
+        for j in range(i + 1):
+            out[:, i, j] = out[:, j, i] = np.bincount(groups, weighed * columns[j], count)
+    return out
 
 
 def group_mean(groups: Ints, values: Array, count: int, weight: Array | None = None) -> Array:
@@ -212,8 +247,8 @@ def solve_normal(matrix: Array, right: Array, damping: float = 1e-12) -> Array:
 
 def quantile(groups: Ints, values: Array, count: int, share: float) -> Array:
     """The lower `share` quantile of the values of each group; 0 for empty groups."""
-    order = np.lexsort((values, groups))
-    return ordered_quantile(groups[order], values[order], count, share)
+    order = in_order(groups, values, count)
+    return ordered_quantile(groups.take(order), values.take(order), count, share)
 
 
 def ordered_quantile(groups: Ints, values: Array, count: int, share: float) -> Array:

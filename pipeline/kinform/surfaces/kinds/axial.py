@@ -73,12 +73,13 @@ def azimuths(params: Params, radial: Array) -> Array:
 def angular_widths(batch: Batch, params: Params) -> Array:
     """(pairs,) angle about the axis that each polygon subtends."""
     owner, _ = batch.corners
-    mine = columns_of(params, batch.region)
-    _, _, middle = cylindrical(mine, batch.patchwork.middles(batch.polygon))
-    _, rho, radial = cylindrical(columns_of(mine, owner), batch.points)
+    group, (_, rho, radial) = batch.seen(params, cylindrical)
+    count = len(batch.polygon)
+    middle, radial = radial[:count], radial[count:]
     cos = dot(radial, columns_of(middle, owner))
-    sin = dot(radial, columns_of(cross(mine[:, :3], middle), owner))
-    angle = np.where(rho > ON_AXIS * np.abs(mine[:, 6])[owner], np.arctan2(sin, cos), 0.0)
+    sin = dot(radial, columns_of(cross(columns_of(params[:, :3], batch.region), middle), owner))
+    least = (ON_AXIS * np.abs(params[:, 6])).take(group[count:])
+    angle = np.where(rho[count:] > least, np.arctan2(sin, cos), 0.0)
     high, low = np.zeros(len(batch.polygon)), np.zeros(len(batch.polygon))
     np.maximum.at(high, owner, angle)
     np.minimum.at(low, owner, angle)

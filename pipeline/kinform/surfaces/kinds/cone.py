@@ -9,10 +9,11 @@ from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.constants import CIRCLE_OF_NORMALS, LARGEST, LEAST_POINTS, LEAST_RADIUS, LEAST_TAPER, SAGITTA
 from kinform.surfaces.groups import (
+    columns_of,
     group_mean,
     group_mean_of,
+    group_moments,
     group_range,
-    group_sum,
     normal_equations,
     slices,
     solve_normal,
@@ -37,13 +38,14 @@ class Cone(Ruled):
     def propose(self, batch: Batch) -> tuple[Params, Flags]:
         """ρ² as a polynomial in the position along the axis is linear in centre and taper."""
         work, count = batch.patchwork, batch.count
-        normal, weight = work.normal[batch.polygon], work.area[batch.polygon]
-        offset = normal - group_mean(batch.region, normal, count, weight)[batch.region]
-        matrix = group_sum(batch.region, weight[:, None, None] * offset[:, :, None] * offset[:, None, :], count)
+        normal, weight = work.normals(batch.polygon), work.area.take(batch.polygon)
+        offset = normal - columns_of(group_mean(batch.region, normal, count, weight), batch.region)
+        matrix = group_moments(batch.region, offset.T, count, weight)
         values, vectors = np.linalg.eigh(np.nan_to_num(matrix))
         axis = np.ascontiguousarray(vectors[:, :, 0])
         region, edge, inner = batch.edges
-        region, edge = region[inner & work.smooth[edge]], edge[inner & work.smooth[edge]]
+        rows = (inner & work.smooth.take(edge)).nonzero()[0]
+        region, edge = region.take(rows), edge.take(rows)
         params, usable = _taper(batch, axis, region, edge)
         return params, usable & (values[:, 0] < CIRCLE_OF_NORMALS * values[:, 1])
 
@@ -70,9 +72,9 @@ def _taper(batch: Batch, axis: Array, region: Ints, edge: Ints) -> tuple[Params,
     u, v, t = np.empty((3, len(vertex)))
     for rows in slices(len(vertex), constants.ROWS):
         mine = group[rows]
-        offset = work.vertices[vertex[rows]] - middle[mine]
+        offset = work.at(vertex[rows]) - columns_of(middle, mine)
         for out, direction in ((u, x), (v, y), (t, axis)):
-            out[rows] = dot(offset, direction[mine])
+            out[rows] = dot(offset, columns_of(direction, mine))
     del vertex
     centre, _ = spheres_of(group, (u, v), count, t, t * t)
     # two rings leave the size of the ring open above, but not its middle; the rest is a line

@@ -7,7 +7,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import dot
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.constants import EQUAL_STEPS, LARGEST, LEAST_POINTS, RIDGES_AGREE, SAGITTA
-from kinform.surfaces.groups import group_mean, group_range, group_sum, occurrences, spheres_through
+from kinform.surfaces.groups import columns_of, group_mean, group_moments, group_range, occurrences, spheres_of
 from kinform.surfaces.kinds.axial import frames
 from kinform.surfaces.kinds.kind import Batch, Params
 from kinform.surfaces.kinds.ruled import Ruled, generators
@@ -28,9 +28,8 @@ class Cylinder(Ruled):
         """Circle through the ends of the ridges, seen along the axis."""
         work = batch.patchwork
         ridge, agreement = _axis_of_edges(batch)
-        normal = work.normal[batch.polygon]
-        weight = work.area[batch.polygon][:, None, None]
-        matrix = group_sum(batch.region, weight * normal[:, :, None] * normal[:, None, :], batch.count)
+        normal, weight = work.normals(batch.polygon), work.area.take(batch.polygon)
+        matrix = group_moments(batch.region, normal.T, batch.count, weight)
         _, vectors = np.linalg.eigh(np.nan_to_num(matrix))
         axis = np.where((agreement > RIDGES_AGREE)[:, None], ridge, vectors[:, :, 0])
         params = np.zeros((batch.count, 8))
@@ -39,8 +38,10 @@ class Cylinder(Ruled):
         inner_count = np.bincount(region[inner], minlength=batch.count)
         use = inner | smooth | (inner_count[region] < 3)
         surrounded, vertex = batch.inner_vertices(3)
-        ends = work.ends[edge[use]].ravel()
-        return _circle(batch, axis, np.r_[np.repeat(region[use], 2), surrounded], np.r_[ends, vertex])
+        rows = use.nonzero()[0]
+        ends = work.ends.take(edge.take(rows), axis=0).ravel()
+        group = np.concatenate([region.take(rows).repeat(2), surrounded])
+        return _circle(batch, axis, group, np.concatenate([ends, vertex]))
 
     def credible(self, batch: Batch, params: Params, scale: Scales) -> Flags:
         """At least four generators, or three at equal steps; two strips of like width; and a sagitta well above the
@@ -68,9 +69,8 @@ def _axis_of_edges(batch: Batch) -> tuple[Array, Array]:
     """(axis, how nearly all inner edges run along it, 1 for exactly) of each region."""
     work = batch.patchwork
     region, edge, inner = batch.edges
-    region, edge = region[inner], edge[inner]
-    along = work.vertices[work.ends[edge, 1]] - work.vertices[work.ends[edge, 0]]
-    matrix = group_sum(region, along[:, :, None] * along[:, None, :], batch.count)
+    rows = inner.nonzero()[0]
+    matrix = group_moments(region.take(rows), work.along(edge.take(rows)).T, batch.count)
     values, vectors = np.linalg.eigh(np.nan_to_num(matrix))
     total = np.maximum(values.sum(axis=1), 1e-300)
     return np.ascontiguousarray(vectors[:, :, 2]), values[:, 2] / total
@@ -79,11 +79,11 @@ def _axis_of_edges(batch: Batch) -> tuple[Array, Array]:
 def _circle(batch: Batch, axis: Array, region: Ints, vertex: Ints) -> tuple[Params, Flags]:
     """The cylinder about each axis through the vertices of its region, and whether there is one."""
     x, y = frames(axis)
-    points = batch.patchwork.vertices[vertex]
+    points = batch.patchwork.at(vertex)
     middle = group_mean(region, points, batch.count)
-    offset = points - middle[region]
-    seen = np.stack([dot(offset, across[region]) for across in (x, y)], axis=1)
-    centre, square = spheres_through(region, seen, batch.count)
+    offset = points - columns_of(middle, region)
+    seen = [dot(offset, columns_of(across, region)) for across in (x, y)]
+    centre, square = spheres_of(region, seen, batch.count)
     params = np.zeros((batch.count, 8))
     params[:, :3] = axis
     params[:, 3:6] = middle + centre[:, :1] * x + centre[:, 1:] * y

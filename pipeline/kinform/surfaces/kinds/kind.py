@@ -6,20 +6,26 @@ positive outside the chord side: the vertices of a tessellation lie at 0, points
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from functools import cached_property
+from typing import Any, Protocol, TypeAlias, TypeVar, cast
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.constants import DAMPING, NEAR, RUN_OF_PAIRS
-from kinform.surfaces.groups import columns_of, normal_equations, occurrences, parted, solve_normal
+from kinform.surfaces.groups import columns_of, in_order, normal_equations, occurrences, parted, solve_normal
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 
 Params = Array
 """(R, 8): axis, point, radius, half-angle."""
+
+Seen = TypeVar("Seen")
+Look: TypeAlias = Callable[[Params, Array], Any]
+"""What points (N, 3) are about surfaces (N, 8)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,27 +48,42 @@ class Batch:
         self.region = region
         self.polygon = polygon
         self.count = count
-        self.size: Ints = np.bincount(region, minlength=count)
         self._edges: tuple[Ints, Ints, Flags] | None = None
         self._corners: tuple[Ints, Ints] | None = None
         self._points: Array | None = None
         self._inner: dict[int, tuple[Ints, Ints]] = {}
         self._mesh: Ints | None = None
+        self._parts: list[Batch] | None = None
+        self._seen: tuple[Params, Look, Any] | None = None
 
     def parts(self) -> list[Batch]:
         """The batch cut into runs of pairs, so that what is computed for every corner stays small."""
         if len(self.region) <= RUN_OF_PAIRS:
             return [self]
-        cuts = range(0, len(self.region), RUN_OF_PAIRS)
-        return [
-            Batch(self.patchwork, self.region[k : k + RUN_OF_PAIRS], self.polygon[k : k + RUN_OF_PAIRS], self.count)
-            for k in cuts
-        ]
+        if self._parts is None:
+            runs = [slice(k, k + RUN_OF_PAIRS) for k in range(0, len(self.region), RUN_OF_PAIRS)]
+            self._parts = [Batch(self.patchwork, self.region[run], self.polygon[run], self.count) for run in runs]
+        return self._parts
+
+    def seen(self, params: Params, look: Callable[[Params, Array], Seen]) -> tuple[Ints, Seen]:
+        """(region of each, what they are there) of the middles of the pairs' polygons, and after them of the corners,
+        about the surfaces (R, 8) of their regions. What was asked for last is kept: who asks for the widths of polygons
+        asks next whether they conform."""
+        if self._seen is None or self._seen[0] is not params or self._seen[1] != look:
+            group = np.concatenate([self.region, self.region.take(self.corners[0])])
+            points = np.concatenate([self.patchwork.middles(self.polygon).T, self.points.T], axis=1).T
+            self._seen = params, look, (group, look(columns_of(params, group), points))
+        return cast("tuple[Ints, Seen]", self._seen[2])
 
     @classmethod
     def of_keys(cls, patchwork: Patchwork, keys: Ints, count: int) -> Batch:
         """The batch of sorted `keys`."""
         return cls(patchwork, *parted(keys, patchwork.count), count)
+
+    @cached_property
+    def size(self) -> Ints:
+        """(R,) number of polygons of each region."""
+        return np.bincount(self.region, minlength=self.count)
 
     @property
     def keys(self) -> Ints:
@@ -109,17 +130,17 @@ class Batch:
             owner, vertex = self.corners
             total = np.int64(max(len(self.patchwork.vertices), 1))
             key, times = occurrences(self.region[owner] * total + vertex)
-            self._inner[least] = parted(key.take(np.flatnonzero(times >= least)), int(total))
+            self._inner[least] = parted(key.take((times >= least).nonzero()[0]), int(total))
         return self._inner[least]
 
     def forget(self) -> None:
         """Drops what is found when asked for: what is large, and is needed no longer or rarely."""
-        self._edges = self._corners = self._points = None
+        self._edges = self._corners = self._points = self._parts = self._seen = None
         self._inner = {}
 
     def select(self, keep: Flags) -> Batch:
         """The batch without some of its pairs; itself, with what it has already found, where all are kept."""
-        rows = np.flatnonzero(keep)
+        rows = keep.nonzero()[0]
         if len(rows) == len(keep):
             return self
         return Batch(self.patchwork, self.region.take(rows), self.polygon.take(rows), self.count)
@@ -184,6 +205,10 @@ class Kind(Protocol):
         """Holds points (N, 3) against surfaces (N, 8)."""
         ...
 
+    def held(self, batch: Batch, params: Params) -> tuple[Ints, Probe]:
+        """(region of each, probe) of the middles of the pairs' polygons, and after them of the corners."""
+        ...
+
     def widths(self, batch: Batch, params: Params) -> Array:
         """(pairs,) angle that each polygon subtends along the tessellated direction."""
         ...
@@ -233,11 +258,15 @@ class DoublyCurved(Kind, Protocol):
             region, vertex = moving.after(change, self.still, region, vertex)
         return params
 
+    def held(self, batch: Batch, params: Params) -> tuple[Ints, Probe]:
+        """By the kind's probe."""
+        return batch.seen(params, self.probe)
+
     def widths(self, batch: Batch, params: Params) -> Array:
         """Twice the greatest angle between the normals at a polygon's middle and at a vertex of it."""
         owner, _ = batch.corners
-        middle = self.probe(columns_of(params, batch.region), batch.patchwork.middles(batch.polygon)).normal
-        apart = self.probe(columns_of(params, batch.region[owner]), batch.points).normal - columns_of(middle, owner)
+        normal, count = self.held(batch, params)[1].normal, len(batch.polygon)
+        apart = normal[count:] - columns_of(normal[:count], owner)
         square = np.zeros(len(batch.polygon))
         np.maximum.at(square, owner, dot(apart, apart))
         return np.asarray(4 * np.arcsin(np.minimum(np.sqrt(square) / 2, 1.0)))
@@ -252,8 +281,8 @@ class DoublyCurved(Kind, Protocol):
 
 def distinct_angles(region: Ints, angle: Array, step: Array, count: int) -> Ints:
     """Number of angles of each region that differ by more than its step (count,)."""
-    order = np.lexsort((angle, region))
-    region, angle = region[order], angle[order]
+    order = in_order(region, angle, count)
+    region, angle = region.take(order), angle.take(order)
     fresh = np.r_[True, (region[1:] != region[:-1]) | (np.diff(angle) > step[region[1:]])]
     return np.bincount(region[fresh], minlength=count).astype(np.int64)
 

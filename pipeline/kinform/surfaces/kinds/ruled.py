@@ -14,7 +14,16 @@ import numpy as np
 from kinform.foundation.algebra.vectors import dot
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
-from kinform.surfaces.groups import columns_of, distinct, normal_equations, parted, quantile, slices, solve_normal
+from kinform.surfaces.groups import (
+    columns_of,
+    distinct,
+    in_order,
+    normal_equations,
+    parted,
+    quantile,
+    slices,
+    solve_normal,
+)
 from kinform.surfaces.kinds.axial import Cylindrical, angular_widths, azimuths, cylindrical, frames
 from kinform.surfaces.kinds.kind import Batch, Kind, Moving, Params, Probe, distinct_angles
 from kinform.surfaces.polygons.noise import Scales
@@ -76,9 +85,19 @@ class Ruled(Kind, Protocol):
 
     def probe(self, params: Params, points: Array) -> Probe:
         """Distance, normal and radius of curvature."""
-        t, rho, radial = cylindrical(params, points)
+        return self._probe(cylindrical(params, points), params)
+
+    def held(self, batch: Batch, params: Params) -> tuple[Ints, Probe]:
+        """By their cylindrical coordinates."""
+        group, at = batch.seen(params, cylindrical)
+        return group, self._probe(at, columns_of(params, group) if self.tapers else params, group)
+
+    def _probe(self, at: Cylindrical, params: Params, group: Ints | None = None) -> Probe:
+        """Of points at these coordinates about their axes: rows of `params`, or those that `group` names."""
+        t, rho, radial = at
         radius, angle = params[:, 6], params[:, 7]
         if not self.tapers:
+            radius = radius if group is None else radius.take(group)
             return Probe(distance=rho - radius, normal=radial, curvature_radius=radius)
         cos, sin = np.cos(angle), np.sin(angle)
         return Probe(
@@ -103,13 +122,15 @@ class Ruled(Kind, Protocol):
         surrounded, vertex = batch.inner_vertices(3)
         keys = [surrounded * total + vertex]
         if len(region):
-            mine, ends = columns_of(params, region), work.ends[edge]
-            distance = np.maximum(
-                np.abs(self.probe(mine, work.at(ends[:, 0])).distance),
-                np.abs(self.probe(mine, work.at(ends[:, 1])).distance),
-            )
-            use = inner | (distance < tolerance[region])
-            keys.append(np.repeat(region[use], 2) * total + ends[use].ravel())
+            outer = (~inner).nonzero()[0]
+            owner, ends = region.take(outer), work.ends.take(edge.take(outer), axis=0)
+            mine = columns_of(params, owner)
+            first, second = (np.abs(self.probe(mine, work.at(ends[:, k])).distance) for k in range(2))
+            use = inner.copy()
+            use[outer] = np.maximum(first, second) < tolerance.take(owner)
+            rows = use.nonzero()[0]
+            base, ends = region.take(rows) * total, work.ends.take(edge.take(rows), axis=0)
+            keys += [base + ends[:, 0], base + ends[:, 1]]
         return parted(distinct(np.concatenate(keys)), int(total))
 
     def jacobian(self, params: Params, points: Array) -> Array:
@@ -163,12 +184,11 @@ class Ruled(Kind, Protocol):
         count = batch.count
         width = self.widths(batch, params)
         sweep = np.minimum(np.bincount(batch.region, width, count), np.pi)
-        order = np.lexsort((-width, batch.region))
-        start = np.searchsorted(batch.region[order], np.arange(count + 1))
+        ordered = width.take(in_order(batch.region, width, count))
         even = np.zeros(count, bool)
-        several = np.diff(start) >= 2
-        first = start[:-1][several]
-        even[several] = width[order[first + 1]] >= constants.SECOND_STRIP * width[order[first]]
+        several = batch.size >= 2
+        last = np.cumsum(batch.size)[several] - 1
+        even[several] = ordered[last - 1] >= constants.SECOND_STRIP * ordered[last]
         region, vertex = self.defining(batch, params, scale.fit)
         if not len(region):
             return np.zeros(count, np.int64), sweep, even
@@ -185,19 +205,24 @@ def generators(batch: Batch, params: Params) -> tuple[Ints, Ints, Flags, Flags]:
     use = np.empty(len(edge), bool)
     for rows in slices(len(edge), constants.ROWS):
         use[rows] = _along(work, params, region[rows], edge[rows])
-    return region[use], edge[use], inner[use], work.smooth[edge[use]]
+    at = use.nonzero()[0]
+    edge = edge.take(at)
+    return region.take(at), edge, inner.take(at), work.smooth.take(edge)
 
 
 def _along(work: Patchwork, params: Params, region: Ints, edge: Ints) -> Flags:
     """Whether each edge runs along a generator of its region's surface."""
-    start, end = work.at(work.ends[edge, 0]), work.at(work.ends[edge, 1])
-    mine = columns_of(params, region)
-    radial = cylindrical(mine, (start + end) / 2).radial
-    direction = np.cos(mine[:, 7])[:, None] * mine[:, :3] + np.sin(mine[:, 7])[:, None] * radial
-    length = work.length[edge]
-    forward = np.abs(dot(end - start, direction))
+    if params[:, 7].any():
+        start, end = work.at(work.ends[:, 0].take(edge)), work.at(work.ends[:, 1].take(edge))
+        mine = columns_of(params, region)
+        radial = cylindrical(mine, (start + end) / 2).radial
+        direction = np.cos(mine[:, 7])[:, None] * mine[:, :3] + np.sin(mine[:, 7])[:, None] * radial
+    else:
+        direction = columns_of(params[:, :3], region)
+    length = work.length.take(edge)
+    forward = np.abs(dot(work.along(edge), direction))
     aside = np.maximum(length * length - forward * forward, 0.0)
-    straight = aside < 8 * constants.BOW * np.maximum(np.abs(mine[:, 6]), 1e-12)
+    straight = aside < (8 * constants.BOW * np.maximum(np.abs(params[:, 6]), 1e-12)).take(region)
     return np.asarray((forward > constants.ALONG * length) & straight & (length > 0))
 
 

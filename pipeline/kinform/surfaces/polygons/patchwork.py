@@ -64,9 +64,25 @@ class Patchwork:
         """(N, 3) coordinates of these vertices, in memory column by column."""
         return self._columns.take(vertices, axis=1).T
 
+    def along(self, edges: Ints) -> Array:
+        """(N, 3) from the first to the second end of these edges, in memory column by column."""
+        return self._along.take(edges, axis=1).T
+
     def middles(self, polygons: Ints) -> Array:
         """(N, 3) centroids of these polygons, in memory column by column."""
         return self._centres.take(polygons, axis=1).T
+
+    def normals(self, polygons: Ints) -> Array:
+        """(N, 3) normals of these polygons, in memory column by column."""
+        return self._normals.take(polygons, axis=1).T
+
+    @cached_property
+    def _along(self) -> Array:
+        return self._columns.take(self.ends[:, 1], axis=1) - self._columns.take(self.ends[:, 0], axis=1)
+
+    @cached_property
+    def _normals(self) -> Array:
+        return np.ascontiguousarray(self.normal.T)
 
     @cached_property
     def _centres(self) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import dot
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.constants import FACET_ROUNDING, NORMAL_SLACK, TYPICAL_WIDTH, WIDER, WIDEST
-from kinform.surfaces.groups import columns_of, ordered_quantile, quantile
+from kinform.surfaces.groups import columns_of, in_order, ordered_quantile, quantile
 from kinform.surfaces.kinds.kind import Batch, Kind, Params
 from kinform.surfaces.kinds.kind import widths as widths_of
 
@@ -40,11 +40,11 @@ class Candidates:
     def reach(self, batch: Batch) -> Array:
         """(R,) greatest angle that a facet of each region may subtend, judged by the facets it has."""
         width = widths_of(self.kind, batch, self.params)
-        order = np.lexsort((width, batch.region))
-        region, ascending = batch.region[order], width[order]
+        # regions are in order already
+        region, ascending = batch.region, width.take(in_order(batch.region, width, batch.count))
         typical = ordered_quantile(region, ascending, batch.count, TYPICAL_WIDTH)
-        following = np.r_[ascending[1:], 0.0]
-        last = np.r_[region[1:] != region[:-1], True] if len(region) else np.zeros(0, bool)
+        following = np.append(ascending[1:], 0.0)
+        last = np.append(region[1:] != region[:-1], True) if len(region) else np.zeros(0, bool)
         gap = ~last & (ascending >= typical[region]) & (following > WIDER * ascending)
         top = np.full(batch.count, np.inf)
         np.minimum.at(top, region[gap], ascending[gap])
@@ -54,7 +54,10 @@ class Candidates:
 
     def conforms(self, batch: Batch, reach: Array) -> Flags:
         """Whether each pair's polygon is a piece of its region's surface, tessellated no coarser than `reach`."""
-        return np.concatenate([self._conforms(part, reach) for part in batch.parts()])
+        parts = batch.parts()
+        if len(parts) == 1:
+            return self._conforms(batch, reach)
+        return np.concatenate([self._conforms(part, reach) for part in parts])
 
     def _conforms(self, batch: Batch, reach: Array) -> Flags:
         """A polygon conforms where its vertices lie on the surface, its middle no deeper than a chord of the widest
@@ -62,10 +65,7 @@ class Candidates:
         work, region, polygon = batch.patchwork, batch.region, batch.polygon
         owner, _ = batch.corners
         count = len(region)
-        # middles first, then corners: probed together, because of few polygons beginning costs more than numbers
-        group = np.concatenate([region, region.take(owner)])
-        points = np.concatenate([work.middles(polygon).T, batch.points.T], axis=1).T
-        held = self.kind.probe(columns_of(self.params, group), points)
+        group, held = self.kind.held(batch, self.params)
         chord = (1 - np.cos(np.minimum(reach, np.pi) / 2)).take(group)
         chord *= held.curvature_radius
         limit = self.tolerance.take(group)
@@ -76,7 +76,7 @@ class Candidates:
         if self.kind.saddle:
             deep = held.distance <= -limit
         outside = deep[count:] | (held.distance[count:] >= limit[count:])
-        off[owner.take(np.flatnonzero(outside))] = True
+        off[owner.take(outside.nonzero()[0])] = True
         cosine = dot(held.normal[:count], columns_of(work.normal, polygon)) * self.side.take(region)
         widest = np.minimum((0.5 * reach + NORMAL_SLACK).take(region) + work.slack.take(polygon), WIDEST)
         return np.asarray(~off & (cosine > np.cos(widest)))

@@ -8,7 +8,7 @@ its facets are, is a cylinder; arcs are left alone, because a tooth's flank is n
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,17 +17,31 @@ from kinform.surfaces import constants
 from kinform.surfaces.describe import angles_covered
 from kinform.surfaces.groups import columns_of, quantile
 from kinform.surfaces.kinds.cylinder import Cylinder
-from kinform.surfaces.kinds.kind import Batch
+from kinform.surfaces.kinds.kind import Batch, Params
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.regions.growth import Growth, whole
 from kinform.surfaces.regions.territory import Territory
 
 
-def decimated(territory: Territory, kind: Cylinder, batch: Batch, side: Ints, factor: float) -> Growth:
-    """Cylinders among the pieces `batch`, held to `factor` times the tolerance of fits."""
+@dataclass(frozen=True, eq=False)
+class Rounds:
+    """Pieces that may be rounds of strips, with the cylinders that they suggest."""
+
+    batch: Batch
+    side: Ints
+    proposal: tuple[Params, Flags]
+
+    @classmethod
+    def of(cls, kind: Cylinder, batch: Batch, side: Ints) -> Rounds:
+        """Those of the pieces that have polygons enough."""
+        large = batch.select((batch.size >= constants.LEAST_CHORDS)[batch.region])
+        return cls(large, side, kind.propose(large))
+
+
+def decimated(territory: Territory, kind: Cylinder, rounds: Rounds, factor: float) -> Growth:
+    """Cylinders among the pieces, held to `factor` times the tolerance of fits."""
     loose = territory.scales.wider(factor)
-    enough = batch.size >= constants.LEAST_CHORDS
-    growth = whole(replace(territory, scales=loose), kind, batch.select(enough[batch.region]), side)
+    growth = whole(replace(territory, scales=loose), kind, rounds.batch, rounds.side, rounds.proposal)
     regular = _round(kind, growth, territory.scales_of(growth.batch))
     return replace(growth, batch=growth.batch.select(regular[growth.batch.region]))
 

@@ -27,12 +27,15 @@ class Growth:
     batch: Batch
 
 
-def whole(territory: Territory, kind: Kind, batch: Batch, side: Ints) -> Growth:
+def whole(
+    territory: Territory, kind: Kind, batch: Batch, side: Ints, proposal: tuple[Params, Flags] | None = None
+) -> Growth:  # fmt: skip
     """Regions of pieces that are one surface for the greatest part, without growth; the others come back empty.
 
-    Four fits out of five end at the first look, so that comes before anything that costs more.
+    Four fits out of five end at the first look, so that comes before anything that costs more. `proposal` is that of
+    the kind for the batch, where it was made before.
     """
-    params, usable = kind.propose(batch)
+    params, usable = proposal or kind.propose(batch)
     pieces = batch.select(usable[batch.region])
     side = _facing(kind, pieces, params) if kind.saddle else side
     fit = territory.scales_of(batch).fit

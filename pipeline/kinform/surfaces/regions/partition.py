@@ -14,7 +14,7 @@ from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
-from kinform.surfaces.groups import distinct, quantile
+from kinform.surfaces.groups import distinct, quantile, renumbered
 from kinform.surfaces.kinds.cone import Cone
 from kinform.surfaces.kinds.cylinder import Cylinder
 from kinform.surfaces.kinds.kind import Batch, Kind
@@ -23,7 +23,7 @@ from kinform.surfaces.kinds.torus import Torus
 from kinform.surfaces.polygons.curvature import Curvature, Links, continues, curvature, links
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
-from kinform.surfaces.regions.chords import decimated
+from kinform.surfaces.regions.chords import Rounds, decimated
 from kinform.surfaces.regions.growth import Growth, absorb, pursue, whole
 from kinform.surfaces.regions.territory import Territory
 
@@ -85,9 +85,12 @@ def partition(work: Patchwork, scales: Scales) -> Partition:
             gained[work.mesh[region.polygons[0]]] += work.area[region.polygons].sum()
         tried |= (gained < constants.WORTH * work.total)[of_edge]
     del bent, like, tried  # large, and needed no longer
+    rounds: Rounds | None = None
     for factor in constants.CHORD_FITS:
-        batch, side = _pieces(territory, link, link.alike)
-        regions += _choose([decimated(territory, CYLINDER, batch, side, factor)], territory)
+        rounds = rounds or Rounds.of(CYLINDER, *_pieces(territory, link, link.alike))
+        chosen = _choose([decimated(territory, CYLINDER, rounds, factor)], territory)
+        regions += chosen
+        rounds = None if chosen else rounds
     return Partition(tuple(regions), *_remainder(territory))
 
 
@@ -99,32 +102,32 @@ def _pieces(territory: Territory, link: Links, joined: Flags) -> tuple[Batch, In
     sign = work.sign[link.edge]
     inside = joined & free[link.a] & free[link.b]
     for side in (1, -1):
-        use = inside & (sign * side >= 0)
-        label = components(link.a[use], link.b[use], work.count)
+        use = np.flatnonzero(inside & (sign * side >= 0))
+        a, b = link.a.take(use), link.b.take(use)
+        label = components(a, b, work.count)
         turning = np.zeros(work.count, bool)
-        mark = use & (sign == side)
-        turning[link.a[mark]] = turning[link.b[mark]] = True
-        present = np.flatnonzero(
-            free & (np.bincount(label, turning, work.count)[label] >= constants.LEAST_TURNING_POLYGONS)
-        )
-        names, number = np.unique(label[present], return_inverse=True)
+        mark = np.flatnonzero(sign.take(use) == side)
+        turning[a.take(mark)] = turning[b.take(mark)] = True
+        several = np.bincount(label, turning, work.count) >= constants.LEAST_TURNING_POLYGONS
+        present = np.flatnonzero(free & several[label])
+        number, names = renumbered(label[present], work.count)
         keys.append((number + count) * np.int64(work.count) + present)
-        sides.append(np.full(len(names), side))
-        count += len(names)
+        sides.append(np.full(names, side))
+        count += names
     return Batch.of_keys(work, np.sort(np.concatenate(keys)), count), np.concatenate(sides)
 
 
 def _blends(territory: Territory, link: Links, joined: Flags, bent: Curvature) -> tuple[Batch, Ints]:
     """Pieces whose links may bend either way, with the side to which the stronger curvature bends."""
     work, free = territory.patchwork, territory.free
-    use = joined & free[link.a] & free[link.b]
-    label = components(link.a[use], link.b[use], work.count)
+    use = np.flatnonzero(joined & free[link.a] & free[link.b])
+    label = components(link.a.take(use), link.b.take(use), work.count)
     size = np.bincount(label[free], minlength=work.count)
     present = np.flatnonzero(free & (size[label] >= constants.LEAST_BLEND))
-    names, number = np.unique(label[present], return_inverse=True)
-    lean = np.bincount(number, work.area[present] * np.sign(bent.strong[present]), len(names))
+    number, names = renumbered(label[present], work.count)
+    lean = np.bincount(number, work.area[present] * np.sign(bent.strong[present]), names)
     keys = np.sort(number * np.int64(work.count) + present)
-    return Batch.of_keys(work, keys, len(names)), np.where(lean >= 0, 1, -1).astype(np.int64)
+    return Batch.of_keys(work, keys, names), np.where(lean >= 0, 1, -1).astype(np.int64)
 
 
 def _whole_pieces(
@@ -171,14 +174,15 @@ def _search(territory: Territory, tried: Flags, bent: Curvature) -> list[Growth]
     """One round of hypotheses from seeds, of all kinds and both sides; the seeds are tried from now on."""
     growths: list[Growth] = []
     work = territory.patchwork
-    both = [_seeds(territory, tried, side) for side in (1, -1)]
+    edges = territory.smooth
+    both = [_seeds(work, edges, tried, side) for side in (1, -1)]
     seeds = np.concatenate(both)
     if not len(seeds):
         return growths
     side = np.repeat(np.array([1, -1]), [len(s) for s in both])
     tried[seeds] = True
-    least = np.minimum(bent.ratio[work.a[seeds]], bent.ratio[work.b[seeds]])
-    most = np.maximum(bent.ratio[work.a[seeds]], bent.ratio[work.b[seeds]])
+    first, second = bent.ratio[work.a[seeds]], bent.ratio[work.b[seeds]]
+    least, most = np.minimum(first, second), np.maximum(first, second)
     for kind in SIMPLE:
         suits = np.flatnonzero(
             (least <= kind.bends[1] + constants.BEND_SLACK) & (most >= kind.bends[0] - constants.BEND_SLACK)
@@ -190,20 +194,21 @@ def _search(territory: Territory, tried: Flags, bent: Curvature) -> list[Growth]
     return growths
 
 
-def _seeds(territory: Territory, tried: Flags, side: int) -> Ints:
-    """Smooth edges to start from: the longest in their surroundings, not used before."""
-    work, edges = territory.patchwork, territory.smooth
-    usable = edges[work.sign[edges] * side >= 0]
-    start = usable[(work.sign[usable] == side) & ~tried[usable]]
+def _seeds(work: Patchwork, edges: Ints, tried: Flags, side: int) -> Ints:
+    """Those of the smooth edges to start from: the longest in their surroundings, not used before."""
+    sign = work.sign.take(edges)
+    usable = edges.take(np.flatnonzero(sign * side >= 0))
+    start = edges.take(np.flatnonzero((sign == side) & ~tried.take(edges)))
     rank = np.full(len(work.a), -1)
     rank[start[np.argsort(work.length[start], kind="stable")]] = np.arange(len(start))
     best = np.full(work.count, -1)
-    np.maximum.at(best, work.a[usable], rank[usable])
-    np.maximum.at(best, work.b[usable], rank[usable])
-    reach = np.maximum(best[work.a[usable]], best[work.b[usable]])
+    a, b, placed = work.a.take(usable), work.b.take(usable), rank.take(usable)
+    np.maximum.at(best, a, placed)
+    np.maximum.at(best, b, placed)
+    reach = np.maximum(best.take(a), best.take(b))
     wider = best.copy()
-    np.maximum.at(wider, work.a[usable], reach)
-    np.maximum.at(wider, work.b[usable], reach)
+    np.maximum.at(wider, a, reach)
+    np.maximum.at(wider, b, reach)
     foremost: Ints = start[rank[start] >= np.minimum(wider[work.a[start]], wider[work.b[start]])]
     return foremost
 
@@ -216,11 +221,11 @@ def _around(territory: Territory, seeds: Ints, side: Ints, straightness: float) 
     region = np.r_[numbers, numbers]
     owner, edge = territory.links.expand(polygon)
     target = work.other(edge, polygon[owner])
-    direction = work.vertices[work.ends[:, 1]] - work.vertices[work.ends[:, 0]]
-    cosine = np.abs(dot(direction[edge], direction[seeds[region[owner]]]))
-    near = cosine >= straightness * work.length[edge] * work.length[seeds[region[owner]]]
-    keep = near & territory.free[target] & (work.sign[edge] * side[region[owner]] >= 0)
-    keys = np.r_[region, region[owner][keep]] * np.int64(work.count) + np.r_[polygon, target[keep]]
+    mine = region[owner]
+    cosine = np.abs(dot(work.along(edge), work.along(seeds[mine])))
+    near = cosine >= straightness * work.length[edge] * work.length[seeds[mine]]
+    keep = near & territory.free[target] & (work.sign[edge] * side[mine] >= 0)
+    keys = np.r_[region, mine[keep]] * np.int64(work.count) + np.r_[polygon, target[keep]]
     return Batch.of_keys(work, distinct(keys), len(seeds))
 
 

@@ -24,6 +24,8 @@ class Territory:
     """Of the meshes."""
     links: Ragged
     """Smooth edges of each polygon."""
+    beside: Ragged
+    """Polygons across them."""
     free: Flags
     """(P,) in no region yet; written as regions are chosen."""
 
@@ -33,7 +35,9 @@ class Territory:
         edges = np.flatnonzero(patchwork.smooth)
         rows = np.r_[patchwork.a[edges], patchwork.b[edges]]
         links = Ragged(rows, np.r_[edges, edges], patchwork.count)
-        return cls(patchwork, scales, links, np.ones(patchwork.count, bool))
+        owner = np.arange(patchwork.count).repeat(np.diff(links.starts))
+        beside = links.carrying(patchwork.other(links.items, owner))
+        return cls(patchwork, scales, links, beside, np.ones(patchwork.count, bool))
 
     def scales_of(self, batch: Batch) -> Scales:
         """(R,) of the mesh of each region."""
@@ -50,27 +54,29 @@ class Territory:
         """Keys of the free polygons one smooth link away from those of the `keys`, each once, by region."""
         work = self.patchwork
         region, polygon = parted(keys, work.count)
-        owner, edge = self.links.expand(polygon)
-        target = work.other(edge, polygon.take(owner))
-        open_ = np.flatnonzero(self.free.take(target))
-        return distinct(region.take(owner.take(open_)) * np.int64(work.count) + target.take(open_))
+        owner, target = self.beside.expand(polygon)
+        open_ = self.free.take(target).nonzero()[0]
+        return distinct((region * np.int64(work.count)).take(owner.take(open_)) + target.take(open_))
 
     def spread(self, surfaces: Candidates, batch: Batch, reach: Array, layers: int) -> Batch:
         """The batch with up to `layers` layers of conforming neighbours added."""
-        seen = np.sort(batch.keys)
-        gained = [seen]
-        front, recent = seen, seen
+        front = np.sort(batch.keys)
+        gained = [front]
+        # what is beside a layer, and not of those two steps, is beside no earlier layer
+        before, tried = front, front
         for _ in range(layers):
             keys = self.neighbours(front)
-            keys = keys.take(np.flatnonzero(~(among(keys, seen) | among(keys, recent))))
+            keys = keys.take((~(among(keys, tried) | among(keys, before))).nonzero()[0])
             if not len(keys):
                 break
             trial = Batch.of_keys(self.patchwork, keys, batch.count)
-            front = keys.take(np.flatnonzero(surfaces.conforms(trial, reach)))
+            front = keys.take(surfaces.conforms(trial, reach).nonzero()[0])
             if not len(front):
                 break
             gained.append(front)
-            recent = np.sort(np.concatenate(gained[-2:]))
+            before, tried = tried, keys
+        if len(gained) == 1:
+            return batch
         return Batch.of_keys(self.patchwork, np.sort(np.concatenate(gained)), batch.count)
 
     def connected(self, batch: Batch) -> Batch:

@@ -112,12 +112,12 @@ def _turning(work: Patchwork, free: Flags) -> list[tuple[Array, Array]]:
         if size[piece] < constants.THREAD_POLYGONS:
             continue
         members = np.flatnonzero(free & (label == piece))
-        weight = work.area[members]
+        weight, normal, centre = work.area[members], work.normal[members], work.centre[members]
         for _ in range(constants.REWEIGHINGS):
-            middle = weight @ work.centre[members] / weight.sum()
-            arm = work.centre[members] - middle
+            middle = weight @ centre / weight.sum()
+            arm = centre - middle
             reach = max(float(np.sqrt(weight @ dot(arm, arm) / weight.sum())), 1e-12)
-            rows = np.concatenate([cross(arm / reach, work.normal[members]), work.normal[members]], axis=1)
+            rows = np.concatenate([cross(arm / reach, normal), normal], axis=1)
             twist = np.linalg.eigh((rows * weight[:, None]).T @ rows / weight.sum())[1][:, 0]
             speed = np.abs(rows @ twist)
             weight = work.area[members] / (1 + (speed / max(float(np.median(speed)), 1e-6)) ** 2)
@@ -152,6 +152,18 @@ def _about(work: Patchwork, free: Flags, axis: Array, point: Array, scale: Scale
     return _description(work, edges, best[1], best[2], scale)
 
 
+def _level(work: Patchwork, edges: Ints, screw: _Screw, wide: float, scale: Scale) -> Flags:
+    """(m,) edges whose ends are as far from the axis as those of a helix may be, judged by their lengths: that needs no
+    angles, and leaves few. An arc is no longer than HELIX_STEP / 2 over its sine in chords."""
+    u, v = screw.frame
+    arms = [work.vertices[:, k] - screw.point[k] for k in range(3)]
+    x, y = (arms[0] * across[0] + arms[1] * across[1] + arms[2] * across[2] for across in (u, v))
+    distance = np.sqrt(x * x + y * y)
+    widening = np.abs(distance.take(work.ends[:, 1].take(edges)) - distance.take(work.ends[:, 0].take(edges)))
+    room = constants.LEVEL_NOISES * scale.noise
+    return np.asarray(widening <= constants.ARC * wide * constants.LEVEL * work.length.take(edges) + room)
+
+
 def _slopes(
     work: Patchwork, ends: Ints, screw: _Screw, scale: Scale, wide: float = 1.0
 ) -> tuple[Array, Array, Array, Flags]:
@@ -176,6 +188,7 @@ def _slopes(
 
 def _advances(work: Patchwork, edges: Ints, start: _Screw, scale: Scale) -> list[float]:
     """Advances that many edges have in common, the most turned first."""
+    edges = edges.take(_level(work, edges, start, constants.WIDE[0], scale).nonzero()[0])
     advance, doubt, turn, usable = _slopes(work, work.ends[edges], start, scale, constants.WIDE[0])
     rows = np.flatnonzero(usable & (doubt < constants.ADVANCE_SHOWS * np.abs(advance)))
     out: list[float] = []
