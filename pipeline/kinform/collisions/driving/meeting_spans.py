@@ -201,11 +201,13 @@ def _overlapping(first: _Groups, second: _Groups, margin: float, along: Along) -
     """(n, 2) groups of both whose boxes overlap, other than along mates, some at a time."""
     for begin in range(0, len(first.low), TESTED_TOGETHER):
         low, high = (side[begin : begin + TESTED_TOGETHER] for side in (first.low, first.high))
-        meets = np.ones((len(low), len(second.low)), dtype=bool)
+        about = (second.low <= high.max(axis=0)).all(axis=1) & (second.high >= low.min(axis=0)).all(axis=1)
+        near = np.flatnonzero(about)
+        meets = np.ones((len(low), len(near)), dtype=bool)
         for k in range(2):
-            meets &= (second.low[:, k] <= high[:, k, None]) & (second.high[:, k] >= low[:, k, None])
+            meets &= (second.low[near, k] <= high[:, k, None]) & (second.high[near, k] >= low[:, k, None])
         i, j = np.nonzero(meets)
-        i += begin
+        i, j = i + begin, near[j]
         box = np.maximum(first.low[i], second.low[j]) + margin, np.minimum(first.high[i], second.high[j]) - margin
         rest = ~along(first.surface[i], second.surface[j], *box)
         yield np.stack([i[rest], j[rest]], axis=1)

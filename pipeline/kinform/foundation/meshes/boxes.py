@@ -76,23 +76,22 @@ class FlatBoxes:
         side = int(np.clip(2.0 * np.sqrt(len(low)), 1, constants.GRID_FINEST))
         while True:
             self._cell, self._side = whole / side, side
-            first, last = self._cells(low), self._cells(high)
-            wide = last - first + 1
-            count = wide.prod(axis=1)
-            if side == 1 or count.sum() <= constants.GRID_LISTED * len(low) + constants.GRID_LISTED_LEAST:
+            left, lower, right, upper = (self._cells(column, k % 2) for k, column in enumerate(self._sides))
+            wide, tall = right - left + 1, upper - lower + 1
+            listed = int((wide * tall).sum())
+            if side == 1 or listed <= constants.GRID_LISTED * len(low) + constants.GRID_LISTED_LEAST:
                 break
             side = (side + 1) // 2
-        box = np.repeat(np.arange(len(low)), count)
-        step = np.arange(len(box)) - np.repeat(np.cumsum(count) - count, count)
-        cell = first[box] + np.stack([step // wide[box, 1], step % wide[box, 1]], axis=1)
-        key = cell[:, 0] * side + cell[:, 1]
-        self._facets = box[np.argsort(key, kind="stable")]
+        # each box by the columns of cells that it covers, and each of these by its cells
+        box, across = _counted(wide)
+        column, along = _counted(tall[box])
+        key = ((left[box] + across) * side + lower[box])[column] + along
+        self._facets = box[column][_in_order(key, side * side)]
         self._starts = np.concatenate([[0], np.cumsum(np.bincount(key, minlength=side * side))])
 
     def around(self, points: Array) -> tuple[Ints, Ints]:
         """Indices of points (n, 2), ascending, and of facets whose box they are in."""
-        cell = self._cells(points)
-        key = cell[:, 0] * self._side + cell[:, 1]
+        key = self._cells(points[:, 0], 0) * self._side + self._cells(points[:, 1], 1)
         start = self._starts[key]
         count = self._starts[key + 1] - start
         which = np.repeat(np.arange(len(points)), count)
@@ -102,10 +101,24 @@ class FlatBoxes:
         held = np.flatnonzero((left <= x) & (right >= x) & (lower <= y) & (upper >= y))
         return which[held], facets[held]
 
-    def _cells(self, points: Array) -> Ints:
-        """(n, 2) the cells that points are in, or nearest to."""
-        cell = np.floor((points - self._origin) / self._cell)
-        return np.asarray(np.clip(cell, 0, self._side - 1).astype(np.int64))
+    def _cells(self, places: Array, axis: int) -> Ints:
+        """(n,) the column or row of cells that places along an axis are in, or nearest to."""
+        cell = np.floor((places - self._origin[axis]) / self._cell[axis])
+        return np.asarray(np.clip(cell, 0, self._side - 1, out=cell).astype(np.int64))
+
+
+def _counted(numbers: Ints) -> tuple[Ints, Ints]:
+    """0, 1, 2 … each so many times as `numbers` (n,) says, and counted from 0 again for each."""
+    of = np.repeat(np.arange(len(numbers)), numbers)
+    return of, np.arange(len(of)) - np.repeat(np.cumsum(numbers) - numbers, numbers)
+
+
+def _in_order(keys: Ints, most: int) -> Ints:
+    """The stable order of keys (n,) below `most`: by 16 bits at a time, which numpy sorts by counting."""
+    order = np.argsort((keys & 0xFFFF).astype(np.uint16), kind="stable")
+    if most > 1 << 16:
+        order = order[np.argsort((keys[order] >> 16).astype(np.uint16), kind="stable")]
+    return np.asarray(order)
 
 
 def together(low: Array, high: Array) -> Ints:
