@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
+from kinform.foundation.sorting import ascending
 from kinform.model.arrays import Array, Flags, Ints
 
 MANY = 4096
@@ -78,18 +79,6 @@ def starts_of(groups: Ints, count: int) -> Ints:
     out = np.zeros(count + 1, np.int64)
     np.cumsum(np.bincount(groups, minlength=count), out=out[1:])
     return out
-
-
-def ascending(keys: Ints, count: int) -> Ints:
-    """The order that sorts keys from 0 to `count`, equal ones as they come: with its place each key is the only one of
-    its value, and sorting integers is faster than finding their order."""
-    size = len(keys)
-    if count * size > np.iinfo(np.int64).max:
-        return np.argsort(keys, kind="stable")
-    placed = keys * np.int64(size)
-    placed += np.arange(size)
-    placed.sort()
-    return placed - placed // size * size
 
 
 def in_order(groups: Ints, values: Array, count: int) -> Ints:

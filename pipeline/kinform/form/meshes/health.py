@@ -33,7 +33,8 @@ def build_mesh(raw: RawMesh, metres: float, weld: float | None, *, path: str, bo
     origin = far_origin(raw.vertices)
     resolution = raw.resolution * metres
     vertices, faces, distance = _welded(raw, origin, metres, weld)
-    kept = faces[~_collapsed(faces)]
+    collapsed = _collapsed(faces)
+    kept = faces[~collapsed] if collapsed.any() else faces
     if not len(kept):
         raise MeshError([Fault("is empty: every facet is degenerate", "export the mesh again")])
     used, kept = used_only(vertices, kept)
@@ -81,14 +82,18 @@ def far_origin(vertices: NDArray[np.floating]) -> Array:
 def _welded(raw: RawMesh, origin: Array, metres: float, weld: float | None) -> tuple[Array, Ints, float]:
     """Vertices (m) from `origin` (3,) of the file, faces, and the distance (m) up to which vertices were one."""
     first, place = merge_exact(raw.vertices)
-    vertices = np.ascontiguousarray((raw.vertices[first].astype(np.float64) - origin) * metres)
-    faces = place[raw.faces]
+    vertices = raw.vertices.take(first, axis=0).astype(np.float64)
+    vertices -= origin
+    vertices *= metres
+    faces = place.take(raw.faces)
     distance = weld
     if distance is None:
         distance = max(WELD_SHARE * _diagonal(vertices), WELD_STEPS * raw.resolution * metres)
     leaders, close = merge_close(vertices, distance)
+    if len(leaders) == len(vertices):
+        return vertices, faces, distance
     welded: Array = vertices[leaders]
-    return welded, close[faces], distance
+    return welded, close.take(faces), distance
 
 
 def _diagonal(vertices: Array) -> float:
@@ -113,8 +118,9 @@ def _thickness(vertices: Array) -> float:
 
 def _health(vertices: Array, faces: Ints, edges: EdgeTable, raw: RawMesh, distance: float) -> MeshHealth:
     """The facts about a mesh of these vertices and faces, which were welded within the distance (m)."""
-    corners = vertices[faces] - vertices.mean(axis=0)
-    sides = [corners[:, k] - corners[:, k - 1] for k in range(3)]
+    columns = np.ascontiguousarray((vertices - vertices.mean(axis=0)).T)
+    corners = [columns.take(faces[:, k], axis=1).T for k in range(3)]
+    sides = [corners[k] - corners[k - 1] for k in range(3)]
     doubled = cross(sides[1], sides[2])
     longest = np.maximum(np.maximum(*(dot(side, side) for side in sides[:2])), dot(sides[2], sides[2]))
     slivers = int(np.count_nonzero(dot(doubled, doubled) <= SLIVER * longest**2))
@@ -126,7 +132,7 @@ def _health(vertices: Array, faces: Ints, edges: EdgeTable, raw: RawMesh, distan
         watertight=watertight,
         consistent_winding=bool(np.all(edges.balance[edges.counts % 2 == 0] == 0)),
         manifold_status=_manifold_status(vertices, faces, edges, duplicates),
-        volume=float(np.einsum("ij,ij->", corners[:, 0], cross(corners[:, 1], corners[:, 2])) / 6.0),
+        volume=float(np.cumsum(dot(corners[0], cross(corners[1], corners[2])))[-1] / 6.0),
         degenerate_facets=len(raw.faces) - len(faces) + slivers,
         duplicate_facets=duplicates,
         open_edges=edges.open,
@@ -152,7 +158,7 @@ def _duplicates(faces: Ints, count: int) -> int:
     """Facets of the same three vertices as another, whichever way round, less one of each."""
     low = np.minimum(np.minimum(faces[:, 0], faces[:, 1]), faces[:, 2])
     high = np.maximum(np.maximum(faces[:, 0], faces[:, 1]), faces[:, 2])
-    middle = faces.sum(axis=1) - low - high
+    middle = faces[:, 0] + faces[:, 1] + faces[:, 2] - low - high
     pair = low * np.int64(count) + high
     order = np.argsort(pair, kind="stable")
     alike = np.flatnonzero(np.diff(pair[order]) == 0)

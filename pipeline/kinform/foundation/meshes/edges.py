@@ -14,7 +14,10 @@ from functools import cached_property
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.sorting import ascending
 from kinform.model.arrays import Array, Flags, Ints
+
+_FOLLOWING = np.array([1, 2, 0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +98,7 @@ class EdgeTable:
 
 def edge_ends(faces: Ints) -> Ints:
     """(3F, 2) vertices of the half-edges of faces (F, 3), the lower first."""
-    start, end = faces.ravel(), faces[:, [1, 2, 0]].ravel()
+    start, end = faces.ravel(), faces.take(_FOLLOWING, axis=1).ravel()
     return np.stack([np.minimum(start, end), np.maximum(start, end)], axis=1)
 
 
@@ -105,10 +108,10 @@ def edge_table(faces: Ints, vertices: int, by_corner: bool = False) -> EdgeTable
     key = ends[:, 0] * np.int64(vertices) + ends[:, 1]
     if by_corner:
         corners = np.arange(len(key)).reshape(-1, 3).T.ravel()
-        order = corners[np.argsort(key[corners], kind="stable")]
+        order = corners.take(ascending(key.take(corners), vertices * vertices))
     else:
-        order = np.argsort(key, kind="stable")
-    ordered = key[order]
+        order = ascending(key, vertices * vertices)
+    ordered = key.take(order)
     starts = np.flatnonzero(np.concatenate([[True], ordered[1:] != ordered[:-1]])) if len(key) else key
     return EdgeTable(order, starts, np.diff(np.append(starts, len(key))), ends, ends[:, 0] == faces.ravel())
 
