@@ -7,12 +7,13 @@ Theory, 2004, chapter 10). The force is taken in the middle of the width, withou
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.behaviour.components import Gear, System
-from kinform.model.arrays import Array, Flags
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.losses import multipliers
 from kinform.simulation.mechanism.states import States
@@ -28,6 +29,9 @@ class Transmitted:
     """(T, G) N between the teeth; nan where they are not known."""
     wrenches: Array
     """(T, B, 6) of all teeth on the bodies in the order of the system, about the mechanism's centre."""
+    sides: Ints
+    """(T, G) which side of the teeth pushes where the shaft at a gets a positive effort: 0 the flank, 1 the back of the
+    teeth, which pushes where it gets a negative one; −1 where it is not known."""
 
 
 def toothed(system: System) -> Flags:
@@ -50,10 +54,13 @@ def _sides(system: System, gear: Gear) -> tuple[str, str, str] | None:
     return shared[0], first, second
 
 
-def transmitted(dynamics: Dynamics, states: States, sign: Array, rest: Array) -> Transmitted:
+def transmitted(
+    dynamics: Dynamics, states: States, sign: Array, rest: Array, flanks: Sequence[int] | None = None
+) -> Transmitted:
     """From what the shafts (T, n) get beside the efforts of drives: that is what gears give them.
 
     `sign` (n,): −1 where the mechanism counts a rate's twist of the joint's first body relative to its second.
+    `flanks` (G,): let these sides of the teeth push, and pull; else those that push.
     """
     mechanism, system = dynamics.mechanism, dynamics.system
     slots = {slot.name: slot for slot in mechanism.slots}
@@ -61,6 +68,7 @@ def transmitted(dynamics: Dynamics, states: States, sign: Array, rest: Array) ->
     times, count = len(rest), len(system.gears)
     efforts, forces = np.zeros((times, count, 2)), np.full((times, count), np.nan)
     wrenches = np.zeros((times, len(index), 6))
+    pushing = np.full((times, count), -1, dtype=np.int64)
     factors = multipliers(mechanism, rest)
     for k, gear in enumerate(system.gears):
         joints = [system.joint_at(gear.name, port) for port in ("a", "b")]
@@ -79,14 +87,18 @@ def transmitted(dynamics: Dynamics, states: States, sign: Array, rest: Array) ->
         speed = twist[:, 3:] + np.cross(twist[:, :3], point)
         total = np.zeros((times, 6))
         between_teeth = np.zeros(times)
-        for normal in (gear.flank, gear.back):
+        for side, normal in enumerate((gear.flank, gear.back)):
             along = X[:, :3, :3] @ np.asarray(normal)
             lever = np.einsum("tk,tk->t", along, speed)
             force = np.where(np.abs(lever) > 0.0, -efforts[:, k, 0] / np.where(lever != 0.0, lever, 1.0), 0.0)
-            force = np.maximum(force, 0.0)
+            pushing[lever < 0.0, k] = side
+            if flanks is None:
+                force = np.maximum(force, 0.0)
+            elif flanks[k] != side:
+                continue
             total += force[:, None] * np.concatenate([np.cross(point, along), along], axis=1)
             between_teeth += force
         forces[:, k] = between_teeth
         wrenches[:, index[second]] += total
         wrenches[:, index[first]] -= total
-    return Transmitted(efforts, forces, wrenches)
+    return Transmitted(efforts, forces, wrenches, pushing)

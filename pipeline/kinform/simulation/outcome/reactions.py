@@ -9,6 +9,7 @@ Kinematics and Dynamics, 1989, section 6.6, for the reactions; the choice is tha
 from __future__ import annotations
 
 import copy
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -42,17 +43,18 @@ class Reactions:
 
 
 def reactions(
-    dynamics: Dynamics, states: States, times: Array, effort: Array, free: float, network: Network | None = None
-) -> Reactions:
+    dynamics: Dynamics, states: States, times: Array, effort: Array, free: float, network: Network | None = None,
+    flanks: Sequence[int] | None = None,
+) -> Reactions:  # fmt: skip
     """Wrenches of all joints for the efforts (T, n) on their shafts; `free` decides the rank of the loops. `network`:
-    that of the dynamics, where it is known already."""
+    that of the dynamics, where it is known already. `flanks`: as `gear_forces.transmitted` has them."""
     network = Network(dynamics) if network is None else network
     needed = network.spread(needs(dynamics, states, times))
     points = joint_points(dynamics, states)
     wrenches = _in_chunks(network, dynamics, states, needed, points, effort, free)
     if not len(network.gears):
         return wrenches
-    gears = transmitted(dynamics, states, network.sign, along_rates(network, states, wrenches) - effort)
+    gears = transmitted(dynamics, states, network.sign, along_rates(network, states, wrenches) - effort, flanks)
     teeth = toothed(dynamics.system)
     if teeth.any():
         shafts = copy.copy(network)

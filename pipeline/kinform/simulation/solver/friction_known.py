@@ -24,10 +24,6 @@ def friction_not_determined(
         if freedoms > 1 and kinds[joint] in ("planar", "cylindrical"):
             why = "friction opposes the way in which a surface slides: one for each of its directions is not that"
             return ((joint, f"{why}, and is not simulated"),)
-    loaded = [one for one in frictions if one.friction.static > 0.0 and one.lost is None]
-    if loaded and any(gear.pitch_point is not None for gear in dynamics.system.gears):
-        why = "friction by load beside meshing teeth is not simulated: give it as an effort (effort = ...)"
-        return tuple((one.joint, why) for one in loaded)
     open_ = undetermined(dynamics, q, settings.free)
     if open_:
         why = (

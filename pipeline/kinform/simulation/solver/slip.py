@@ -19,7 +19,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from kinform.model.arrays import Array, Flags, Ints
+from kinform.model.arrays import Array, Flags
 from kinform.simulation.constants import (
     DEPENDENT_GEARS,
     SLIP_ROUNDS,
@@ -29,15 +29,15 @@ from kinform.simulation.constants import (
 )
 from kinform.simulation.kernel import layout
 from kinform.simulation.mechanism.dynamics import Dynamics
-from kinform.simulation.mechanism.efforts import effort_of
 from kinform.simulation.mechanism.losses import multipliers
 from kinform.simulation.mechanism.rubbing import Rubbing
 from kinform.simulation.mechanism.states import States, states_at
 from kinform.simulation.outcome.reactions import Network, Reactions, along_rates, reactions
+from kinform.simulation.solver.pressing import Responses, Sight, pressing, pressing_teeth
 from kinform.simulation.solver.run_state import Run
 
-_NETWORKS: WeakKeyDictionary[Dynamics, Network] = WeakKeyDictionary()
-"""Of the modes that are run."""
+_FLANKS: WeakKeyDictionary[Dynamics, list[int]] = WeakKeyDictionary()
+"""With which sides the teeth of their gears pushed last: where to begin."""
 
 
 class NotDeterminedError(Exception):
@@ -85,37 +85,22 @@ def dry(run: Run, t: float, y: Array, acting: Mapping[int, Rub], held: Sequence[
     trials = np.zeros((1 + len(columns), len(rubbings)))
     for row, (k, sign) in enumerate(zip(columns, signs, strict=True), start=1):
         trials[row, k] = sign
-    accelerations, given, needed = _respond(run, t, y, trials)
-    seen, owner, passed = _pressing(run, t, y, Responses(trials, accelerations, given, needed), held)
-    base, slopes = seen[:, :, 0], seen[:, :, 1:] - seen[:, :, :1]
-    lean = np.array([one.lean for one in rubbings])
-
-    def grips(vectors: Array) -> Array:
-        return np.asarray(np.bincount(owner, np.linalg.norm(vectors, axis=1), len(rubbings)), dtype=np.float64)
-
-    u = np.zeros(len(columns))
-    if columns:
-        pairs = [(rubbings[k], acting[k]) for k in columns]
-        least = np.array([_limit(one, rub, 0.0) for one, rub in pairs])
-        rates = np.array([_limit(one, rub, 1.0) for one, rub in pairs]) - least
-        steep = np.array([rates * grips(slopes[:, :, j])[columns] for j in range(len(columns))]).T
-        share: Array | None = None
-        if lean[columns].any():
-            leaning = -signs * rates * lean[columns]
-            left = np.eye(len(columns)) - leaning[:, None] * (passed[columns, 1:] - passed[columns, :1])
-            least = least + leaning * passed[columns, 0]
-            share = np.linalg.inv(left) if np.linalg.det(left) > 0.0 else np.full(left.shape, np.inf)
-            steep = np.abs(share) @ steep if np.all(np.isfinite(share)) else np.full(left.shape, 2.0)
-        if float(np.abs(np.linalg.eigvals(steep)).max()) >= SLIP_STEEPEST:
-            joints = [one.joint for one, _ in pairs]
-            raise NotDeterminedError(_doubt(joints, t), joints)
-        for _ in range(SLIP_ROUNDS):
-            after = least + rates * grips(base + slopes @ u)[columns]
-            after = after if share is None else share @ after
-            moved = float(np.abs(after - u).max())
-            u = after
-            if moved <= SLIP_SETTLED * float(np.abs(u).max()):
-                break
+    to = Responses(trials, *_respond(run, t, y, trials))
+    toothed = pressing_teeth(dynamics)
+    flanks = _FLANKS.get(dynamics, [0] * len(dynamics.system.gears))
+    for _ in range(2 + 2 * len(toothed)):
+        sight = pressing(run, t, y, to, held, flanks)
+        # The teeth of each gear may push with the other side after all, and press more than these.
+        others = [pressing(run, t, y, to, held, _flipped(flanks, k)).slopes - sight.slopes for k in toothed]
+        u = _settled(t, sight, others, [(rubbings[k], acting[k]) for k in columns], columns)
+        pushing = sight.flanks(u, flanks)
+        if pushing == flanks or not toothed:
+            break
+        flanks = pushing
+    else:
+        names = ", ".join(dynamics.system.gears[k].subject for k in toothed)
+        raise NotDeterminedError(f"at t = {t:.6g} s it is not determined which side of the teeth of {names} pushes")
+    _FLANKS[dynamics] = flanks
     efforts = np.zeros(len(rubbings))
     efforts[columns] = signs * u
     set_efforts(dynamics, efforts)
@@ -123,69 +108,43 @@ def dry(run: Run, t: float, y: Array, acting: Mapping[int, Rub], held: Sequence[
     def added(of: Array) -> Array:
         return np.asarray(of[0] + np.tensordot(u, of[1:] - of[0], axes=1))
 
-    leans = lean * (passed[:, 0] + (passed[:, 1:] - passed[:, :1]) @ u)
-    return Answer(efforts, grips(base + slopes @ u), leans, added(needed), added(accelerations))
+    leans = np.array([one.lean for one in rubbings]) * added(sight.passed.T)
+    return Answer(efforts, sight.grips(sight.base + sight.slopes @ u), leans, added(to.needed), added(to.accelerations))
 
 
-@dataclass(frozen=True, eq=False)
-class Responses:
-    """To k trials of efforts (k, m) of the frictions: (k, n) accelerations, efforts given, efforts needed."""
-
-    trials: Array
-    accelerations: Array
-    given: Array
-    needed: Array
-
-
-def _pressing(run: Run, t: float, y: Array, to: Responses, held: Sequence[int]) -> tuple[Array, Ints, Array]:
-    """(b, 3, k) vectors whose lengths are grips, (b,) the friction of each, and (m, k) what lossy gears pass on: for
-    the trials of `to`. `held`: frictions that stand for what is needed on their rates."""
-    dynamics, rubbings = run.dynamics, run.dynamics.actuation.frictions
-    q, v = dynamics.tables.unpack(y)
-    count = len(to.trials)
-    passed = np.zeros((len(rubbings), count))
-    wrenches = np.zeros((count, len(dynamics.system.joints), 6))
-    R = np.broadcast_to(np.eye(3), (len(dynamics.mechanism.parent), 3, 3))
-    if any(one.loaded for one in rubbings):
-        states = states_at(
-            dynamics.mechanism, np.repeat(q[None], count, axis=0), np.repeat(v[None], count, axis=0), to.accelerations
-        )
-        network = _NETWORKS.get(dynamics)
-        if network is None:
-            network = _NETWORKS[dynamics] = Network(dynamics)
-        effort = dynamics.on_bodies(to.given + to.needed, to.accelerations)
-        found = reactions(dynamics, states, np.full(count, t), effort, run.settings.free, network)
-        wrenches, R = found.on_second, states.poses[0, :, :3, :3]
-        for k, one in enumerate(rubbings):
-            if one.lost is not None and one.lost.gear >= 0 and found.gears is not None:
-                passed[k] = found.gears.efforts[:, one.lost.gear, one.lost.side]
-    for k, one in enumerate(rubbings):
-        if one.lost is not None and one.lost.gear < 0:
-            passed[k] = -_through_motor(run, t, y, to, k, held)
-    none = np.zeros((1, 2, count))
-    each = [
-        one.maps(R[one.link], q) @ wrenches[:, one.number].T
-        if one.lost is None
-        else np.concatenate([passed[k][None, None], none], axis=1)
-        for k, one in enumerate(rubbings)
-    ]
-    return np.concatenate(each), np.repeat(np.arange(len(rubbings)), [len(rows) for rows in each]), passed
+def _settled(
+    t: float, sight: Sight, others: Sequence[Array], pairs: Sequence[tuple[Rubbing, Rub]], columns: Sequence[int]
+) -> Array:
+    """(k,) the sizes of the frictions that act, `columns` of all. Raises NotDeterminedError."""
+    u = np.zeros(len(columns))
+    if not pairs:
+        return u
+    least = np.array([_limit(one, rub, 0.0) for one, rub in pairs])
+    rates = np.array([_limit(one, rub, 1.0) for one, rub in pairs]) - least
+    grown = [sum(sight.grips(part[:, :, j])[columns] for part in (sight.slopes, *others)) for j in range(len(columns))]
+    steep = np.array([rates * grown[j] for j in range(len(columns))]).T
+    lean, passed, share = np.array([one.lean for one, _ in pairs]), sight.passed[columns], None
+    if lean.any():
+        leaning = np.array([rub.against for _, rub in pairs]) * rates * lean
+        left = np.eye(len(columns)) - leaning[:, None] * (passed[:, 1:] - passed[:, :1])
+        least = least + leaning * passed[:, 0]
+        share = np.linalg.inv(left) if np.linalg.det(left) > 0.0 else np.full(left.shape, np.inf)
+        steep = np.abs(share) @ steep if np.all(np.isfinite(share)) else np.full(left.shape, 2.0)
+    if float(np.abs(np.linalg.eigvals(steep)).max()) >= SLIP_STEEPEST:
+        joints = [one.joint for one, _ in pairs]
+        raise NotDeterminedError(_doubt(joints, t), joints)
+    for _ in range(SLIP_ROUNDS):
+        after = least + rates * sight.grips(sight.base + sight.slopes @ u)[columns]
+        after = after if share is None else share @ after
+        moved = float(np.abs(after - u).max())
+        u = after
+        if moved <= SLIP_SETTLED * float(np.abs(u).max()):
+            break
+    return u
 
 
-def _through_motor(run: Run, t: float, y: Array, to: Responses, number: int, held: Sequence[int]) -> Array:
-    """(k,) what the gear of a motor, whose loss is the friction `number`, gives its joint: what comes from the rotor,
-    less what the gear loses."""
-    dynamics, one = run.dynamics, run.dynamics.actuation.frictions[number]
-    assert one.lost is not None
-    own = [number, *([one.lost.brush] if one.lost.brush >= 0 else [])]
-    out = to.trials[:, own].sum(axis=1) - dynamics.actuation.armature[one.v] * to.accelerations[:, one.v]
-    if one.lost.motor >= 0:
-        motor, row = dynamics.actuation.actors[one.lost.motor], dynamics.tables.ints[layout.ACTORS][one.lost.motor]
-        q, v = dynamics.tables.unpack(y)
-        states = [y[[at]] if at >= 0 else None for at in row[[layout.FIRST_STATE, layout.SECOND_STATE]].tolist()]
-        out = out + effort_of(motor, np.array([t]), q[[motor.q]], v[[motor.v]], states)
-    others = [k for k in held if dynamics.actuation.frictions[k].v == one.v and k not in own]
-    return np.asarray(out if others else out + to.needed[:, one.v])
+def _flipped(flanks: Sequence[int], k: int) -> list[int]:
+    return [1 - side if number == k else side for number, side in enumerate(flanks)]
 
 
 def _limit(one: Rubbing, rub: Rub, grip: float) -> float:
