@@ -13,9 +13,10 @@ import numpy as np
 from kinform.foundation.algebra.vectors import canonical_sign, dot
 from kinform.model.arrays import Array, Ints
 from kinform.surfaces import constants
-from kinform.surfaces.groups import columns_of, group_range, group_sum, members, normal_equations
+from kinform.surfaces.groups import columns_of, distinct, group_range, group_sum, members, normal_equations, parted
 from kinform.surfaces.kinds.axial import angular_widths, azimuths, cylindrical
-from kinform.surfaces.kinds.kind import Batch, Kind, Params, widths
+from kinform.surfaces.kinds.batch import Batch, Params
+from kinform.surfaces.kinds.kind import Kind, widths
 from kinform.surfaces.kinds.ruled import with_apices
 from kinform.surfaces.polygons.coplanar import fit_planes
 from kinform.surfaces.polygons.noise import Scale, Scales
@@ -57,8 +58,8 @@ def flat(work: Patchwork, number: Ints, scale: Scale) -> list[Description]:
     group = np.repeat(np.arange(count), [len(polygons) for polygons in planes])
     owner, vertex = work.corners.expand(member)
     total = np.int64(len(work.vertices))
-    key = np.unique(group[owner] * total + vertex)
-    region, points = key // total, work.vertices[key % total]
+    region, vertex = parted(distinct(group[owner] * total + vertex), int(total))
+    points = work.vertices[vertex]
     outward = group_sum(group, work.normal[member] * work.area[member][:, None], count)
     size = np.linalg.norm(outward, axis=1)
     first = work.normal[[polygons[0] for polygons in planes]]
@@ -200,18 +201,18 @@ def _chords(kind: Kind, batch: Batch, params: Params) -> Array:
     work = batch.patchwork
     deepest = np.zeros(batch.count)
     region, edge, _ = batch.edges
-    middles = (work.vertices[work.ends[edge, 0]] + work.vertices[work.ends[edge, 1]]) / 2
-    centres = work.centre[batch.polygon]
+    middles = (work.at(work.ends[:, 0].take(edge)) + work.at(work.ends[:, 1].take(edge))) / 2
+    centres = work.middles(batch.polygon)
     for owner, points in ((region, middles), (batch.region, centres)):
-        np.maximum.at(deepest, owner, np.abs(kind.probe(params[owner], points).distance))
+        np.maximum.at(deepest, owner, np.abs(kind.probe(columns_of(params, owner), points).distance))
     return deepest
 
 
 def angles_covered(params: Params, batch: Batch, width: Array) -> Array:
     """Length of the union of the angles that each region's polygons, in order, subtend about its axis."""
     count, region, turn = len(params), batch.region, 2 * np.pi
-    mine = params[region]
-    middle = azimuths(mine, batch.patchwork.centre[batch.polygon] - mine[:, 3:6])
+    mine = columns_of(params, region)
+    middle = azimuths(mine, batch.patchwork.middles(batch.polygon) - mine[:, 3:6])
     low = np.mod(middle - width / 2, turn)
     high = low + width
     order = np.lexsort((low, region))

@@ -20,7 +20,7 @@ from kinform.surfaces import constants
 from kinform.surfaces.constants import EPS32, THREAD_FACET
 from kinform.surfaces.describe import Description, curved, flat, freeform
 from kinform.surfaces.groups import distinct, members
-from kinform.surfaces.kinds.kind import Batch
+from kinform.surfaces.kinds.batch import Batch
 from kinform.surfaces.polygons.facets import Facets
 from kinform.surfaces.polygons.noise import Scale, Scales
 from kinform.surfaces.polygons.patchwork import Patchwork

@@ -13,7 +13,7 @@ from kinform.foundation.algebra.vectors import cross, dot
 from kinform.model.arrays import Array
 from kinform.surfaces.constants import ON_AXIS
 from kinform.surfaces.groups import columns_of
-from kinform.surfaces.kinds.kind import Batch, Params
+from kinform.surfaces.kinds.batch import Batch, Params
 
 
 def frames(axis: Array) -> tuple[Array, Array]:

@@ -20,7 +20,7 @@ from kinform.surfaces.groups import (
     spheres_of,
 )
 from kinform.surfaces.kinds.axial import frames
-from kinform.surfaces.kinds.kind import Batch, Params
+from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.kinds.ruled import Ruled
 from kinform.surfaces.polygons.noise import Scales
 

@@ -6,26 +6,17 @@ positive outside the chord side: the vertices of a tessellation lie at 0, points
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any, Protocol, TypeAlias, TypeVar, cast
+from typing import Protocol
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces.constants import DAMPING, NEAR, RUN_OF_PAIRS
-from kinform.surfaces.groups import columns_of, in_order, normal_equations, occurrences, parted, solve_normal
+from kinform.surfaces.constants import DAMPING, NEAR
+from kinform.surfaces.groups import columns_of, in_order, normal_equations, solve_normal
+from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.polygons.noise import Scales
-from kinform.surfaces.polygons.patchwork import Patchwork
-
-Params = Array
-"""(R, 8): axis, point, radius, half-angle."""
-
-Seen = TypeVar("Seen")
-Look: TypeAlias = Callable[[Params, Array], Any]
-"""What points (N, 3) are about surfaces (N, 8)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,112 +29,6 @@ class Probe:
     """(N, 3) away from the axis or the centre."""
     curvature_radius: Array
     """(N,) radius of curvature along the tessellated direction."""
-
-
-class Batch:
-    """R candidate regions: (region, polygon) pairs sorted by region, and what belongs to them."""
-
-    def __init__(self, patchwork: Patchwork, region: Ints, polygon: Ints, count: int):
-        self.patchwork = patchwork
-        self.region = region
-        self.polygon = polygon
-        self.count = count
-        self._edges: tuple[Ints, Ints, Flags] | None = None
-        self._corners: tuple[Ints, Ints] | None = None
-        self._points: Array | None = None
-        self._inner: dict[int, tuple[Ints, Ints]] = {}
-        self._mesh: Ints | None = None
-        self._parts: list[Batch] | None = None
-        self._seen: tuple[Params, Look, Any] | None = None
-
-    def parts(self) -> list[Batch]:
-        """The batch cut into runs of pairs, so that what is computed for every corner stays small."""
-        if len(self.region) <= RUN_OF_PAIRS:
-            return [self]
-        if self._parts is None:
-            runs = [slice(k, k + RUN_OF_PAIRS) for k in range(0, len(self.region), RUN_OF_PAIRS)]
-            self._parts = [Batch(self.patchwork, self.region[run], self.polygon[run], self.count) for run in runs]
-        return self._parts
-
-    def seen(self, params: Params, look: Callable[[Params, Array], Seen]) -> tuple[Ints, Seen]:
-        """(region of each, what they are there) of the middles of the pairs' polygons, and after them of the corners,
-        about the surfaces (R, 8) of their regions. What was asked for last is kept: who asks for the widths of polygons
-        asks next whether they conform."""
-        if self._seen is None or self._seen[0] is not params or self._seen[1] != look:
-            group = np.concatenate([self.region, self.region.take(self.corners[0])])
-            points = np.concatenate([self.patchwork.middles(self.polygon).T, self.points.T], axis=1).T
-            self._seen = params, look, (group, look(columns_of(params, group), points))
-        return cast("tuple[Ints, Seen]", self._seen[2])
-
-    @classmethod
-    def of_keys(cls, patchwork: Patchwork, keys: Ints, count: int) -> Batch:
-        """The batch of sorted `keys`."""
-        return cls(patchwork, *parted(keys, patchwork.count), count)
-
-    @cached_property
-    def size(self) -> Ints:
-        """(R,) number of polygons of each region."""
-        return np.bincount(self.region, minlength=self.count)
-
-    @property
-    def keys(self) -> Ints:
-        """(pairs,) one number for each region and polygon."""
-        return self.region * np.int64(self.patchwork.count) + self.polygon
-
-    @property
-    def mesh(self) -> Ints:
-        """(R,) number of the mesh of each region; 0 of those without polygons."""
-        if self._mesh is None:
-            filled = np.flatnonzero(self.size)
-            self._mesh = np.zeros(self.count, np.int64)
-            first = (np.cumsum(self.size) - self.size)[filled]
-            self._mesh[filled] = self.patchwork.mesh[self.polygon[first]]
-        return self._mesh
-
-    @property
-    def corners(self) -> tuple[Ints, Ints]:
-        """(pair, vertex) of every polygon's vertices; a vertex once for each of its polygons."""
-        if self._corners is None:
-            self._corners = self.patchwork.corners.expand(self.polygon)
-        return self._corners
-
-    @property
-    def points(self) -> Array:
-        """Coordinates of those vertices."""
-        if self._points is None:
-            self._points = self.patchwork.at(self.corners[1])
-        return self._points
-
-    @property
-    def edges(self) -> tuple[Ints, Ints, Flags]:
-        """(region, edge, whether both polygons are in the region), each edge once for a region."""
-        if self._edges is None:
-            owner, edge = self.patchwork.sides.expand(self.polygon)
-            total = np.int64(max(len(self.patchwork.a), 1))
-            key, times = occurrences(self.region[owner] * total + edge)
-            self._edges = *parted(key, int(total)), times == 2
-        return self._edges
-
-    def inner_vertices(self, least: int = 3) -> tuple[Ints, Ints]:
-        """(region, vertex) of vertices that at least so many of the region's polygons share."""
-        if least not in self._inner:
-            owner, vertex = self.corners
-            total = np.int64(max(len(self.patchwork.vertices), 1))
-            key, times = occurrences(self.region[owner] * total + vertex)
-            self._inner[least] = parted(key.take((times >= least).nonzero()[0]), int(total))
-        return self._inner[least]
-
-    def forget(self) -> None:
-        """Drops what is found when asked for: what is large, and is needed no longer or rarely."""
-        self._edges = self._corners = self._points = self._parts = self._seen = None
-        self._inner = {}
-
-    def select(self, keep: Flags) -> Batch:
-        """The batch without some of its pairs; itself, with what it has already found, where all are kept."""
-        rows = keep.nonzero()[0]
-        if len(rows) == len(keep):
-            return self
-        return Batch(self.patchwork, self.region.take(rows), self.polygon.take(rows), self.count)
 
 
 class Moving:

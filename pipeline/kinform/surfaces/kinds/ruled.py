@@ -25,7 +25,8 @@ from kinform.surfaces.groups import (
     solve_normal,
 )
 from kinform.surfaces.kinds.axial import Cylindrical, angular_widths, azimuths, cylindrical, frames
-from kinform.surfaces.kinds.kind import Batch, Kind, Moving, Params, Probe, distinct_angles
+from kinform.surfaces.kinds.batch import Batch, Params
+from kinform.surfaces.kinds.kind import Kind, Moving, Probe, distinct_angles
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 

@@ -8,7 +8,8 @@ from kinform.foundation.algebra.vectors import dot
 from kinform.model.arrays import Array, Flags
 from kinform.surfaces.constants import LARGEST_SPHERE, LEAST_POINTS, SAGITTA
 from kinform.surfaces.groups import group_mean, group_sum, spheres_through
-from kinform.surfaces.kinds.kind import Batch, DoublyCurved, Params, Probe
+from kinform.surfaces.kinds.batch import Batch, Params
+from kinform.surfaces.kinds.kind import DoublyCurved, Probe
 from kinform.surfaces.polygons.noise import Scales
 
 

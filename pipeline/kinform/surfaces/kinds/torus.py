@@ -13,7 +13,8 @@ from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.groups import columns_of, group_range, quantile, spheres_through
 from kinform.surfaces.kinds.axial import azimuths, cylindrical, frames
-from kinform.surfaces.kinds.kind import Batch, DoublyCurved, Params, Probe, distinct_angles
+from kinform.surfaces.kinds.batch import Batch, Params
+from kinform.surfaces.kinds.kind import DoublyCurved, Probe, distinct_angles
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.slippage import slippage
 

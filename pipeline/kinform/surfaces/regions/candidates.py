@@ -10,7 +10,8 @@ from kinform.foundation.algebra.vectors import dot
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.constants import FACET_ROUNDING, NORMAL_SLACK, TYPICAL_WIDTH, WIDER, WIDEST
 from kinform.surfaces.groups import columns_of, in_order, ordered_quantile, quantile
-from kinform.surfaces.kinds.kind import Batch, Kind, Params
+from kinform.surfaces.kinds.batch import Batch, Params
+from kinform.surfaces.kinds.kind import Kind
 from kinform.surfaces.kinds.kind import widths as widths_of
 
 

@@ -16,8 +16,8 @@ from kinform.model.arrays import Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.describe import angles_covered
 from kinform.surfaces.groups import columns_of, quantile
+from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.kinds.cylinder import Cylinder
-from kinform.surfaces.kinds.kind import Batch, Params
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.regions.growth import Growth, whole
 from kinform.surfaces.regions.territory import Territory
@@ -34,7 +34,7 @@ class Rounds:
     @classmethod
     def of(cls, kind: Cylinder, batch: Batch, side: Ints) -> Rounds:
         """Those of the pieces that have polygons enough."""
-        large = batch.select((batch.size >= constants.LEAST_CHORDS)[batch.region])
+        large = batch.where(batch.size >= constants.LEAST_CHORDS)
         return cls(large, side, kind.propose(large))
 
 

@@ -13,7 +13,8 @@ import numpy as np
 from kinform.foundation.algebra.vectors import dot
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
-from kinform.surfaces.kinds.kind import Batch, Kind, Params
+from kinform.surfaces.kinds.batch import Batch, Params
+from kinform.surfaces.kinds.kind import Kind
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.regions.candidates import Candidates
 from kinform.surfaces.regions.territory import Territory, among
@@ -36,7 +37,7 @@ def whole(
     the kind for the batch, where it was made before.
     """
     params, usable = proposal or kind.propose(batch)
-    pieces = batch.select(usable[batch.region])
+    pieces = batch.where(usable)
     side = _facing(kind, pieces, params) if kind.saddle else side
     fit = territory.scales_of(batch).fit
     surfaces = Candidates(kind, params, side, constants.LOOSE * fit).refine(pieces, 2)
@@ -81,7 +82,7 @@ def pursue(territory: Territory, kind: Kind, batch: Batch, side: Ints) -> Growth
     """
     fit = territory.scales_of(batch).fit
     params, usable = kind.propose(batch)
-    batch = batch.select(usable[batch.region])
+    batch = batch.where(usable)
     surfaces = Candidates(kind, params, side, constants.LOOSE * fit).refine(batch, 2)
     batch, surfaces = _grow(territory, surfaces, _settle(territory, surfaces, batch))
     batch, number = _compact(batch)

@@ -13,7 +13,8 @@ from kinform.foundation.meshes.near import Near
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.groups import members
-from kinform.surfaces.kinds.kind import Batch, widths
+from kinform.surfaces.kinds.batch import Batch
+from kinform.surfaces.kinds.kind import widths
 from kinform.surfaces.polygons.noise import Scale, Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.candidates import Candidates

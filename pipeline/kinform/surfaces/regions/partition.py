@@ -15,9 +15,10 @@ from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.groups import distinct, quantile, renumbered
+from kinform.surfaces.kinds.batch import Batch
 from kinform.surfaces.kinds.cone import Cone
 from kinform.surfaces.kinds.cylinder import Cylinder
-from kinform.surfaces.kinds.kind import Batch, Kind
+from kinform.surfaces.kinds.kind import Kind
 from kinform.surfaces.kinds.sphere import Sphere
 from kinform.surfaces.kinds.torus import Torus
 from kinform.surfaces.polygons.curvature import Curvature, Links, continues, curvature, links
@@ -135,16 +136,16 @@ def _whole_pieces(
 ) -> list[Growth]:  # fmt: skip
     """Each kind on the pieces that bend as it does; what one kind explains whole, the later are not tried on."""
     growths = []
-    middle = quantile(batch.region, bent.ratio[batch.polygon], batch.count, 0.5)
+    middle = quantile(batch.region, bent.ratio.take(batch.polygon), batch.count, 0.5)
+    batch.find_shared()
     for kind in kinds:
         if not len(batch.region):
             break
         low, high = kind.bends
         suits = (middle >= low) & (middle <= high) & (batch.size >= kind.least)
-        growths.append(whole(territory, kind, batch.select(suits[batch.region]), side))
-        batch.forget()
+        growths.append(whole(territory, kind, batch.where(suits), side))
         explained = growths[-1].batch.size >= constants.EXPLAINED * batch.size
-        batch = batch.select(~explained[batch.region])
+        batch = batch.where(~explained)
     return growths
 
 

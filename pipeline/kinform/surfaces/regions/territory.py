@@ -9,7 +9,7 @@ import numpy as np
 from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.groups import Ragged, distinct, parted
-from kinform.surfaces.kinds.kind import Batch
+from kinform.surfaces.kinds.batch import Batch
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.candidates import Candidates

@@ -88,17 +88,22 @@ def _lines(work: Patchwork, free: Flags, others: Sequence[Description]) -> list[
 
 def _distinct(candidates: Sequence[tuple[Array, Array]]) -> list[tuple[Array, Array]]:
     """The lines without those that nearly are an earlier one."""
-    lines: list[tuple[Array, Array]] = []
-    for axis, point in candidates:
-        for other, through in lines:
-            if (
-                math.hypot(*cross(axis, other).tolist()) < constants.SAME_LINE
-                and math.hypot(*cross(point - through, other).tolist()) < constants.SAME_LINE
-            ):
-                break
-        else:
-            lines.append((axis, point))
-    return lines
+    kept: list[int] = []
+    axes, points = ([pair[k].tolist() for pair in candidates] for k in range(2))
+    for k, (axis, point) in enumerate(zip(axes, points, strict=True)):
+        if not any(
+            _across(axis, axes[j]) < constants.SAME_LINE
+            and _across([p - q for p, q in zip(point, points[j], strict=True)], axes[j]) < constants.SAME_LINE
+            for j in kept
+        ):
+            kept.append(k)
+    return [candidates[k] for k in kept]
+
+
+def _across(a: list[float], b: list[float]) -> float:
+    """|a × b|; of a few vectors without numpy, which takes ten times as long."""
+    (x, y, z), (u, v, w) = a, b
+    return math.hypot(y * w - z * v, z * u - x * w, x * v - y * u)
 
 
 def _turning(work: Patchwork, free: Flags) -> list[tuple[Array, Array]]:
