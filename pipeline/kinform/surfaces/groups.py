@@ -227,10 +227,13 @@ def solve_normal(matrix: Array, right: Array, damping: float = 1e-12) -> Array:
     diagonal = np.einsum("gii->gi", matrix)
     scale = 1.0 / np.sqrt(np.maximum(diagonal, 1e-300))
     scaled = matrix * scale[:, :, None] * scale[:, None, :]
-    scaled = scaled + damping * np.eye(matrix.shape[1])
+    np.einsum("gii->gi", scaled)[:] += damping
+    wanted = right * scale
     # the damping keeps every matrix regular that is finite
-    scaled[~np.isfinite(scaled).all(axis=(1, 2))] = np.eye(matrix.shape[1])
-    solution = np.linalg.solve(scaled, np.nan_to_num(right * scale)[:, :, None])[:, :, 0]
+    if not (np.isfinite(scaled).all() and np.isfinite(wanted).all()):
+        scaled[~np.isfinite(scaled).all(axis=(1, 2))] = np.eye(matrix.shape[1])
+        wanted = np.nan_to_num(wanted)
+    solution = np.linalg.solve(scaled, wanted[:, :, None])[:, :, 0]
     return np.asarray(solution * scale)
 
 

@@ -194,7 +194,10 @@ def _assemble(mesh: Mesh, start: _Start, descriptions: list[Description]) -> Mes
     position[rank] = np.arange(len(rank))
     labels = position[facet_owner]
     faces = members(labels)
-    surfaces = tuple(_surface(descriptions[k], float(area[k]), faces[i], centre, diagonal) for i, k in enumerate(rank))
+    sizes = area.tolist()
+    surfaces = tuple(
+        _surface(descriptions[k], sizes[k], faces[i], centre, diagonal) for i, k in enumerate(rank.tolist())
+    )
     squares = sum(item.squares for item in descriptions)
     samples = sum(item.samples for item in descriptions)
     noise = diagonal * float(np.sqrt(squares / samples)) if samples else 0.0

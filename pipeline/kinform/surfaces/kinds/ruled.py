@@ -169,14 +169,16 @@ class Ruled(Kind, Protocol):
         out = params.copy()
         out[:, 3:6] += shift[:, :1] * x + shift[:, 1:] * y
         axis = params[:, :3] + tilt[:, :1] * x + tilt[:, 1:] * y
-        out[:, :3] = axis / np.maximum(np.linalg.norm(axis, axis=1), 1e-300)[:, None]
+        length = np.sqrt(axis[:, 0] ** 2 + axis[:, 1] ** 2 + axis[:, 2] ** 2)
+        out[:, :3] = axis / np.maximum(length, 1e-300)[:, None]
         out[:, 6] = np.maximum(
             params[:, 6] + np.clip(change[:, 4], -limit[:, 0] / 2, limit[:, 0]), constants.LEAST_RADIUS
         )
         if self.tapers:
             taper = params[:, 7] + np.clip(change[:, 5], -constants.TILT_LIMIT, constants.TILT_LIMIT)
             out[:, 7] = np.clip(taper, -constants.STEEPEST_CONE, constants.STEEPEST_CONE)
-        return np.where(np.isfinite(out).all(axis=1, keepdims=True), out, params)
+        finite = np.isfinite(out)
+        return out if finite.all() else np.where(finite.all(axis=1, keepdims=True), out, params)
 
     def evident(self, batch: Batch, params: Params, scale: Scales) -> tuple[Ints, Array, Flags]:
         """What tells a round face from a few flats: the number of distinct generators that lie on each surface, apart
