@@ -385,7 +385,7 @@ FULL_TURN = 1e-6
 
 PACK = 200_000
 """Facets of meshes that are recovered at once, at most. A step of numpy takes as long to begin as for a few hundred
-rows: so100 (60,000 facets in 13 meshes) takes 1.6 s of processor in one pack and 2.5 s mesh by mesh; packs of 400,000
+rows: so100 (60,000 facets in 13 meshes) takes 1.0 s of processor in one pack and 2.0 s mesh by mesh; packs of 400,000
 gain 7 % over packs of 100,000, those of 200,000 5 %, for 140 and 60 MB more."""
 
 LITTLE = 10_000
