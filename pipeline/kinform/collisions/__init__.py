@@ -24,5 +24,5 @@ from kinform.collisions.run_collisions import along
 
 __all__ = ["CODE_VERSION", "along", "ranges"]
 
-CODE_VERSION: int = 13
+CODE_VERSION: int = 14
 """Raised when the same input would give other ranges or collisions."""

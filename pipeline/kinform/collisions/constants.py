@@ -35,6 +35,8 @@ STEPS_MOST = 60
 STEPS_TRIED = 8
 """Steps after which it is seen whether so many reach the end: a pair that stays near is followed with the facets that
 count, which are fewer."""
+FEW_FACETS = 0.4
+"""Share of a part's facets below which a model of them alone is worth its time."""
 CERTAIN = 1.0 - 1e-6
 """Share of a distance that is trusted."""
 WHOLES_TOUCH = 1e-6

@@ -219,6 +219,10 @@ def _in_order(
                 touching.append(candidate)
                 continue
         s, short = wholes.step(course, s, reach)
+        if wholes.tried and s < reach and not short:
+            if candidate.test is None:
+                continue
+            wholes.few(candidate.test[0].facets)
         if short:
             reach = yield candidate, s
         elif s < reach:

@@ -29,6 +29,8 @@ class Shapes:
     contacts: Contacts | None
     body_parts: dict[str, frozenset[str]] = field(default_factory=dict)
     """Parts of each body that have a mesh."""
+    at_rest: dict[frozenset[str], float] = field(default_factory=dict)
+    """m that pairs of parts are apart at least at the pose of the meshes, as far as it was asked."""
     _own: dict[str, OwnMotions] = field(default_factory=dict)
     _slippage: dict[tuple[str, bytes], Slippage] = field(default_factory=dict)
     _borders: dict[str, list[set[int]]] = field(default_factory=dict)
