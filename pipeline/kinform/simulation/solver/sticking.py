@@ -204,7 +204,8 @@ class Sticking:
 
     def answer(self, t: float, y: Array, others: Mapping[int, Rub] | None = None) -> Answer:
         """What all frictions do, `others` beside those that slip. Raises NotDeterminedError."""
-        return dry(self.run, t, y, self.acting | dict(others or {}), [hold.held for hold in self.holds])
+        held = [hold.held for hold in self.holds if hold.group >= 0]
+        return dry(self.run, t, y, self.acting | dict(others or {}), held)
 
     def limits(self, answer: Answer) -> Array:
         """(m,) what each friction takes at most at rest, against what it holds or the way in which it slips."""
