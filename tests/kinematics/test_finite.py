@@ -26,8 +26,10 @@ from support.linkages import (
 
 from kinform import stages
 from kinform.foundation.algebra.screws import Frame
+from kinform.kinematics import constants
 from kinform.kinematics.loops.assembly_closure import close
 from kinform.kinematics.loops.loop_kinematics import loop_system
+from kinform.kinematics.mobility import local_dimension
 from kinform.kinematics.mobility.finite_motion import finite_mobility
 
 X, Y, Z = np.eye(3)
@@ -274,6 +276,29 @@ def test_a_block_beyond_the_limit_is_said_to_be(monkeypatch):
     _, found = count(build(four_bar()))
     assert found.count is None
     assert "too many to be tried" in found.reason
+
+
+@pytest.mark.parametrize("empty", [0, 20])
+def test_equations_of_a_large_block_made_triangular_have_the_same_solution(empty):
+    rng = np.random.default_rng(1)
+    jacobian, missed = rng.normal(size=(2, 150, 64)), rng.normal(size=(2, 150))
+    jacobian[:, :, 63] = jacobian[:, :, 0] - jacobian[:, :, 1]
+    jacobian[:, :empty] = 0.0
+    short, rest = local_dimension._reduced(jacobian, missed)
+    assert short.shape == (2, 64, 64)
+    full, less = (np.linalg.svd(a, compute_uv=False) for a in (jacobian, short))
+    assert np.abs(full - less).max() < 1e-13 * full.max()
+    for k in range(2):
+        expected = np.linalg.pinv(jacobian[k], rcond=1e-9) @ missed[k]
+        assert np.abs(np.linalg.pinv(short[k], rcond=1e-9) @ rest[k] - expected).max() < 1e-13
+
+
+def test_a_large_block_moves_alike_with_triangular_equations(monkeypatch):
+    mechanism, *_ = KNOWN["parallelogram"]
+    _, plain = count(build(mechanism))
+    monkeypatch.setattr(constants, "REDUCED_RATES", 1)
+    _, reduced = count(build(mechanism))
+    assert reduced.count == plain.count == 1 and reduced.certificates == plain.certificates
 
 
 def test_a_row_of_coupled_parallelograms_in_one_block_moves():

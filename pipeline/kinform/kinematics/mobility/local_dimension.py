@@ -59,7 +59,10 @@ def local_motions(system: LoopSystem) -> LocalMotions:
     if count == 0:
         return LocalMotions(0, 0, none, stepped=0)
     rng = np.random.default_rng(constants.SEED)
-    mixes = units(rng.normal(size=(1 if _submersion(system, pose) else constants.MIXES, count))) @ pose.free
+    mixes = units(rng.normal(size=(1 if _submersion(system, pose) else constants.MIXES, count)))
+    if count == 1:
+        mixes = np.unique(mixes, axis=0)  # forth and back are all that there is
+    mixes = mixes @ pose.free
     bends = np.linalg.norm(pose.obstruction(mixes), axis=1)
     for step in constants.STEP_SIZES:
         closed = _regular(pose, mixes, step, constants.STEP_SIZES[0])
@@ -121,11 +124,14 @@ def _solve(system: LoopSystem, start: Array, step: float, rank: int | None = Non
     active = np.arange(len(q))
     for _ in range(constants.SLOW_ITERATIONS if rank is None else constants.FAST_ITERATIONS):
         closed = system.close(q[active])
-        left, values, right = np.linalg.svd(closed.jacobian, full_matrices=False)
+        jacobian, missed = closed.jacobian, closed.residual
+        if rank is not None:
+            jacobian, missed = _reduced(jacobian, missed)
+        left, values, right = np.linalg.svd(jacobian, full_matrices=False)
         used = values > constants.FINEST_VALUE * values.max(axis=1, initial=1e-300, keepdims=True)
         if rank is not None:
             used[:, rank:] = False
-        parts = np.einsum("dri,dr->di", left, closed.residual)
+        parts = np.einsum("dri,dr->di", left, missed)
         change = -np.einsum("di,din->dn", np.where(used, parts / np.where(used, values, 1.0), 0.0), right)
         size = np.linalg.norm(change, axis=1)
         change *= np.minimum(1.0, constants.LONGEST_CHANGE * step / np.maximum(size, 1e-300))[:, None]
@@ -135,6 +141,22 @@ def _solve(system: LoopSystem, start: Array, step: float, rank: int | None = Non
             break
     closed = system.close(q)
     return q, np.abs(closed.residual).max(axis=1, initial=0.0), closed.jacobian
+
+
+def _reduced(jacobian: Array, residual: Array) -> tuple[Array, Array]:
+    """The equations J change = residual, (D, m, n) and (D, m), in as many rows as columns where a large block has many
+    more: the triangle of Householder's reflections, which keeps singular values, right singular vectors and parts of
+    the residual along the left ones (Golub and Van Loan, Matrix Computations, 5.3), without these reflections
+    themselves. Rows without entries, half of those of planar loops, say nothing."""
+    count = jacobian.shape[2]
+    if count < constants.REDUCED_RATES or jacobian.shape[1] <= count:
+        return jacobian, residual
+    used = np.asarray(jacobian.any(axis=(0, 2)))
+    if np.count_nonzero(used) <= count:
+        used[:] = True
+    equations = np.concatenate([jacobian, residual[..., None]], axis=2)[:, used]
+    triangle = np.asarray(np.linalg.qr(equations, mode="r"))
+    return triangle[:, :count, :count], triangle[:, :count, count]
 
 
 @dataclass(frozen=True, eq=False)
