@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.model.arrays import Ints
+from kinform.model.arrays import Array, Ints
 
 BITS = 63
 """Of a whole number without its sign."""
@@ -21,3 +21,9 @@ def ascending(keys: Ints, below: int) -> Ints:
     placed.sort()
     placed &= (1 << bits) - 1
     return placed
+
+
+def coarse(values: Array | Ints) -> Array:
+    """Values (n,) to 26 bits, to sort by: those that are equal but for rounding are equal, on every processor."""
+    mantissa, exponent = np.frexp(values)
+    return np.asarray(np.ldexp(np.rint(np.ldexp(mantissa, 26)), exponent - 26))

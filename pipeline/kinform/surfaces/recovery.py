@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.foundation.sorting import ascending
+from kinform.foundation.sorting import ascending, coarse
 from kinform.model.arrays import Array, Ints, freeze
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
@@ -189,7 +189,7 @@ def _assemble(mesh: Mesh, start: _Start, descriptions: list[Description]) -> Mes
     area = np.bincount(owner[work.polygon], work.facet_area, len(descriptions))
     first = np.full(len(descriptions), len(order))
     np.minimum.at(first, facet_owner, np.arange(len(order)))
-    rank = np.lexsort((first, -area))
+    rank = np.lexsort((first, -coarse(area)))
     position = np.empty(len(rank), np.int64)
     position[rank] = np.arange(len(rank))
     labels = position[facet_owner]

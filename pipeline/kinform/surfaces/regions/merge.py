@@ -10,6 +10,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.near import Near
+from kinform.foundation.sorting import coarse
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.groups import members
@@ -81,7 +82,8 @@ def coincident_regions(work: Patchwork, surfaces: Candidates, polygons: list[Int
     larger, smaller = _partners(surfaces, batch, size, scales.at(batch.mesh))
     root = np.arange(count)
     clusters = [m for m in members(components(larger, smaller, count)) if len(m) > 2]
-    heads = np.array([m[np.lexsort((m, -size[m]))[0]] for m in clusters], dtype=np.int64)
+    ranked = -coarse(size)
+    heads = np.array([m[np.lexsort((m, ranked[m]))[0]] for m in clusters], dtype=np.int64)
     families = [np.concatenate([polygons[k] for k in cluster]) for cluster in clusters]
     whole = _one_fit(work, surfaces.of(heads), families)
     for number in np.flatnonzero(whole):
