@@ -32,6 +32,7 @@ def plot_groups(design: Design) -> list[tuple[str, list[str], str]]:
         ("Joint values", _values(design, run, titles)),
         ("Sensors", _sensors(design, run)),
         ("Drive efforts", _efforts(design, run, titles)),
+        ("Friction and losses", _driven(run, titles, LOSING, worked=True)),
         ("Reactions in the joints", _reactions(run, titles)),
         ("Energy", _energy(run)),
     ]
@@ -161,20 +162,27 @@ def _sensor_unit(unit: str, units: str, metres: float) -> tuple[float, str]:
     return 1.0, unit
 
 
-def _driven(run: Simulation, titles: dict[str, str]) -> list[Plot]:
-    """What each drive gives that a motor or cylinder stands for."""
+LOSING = ("friction", "gear_loss", "rotor")
+"""Kinds that take work out."""
+
+
+def _driven(
+    run: Simulation, titles: dict[str, str], kinds: tuple[str, ...] = SIZED, *, worked: bool = False
+) -> list[Plot]:
+    """What each drive of these kinds gives: those that a motor or cylinder stands for. `worked`: and its work."""
     if len(run.drive_effort) != len(run.time):
         return []
     return [
         _with_prefix(
             Plot(
-                f"{titles.get(use.joint, use.joint)}: {use.kind.replace('_', ' ')}",
+                f"{titles.get(use.joint, use.joint)}: {use.kind.replace('_', ' ')}"
+                + (f", {number(use.work)} J" if worked else ""),
                 "N" if use.slides else "N·m",
                 (Series("", run.drive_effort[:, k] + 0.0),),
             )
         )
         for k, use in enumerate(run.drives)
-        if use.kind in SIZED
+        if use.kind in kinds
     ]
 
 
