@@ -11,20 +11,18 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kinform.contacts.constants import CURVE_BEND_LEAST, CYLINDER_EXACT, MOST_BESIDE, SEGMENT_LONG, STRIP_HEIGHT
 from kinform.contacts.mating.charts import plane_basis
 from kinform.contacts.search.pair_view import PartView
+from kinform.foundation.algebra import splines
+from kinform.foundation.algebra.splines import Cubics
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import shared_edges
 from kinform.model.arrays import Array, Flags, Ints
-
-if TYPE_CHECKING:
-    from scipy.interpolate import PPoly
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,18 +48,9 @@ class Curve:
         return np.concatenate([[0.0], np.cumsum(length)])
 
     @cached_property
-    def spline(self) -> PPoly:
+    def spline(self) -> Cubics:
         """The curve by its knots."""
-        from scipy.interpolate import CubicSpline, PPoly
-
-        points, knots = self.points, self.knots
-        if len(points) == 2:
-            return PPoly(np.stack([(points[1] - points[0]) / knots[1], points[0]])[:, None], knots)
-        if len(points) == 3:
-            slopes = np.diff(points, axis=0) / np.diff(knots)[:, None]
-            bend = (slopes[1] - slopes[0]) / knots[2]
-            return PPoly(np.stack([bend, slopes[0] - bend * knots[1], points[0]])[:, None], knots[[0, 2]])
-        return CubicSpline(knots, points)
+        return splines.through(self.knots, self.points)
 
     @cached_property
     def chords(self) -> Array:
