@@ -285,10 +285,6 @@ WALL_COSINE = 0.02
 """Cosine below which a face is parallel to a direction."""
 POCKET_GAP = math.pi - 0.05
 """rad: walls with no wider gap between them leave no way aside."""
-MOST_BESIDE = 5
-"""Points of an outline that may lie within a grain along x, of each on average, for a sweep along it. With five of a
-thousand points each it takes as long as a tree does, with none a sixth of that."""
-
 # find: pairs side by side
 
 LITTLE_PAIRS = 64

@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from kinform.contacts.constants import CURVE_BEND_LEAST, CYLINDER_EXACT, MOST_BESIDE, SEGMENT_LONG, STRIP_HEIGHT
+from kinform.contacts.constants import CURVE_BEND_LEAST, CYLINDER_EXACT, SEGMENT_LONG, STRIP_HEIGHT
 from kinform.contacts.mating.charts import plane_basis
 from kinform.contacts.search.pair_view import PartView
 from kinform.foundation.algebra import splines
@@ -22,6 +22,7 @@ from kinform.foundation.algebra.splines import Cubics
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import shared_edges
+from kinform.foundation.meshes.near import Near
 from kinform.model.arrays import Array, Flags, Ints
 
 
@@ -185,7 +186,7 @@ def _faces(count: int, facets: Ints, flats: Ints) -> Ints:
 def _merged(points: Array, grain: float) -> tuple[Ints, Array]:
     """Points (n, 2) with those nearer than `grain` made one: index of each, and the points."""
     order = np.lexsort((points[:, 1], points[:, 0]))
-    pairs = _near_pairs(points[order], grain)
+    pairs = Near(points[order], grain).pairs
     leader = np.arange(len(points))
     if len(pairs):
         np.minimum.at(leader, pairs.max(axis=1), pairs.min(axis=1))
@@ -195,22 +196,6 @@ def _merged(points: Array, grain: float) -> tuple[Ints, Array]:
     ids = np.empty(len(points), dtype=np.int64)
     ids[order] = back
     return ids, points[order][unique]
-
-
-def _near_pairs(points: Array, grain: float) -> Ints:
-    """(n, 2) pairs of points (n, 2), in the order of x, that are no farther apart than `grain`: by a sweep along x, or,
-    where too many are beside each other, by a tree, whose package takes a third of a second to load."""
-    x, numbers = points[:, 0], np.arange(len(points))
-    beside = np.searchsorted(x, x + 2.0 * grain, side="right") - numbers - 1
-    if int(beside.sum()) > MOST_BESIDE * len(points):
-        from scipy.spatial import cKDTree
-
-        return np.asarray(cKDTree(points).query_pairs(grain, output_type="ndarray"))
-    one = np.repeat(numbers, beside)
-    two = np.arange(len(one)) - np.repeat(np.cumsum(beside) - beside, beside) + one + 1
-    apart = points[one] - points[two]
-    near = apart[:, 0] ** 2 + apart[:, 1] ** 2 <= grain**2
-    return np.stack([one[near], two[near]], axis=1)
 
 
 def curves(part: PartView, pieces: Segments, near: Flags, smooth_edge: float) -> list[Curve]:

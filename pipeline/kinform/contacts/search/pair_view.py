@@ -63,7 +63,7 @@ class PartView:
         Points are in the frame of the pair. Facets outside the region are asked only about points that they may be
         nearest to.
         """
-        if self.region.bvh is None:
+        if self.region.empty:
             return self.index.whole().depths(self.to_part(points))
         distance, facet = self.region.depths(self.to_part(points))
         if self.region.facets is not None:
@@ -84,7 +84,7 @@ class PartView:
 def _part_view(part: Part, index: MeshIndex, surfaces: MeshSurfaces, X_FP: Array | None) -> PartView:
     """The part at pose `X_FP` (4, 4) in the frame of the pair; None: that frame is the part's own."""
     table = index.table(surfaces)
-    region = Region(index, None, np.zeros(0, np.int64))
+    region = Region(index, np.zeros(0, np.int64))
     if X_FP is None:
         vertices, low, high = index.mesh.vertices, index.low, index.high
     else:

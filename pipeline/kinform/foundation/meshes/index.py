@@ -12,7 +12,7 @@ from kinform.foundation.constants import BALL_PARTS, BALL_SHARE, KEPT_SPANS, RAY
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
 from kinform.foundation.meshes.edges import shared_edges
-from kinform.foundation.meshes.fcl_adapter import fcl_model, partial_model
+from kinform.foundation.meshes.fcl_adapter import fcl_model
 from kinform.foundation.meshes.near import Nearest
 from kinform.foundation.meshes.parity import Ray
 from kinform.foundation.meshes.probes import Region
@@ -82,12 +82,11 @@ class MeshIndex:
         """These facets (ascending) as something to cast probes against; all of them where they are most."""
         if 2 * len(facets) >= len(self.mesh.faces):
             return self.whole()
-        model = partial_model(self.mesh.vertices, self.mesh.faces[facets]) if len(facets) else None
-        return Region(self, model, facets)
+        return Region(self, facets)
 
     def whole(self) -> Region:
         """All facets."""
-        return Region(self, self.bvh, None)
+        return Region(self, None)
 
     def borders(self, surfaces: MeshSurfaces) -> Ints:
         """(k, 2) pairs of surfaces that share an edge, both ways round, sorted."""

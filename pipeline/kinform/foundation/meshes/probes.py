@@ -9,7 +9,7 @@ given in the mesh's own frame: the BVH never has to be built again for another p
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from typing import Protocol
 
 import fcl
@@ -17,7 +17,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.constants import HITS_A_PROBE, SLIVER_WIDTH, STEEP_LEAST
-from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, fcl_pose
+from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, fcl_pose, partial_model
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 
@@ -26,6 +26,11 @@ class Facets(Protocol):
     """A mesh that tells the normals of its facets."""
 
     mesh: Mesh
+
+    @property
+    def bvh(self) -> fcl.BVHModel:
+        """FCL's model of all of it (m)."""
+        ...
 
     def normals(self, facets: Ints) -> Array:
         """(n, 3) unit, outward, part frame."""
@@ -51,9 +56,21 @@ class Region:
     """Facets of a mesh that probes are cast against."""
 
     index: Facets
-    bvh: fcl.BVHModel | None
     facets: Ints | None
-    """Facets of the BVH in the mesh; None: all of them in order."""
+    """Ascending; None: all of them."""
+
+    @property
+    def empty(self) -> bool:
+        """Whether it is of no facets."""
+        return self.facets is not None and not len(self.facets)
+
+    @cached_property
+    def bvh(self) -> fcl.BVHModel:
+        """FCL's model of them, made when first asked for; there is none of an empty region."""
+        if self.facets is None:
+            return self.index.bvh
+        mesh = self.index.mesh
+        return partial_model(mesh.vertices, mesh.faces[self.facets])
 
     def cast(self, points: Array, directions: Array, reach: Array, width: float = SLIVER_WIDTH) -> Hits:
         """Facets within `reach` (n,) m of `points` (n, 3) along ±`directions` (n, 3), part frame.
@@ -62,7 +79,7 @@ class Region:
         """
         count, mesh = len(points), self.index.mesh
         empty = np.zeros(0)
-        if count == 0 or self.bvh is None:
+        if count == 0 or self.empty:
             return Hits(empty.astype(np.int64), empty.astype(np.int64), empty, empty)
         least = np.eye(3)[np.argmin(np.abs(directions), axis=1)]
         across = cross(directions, least)
@@ -100,7 +117,7 @@ class Region:
 
     def crosses(self, other: Region, X_SO: Array) -> bool:
         """Whether any facets of the two intersect; `X_SO` (4, 4): pose of the other part here."""
-        if self.bvh is None or other.bvh is None:
+        if self.empty or other.empty:
             return False
         request = fcl.CollisionRequest(num_max_contacts=1, enable_contact=False)
         placed = fcl.CollisionObject(other.bvh, fcl_pose(X_SO))
