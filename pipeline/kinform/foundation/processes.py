@@ -67,6 +67,8 @@ def _results(
                 result = function(item)
             yield result
         return
+    import numpy.ma  # noqa: F401  numpy loads it when it is first asked for distinct values: here once for all processes
+
     if len(items) < 2:
         yield from _one_by_one(function, items, name)
         return

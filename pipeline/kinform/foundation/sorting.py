@@ -1,7 +1,9 @@
-"""Orders of integers. With its place in its last bits each key is the only one of its value, and numpy sorts integers
-faster than it finds their order."""
+"""Orders of integers, and medians. With its place in its last bits each key is the only one of its value, and numpy
+sorts integers faster than it finds their order."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -27,3 +29,9 @@ def coarse(values: Array | Ints) -> Array:
     """Values (n,) to 26 bits, to sort by: those that are equal but for rounding are equal, on every processor."""
     mantissa, exponent = np.frexp(values)
     return np.asarray(np.ldexp(np.rint(np.ldexp(mantissa, 26)), exponent - 26))
+
+
+def median(values: Array | Sequence[float]) -> float:
+    """The median of values (n,), n ≥ 1, to the same bits as numpy's, which would load its masked arrays."""
+    ordered, half = np.sort(values), len(values) // 2
+    return float(ordered[half] if len(values) % 2 else (ordered[half - 1] + ordered[half]) / 2.0)

@@ -46,7 +46,7 @@ class Quantity:
 class Table(BaseModel):
     """A table of the manifest: exact types, no unknown keys."""
 
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, defer_build=True)
 
 
 class Posed(Table):

@@ -159,7 +159,7 @@ class MeshIndex:
             doubtful = count[asked] != second
             if doubtful.any():
                 third = self._crossings(2, within[asked[doubtful]])
-                count[asked[doubtful]] = np.median([count[asked[doubtful]], second[doubtful], third], axis=0)
+                count[asked[doubtful]] = np.sort([count[asked[doubtful]], second[doubtful], third], axis=0)[1]
         out[out] = np.abs(count) > 0.5
         return out
 

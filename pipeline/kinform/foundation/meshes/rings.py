@@ -16,6 +16,7 @@ from kinform.foundation import constants
 from kinform.foundation.algebra.vectors import canonical, cross, dot, perpendicular, widest_gap
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import shared_edges
+from kinform.foundation.sorting import median
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
@@ -188,6 +189,6 @@ def _ring(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, pieces: Ints, ridges:
         extent=(float(heights.min()), float(heights.max())),
         surfaces=labels,
         facets=facets,
-        turn=float(np.median([plane.axis_uncertainty for plane in planes])),
-        shift=max(off / constants.RING_NOISES, float(np.median([plane.point_uncertainty for plane in planes]))),
+        turn=median([plane.axis_uncertainty for plane in planes]),
+        shift=max(off / constants.RING_NOISES, median([plane.point_uncertainty for plane in planes])),
     )

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, norm, perpendicular
+from kinform.foundation.sorting import median
 from kinform.kinematics.constants import EVEN_TEETH, FEWEST_TEETH, IN_PLANE, RATIO_AGREES, TIP_MARGIN, TOOTH_POSES
 from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh
@@ -208,7 +209,7 @@ def _teeth(outline: _Outline, touch: Array) -> _Row | str:
         if np.abs(starts - starts[0] - pitch * np.arange(len(starts))).max() <= EVEN_TEETH * pitch:
             return _Row(len(starts), pitch, -math.inf, math.inf)
     middle = int(np.argmin(np.abs(starts)))
-    pitch = float(np.median(gaps[max(0, middle - 2) : middle + 2]))
+    pitch = median(gaps[max(0, middle - 2) : middle + 2])
     low, high = middle, middle
     while low > 0 and abs(starts[low] - starts[low - 1] - pitch) <= EVEN_TEETH * pitch:
         low -= 1
@@ -218,7 +219,7 @@ def _teeth(outline: _Outline, touch: Array) -> _Row | str:
         return "the teeth at the contact do not come at even distances"
     pitch = float(starts[high] - starts[low]) / (high - low)
     ends = np.sort(outline.apart(places[0], along[~leading]))
-    half = 0.5 * float(np.median(np.mod(starts - ends, pitch))) if len(ends) == len(starts) else 0.25 * pitch
+    half = 0.5 * median(np.mod(starts - ends, pitch)) if len(ends) == len(starts) else 0.25 * pitch
     return _Row(high - low + 1, pitch, float(starts[low]) - half, float(starts[high]) - half)
 
 

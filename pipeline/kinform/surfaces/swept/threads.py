@@ -17,6 +17,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical_sign, cross, dot, perpendicular
 from kinform.foundation.graphs.components import components
+from kinform.foundation.sorting import median
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.describe import Description, freeform
@@ -125,7 +126,7 @@ def _turning(work: Patchwork, free: Flags) -> list[tuple[Array, Array]]:
             rows = np.concatenate([cross(arm / reach, normal), normal], axis=1)
             twist = np.linalg.eigh((rows * weight[:, None]).T @ rows / weight.sum())[1][:, 0]
             speed = np.abs(rows @ twist)
-            weight = work.area[members] / (1 + (speed / max(float(np.median(speed)), 1e-6)) ** 2)
+            weight = work.area[members] / (1 + (speed / max(median(speed), 1e-6)) ** 2)
         turn = float(np.linalg.norm(twist[:3]))
         if turn > constants.PIECE_TURNS:
             axis = twist[:3] / turn
@@ -202,7 +203,7 @@ def _advances(work: Patchwork, edges: Ints, start: _Screw, scale: Scale) -> list
             break
         order = rows[np.argsort(advance[rows], kind="stable")]
         values, weight = advance[order], np.abs(turn[order])
-        reach = constants.ALIKE_ADVANCE * np.abs(values) + np.median(doubt[order])
+        reach = constants.ALIKE_ADVANCE * np.abs(values) + median(doubt[order])
         total = np.r_[0.0, np.cumsum(weight)]
         low = np.searchsorted(values, values - reach)
         high = np.searchsorted(values, values + reach, side="right")
@@ -211,7 +212,7 @@ def _advances(work: Patchwork, edges: Ints, start: _Screw, scale: Scale) -> list
         if held[best] < 2 * np.pi * constants.TURNED:
             break
         inside = order[low[best] : high[best]]
-        out.append(float(np.median(advance[inside])))
+        out.append(median(advance[inside]))
         rows = order[np.abs(values - out[-1]) > 2 * reach[best]]
     return out
 
@@ -267,7 +268,7 @@ def _solve(work: Patchwork, helices: _Helices, screw: _Screw, scale: Scale) -> t
     columns = np.stack(
         [(_residuals(work, helices, _step(screw, step * e), vertex, group) - base) / step for e in np.eye(5)], axis=1
     )
-    scatter = max(constants.HELIX_MEDIANS * float(np.median(np.abs(base))), scale.rounding)
+    scatter = max(constants.HELIX_MEDIANS * median(np.abs(base)), scale.rounding)
     weight = 1.0 / np.maximum(np.abs(base) / (constants.HELIX_SIGMAS * scatter), 1.0) ** 2
     matrix = (columns * weight[:, None]).T @ columns
     size = np.sqrt(np.maximum(np.diag(matrix), 1e-300))
