@@ -6,6 +6,7 @@ crash must never read as a verdict.
 
 from __future__ import annotations
 
+import re
 import traceback
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,10 @@ NOT_VERIFIED = 2
 
 _INTERRUPTED = 130
 """What typer makes of Ctrl-C."""
+_NO_CHOICE = re.compile(
+    r"Invalid value for (?P<where>.+?): (?:Value error, )?'(?P<given>.*)' is not one of (?P<choices>'.*')"
+)
+"""What typer says of a value that is none of those that there are."""
 
 
 def refuse(message: str, *, file: object = None, remedy: str | None = None) -> Exception:
@@ -96,7 +101,22 @@ def _print_usage(error: BaseException) -> None:
     context = getattr(error, "ctx", None)
     command = context.command_path if context is not None else "kinform"
     message = error.format_message().rstrip(".")  # type: ignore[attr-defined]
-    _print(command, message, f"see `{command} --help`")
+    said = _NO_CHOICE.fullmatch(message)
+    if said is None:
+        _print(command, message, f"see `{command} --help`")
+        return
+    from difflib import get_close_matches
+    from pathlib import Path
+
+    where, given = said["where"].replace("'", ""), said["given"]
+    choices = [choice.strip("' ") for choice in said["choices"].split(",")]
+    likely = get_close_matches(given.lower(), choices, n=1)
+    remedy = f"see `{command} --help`"
+    if likely:
+        remedy = f"did you mean {likely[0]}?"
+    elif Path(given).suffix and not where.startswith("--"):
+        remedy = f"the file comes first, as in: {command} {given} {choices[0]}"
+    _print(command, f"{where} is one of {', '.join(choices)}, not {given!r}", remedy)
 
 
 def _print_os_error(error: OSError) -> None:

@@ -114,3 +114,19 @@ def test_quiet_silences_summaries_and_warnings_but_not_errors(
     console.say("part [m6]")
     console.warn("part [red]x[/red]")
     assert capsys.readouterr().err == "part [m6]\nwarning: part [red]x[/red]\n"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["show", "joints", "F.h5"], "remedy: the file comes first, as in: kinform show F.h5 assembly"),
+        (["show", "F.h5", "simulaton"], "TOPIC is one of assembly, contacts, "),
+        (["show", "F.h5", "simulaton"], "remedy: did you mean simulation?"),
+        (["show", "F.h5", "joints", "--format", "jsn"], "remedy: did you mean json?"),
+    ],
+)
+def test_a_value_that_is_no_choice_is_told_with_those_there_are(
+    arguments: list[str], told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(arguments) == 2
+    assert told in capsys.readouterr().err
