@@ -64,6 +64,7 @@ def test_without_the_coupling_the_sun_is_refused_by_name(found):
     design = stated(found)
     assert design.simulation.status == "refused"
     assert "planet~sun" in design.simulation.reason
+    assert "if it is of teeth, state the ratio" in design.simulation.reason
 
 
 def test_the_train_turns_by_willis(found):

@@ -21,6 +21,7 @@ from kinform.behaviour.shafts import EndStop
 from kinform.behaviour.sliding import sliding_joints
 from kinform.foundation.words import quoted
 from kinform.function import resolve_joint, stated_ranges
+from kinform.kinematics import is_higher
 from kinform.model.assembly import Assembly
 from kinform.model.collisions import JointRange
 from kinform.model.contacts import Contacts
@@ -111,10 +112,13 @@ def build(
         for coupling in reversed(kinematics.couplings)
         if coupling.kind != "screw" and coupling.through not in imposed.replaced
     }
+    uneven = {coupling.through for coupling in kinematics.couplings if coupling.kind == "cam"}
     for joint in kinematics.joints:
         if joint.type == "general" and (joint.freedoms == 6 or joint.name in ties or joint.name in imposed.replaced):
             continue
         made, why = _joint(joint)
+        if contacts is not None and joint.name not in uneven and is_higher(joint, contacts.patches):
+            why += "; if it is of teeth, state the ratio of the joints that they tie as a [[function.coupling]]"
         first, second = (f"body {name}" for name in joint.bodies)
         if made is None:
             if partial:
