@@ -113,9 +113,9 @@ def _print_usage(error: BaseException) -> None:
     likely = get_close_matches(given.lower(), choices, n=1)
     remedy = f"see `{command} --help`"
     if likely:
-        remedy = f"did you mean {likely[0]}?"
+        remedy = f"did you mean {likely[0]}? {remedy}"
     elif Path(given).suffix and not where.startswith("--"):
-        remedy = f"the file comes first, as in: {command} {given} {choices[0]}"
+        remedy = f"the file comes first, as in: {command} {given} {choices[0]}; {remedy}"
     _print(command, f"{where} is one of {', '.join(choices)}, not {given!r}", remedy)
 
 
