@@ -14,7 +14,8 @@ from support.places import FIXTURES
 
 from kinform import results
 from kinform.design import Design
-from kinform.function import designers_joints
+from kinform.function import designers_joints, resolve_joint
+from kinform.reports.values.runs import simulation_values
 
 GROUPS = {
     "assembly", "surfaces", "contacts", "constraints", "joints", "mobility", "mass", "behaviour", "simulation",
@@ -178,3 +179,21 @@ def test_a_run_whose_joints_are_called_otherwise_comes_back(driven: Design, tmp_
     assert [use.joint for use in again.drives] == [use.joint for use in run.drives]
     for name in ("joint_position", "joint_velocity", "joint_effort", "joint_acceleration"):
         assert getattr(again, name).tobytes() == getattr(run, name).tobytes()
+
+
+def test_json_keeps_the_derived_joint_and_adds_the_designers_name_and_sense(driven: Design) -> None:
+    assert driven.kinematics is not None
+    assert driven.simulation is not None
+    known = designers_joints(driven.assembly, driven.kinematics)
+    told = {item["name"]: item for item in simulation_values(driven)["joints"]}
+    senses = set()
+    for k, name in enumerate(driven.simulation.joint_names):
+        item = told[str(name)]
+        values = driven.simulation.joint_position[:, driven.simulation.joint_offset[k]]
+        assert (item["start"], item["end"]) == (values[0], values[-1])
+        assert item["intended_name"] == known[name].name
+        sign = resolve_joint(driven.assembly, driven.kinematics, known[name].name).sign
+        senses.add(sign)
+        assert item["intended_position"]["end"] == sign * values[-1]
+        assert item["intended_position"]["highest"] == (sign * values).max()
+    assert -1.0 in senses
