@@ -93,3 +93,4 @@ def test_the_finding_names_the_joint_as_the_designer_does():
     (finding,) = [one for one in found.findings if one.code == "KF301"]
     assert "would move if 'base~k3' were 0.008 mm elsewhere, towards (-1, 0, 0)" in finding.message
     assert "or 'm' were 0.008 mm elsewhere, towards (1, 0, 0)" in finding.message
+    assert finding.remedy.startswith("Correct the joint that is out of place: 'base~k3' or 'm'. ")

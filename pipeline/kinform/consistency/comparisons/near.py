@@ -16,6 +16,16 @@ def nearly_moves(context: Context) -> str:
     return "; ".join(_sentence(context, near) for near in near_motions(context.kinematics))
 
 
+def out_of_place(context: Context) -> str:
+    """Joints that a little correction of one of which makes loops move, in words; "" without."""
+    found = [stated_as(context, one.joint)[0] for near in near_motions(context.kinematics) for one in near.corrections]
+    names = sorted(set(found), key=found.index)
+    more = len(names) - MOST_CORRECTIONS
+    return " or ".join(f"'{name}'" for name in names[:MOST_CORRECTIONS]) + (
+        f" or one of {more} more" if more > 0 else ""
+    )
+
+
 def _sentence(context: Context, near: NearMotion) -> str:
     names = [stated_as(context, name)[0] for name in near.moves]
     shown = near.corrections[:MOST_CORRECTIONS]

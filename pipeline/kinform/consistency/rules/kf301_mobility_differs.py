@@ -18,7 +18,7 @@ Example: a gimbal that shall turn about two axes has three freedoms, because the
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.near import nearly_moves
+from kinform.consistency.comparisons.near import nearly_moves, out_of_place
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive
 from kinform.consistency.rule import Rule
@@ -46,7 +46,10 @@ def check(context: Context) -> Outcome:
         found=str(mobility.effective),
         intended=str(intended),
         declared=Source(whole.file, whole.line if line is None else line),
-        remedy="Correct the joint that is out of place." if near else usual,
+        remedy=f"Correct the joint that is out of place: {out_of_place(context)}. `kinform show F.h5 findings` says "
+        "by how much."
+        if near
+        else usual,
     )
     return decided([finding])
 
