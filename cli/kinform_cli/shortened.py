@@ -2,11 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import islice
+from typing import TypeVar
+
 from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
 from rich.segment import Segment
 from rich.text import Text
 
 from kinform_cli.constants import MOST_OF_TOPIC
+
+_T = TypeVar("_T")
+_SLACK = MOST_OF_TOPIC // 5
+"""Lines more that are shown rather than counted."""
+
+
+def beginning(items: Sequence[_T], short: bool) -> Sequence[_T]:
+    """Of items that take a line at least each: all, or with `short` as many as `Shortened` can show and one more, so
+    that it says that there are others."""
+    return tuple(islice(items, MOST_OF_TOPIC + _SLACK + 1)) if short else items
 
 
 class Shortened:
@@ -24,7 +38,7 @@ class Shortened:
             lines += segment.text.count("\n")
             if lines == MOST_OF_TOPIC and not left:
                 left = len(held)
-            if lines > MOST_OF_TOPIC + MOST_OF_TOPIC // 5:
+            if lines > MOST_OF_TOPIC + _SLACK:
                 yield from held[:left]
                 yield Text(f"… and more: {self._remedy}", style="yellow")
                 return

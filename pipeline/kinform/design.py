@@ -34,6 +34,16 @@ class Design:
     report: CheckReport | None = None
     fingerprints: Fingerprints = field(default_factory=Fingerprints)
 
+    def has(self, field: str) -> bool:
+        """Whether a stage has added this field."""
+        return getattr(self, field) is not None
+
+    @property
+    def contact_counts(self) -> tuple[int, int] | None:
+        """How many patches and interferences there are; None before contacts are known."""
+        contacts = self.contacts
+        return None if contacts is None else (len(contacts.patches), len(contacts.interferences))
+
     @property
     def ranged(self) -> Kinematics | None:
         """The kinematics with the ranges of joints that the simulation found."""

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import io
+from dataclasses import replace
 
+import pytest
 from rich.console import Console
 from rich.text import Text
+from support.places import FIXTURES
 
 from kinform_cli.constants import MOST_OF_TOPIC
 from kinform_cli.shortened import Shortened
 from kinform_cli.tables import Rows, stacked
+from kinform_cli.views import assembly, joints, mobility
 
 
 def drawn(item: object) -> list[str]:
@@ -49,3 +53,32 @@ def test_lines_beyond_are_not_even_drawn():
 
     assert len(drawn(Shortened(Endless(), "more"))) == MOST_OF_TOPIC + 1
     assert len(asked) < 2 * MOST_OF_TOPIC
+
+
+@pytest.fixture(scope="module")
+def large(derive_design):
+    """The design of a revolute pair with each part, joint and freedom a hundred times."""
+    design = derive_design(FIXTURES / "pairs" / "revolute_collars" / "revolute_collars.toml")
+    found = design.kinematics
+    times = range(100)
+    parts = design.assembly.parts
+    parts = (*parts, *(replace(part, name=f"{part.name}{k:02}") for part in parts for k in times))
+    joints = (*found.joints, *(replace(joint, name=f"{joint.name}{k:02}") for joint in found.joints for k in times))
+    counts = replace(found.mobility, named=found.mobility.named * 100, idle_bodies=tuple(f"pin{k}" for k in times))
+    kinematics = replace(found, joints=joints, mobility=counts)
+    return replace(design, assembly=replace(design.assembly, parts=parts), kinematics=kinematics)
+
+
+@pytest.mark.parametrize("topic", [assembly, joints, mobility])
+def test_a_topic_in_short_begins_as_the_whole_of_it_and_goes_on_long_enough_to_say_so(topic, large):
+    whole, short = (drawn(Shortened(topic.render(large, short=way), "all")) for way in (False, True))
+    assert whole[-1] == short[-1] == "… and more: all"
+    different = [(a, b) for a, b in zip(whole, short, strict=False) if a != b]
+    assert not different or (topic is mobility and different[0][1].startswith("idle: pin0, "))
+    assert len(drawn(topic.render(large, short=True))) < len(drawn(topic.render(large)))
+
+
+def test_the_first_bodies_that_idle_are_named_in_short_and_the_others_counted(large):
+    short, whole = (" ".join(drawn(mobility.render(large, short=way))) for way in (True, False))
+    assert "idle: pin0, pin1, pin2, pin3, pin4, pin5, pin6, pin7 and 92 more" in short
+    assert "pin99" in whole and "pin99" not in short

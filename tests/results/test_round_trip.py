@@ -35,7 +35,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module", autouse=True)
 def no_sense_is_asked_for() -> Iterator[None]:
     """These designs are any numbers and texts: they say nothing that holds together."""
-    with mock.patch("kinform.results.file.check_group"):
+    with mock.patch("kinform.results.at_need.check_group"):
         yield
 
 

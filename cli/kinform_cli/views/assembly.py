@@ -10,14 +10,15 @@ from rich.tree import Tree
 from kinform.design import Design
 from kinform.foundation.words import counted
 from kinform.model.assembly import Assembly, Part, Subassembly
+from kinform_cli.shortened import beginning
 from kinform_cli.tables import stacked
 from kinform_cli.text import number
 
 
-def render(design: Design) -> RenderableType:
-    """The tree, then groups and notes."""
+def render(design: Design, *, short: bool = False) -> RenderableType:
+    """The tree, then groups and notes; with `short` no more parts than can be shown of it."""
     assembly = design.assembly
-    items: list[RenderableType] = [_tree(assembly)]
+    items: list[RenderableType] = [_tree(assembly, short)]
     if assembly.groups:
         items.append(Text("\nGroups", style="bold"))
         items.append(_groups(assembly))
@@ -32,14 +33,14 @@ def render(design: Design) -> RenderableType:
     return stacked(*items)
 
 
-def _tree(assembly: Assembly) -> Tree:
+def _tree(assembly: Assembly, short: bool) -> Tree:
     files = {sub.name: _describe_sub(sub) for sub in assembly.subassemblies}
     tree = Tree(
         Text.assemble((assembly.name, "bold"), f"  {counted(len(assembly.parts), 'part')}, lengths in {assembly.units}")
     )
     branches: dict[str, Tree] = {"": tree}
     group_of = {part: group.name for group in assembly.groups for part in group.parts}
-    for part in assembly.parts:
+    for part in beginning(assembly.parts, short):
         folder, _, leaf = part.name.rpartition("/")
         facts = _describe(part)
         if part.name in group_of:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from rich.console import RenderableType
 from rich.text import Text
 
-from kinform.consistency.comparisons.answers import Answer, answer_counts, answers
 from kinform.design import Design
 from kinform.foundation.words import counted
 from kinform.function.body_titles import body_titles
@@ -15,18 +15,23 @@ from kinform.model.collisions import JointRange
 from kinform.model.kinematics import Joint, Kinematics, Release
 from kinform.reports.phrases import answers_line
 from kinform_cli.constants import MOST_WAYS
+from kinform_cli.shortened import beginning
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import NONE, Lengths, degrees, ground_note, singular, vector
 
+if TYPE_CHECKING:
+    from kinform.consistency.comparisons.answers import Answer
 
-def render(design: Design) -> RenderableType:
-    """One row a joint, then why a joint is not plainly determined, then the bodies of several parts."""
+
+def render(design: Design, *, short: bool = False) -> RenderableType:
+    """One row a joint, then why a joint is not plainly determined, then the bodies of several parts; with `short` no
+    more rows than can be shown of it."""
     kinematics, lengths = design.kinematics, Lengths.of(design.assembly)
     assert kinematics is not None
     title = f"{counted(len(kinematics.joints), 'joint')} between {counted(len(kinematics.bodies), 'body', 'bodies')}"
     run = design.simulation
     ranges = {item.joint: item for item in (run.ranges if run is not None else None) or ()}
-    given = answers(design) if design.assembly.function.joints else ()
+    given = _answers(design) if design.assembly.function.joints else ()
     meant: dict[str, list[str]] = {}
     for one in given:
         if one.joint is not None:
@@ -43,7 +48,7 @@ def render(design: Design) -> RenderableType:
         names=["name"],
         texts=["evidence"],
     )
-    for joint in kinematics.joints:
+    for joint in beginning(kinematics.joints, short):
         rows.add(
             joint.name,
             *([", ".join(meant.get(joint.name, [])) or NONE] if meant else []),
@@ -69,10 +74,18 @@ def render(design: Design) -> RenderableType:
     return stacked(*items)
 
 
+def _answers(design: Design) -> Sequence[Answer]:
+    from kinform.consistency.comparisons.answers import answers
+
+    return answers(design)
+
+
 def _intended(design: Design, given: Sequence[Answer], lengths: Lengths) -> list[RenderableType]:
     """The answer to each intended joint."""
     if not given:
         return []
+    from kinform.consistency.comparisons.answers import answer_counts
+
     title = f"\nIntended joints: {answers_line(answer_counts(given))}"
     rows = Rows("intended", "type", "answer", "because", title=title, names=["intended"], texts=["because"])
     for one in given:

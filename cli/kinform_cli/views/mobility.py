@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 from rich.console import RenderableType
@@ -15,6 +16,7 @@ from kinform.model.kinematics import Coupling, Mobility
 from kinform.reports.freedom_phrases import follower_rates, freedom_text
 from kinform.reports.values.kinematics import mobility_counts
 from kinform_cli.constants import MOST_MOVES, MOST_NAMES, NO_ANGLE, NO_SHIFT, SHOWN_SHIFT, SHOWN_TURN
+from kinform_cli.shortened import beginning
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import NONE, Lengths
 
@@ -29,8 +31,9 @@ _MEANINGS = (
 )
 
 
-def render(design: Design) -> RenderableType:
-    """The counts with their meaning, the freedoms by name, and what is held more than once."""
+def render(design: Design, *, short: bool = False) -> RenderableType:
+    """The counts with their meaning, the freedoms by name, and what is held more than once; with `short` no more of
+    each than can be shown."""
     assert design.kinematics is not None
     mobility = design.kinematics.mobility
     grid = Rows("count", "", "meaning", title="Mobility relative to ground", right=["count"], keys=2)
@@ -47,14 +50,15 @@ def render(design: Design) -> RenderableType:
         items.append(mobility.finite_reason)
     elif mobility.certificates:
         items.append(_certificate(mobility))
+    named = _first_names if short else ", ".join
     if mobility.idle_bodies:
-        items.append(f"idle: {', '.join(mobility.idle_bodies)}")
+        items.append(f"idle: {named(mobility.idle_bodies)}")
     if mobility.uncertain:
-        items.append(f"the counts depend on joints that are not certain: {', '.join(mobility.uncertain)}")
+        items.append(f"the counts depend on joints that are not certain: {named(mobility.uncertain)}")
     items += [_coupling(coupling, design) for coupling in design.kinematics.couplings]
     items += _misfit(design)
     if mobility.named:
-        items += ["", _freedoms(design)]
+        items += ["", _freedoms(design, short)]
     if mobility.redundancies:
         items += ["", _redundancies(design)]
     return stacked(*items)
@@ -90,7 +94,7 @@ def _coupling(coupling: Coupling, design: Design) -> str:
     return f"{text}; {coupling.reason}" if coupling.reason else text
 
 
-def _freedoms(design: Design) -> Rows:
+def _freedoms(design: Design, short: bool) -> Rows:
     """Each freedom with the bodies that it moves and the joints that follow."""
     kinematics = design.kinematics
     assert kinematics is not None
@@ -99,7 +103,7 @@ def _freedoms(design: Design) -> Rows:
     titles = body_titles(design.assembly, kinematics)
     texts = ("freedom", "moves", "follow")
     grid = Rows("freedom", "driven at", "moves", "follow", title="Freedoms", names=["driven at"], texts=texts)
-    for freedom in kinematics.mobility.named:
+    for freedom in beginning(kinematics.mobility.named, short):
         rates = follower_rates(freedom, joints, lengths.unit, lengths.metres)
         grid.add(
             freedom_text(
@@ -127,7 +131,7 @@ def _redundancies(design: Design) -> Rows:
     return grid
 
 
-def _first_names(items: list[str]) -> str:
+def _first_names(items: Sequence[str]) -> str:
     """All of a few, the first of many."""
     return (
         ", ".join(items)

@@ -12,11 +12,9 @@ from kinform.design import Design
 from kinform.foundation.words import counted
 from kinform.function import as_intended, designers_joints
 from kinform.model.simulation import Simulation
-from kinform.reports.values.runs import coordinates
 from kinform_cli.constants import BALANCED, NAMED_PAIRS, REST
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths, degrees, number, quantity
-from kinform_cli.views import series
 
 _NUMBERS = ("start", "end", "lowest", "highest", "fastest")
 _SHOWN: dict[str, Any] = {"names": ["joint"], "texts": ["stopped by"]}
@@ -31,6 +29,9 @@ def render(design: Design) -> RenderableType:
         run = as_intended(run, designers_joints(design.assembly, design.kinematics))
     items: list[RenderableType] = [Text(headline(run), style="bold")]
     if len(run.time) and run.joint_names:
+        from kinform.reports.values.runs import coordinates
+        from kinform_cli.views import series
+
         rows = Rows("joint", "type", *_NUMBERS, right=_NUMBERS, names=["joint"])
         for name, kind, unit, column in coordinates(run):
             values = run.joint_position[:, column]

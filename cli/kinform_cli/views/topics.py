@@ -5,7 +5,9 @@ The JSON is `kinform.reports.summary_json`.
 
 from __future__ import annotations
 
+import importlib
 from pathlib import Path
+from typing import Any
 
 from rich.console import RenderableType
 from rich.text import Text
@@ -17,24 +19,11 @@ from kinform.reports.values.topics import TOPICS, require
 from kinform_cli.shortened import Shortened
 from kinform_cli.tables import stacked
 from kinform_cli.text import command
-from kinform_cli.views import (
-    assembly,
-    behaviour,
-    bodies,
-    contacts,
-    evidence,
-    findings,
-    joints,
-    mass,
-    mobility,
-    simulation,
-)
 
-VIEWS = {
-    "assembly": assembly, "contacts": contacts, "joints": joints, "bodies": bodies, "mobility": mobility, "mass": mass,
-    "behaviour": behaviour, "simulation": simulation, "findings": findings,
-}  # fmt: skip
-"""The module that shows a topic."""
+
+def _view(topic: str) -> Any:
+    """The module that shows a topic, imported now: few are needed in one command."""
+    return importlib.import_module(f"kinform_cli.views.{topic}")
 
 
 def render(design: Design, topic: str | None, source: str | Path) -> RenderableType:
@@ -45,14 +34,15 @@ def render(design: Design, topic: str | None, source: str | Path) -> RenderableT
     if topic is None:
         return _overview(design, source)
     require(design, topic)
-    view: RenderableType = VIEWS[topic].render(design)
+    view: RenderableType = _view(topic).render(design)
     return view
 
 
 def render_joint(design: Design, name: str) -> RenderableType:
     """All the evidence of one joint; raises StageError, or KeyError for a name that no joint has."""
     require(design, "joints")
-    return evidence.render(design, name)
+    view: RenderableType = _view("evidence").render(design, name)
+    return view
 
 
 def _overview(design: Design, source: str | Path) -> RenderableType:
@@ -62,16 +52,21 @@ def _overview(design: Design, source: str | Path) -> RenderableType:
     def short(item: RenderableType, topic: str) -> RenderableType:
         return Shortened(item, f"`{command('kinform', 'show', source, topic)}`")
 
-    items: list[RenderableType] = [short(assembly.render(design), "assembly"), ""]
-    if design.contacts is not None:
-        patches = counted(len(design.contacts.patches), "contact patch", "contact patches")
-        items += [f"{patches}, {counted(len(design.contacts.interferences), 'overlap')}", ""]
+    items: list[RenderableType] = [short(_view("assembly").render(design, short=True), "assembly"), ""]
+    if design.contact_counts is not None:
+        patches, overlaps = design.contact_counts
+        items += [f"{counted(patches, 'contact patch', 'contact patches')}, {counted(overlaps, 'overlap')}", ""]
     if design.kinematics is not None:
-        items += [short(joints.render(design), "joints"), "", short(mobility.render(design), "mobility"), ""]
+        items += [
+            short(_view("joints").render(design, short=True), "joints"),
+            "",
+            short(_view("mobility").render(design, short=True), "mobility"),
+            "",
+        ]
     if design.mass is not None:
-        items += [short(mass.bodies(design), "mass"), ""]
+        items += [short(_view("mass").bodies(design), "mass"), ""]
     if design.simulation is not None:
-        items.append(simulation.headline(design.simulation))
+        items.append(_view("simulation").headline(design.simulation))
     if design.report is not None:
         severities = [finding.severity for finding in design.report.findings]
         numbers = [counted(severities.count(severity), severity) for severity in reversed(SEVERITIES)]

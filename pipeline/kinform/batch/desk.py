@@ -34,7 +34,9 @@ IMPORTED = (
     "kinform.reuse.contacts", "kinform.mass", "kinform.simulation", "kinform.collisions", "kinform.consistency.rules",
     "kinform.consistency.inspection", "kinform.simulation.of_assembly", "kinform.simulation.of_system",
     "kinform.simulation.kernel", "kinform.simulation.levels", "kinform.simulation.mechanism", "kinform.reuse.decisions",
-    "kinform.reuse.masses", "kinform.reuse.packing", "kinform.reports.values.topics", "numpy.ma", "numpy.random",
+    "kinform.reuse.masses", "kinform.reuse.packing", "kinform.reports.values.topics", "kinform.reports.values.form",
+    "kinform.reports.values.kinematics", "kinform.reports.values.runs", "kinform.consistency.comparisons.answers",
+    "numpy.ma", "numpy.random",
 )  # fmt: skip
 """Modules that tasks are likely to need: imported once, before any fork."""
 

@@ -116,7 +116,7 @@ class Mesh:
                 known[key] = (placed.min(axis=1), placed.max(axis=1))
         return known[key]
 
-    @property
+    @cached_property
     def diagonal(self) -> float:
         """Length of the diagonal of the bounding box (m)."""
         low, high = self.box

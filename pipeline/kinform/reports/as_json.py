@@ -20,6 +20,12 @@ def render(report: CheckReport, design: Design, fail_on: str = "error", run: Map
     return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
 
 
+def of_design(design: Design) -> dict[str, Any]:
+    """The object for the findings of a design that has been checked."""
+    assert design.report is not None
+    return document(design.report, design)
+
+
 def document(report: CheckReport, design: Design, fail_on: str = "error") -> dict[str, Any]:
     """An object with the schema, the verdict, counts, findings, those that are accepted, and rules."""
     counts = {s: sum(f.severity == s for f in report.findings) for s in reversed(SEVERITIES)}

@@ -1,7 +1,7 @@
 """Results: the HDF5 file that carries a design from stage to stage, and what may be reused of it."""
 
+from kinform.results.at_need import Earlier
 from kinform.results.file import (
-    Earlier,
     as_absent,
     check_output,
     earlier,

@@ -7,14 +7,11 @@ groups are written in one order, nothing is compressed, no times are kept, byte 
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
-import importlib
 import json
 from collections.abc import Callable, Container
-from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
 import h5py
 
@@ -22,6 +19,7 @@ from kinform.design import Design
 from kinform.errors import ResultsError
 from kinform.model.fingerprints import Fingerprints
 from kinform.results import constants
+from kinform.results.at_need import NONSENSE, STAGE_OF, Earlier, codec, marks_of
 from kinform.results.conformity import check_group
 from kinform.results.groups import assembly
 from kinform.results.held import HeldGroup
@@ -32,22 +30,8 @@ from kinform.reuse import lineage
 from kinform.version import __version__
 
 if TYPE_CHECKING:
-    from kinform.behaviour import Behaviour
     from kinform.model.assembly import Assembly
-    from kinform.model.contacts import Contacts
-    from kinform.model.findings import CheckReport
     from kinform.model.kinematics import Kinematics
-    from kinform.model.mass import MassReport
-    from kinform.model.names import PartName
-    from kinform.model.simulation import Simulation
-    from kinform.model.surfaces import MeshSurfaces
-
-
-NONSENSE = (
-    ArithmeticError, AttributeError, LookupError, OSError, RuntimeError, TypeError, ValueError,
-)  # fmt: skip
-"""What h5py and the codecs raise on a group that makes no sense."""
-_STAGE_OF = {"constraints": "joints", "mobility": "joints", "behaviour": "simulation"}
 
 
 def write(design: Design, path: str | Path) -> None:
@@ -88,7 +72,7 @@ def read_at_need(path: str | Path) -> Design:
 
     Raises ResultsError as `read` does, of a part that makes no sense when that is looked at.
     """
-    return cast(Design, Earlier(path))
+    return cast(Design, Earlier(path, open_on=True))
 
 
 def earlier(path: str | Path, say: Callable[[str], None] | None = None) -> Earlier | None:
@@ -126,119 +110,6 @@ def as_absent(error: ResultsError) -> str:
     return f"{error.problem.file}: {error.problem.message}; it counts as absent, and is made again"
 
 
-class Earlier:
-    """The design in a results file, each part of it read when it is first asked for: most of what an earlier run left
-    is of no use to one whose input changed. Fields as of Design; raises ResultsError as `read` does, also later.
-    """
-
-    def __init__(self, path: str | Path):
-        self._path = path
-        self._open = contextlib.ExitStack()
-        self.file: HeldGroup = self._open.enter_context(opened(path))
-
-    def __enter__(self) -> Earlier:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """Let go of the file; what was not asked for can no longer be read."""
-        self._open.close()
-
-    def _read(self, name: str) -> Any:
-        """What a group holds; None where it is not there."""
-        if name not in self.file:
-            return None
-        try:
-            check_group(self.file, name)
-            return _codec(name).read(self.file.group(name))
-        except NONSENSE as error:
-            raise self._damaged(error) from error
-
-    def _damaged(self, error: BaseException) -> ResultsError:
-        return not_whole(self._path, f"the results file is damaged ({error})")
-
-    @cached_property
-    def assembly(self) -> Assembly:
-        """As written; KeyError is damage, for every results file has one."""
-        try:
-            check_group(self.file, "assembly")
-            return assembly.read(self.file.group("assembly"))
-        except NONSENSE as error:
-            raise self._damaged(error) from error
-
-    @cached_property
-    def _surfaces(self) -> tuple[dict[str, MeshSurfaces], dict[str, str]]:
-        return self._read("surfaces") or ({}, {})
-
-    @property
-    def surfaces(self) -> dict[str, MeshSurfaces]:
-        """By mesh digest."""
-        return self._surfaces[0]
-
-    @cached_property
-    def _contacts(self) -> tuple[Contacts | None, dict[tuple[PartName, PartName], str]]:
-        return self._read("contacts") or (None, {})
-
-    @property
-    def contacts(self) -> Contacts | None:
-        """As of Design; so are those below."""
-        return self._contacts[0]
-
-    @cached_property
-    def kinematics(self) -> Kinematics | None:
-        from kinform.model.kinematics import Kinematics
-
-        joints, matrix, mobility = map(self._read, ("joints", "constraints", "mobility"))
-        if joints is not None and (matrix is None or mobility is None):
-            raise self._damaged(KeyError("constraints or mobility"))
-        return None if joints is None else Kinematics(**joints, matrix=matrix, mobility=mobility)
-
-    @cached_property
-    def mass(self) -> MassReport | None:
-        return cast("MassReport | None", self._read("mass"))
-
-    @cached_property
-    def behaviour(self) -> Behaviour | None:
-        return cast("Behaviour | None", self._read("behaviour"))
-
-    @cached_property
-    def simulation(self) -> Simulation | None:
-        return cast("Simulation | None", self._read("simulation"))
-
-    @cached_property
-    def report(self) -> CheckReport | None:
-        return cast("CheckReport | None", self._read("findings"))
-
-    @cached_property
-    def fingerprints(self) -> Fingerprints:
-        from kinform.results.groups import joints
-
-        file = self.file
-        try:
-            return Fingerprints(
-                stages={
-                    name: mark for name, mark in _marks(file, "fingerprint").items() if name not in _STAGE_OF and mark
-                },
-                meshes=self._surfaces[1],
-                pairs=self._contacts[1],
-                files=assembly.read_contents(file.group("assembly")),
-                lineage=_marks(file, "lineage"),
-                inputs={name: _inputs(text) for name, text in _marks(file, "inputs").items()},
-                decisions=joints.read_decisions(file.group("joints")) if "joints" in file else {},
-            )
-        except NONSENSE as error:
-            raise self._damaged(error) from error
-
-    ranged = Design.ranged
-
-    @property
-    def design(self) -> Design:
-        """All of it."""
-        return Design(**{field.name: getattr(self, field.name) for field in dataclasses.fields(Design)})
-
-
 def to_bytes(design: Design) -> bytes:
     """The results file as bytes: the same design gives the same bytes, everywhere."""
     return seal(_image(design), SCHEMA)
@@ -262,7 +133,7 @@ def _image(design: Design) -> bytes:
 def _group(file: h5py.File, name: str, marks: Fingerprints) -> h5py.Group:
     group = file.create_group(name)
     group.attrs["schema"] = f"{SCHEMA}/{name}"
-    group.attrs["fingerprint"] = marks.stages.get(_STAGE_OF.get(name, name), "")
+    group.attrs["fingerprint"] = marks.stages.get(STAGE_OF.get(name, name), "")
     if name in marks.lineage:
         group.attrs["lineage"] = marks.lineage[name]
     if name in marks.inputs:
@@ -280,25 +151,7 @@ def write_groups(file: h5py.File, design: Design, only: Container[str] | None = 
     }  # fmt: skip
     for name, content in contents.items():
         if content is not None and (only is None or name in only):
-            _codec(name).write(_group(file, name, design.fingerprints), design)
-
-
-def _codec(group: str) -> Any:
-    """The module that writes and reads a group."""
-    return importlib.import_module(f"kinform.results.groups.{group}")
-
-
-def _marks(file: HeldGroup, attribute: str) -> dict[str, str]:
-    """An attribute of all groups that have it."""
-    return {name: str(group.attrs[attribute]) for name, group in file.groups().items() if attribute in group.attrs}
-
-
-def _inputs(text: str) -> dict[str, str]:
-    """What a group was made of, by its names in words. Raises ValueError where it is something else."""
-    inputs = json.loads(text)
-    if not isinstance(inputs, dict) or not all(isinstance(mark, str) for mark in inputs.values()):
-        raise ValueError("the inputs of a group make no sense")
-    return inputs
+            codec(name).write(_group(file, name, design.fingerprints), design)
 
 
 def files_of(path: str | Path) -> tuple[str, ...]:
@@ -318,7 +171,7 @@ def read_if_current(path: str | Path, manifest: Path, *, allow_outside: bool) ->
     """
     try:
         with opened(path) as file:
-            marks = Fingerprints(lineage=_marks(file, "lineage"))
+            marks = Fingerprints(lineage=marks_of(file, "lineage"))
             contents = assembly.read_contents(file.group("assembly"))
             written_from = marks.lineage.get("findings")
             if not written_from or written_from != lineage.current(manifest, contents, allow_outside=allow_outside):
@@ -326,7 +179,7 @@ def read_if_current(path: str | Path, manifest: Path, *, allow_outside: bool) ->
             for name in file.groups():
                 check_group(file, name)
             gist = assembly.read_header(file.group("assembly"))
-            report = _codec("findings").read(file.group("findings"))
+            report = codec("findings").read(file.group("findings"))
             return Design(gist, kinematics=_bodies(file, gist), report=report, fingerprints=marks)
     except (ResultsError, *DAMAGE):
         return None
@@ -346,10 +199,10 @@ def read_gist(path: str | Path) -> Design:
             contents = assembly.read_contents(file.group("assembly"))
             bodies = only_bodies(joints.read_bodies(file.group("joints")))
             kinematics = dataclasses.replace(bodies, mobility=mobility.read(file.group("mobility")))
-            report = _codec("findings").read(file.group("findings"))
+            report = codec("findings").read(file.group("findings"))
         except NONSENSE as error:
             raise not_whole(path, f"the results file is damaged ({error})") from error
-        marks = Fingerprints(lineage=_marks(file, "lineage"), files=contents)
+        marks = Fingerprints(lineage=marks_of(file, "lineage"), files=contents)
         return Design(gist, kinematics=kinematics, report=report, fingerprints=marks)
 
 

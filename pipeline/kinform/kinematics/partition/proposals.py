@@ -156,9 +156,8 @@ def volumes(assembly: Assembly) -> dict[PartName, float]:
     out = {}
     for part in assembly.parts:
         if part.mesh is not None:
-            low, high = part.mesh.placed_box(part.X_WP)
             own = part.mesh.health.volume
-            out[part.name] = abs(own) if own else float(np.prod(high - low))
+            out[part.name] = abs(own) if own else float(np.prod(np.subtract(*part.mesh.placed_box(part.X_WP)[::-1])))
     return out
 
 

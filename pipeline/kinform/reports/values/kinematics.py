@@ -4,19 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from kinform.consistency.comparisons.answers import Answer, answer_counts, answers
 from kinform.design import Design
-from kinform.function import designers_joints
 from kinform.kinematics import Motions
 from kinform.model.kinematics import Joint, Kinematics, Mobility, Release
 from kinform.reports.freedom_phrases import freedom_text, metres
 from kinform.reports.values.plain import fields
 
+if TYPE_CHECKING:
+    from kinform.consistency.comparisons.answers import Answer
+
 
 def joint_values(design: Design) -> dict[str, Any]:
     """Bodies and joints, and how they come apart."""
+    from kinform.consistency.comparisons.answers import answer_counts, answers
+    from kinform.function import designers_joints
+
     kinematics = design.ranged or _kinematics(design)
     computed = ranged(design)
     given = answers(design)

@@ -6,19 +6,14 @@ finite, or not computed yet is null.
 
 from __future__ import annotations
 
+import importlib
 import json
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from kinform.design import Design
 from kinform.errors import StageError
-from kinform.kinematics import insight
-from kinform.reports import as_json
-from kinform.reports.values.form import assembly_values, contact_values, mass_values
-from kinform.reports.values.kinematics import body_values, joint_values, mobility_values, one_joint, ranged
 from kinform.reports.values.plain import fields, plain
-from kinform.reports.values.runs import behaviour_values, simulation_values
 
 
 def summary(design: Design, topic: str | None = None) -> dict[str, Any]:
@@ -45,6 +40,9 @@ def summary_json(design: Design, topic: str | None = None) -> str:
 
 def joint_evidence(design: Design, name: str) -> dict[str, Any]:
     """All the evidence of one joint. Raises StageError when joints are not known, KeyError for another name."""
+    from kinform.kinematics import insight
+    from kinform.reports.values.kinematics import one_joint, ranged
+
     require(design, "joints")
     found = insight(design, name)
     of_patch = ("parts", "surfaces", "kind", "one_sided", "area", "gap", "fit")
@@ -74,34 +72,38 @@ def joint_json(design: Design, name: str) -> str:
     return json.dumps(joint_evidence(design, name), indent=1, allow_nan=False) + "\n"
 
 
-def _findings(design: Design) -> dict[str, Any]:
-    assert design.report is not None
-    return as_json.document(design.report, design)
-
-
 @dataclass(frozen=True)
 class Topic:
-    """The command that computes it, the field of the design that holds it, and its values."""
+    """The command that computes it, the field of the design that holds it, and the module below `kinform.reports` and
+    the function there that give its values."""
 
     command: str
     field: str
-    values: Callable[[Design], dict[str, Any]]
+    module: str
+    function: str
+
+    def values(self, design: Design) -> dict[str, Any]:
+        """What is known of it; the module is imported now, for few commands need more than one of them."""
+        found: dict[str, Any] = getattr(importlib.import_module(f"kinform.reports.{self.module}"), self.function)(
+            design
+        )
+        return found
 
     def computed(self, design: Design) -> bool:
         """Whether the command has run."""
-        return getattr(design, self.field) is not None
+        return design.has(self.field)
 
 
 TOPICS = {
-    "assembly": Topic("import", "assembly", assembly_values),
-    "contacts": Topic("contacts", "contacts", contact_values),
-    "joints": Topic("joints", "kinematics", joint_values),
-    "bodies": Topic("joints", "kinematics", body_values),
-    "mobility": Topic("joints", "kinematics", mobility_values),
-    "mass": Topic("mass", "mass", mass_values),
-    "behaviour": Topic("simulate", "behaviour", behaviour_values),
-    "simulation": Topic("simulate", "simulation", simulation_values),
-    "findings": Topic("check", "report", _findings),
+    "assembly": Topic("import", "assembly", "values.form", "assembly_values"),
+    "contacts": Topic("contacts", "contacts", "values.form", "contact_values"),
+    "joints": Topic("joints", "kinematics", "values.kinematics", "joint_values"),
+    "bodies": Topic("joints", "kinematics", "values.kinematics", "body_values"),
+    "mobility": Topic("joints", "kinematics", "values.kinematics", "mobility_values"),
+    "mass": Topic("mass", "mass", "values.form", "mass_values"),
+    "behaviour": Topic("simulate", "behaviour", "values.runs", "behaviour_values"),
+    "simulation": Topic("simulate", "simulation", "values.runs", "simulation_values"),
+    "findings": Topic("check", "report", "as_json", "of_design"),
 }
 """In the order of the pipeline."""
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import fields
+from typing import Any
 
 import h5py
 import numpy as np
@@ -56,3 +58,23 @@ def read(group: HeldGroup) -> ConstraintMatrix:
     """The matrix that `write` wrote."""
     matrix: ConstraintMatrix = _layout(_Origins()).read(group)
     return matrix
+
+
+class LaterMatrix(ConstraintMatrix):
+    """The matrix that a function gives when one of its fields is first looked at: most of the rows of a file are its
+    origins, and few commands ask for them. What the function raises is raised then."""
+
+    def __init__(self, made: Callable[[], ConstraintMatrix]):
+        object.__setattr__(self, "_made", made)
+
+    def __getattr__(self, name: str) -> Any:
+        if name not in {field.name for field in fields(ConstraintMatrix)}:
+            raise AttributeError(name)
+        whole = self._made()
+        for field in fields(ConstraintMatrix):
+            object.__setattr__(self, field.name, getattr(whole, field.name))
+        return getattr(whole, name)
+
+    def __reduce__(self) -> tuple[type, tuple[Any, ...]]:
+        """As a plain one: another process has not the file open."""
+        return ConstraintMatrix, tuple(getattr(self, field.name) for field in fields(ConstraintMatrix))
