@@ -132,6 +132,8 @@ MOVES_WITHOUT_MASS = 1e-6
 
 LEAST_MOTION = 1e-9
 """Share of the greatest rate above which rates are motions."""
+REMEMBERED = 2_000_000
+"""Numbers of the rows whose decomposition is kept for who asks for it next."""
 EVEN = 0.1
 """Share of the singular value before it above which one goes on with those that count: of n four-bars in a row the
 least are 3, 2 and 1 times 0.27/n of 3.3, and fall below 1e-4 of the largest from n = 150 on. A choice."""
@@ -326,6 +328,8 @@ WHOLE_TURN = 1e-6
 
 UNDETERMINED_SHARE = 1e-6
 """A component of a wrench that the choice of λ changes by more than this share of itself is not determined."""
+UNSEEN = 1e-13
+"""Of the most that a condition sees of a wrench in a loop: less of a direction of it is rounding, and none is seen."""
 CHUNK = 128
 """Times whose reactions are solved at once."""
 RANK_CHUNK = 256

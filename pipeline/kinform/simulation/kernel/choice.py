@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from kinform.model.arrays import Ints
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.simulation.constants import CLOSING_PIVOT, PASS
 from kinform.simulation.kernel.loops import gather
 
@@ -37,25 +37,46 @@ def choose(ints: Ints, nums: Nums, work: Work) -> None:
     left = np.ones(count, dtype=bool)
     chosen: list[int] = []
     dependent: list[int] = []
+    # of each row the largest rates that may be dependent, any and of closing joints: only rows that change are searched
+    most = _Largest(rows, ~led), _Largest(rows, closing & ~led)
     for _ in range(rank):
-        size = np.abs(rows) * left[:, None]
-        size[:, led] = -1.0
-        size[:, dependent] = -1.0
-        preferred = np.where(closing, size, -1.0)
-        best = preferred if preferred.max() > CLOSING_PIVOT else size
-        row, column = (int(k) for k in np.unravel_index(int(np.argmax(best)), best.shape))
-        work[VECTORS][REFERENCE][len(chosen)] = max(float(best[row, column]), 1e-300)
+        best = most[1] if most[1].size.max() > CLOSING_PIVOT else most[0]
+        row = int(np.argmax(best.size))
+        column = int(best.place[row])
+        work[VECTORS][REFERENCE][len(chosen)] = max(float(best.size[row]), 1e-300)
         left[row] = False
         chosen.append(row)
         dependent.append(column)
-        others = left & (rows[:, column] != 0.0)
+        others = np.flatnonzero(left & (rows[:, column] != 0.0))
         rows[others] -= np.outer(rows[others, column] / rows[row, column], rows[row])
+        for one in most:
+            one.without(row, column, rows, others)
     free = [k for k in range(n) if not led[k] and k not in dependent]
     order = dependent + free + np.flatnonzero(led).tolist()
     mode[CHOSEN][:rank] = chosen
     mode[ORDER][:n] = order
     for place, column in enumerate(order):
         mode[PLACE][column] = place
+
+
+class _Largest:
+    """Of each row the largest entry in columns that are allowed, and the first place that has it; −1 without any."""
+
+    def __init__(self, rows: Array, allowed: Flags):
+        self._allowed = allowed.copy()
+        self.size, self.place = self._search(rows)
+
+    def without(self, row: int, column: int, rows: Array, changed: Ints) -> None:
+        """From now on without this row and column, where other rows have changed; those that have not are nought in
+        the column."""
+        self._allowed[column] = False
+        self.size[row] = -1.0
+        self.size[changed], self.place[changed] = self._search(rows[changed])
+
+    def _search(self, rows: Array) -> tuple[Array, Ints]:
+        size = np.where(self._allowed, np.abs(rows), -1.0)
+        place = np.argmax(size, axis=1)
+        return size[np.arange(len(rows)), place], place
 
 
 def way(ints: Ints, nums: Nums) -> None:

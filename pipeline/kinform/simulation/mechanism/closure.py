@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.model.arrays import Array, Ints
-from kinform.simulation.constants import EVEN, FALLEN
+from kinform.simulation.constants import EVEN, FALLEN, REMEMBERED
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.settings import SolverSettings
 
@@ -43,7 +43,7 @@ class Factor:
 
 def factor(rows: Array, scale: Array, rank: int) -> Factor:
     """Decompose rows (m, k) of rates with these scales at the given rank."""
-    left, values, right = np.linalg.svd(rows * scale, full_matrices=True)
+    left, values, right = _decomposed(rows * scale)
     if rank and values[rank - 1] <= 0.0:
         values = np.maximum(values, 1e-300)
     return Factor(left[:, :rank], values[:rank], right[:rank], scale[:, None] * right[rank:].T, scale)
@@ -53,7 +53,36 @@ def rank_of(rows: Array, scale: Array, free: float) -> int:
     """How many rows (m, k) are independent: `counted` singular values."""
     if rows.size == 0:
         return 0
-    return int(counted(np.asarray(np.linalg.svd(rows * scale, compute_uv=False), dtype=np.float64), free))
+    return int(counted(_values(rows * scale), free))
+
+
+def _decomposed(rows: Array) -> tuple[Array, Array, Array]:
+    """Singular values of rows (m, k) with all directions of rates (k, k), and those of rows that the values need."""
+    kept = _last.get("all")
+    if kept is None or not np.array_equal(kept[0], rows):
+        left, values, right = np.linalg.svd(rows, full_matrices=len(rows) < rows.shape[1])
+        kept = _keep("all", rows, left, values, right)
+    return kept[1], kept[2], kept[3]
+
+
+def _values(rows: Array) -> Array:
+    """Singular values alone."""
+    kept = _last.get("values")
+    if kept is None or not np.array_equal(kept[0], rows):
+        kept = _keep("values", rows, np.asarray(np.linalg.svd(rows, compute_uv=False), dtype=np.float64))
+    return kept[1]
+
+
+_last: dict[str, tuple[Array, ...]] = {}
+"""The rows that were decomposed last, and what came of it: where a run begins, the same ones are asked for again."""
+
+
+def _keep(what: str, *arrays: Array) -> tuple[Array, ...]:
+    for array in arrays:
+        array.flags.writeable = False
+    if arrays[0].size <= REMEMBERED:
+        _last[what] = arrays
+    return arrays
 
 
 def counted(values: Array, free: float) -> Ints:

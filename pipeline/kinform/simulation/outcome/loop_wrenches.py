@@ -8,7 +8,7 @@ by side cost n times what one costs, not n³. How many conditions are independen
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +16,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross_matrix
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.simulation.constants import UNDETERMINED_SHARE
+from kinform.simulation.constants import UNDETERMINED_SHARE, UNSEEN
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,20 +50,40 @@ class _Stack:
 
 
 @dataclass(frozen=True, eq=False)
+class _Directions:
+    """K wrenches of the joints left over of a stack, each of one of them."""
+
+    loops: Ints
+    """(K,) ascending."""
+    wrenches: Array
+    """(T, G, K, 6) about the centre, of torques over the length of about 1."""
+
+
+@dataclass(frozen=True, eq=False)
 class _Conditions:
-    """The conditions of a stack, decomposed, and what λ adds to its joints."""
+    """The conditions of a stack on what they see of λ."""
 
     stack: _Stack
-    left: Array
-    """(T, G, m, k)."""
-    values: Array
-    """(T, G, 6c) descending, with noughts where there are fewer conditions."""
-    right: Array
-    """(T, G, 6c, 6c)."""
+    seen: _Directions
+    """K directions that take part in conditions."""
+    unseen: _Directions
+    """U directions that take part in none: what they are nothing but the least of all wrenches says."""
+    rows: Array
+    """(T, G, m, K)."""
     rest: Array
     """(T, G, m)."""
-    lever: Array
-    """(T, G, c, 6, 6) λ about the centre, from λ about the points of its joints with torques over the length."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Answer:
+    """What the conditions of a stack say of the K directions that they see."""
+
+    known: Array
+    """(T, G, K)."""
+    free: Array
+    """(T, G, z, K) directions that they leave free; noughts at times at which they are not."""
+    held: Array
+    """(T, G, z) one where that direction is noughts."""
 
 
 def add_loops(
@@ -80,13 +100,10 @@ def add_loops(
     loose = np.zeros(whole.shape[1:], dtype=np.bool_)
     S = screws / shares.scale[:, None]
     rest = effort / shares.scale - np.einsum("tnk,tnk->tn", S, carried[:, shares.owner])
-    solved = [_conditions(shares, stack, S, points, rest, unit) for stack in _stacks(shares)]
-    counted = rank - len(shares.gears)
-    every = np.concatenate([one.values.reshape(len(carried), -1) for one in solved], axis=1)
-    least = np.full(len(every), np.inf) if counted <= 0 else -np.sort(-every, axis=1)[:, counted - 1]
+    systems = [_conditions(shares, stack, S, points, rest, unit) for stack in _stacks(shares)]
     stresses = [np.zeros((0, *loose.shape))]
-    for one in solved:
-        added, free, open_ = _added(shares, one, whole, points, unit, one.values >= least[:, None, None])
+    for one, answer in zip(systems, _answers(systems, rank - len(shares.gears)), strict=True):
+        added, free, open_ = _added(shares, one, answer, whole, points, unit)
         whole[:, one.stack.joints] = added
         loose[one.stack.joints] = free
         for joints, columns in zip(one.stack.joints, open_, strict=True):
@@ -132,47 +149,104 @@ def _conditions(shares: Shares, stack: _Stack, S: Array, points: Array, rest: Ar
     lever = np.zeros((count, systems, loops, 6, 6))
     lever[:] = np.diag(unit)
     lever[..., :3, 3:] = cross_matrix(points[:, shares.closing[stack.loops]])
-    share = shares.by_loops[shares.owner[stack.rates][:, :, None], stack.loops[:, None, :]]
-    turned = np.einsum("tgnk,tgckl->tgncl", S[:, stack.rates], lever)
-    passed = (share[..., None] * turned).reshape(count, systems, -1, 6 * loops)
+    share = shares.by_loops[shares.owner[stack.rates][:, None, :], stack.loops[:, :, None]]
+    passed = share[..., None] * (S[:, stack.rates][:, :, None] @ lever)
+    values, basis = _seen_from(passed, share)
+    taken = np.arange(6) < np.count_nonzero(values > UNSEEN * values.max(initial=0.0), axis=3).max(axis=(0, 1))[:, None]
+    wrenches = lever @ basis
+    seen, unseen = (
+        _Directions(which[0], wrenches[:, :, which[0], :, which[1]].transpose(1, 2, 0, 3))
+        for which in (np.nonzero(taken), np.nonzero(~taken))
+    )
+    where = np.nonzero(taken)
+    rows = (passed @ basis)[:, :, where[0], :, where[1]].transpose(1, 2, 3, 0)
     mine = rest[:, stack.rates]
     if len(shares.gears):
         _, _, right = np.linalg.svd(shares.gears / shares.scale)
         keep = right[len(shares.gears) :]
-        passed, mine = keep @ passed, mine @ keep.T
-    left, found, right = np.linalg.svd(passed)
-    values = np.zeros((*found.shape[:2], 6 * loops))
-    values[..., : found.shape[2]] = found
-    return _Conditions(stack, left[..., : found.shape[2]], values, right, mine, lever)
+        rows, mine = keep @ rows, mine @ keep.T
+    return _Conditions(stack, seen, unseen, rows, mine)
+
+
+def _seen_from(passed: Array, share: Array) -> tuple[Array, Array]:
+    """(T, G, c, 6) descending, how much the conditions (T, G, c, n, 6) of each loop see of six directions of its λ, and
+    these directions, columns (T, G, c, 6, 6): what no condition of its own loop sees, no other does.
+
+    `share` (G, c, n): nought where the rate is none of the loop's.
+    """
+    count = min(max(int(np.count_nonzero(share, axis=2).max(initial=0)), 6), share.shape[2])
+    own = np.argsort(share == 0.0, axis=2, kind="stable")[:, :, :count]
+    rows = np.take_along_axis(passed, own[None, ..., None], axis=3)
+    _, found, right = np.linalg.svd(rows, full_matrices=count < 6)
+    values = np.zeros((*found.shape[:3], 6))
+    values[..., : found.shape[3]] = found
+    return values, right.swapaxes(-1, -2)
+
+
+def _answers(systems: Sequence[_Conditions], counted: int) -> list[_Answer]:
+    """What the conditions of each stack say, where so many of all of them are independent.
+
+    Where that is all directions that they see, these are the least squares; else the singular values tell which count.
+    """
+    if sum(one.rows.shape[1] * one.rows.shape[3] for one in systems) <= counted:
+        return [_determined(one) for one in systems]
+    parts = []
+    for one in systems:
+        left, found, right = np.linalg.svd(one.rows)
+        values = np.zeros((*found.shape[:2], one.rows.shape[3]))
+        values[..., : found.shape[2]] = found
+        parts.append((left[..., : found.shape[2]], values, right))
+    every = np.concatenate([values.reshape(len(values), -1) for _, values, _ in parts], axis=1)
+    least = np.full(len(every), np.inf) if counted <= 0 else -np.sort(-every, axis=1)[:, counted - 1]
+    out = []
+    for one, (left, values, right) in zip(systems, parts, strict=True):
+        counts, many = values >= least[:, None, None], left.shape[-1]
+        known = np.einsum("tgmr,tgm->tgr", left, one.rest)
+        known = np.where(counts[..., :many], known / np.maximum(values[..., :many], 1e-300), 0.0)
+        first = int(counts.sum(axis=2).min())
+        held = counts[..., first:]
+        free = right[..., first:, :] * ~held[..., None]
+        out.append(_Answer(np.einsum("tgrk,tgr->tgk", right[..., :many, :], known), free, held.astype(np.float64)))
+    return out
+
+
+def _determined(one: _Conditions) -> _Answer:
+    count, systems, _, many = one.rows.shape
+    Q, R = np.linalg.qr(one.rows)
+    known = np.linalg.solve(R, np.einsum("tgmk,tgm->tgk", Q, one.rest)[..., None])[..., 0]
+    return _Answer(known, np.zeros((count, systems, 0, many)), np.zeros((count, systems, 0)))
 
 
 def _added(
-    shares: Shares, one: _Conditions, whole: Array, points: Array, unit: Array, counts: Flags
+    shares: Shares, one: _Conditions, answer: _Answer, whole: Array, points: Array, unit: Array
 ) -> tuple[Array, Flags, Array]:  # fmt: skip
     """The wrenches (T, G, j, 6) of the joints of a stack, torques over the length, which are not determined, and
-    (G, 6j, z) what could be added at the first time.
+    (G, 6j, z) what could be added at the first time."""
+    joints = one.stack.joints
+    systems, many = joints.shape
+    share = shares.by_loops[joints[:, :, None], one.stack.loops[:, None, :]]
+    turn = cross_matrix(points[:, joints])
 
-    `counts` (T, G, 6c): which singular values do; the directions of the others are free.
-    """
-    stack, (count, systems, loops) = one.stack, one.lever.shape[:3]
-    many = one.left.shape[-1]
-    known = np.einsum("tgmr,tgm->tgr", one.left, one.rest)
-    known = np.where(counts[..., :many], known / np.maximum(one.values[..., :many], 1e-300), 0.0)
-    special = np.einsum("tgrl,tgr->tgl", one.right[..., :many, :], known)
-    share = shares.by_loops[stack.joints[:, :, None], stack.loops[:, None, :]]
-    adds = np.einsum("gjc,tgckl->tgjkcl", share, one.lever).reshape(count, systems, -1, 6, 6 * loops)
-    adds[..., :3, :] -= cross_matrix(points[:, stack.joints]) @ adds[..., 3:, :]
-    adds = (adds / unit[:, None]).reshape(count, systems, -1, 6 * loops)
-    out: Array = whole[:, stack.joints].reshape(count, systems, -1) + np.einsum("tgml,tgl->tgm", adds, special)
-    loose = np.zeros((*stack.joints.shape, 6), dtype=np.bool_)
-    open_ = np.zeros((systems, stack.joints.shape[1] * 6, 0))
-    first = int(counts.sum(axis=2).min())
-    free = ~counts[..., first:]
-    if free.any():
-        freedom = adds @ (one.right[..., first:, :] * free[..., None]).swapaxes(-1, -2)
-        inner = freedom.swapaxes(-1, -2) @ freedom + counts[..., first:, None] * np.eye(free.shape[-1])
-        answer = np.linalg.solve(inner, np.einsum("tgmz,tgm->tgz", freedom, out)[..., None])
-        out = out - (freedom @ answer)[..., 0]
+    def on_joints(directions: _Directions) -> Array:
+        """(T, G, j, 6, K) wrenches on the joints about their points, over the units, from directions of λ."""
+        out = share[:, :, None, directions.loops] * directions.wrenches.swapaxes(-1, -2)[:, :, None]
+        out[..., :3, :] -= turn @ out[..., 3:, :]
+        out /= unit[:, None]
+        return out
+
+    of_loop = (one.seen.loops == np.arange(share.shape[2])[:, None]).astype(np.float64)
+    known = share @ (of_loop @ (answer.known[..., None] * one.seen.wrenches))
+    known[..., :3] -= (turn @ known[..., 3:, None])[..., 0]
+    out: Array = (whole[:, joints] + known / unit).reshape(len(whole), systems, -1)
+    freedom = on_joints(one.unseen).reshape(*out.shape, -1)
+    held = np.zeros((*freedom.shape[:2], freedom.shape[3]))
+    if answer.free.shape[2]:
+        more = on_joints(one.seen).reshape(*out.shape, -1) @ answer.free.swapaxes(-1, -2)
+        freedom, held = np.concatenate([freedom, more], axis=3), np.concatenate([held, answer.held], axis=2)
+    loose = np.zeros((*joints.shape, 6), dtype=np.bool_)
+    if freedom.shape[3]:
+        inner = freedom.swapaxes(-1, -2) @ freedom + held[..., None] * np.eye(held.shape[2])
+        least = np.linalg.solve(inner, np.einsum("tgmz,tgm->tgz", freedom, out)[..., None])
+        out = out - (freedom @ least)[..., 0]
         loose = (np.abs(freedom).max(axis=(0, 3)) > UNDETERMINED_SHARE).reshape(loose.shape)
-        open_ = freedom[0]
-    return out.reshape(count, systems, -1, 6), loose, open_
+    return out.reshape(len(whole), systems, many, 6), loose, freedom[0]
