@@ -7,6 +7,9 @@ from __future__ import annotations
 GRACE = 1.5
 """Seconds after Ctrl-C in which the work may end by itself, with its own words; the promise is two."""
 
+AGAIN = 0.01
+"""Seconds after which Ctrl-C is heard that came while a native module was imported; a choice."""
+
 # console
 
 WIDTH = 80

@@ -2,13 +2,16 @@
 
 Python raises KeyboardInterrupt between any two instructions. Where that is a callback of its own or of a library, as
 while modules are imported, it is dropped there and the program goes on: such a one is raised again at the next step of
-the work.
+the work. While a native module is imported it is heard a moment later.
 """
 
 from __future__ import annotations
 
 import signal
+from importlib.machinery import ExtensionFileLoader
 from types import FrameType
+
+from kinform_cli.constants import AGAIN
 
 _asked = False
 
@@ -28,6 +31,21 @@ def raise_unheard() -> None:
 def _interrupted(number: int, frame: FrameType | None) -> None:
     """Once: a terminal sends Ctrl-C to all processes, and the one that watches passes it on."""
     global _asked
-    if not _asked:
-        _asked = True
-        raise KeyboardInterrupt
+    if _asked:
+        return
+    if _in_native_import(frame) and hasattr(signal, "setitimer"):
+        signal.signal(signal.SIGALRM, _interrupted)
+        signal.setitimer(signal.ITIMER_REAL, AGAIN)
+        return
+    _asked = True
+    raise KeyboardInterrupt
+
+
+def _in_native_import(frame: FrameType | None) -> bool:
+    """Whether a native module is being imported: what is raised in Python that it calls then would end the process."""
+    while frame is not None:
+        loads = frame.f_code.co_name in ("create_module", "exec_module")
+        if loads and isinstance(frame.f_locals.get("self"), ExtensionFileLoader):
+            return True
+        frame = frame.f_back
+    return False

@@ -220,3 +220,49 @@ def test_a_command_in_the_background_of_a_shell_goes_on(folder: Path) -> None:
     (folder / "go").touch()
     _, errors = running.communicate(timeout=60)
     assert "went on" in errors
+
+
+IMPORTED_NATIVE = """
+import os, signal, sys, time
+from importlib.machinery import ExtensionFileLoader, ModuleSpec
+from kinform_cli import interrupts
+
+class Loader(ExtensionFileLoader):
+    def create_module(self, spec):
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(0.05)
+        print("imported", flush=True)
+        return type(sys)("native")
+    def exec_module(self, module):
+        pass
+
+class Finder:
+    def find_spec(self, name, path=None, target=None):
+        return ModuleSpec(name, Loader(name, "native.so")) if name == "native" else None
+
+sys.meta_path.insert(0, Finder())
+interrupts.listen()
+try:
+    import native
+    time.sleep(5)
+except KeyboardInterrupt:
+    print("heard", flush=True)
+interrupts._interrupted(2, None)
+try:
+    interrupts.raise_unheard()
+except KeyboardInterrupt:
+    print("once")
+"""
+
+
+def test_ctrl_c_waits_for_a_native_module_that_is_imported():
+    """C++ that calls Python there passes no exception on: it ends the process."""
+    done = subprocess.run(
+        [sys.executable, "-c", IMPORTED_NATIVE],
+        env=environment(),
+        capture_output=True,
+        text=True,
+        preexec_fn=listening,
+        timeout=60,
+    )
+    assert (done.returncode, done.stdout.split(), done.stderr) == (0, ["imported", "heard", "once"], "")
