@@ -1,14 +1,34 @@
-"""Medians, against numpy's."""
+"""Sorted keys, their orders, and medians, against numpy's."""
 
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kinform.foundation.sorting import median
+from kinform.foundation.sorting import DIGIT, FEW_BITS, MANY, ascending, median, sorted_keys
 
 
 @given(st.lists(st.floats(allow_nan=False, allow_infinity=False, width=32), min_size=1, max_size=30))
 def test_it_is_numpys_to_the_bit(values):
     assert median(values) == median(np.array(values)) == float(np.median(values))
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, MANY - 1, MANY, 5 * MANY])
+@pytest.mark.parametrize("below", [1, 7, (1 << DIGIT) - 1, 1 << DIGIT, (1 << DIGIT) + 1, 1 << 40, 1 << 60])
+def test_equal_keys_stay_as_they_come(count, below):
+    keys = np.random.default_rng(count).integers(0, below, count)
+    keys[: count // 2] = below - 1
+    order = ascending(keys, below)
+    assert order.tolist() == np.argsort(keys, kind="stable").tolist()
+
+
+@pytest.mark.parametrize("count", [0, 1, MANY - 1, MANY, 5 * MANY])
+@pytest.mark.parametrize("greatest", [0, (1 << FEW_BITS) - 1, 1 << FEW_BITS, (1 << FEW_BITS) + 1, (1 << 63) - 1])
+def test_keys_of_few_and_of_many_bits_are_sorted(count, greatest):
+    keys = np.random.default_rng(count).integers(0, greatest, count, endpoint=True)
+    keys[count // 2 : count // 2 + 1] = greatest
+    found = sorted_keys(keys)
+    assert found.dtype == np.int64
+    assert found.tolist() == sorted(keys.tolist())

@@ -5,12 +5,12 @@ Knows nothing of geometry. Groups are runs of consecutive rows, given by their s
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 
 import numpy as np
 
-from kinform.foundation.sorting import ascending
+from kinform.foundation.sorting import ascending, sorted_keys
 from kinform.model.arrays import Array, Flags, Ints
 
 MANY = 4096
@@ -118,13 +118,13 @@ def parted(keys: Ints, count: int) -> tuple[Ints, Ints]:
 
 def distinct(keys: Ints) -> Ints:
     """The distinct keys, ascending: sorting integers is faster than numpy's hashing."""
-    ordered = np.sort(keys)
+    ordered = sorted_keys(keys)
     return ordered.take(heads(ordered).nonzero()[0])
 
 
 def occurrences(keys: Ints) -> tuple[Ints, Ints]:
     """The distinct keys, ascending, and how often each occurs."""
-    ordered = np.sort(keys)
+    ordered = sorted_keys(keys)
     first = heads(ordered).nonzero()[0]
     times = np.empty(len(first), np.int64)
     np.subtract(first[1:], first[:-1], out=times[:-1])
@@ -132,23 +132,51 @@ def occurrences(keys: Ints) -> tuple[Ints, Ints]:
     return ordered.take(first), times
 
 
+def sums_of(groups: Ints, count: int) -> Callable[[Array], Array]:
+    """What gives the sums (count,) of any values (n,) by their group, from 0 to `count`.
+
+    Of groups that follow each other, which takes a tenth of the time of np.bincount; others are put in order first. The
+    sum of a group is of its own values in their order, pairwise, whatever other groups there are.
+    """
+    order = None if ascend(groups) else ascending(groups, count)
+    ordered = groups if order is None else groups.take(order)
+    first = heads(ordered).nonzero()[0]
+    every = len(first) == count
+    present = None if every else ordered.take(first)
+
+    def sums(values: Array) -> Array:
+        runs = np.add.reduceat(values if order is None else values.take(order), first) if len(first) else np.zeros(0)
+        if every:
+            return runs
+        out = np.zeros(count)
+        out[present] = runs
+        return out
+
+    return sums
+
+
+def ascend(groups: Ints) -> bool:
+    """Whether the group numbers are in order."""
+    return not bool((groups[1:] < groups[:-1]).any())
+
+
 def group_sum(groups: Ints, values: Array, count: int) -> Array:
     """Sum of `values` (n, ...) for each group number: (count, ...)."""
-    flat = values.reshape(len(values), int(np.prod(values.shape[1:], dtype=int)))
+    flat, sums = values.reshape(len(values), int(np.prod(values.shape[1:], dtype=int))), sums_of(groups, count)
     out = np.empty((count, flat.shape[1]))
     for k in range(flat.shape[1]):
-        out[:, k] = np.bincount(groups, flat[:, k], count)
+        out[:, k] = sums(flat[:, k])
     return out.reshape((count, *values.shape[1:]))
 
 
 def group_moments(groups: Ints, columns: Sequence[Array] | Array, count: int, weight: Array | None = None) -> Array:
     """(count, k, k) sum of w x xᵀ of the rows of each group, x given as k columns (n,)."""
-    size = len(columns)
+    size, sums = len(columns), sums_of(groups, count)
     out: Array = np.empty((count, size, size))
     for i in range(size):
         weighed = columns[i] if weight is None else weight * columns[i]
         for j in range(i + 1):
-            out[:, i, j] = out[:, j, i] = np.bincount(groups, weighed * columns[j], count)
+            out[:, i, j] = out[:, j, i] = sums(weighed * columns[j])
     return out
 
 
@@ -157,14 +185,14 @@ def group_mean(groups: Ints, values: Array, count: int, weight: Array | None = N
     if weight is None:
         size = np.maximum(np.bincount(groups, minlength=count), 1)
         return np.asarray(group_sum(groups, values, count) / size[:, None])
-    total = np.maximum(np.bincount(groups, weight, count), 1e-300)
+    total = np.maximum(sums_of(groups, count)(weight), 1e-300)
     return np.asarray(group_sum(groups, values * weight[:, None], count) / total[:, None])
 
 
 def group_mean_of(groups: Ints, columns: Sequence[Array], rows: Ints, count: int) -> Array:
     """`group_mean` of these rows of k columns, one column at a time."""
-    size = np.maximum(np.bincount(groups, minlength=count), 1)
-    return np.stack([np.bincount(groups, column[rows], count) / size for column in columns], axis=1)
+    size, sums = np.maximum(np.bincount(groups, minlength=count), 1), sums_of(groups, count)
+    return np.stack([sums(column.take(rows)) / size for column in columns], axis=1)
 
 
 def group_range(groups: Ints, values: Array, count: int) -> tuple[Array, Array]:
@@ -212,13 +240,13 @@ def normal_equations(
 ) -> tuple[Array, Array]:  # fmt: skip
     """JᵀJ (count, k, k) and Jᵀr (count, k) of each group, of a Jacobian (n, k), or its k columns."""
     columns = jacobian.T if isinstance(jacobian, np.ndarray) else jacobian
-    k = len(columns)
+    k, sums, product = len(columns), sums_of(groups, count), np.empty(len(residual))
     matrix: Array = np.empty((count, k, k))
+    right: Array = np.empty((count, k))
     for i in range(k):
         for j in range(i, k):
-            matrix[:, i, j] = np.bincount(groups, columns[i] * columns[j], count)
-            matrix[:, j, i] = matrix[:, i, j]
-    right: Array = np.stack([np.bincount(groups, columns[i] * residual, count).astype(float) for i in range(k)], axis=1)
+            matrix[:, i, j] = matrix[:, j, i] = sums(np.multiply(columns[i], columns[j], out=product))
+        right[:, i] = sums(np.multiply(columns[i], residual, out=product))
     return matrix, right
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.model.arrays import Array, Ints
-from kinform.surfaces.groups import group_mean
+from kinform.surfaces.groups import group_mean, sums_of
 from kinform.surfaces.polygons.patchwork import Patchwork
 
 
@@ -39,15 +39,16 @@ class Slippage:
 def slippage(work: Patchwork, patch: Ints, polygon: Ints, count: int) -> Slippage:
     """The motions of `count` patches, given as pairs (patch, polygon)."""
     normal, weight = work.normal[polygon], work.area[polygon]
-    total = np.maximum(np.bincount(patch, weight, count), 1e-300)
+    sums = sums_of(patch, count)
+    total = np.maximum(sums(weight), 1e-300)
     middle = group_mean(patch, work.centre[polygon], count, weight)
     offset = work.centre[polygon] - middle[patch]
-    size = np.maximum(np.sqrt(np.bincount(patch, weight * dot(offset, offset), count) / total), 1e-12)
+    size = np.maximum(np.sqrt(sums(weight * dot(offset, offset)) / total), 1e-12)
     rows = np.concatenate([cross(offset / size[patch][:, None], normal), normal], axis=1)
     matrix: Array = np.empty((count, 6, 6))
     for i in range(6):
         for j in range(i, 6):
-            matrix[:, i, j] = matrix[:, j, i] = np.bincount(patch, weight * rows[:, i] * rows[:, j], count) / total
+            matrix[:, i, j] = matrix[:, j, i] = sums(weight * rows[:, i] * rows[:, j]) / total
     values, vectors = np.linalg.eigh(np.nan_to_num(matrix))
     speed = np.sqrt(np.maximum(values, 0.0))
     return Slippage(middle, size, vectors[:, :3, 0], vectors[:, 3:, 0], speed[:, 0], speed[:, 1])

@@ -23,6 +23,7 @@ from kinform.surfaces.groups import (
     quantile,
     slices,
     solve_normal,
+    sums_of,
 )
 from kinform.surfaces.kinds.axial import Cylindrical, angular_widths, azimuths, cylindrical, frames
 from kinform.surfaces.kinds.batch import Batch, Params
@@ -216,9 +217,8 @@ def generators(batch: Batch, params: Params) -> tuple[Ints, Ints, Flags, Flags]:
 def _along(work: Patchwork, params: Params, region: Ints, edge: Ints) -> Flags:
     """Whether each edge runs along a generator of its region's surface."""
     if params[:, 7].any():
-        start, end = work.at(work.ends[:, 0].take(edge)), work.at(work.ends[:, 1].take(edge))
         mine = columns_of(params, region)
-        radial = cylindrical(mine, (start + end) / 2).radial
+        radial = cylindrical(mine, work.halfway(edge)).radial
         direction = np.cos(mine[:, 7])[:, None] * mine[:, :3] + np.sin(mine[:, 7])[:, None] * radial
     else:
         direction = columns_of(params[:, :3], region)
@@ -257,7 +257,7 @@ def with_apices(
 def _recentre(params: Params, region: Ints, t: Array, count: int) -> tuple[Params, Array]:
     """Moves each reference point along its axis beside the mean of the points; by how much (R,)."""
     size = np.maximum(np.bincount(region, minlength=count), 1)
-    middle = np.bincount(region, t, count) / size
+    middle = sums_of(region, count)(t) / size
     out = params.copy()
     out[:, 3:6] += middle[:, None] * params[:, :3]
     out[:, 6] += middle * np.tan(params[:, 7])

@@ -68,6 +68,10 @@ class Patchwork:
         """(N, 3) from the first to the second end of these edges, in memory column by column."""
         return self._along.take(edges, axis=1).T
 
+    def halfway(self, edges: Ints) -> Array:
+        """(N, 3) middles of these edges, in memory column by column."""
+        return self._halfway.take(edges, axis=1).T
+
     def middles(self, polygons: Ints) -> Array:
         """(N, 3) centroids of these polygons, in memory column by column."""
         return self._centres.take(polygons, axis=1).T
@@ -75,6 +79,10 @@ class Patchwork:
     def normals(self, polygons: Ints) -> Array:
         """(N, 3) normals of these polygons, in memory column by column."""
         return self._normals.take(polygons, axis=1).T
+
+    @cached_property
+    def _halfway(self) -> Array:
+        return (self._columns.take(self.ends[:, 0], axis=1) + self._columns.take(self.ends[:, 1], axis=1)) / 2
 
     @cached_property
     def _along(self) -> Array:

@@ -78,7 +78,7 @@ class Candidates:
             deep = held.distance <= -limit
         outside = deep[count:] | (held.distance[count:] >= limit[count:])
         off[owner.take(outside.nonzero()[0])] = True
-        cosine = dot(held.normal[:count], columns_of(work.normal, polygon)) * self.side.take(region)
+        cosine = dot(held.normal[:count], work.normals(polygon)) * self.side.take(region)
         widest = np.minimum((0.5 * reach + NORMAL_SLACK).take(region) + work.slack.take(polygon), WIDEST)
         return np.asarray(~off & (cosine > np.cos(widest)))
 
