@@ -95,6 +95,10 @@ TOUCHING = ("point", "line")
 """Kinds of higher pairs."""
 ENCLOSING_PROBES = 600
 """Middles of facets of either part that are looked at."""
+FACING_ROUNDED = 1e-9
+"""By which the cosine of two facets may be off for rounding."""
+MANY_FACING = 20_000
+"""Pairs of a probe and a facet from which on a grid tells sooner which of them are near each other."""
 ENCLOSED_HELD = 0.02
 """Singular value below which patches leave a motion that is to be looked at."""
 ENCLOSING_SPEED = 0.3

@@ -15,8 +15,10 @@ import numpy as np
 
 from kinform.contacts import constants
 from kinform.contacts.mating.patches import classify_fit
-from kinform.contacts.search.pair_view import PairView
+from kinform.contacts.search.pair_view import PairView, boxes_of
 from kinform.foundation.algebra.screws import Frame, rows
+from kinform.foundation.constants import SLIVER_WIDTH
+from kinform.foundation.meshes.proximity import near_boxes
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 
@@ -104,8 +106,12 @@ def _facing(view: PairView, unread: Flags) -> _Near | None:
     if not len(facets):
         return None
     chosen, weight = _evenly(areas, constants.ENCLOSING_PROBES)
+    points, normals = corners[chosen].mean(axis=1), a.normals(facets[chosen])
+    able = np.flatnonzero(_can_hit(view, points, normals, reach, columns))
+    if not len(able):
+        return None
+    chosen, weight, points, normals = chosen[able], weight[able], points[able], normals[able]
     facets, of_row = facets[chosen], of_row[chosen]
-    points, normals = corners[chosen].mean(axis=1), a.normals(facets)
     reaches = np.full(len(points), reach)
     hits = b.region.cast(b.to_part(points), b.turn_to_part(normals), reaches)
     column = {int(k): number for number, k in enumerate(other.ids)}
@@ -125,6 +131,28 @@ def _facing(view: PairView, unread: Flags) -> _Near | None:
         0.5 * weight[probe],
         np.column_stack([own.ids[row], other.ids[col]]),
     )
+
+
+def _can_hit(view: PairView, points: Array, normals: Array, reach: float, columns: Ints) -> Flags:
+    """(n,) which probes along the normals of the first part at these points, `reach` (m) to either side, have a facet
+    of these near surfaces of the second part in their box that faces them: no other needs to be cast."""
+    b = view.b
+    wanted = np.zeros(len(b.table.areas), bool)
+    wanted[view.near[1].ids[columns]] = True
+    facets = np.arange(len(b.faces)) if b.region.facets is None else b.region.facets
+    facets = facets[wanted[b.surfaces.labels[facets]]]
+    half = reach * (np.abs(normals) + 2.0 * SLIVER_WIDTH)
+    low, high = points - half, points + half
+    low_b, high_b = boxes_of(b, facets)
+    near = np.flatnonzero(((low_b <= high.max(axis=0)) & (high_b >= low.min(axis=0))).all(axis=1))
+    facets, low_b, high_b = facets[near], low_b[near], high_b[near]
+    out = np.ones(len(points), bool)
+    if len(points) * len(facets) > constants.MANY_FACING:
+        out, beside = near_boxes(low, high, low_b, high_b, 0.0)
+        facets = facets[beside]
+    opposed = normals[out] @ b.normals(facets).T < constants.FACING_ROUNDED - constants.FACING_LEAST
+    out[out] = opposed.any(axis=1)
+    return out
 
 
 def _evenly(areas: Array, count: int) -> tuple[Ints, Array]:

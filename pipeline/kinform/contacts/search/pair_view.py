@@ -121,6 +121,14 @@ def near_facets(placed: PartView, low: Array, high: Array) -> tuple[Ints, Array,
     return facets, low_f, high_f
 
 
+def boxes_of(placed: PartView, facets: Ints) -> tuple[Array, Array]:
+    """Lower and upper corners (n, 3) of the boxes of these facets."""
+    if placed.at_home:
+        boxes = placed.index.boxes
+        return boxes.low[facets], boxes.high[facets]
+    return facet_boxes(placed.vertices, placed.faces[facets])
+
+
 _BITS = np.array([1, 2, 4, 8, 16, 32], dtype=np.int64)
 """One for each side of a box that a vertex can lie beyond."""
 
