@@ -226,12 +226,12 @@ def _added(
     systems, many = joints.shape
     share = shares.by_loops[joints[:, :, None], one.stack.loops[:, None, :]]
     turn = cross_matrix(points[:, joints])
+    lever = turn * (unit[3:] / unit[:3, None])
 
     def on_joints(directions: _Directions) -> Array:
         """(T, G, j, 6, K) wrenches on the joints about their points, over the units, from directions of λ."""
-        out = share[:, :, None, directions.loops] * directions.wrenches.swapaxes(-1, -2)[:, :, None]
-        out[..., :3, :] -= turn @ out[..., 3:, :]
-        out /= unit[:, None]
+        out = share[:, :, None, directions.loops] * (directions.wrenches / unit).swapaxes(-1, -2)[:, :, None]
+        out[..., :3, :] -= lever @ out[..., 3:, :]
         return out
 
     of_loop = (one.seen.loops == np.arange(share.shape[2])[:, None]).astype(np.float64)
@@ -248,5 +248,6 @@ def _added(
         inner = freedom.swapaxes(-1, -2) @ freedom + held[..., None] * np.eye(held.shape[2])
         least = np.linalg.solve(inner, np.einsum("tgmz,tgm->tgz", freedom, out)[..., None])
         out = out - (freedom @ least)[..., 0]
-        loose = (np.abs(freedom).max(axis=(0, 3)) > UNDETERMINED_SHARE).reshape(loose.shape)
+        most = np.maximum(freedom.max(axis=(0, 3)), -freedom.min(axis=(0, 3)))
+        loose = (most > UNDETERMINED_SHARE).reshape(loose.shape)
     return out.reshape(len(whole), systems, many, 6), loose, freedom[0]
