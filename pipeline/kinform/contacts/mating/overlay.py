@@ -70,10 +70,14 @@ class Cells:
 
     def kept(self, triangles: Flags) -> Cells:
         """Only the flagged triangles (k,), their bins renumbered, and the rim that they touch."""
-        _, bins = np.unique(self.bins[triangles], return_inverse=True)
         corners = self.corners[triangles]
-        touched = np.isin(self._keys(self.rim), self._keys(corners.reshape(-1, 2)))
-        return Cells(corners, bins.ravel().astype(np.int64), self.rim[touched], self.unit, self.narrow)
+        seen = np.zeros(int(self.bins.max(initial=-1)) + 1, bool)
+        seen[self.bins[triangles]] = True
+        bins = (np.cumsum(seen) - 1)[self.bins[triangles]]
+        # numpy sorts numbers of two parts several times slower than Python looks them up
+        touched = set(self._keys(corners.reshape(-1, 2)).tolist())
+        rim = [key in touched for key in self._keys(self.rim).tolist()]
+        return Cells(corners, bins, self.rim[np.array(rim, dtype=bool)], self.unit, self.narrow)
 
     def _keys(self, points: Array) -> NDArray[np.complex128]:
         """One number a point (n, 2), the same for points that are one."""
@@ -159,17 +163,21 @@ def _resampled(polygon: Array, step: Array) -> Array:
 def _split(corners: Array, size: Array) -> Array:
     """Halve triangles at their longest edge, in units of `size` (2,), until no edge is longer than it."""
     while True:
-        edges = np.linalg.norm((corners - np.roll(corners, -1, axis=1)) / size, axis=2)
-        longest = np.argmax(edges, axis=1)
-        large = edges.max(axis=1, initial=0.0) > 1.0
-        if not large.any():
+        edges = (corners - corners[:, _TURNS[1]]) / size
+        edges *= edges
+        length = np.sqrt(edges[..., 0] + edges[..., 1])
+        large = (length > 1.0).any(axis=1)
+        rows = large.nonzero()[0]
+        if not len(rows):
             return corners
-        rows = np.nonzero(large)[0]
-        turned = np.stack([corners[rows, (longest[rows] + k) % 3] for k in range(3)], axis=1)
-        middle = 0.5 * (turned[:, 0] + turned[:, 1])
-        one = np.stack([turned[:, 0], middle, turned[:, 2]], axis=1)
-        two = np.stack([middle, turned[:, 1], turned[:, 2]], axis=1)
-        corners = np.concatenate([corners[~large], one, two])
+        turned = corners[rows[:, None], _TURNS[length[rows].argmax(axis=1)]]
+        halves = np.stack([turned, turned])
+        halves[0, :, 1] = halves[1, :, 0] = 0.5 * (turned[:, 0] + turned[:, 1])
+        corners = np.concatenate([corners[~large], halves[0], halves[1]])
+
+
+_TURNS = np.array([[0, 1, 2], [1, 2, 0], [2, 0, 1]])
+"""Corners of a triangle in their order, from each of them on."""
 
 
 def _overlap(chart: Chart, first: Array, second: Array, unit: float) -> CrossSection | None:

@@ -33,7 +33,7 @@ def mated_patches(pair: PairView, mates: list[Mate]) -> list[Patch]:
             holds = holds & (np.abs(gaps) <= mate.limit)
         if not holds.any():
             continue
-        kept = cells.kept(holds[cells.bins])
+        kept = cells if holds.all() else cells.kept(holds[cells.bins])
         if mate.corners is None:
             patches.append(_patch(pair, mate, kept, None))
         elif _rests(mate, kept, gaps[holds], pair.tolerance):
