@@ -7,7 +7,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kinform.foundation.sorting import DIGIT, FEW_BITS, MANY, ascending, median, sorted_keys
+from kinform.foundation.sorting import (
+    DIGIT,
+    FEW_BITS,
+    MANY,
+    ascending,
+    distinct,
+    median,
+    numbered,
+    occurrences,
+    sorted_keys,
+)
 
 
 @given(st.lists(st.floats(allow_nan=False, allow_infinity=False, width=32), min_size=1, max_size=30))
@@ -32,3 +42,15 @@ def test_keys_of_few_and_of_many_bits_are_sorted(count, greatest):
     found = sorted_keys(keys)
     assert found.dtype == np.int64
     assert found.tolist() == sorted(keys.tolist())
+
+
+@given(st.lists(st.integers(0, 1 << 40), max_size=40))
+def test_distinct_keys_how_often_each_occurs_and_which_is_which(numbers):
+    keys = np.array(numbers, dtype=np.int64)
+    found, times = occurrences(keys)
+    wanted, inverse, counted = np.unique(keys, return_inverse=True, return_counts=True)
+    assert found.tolist() == distinct(keys).tolist() == wanted.tolist()
+    assert times.tolist() == counted.tolist()
+    those, places = numbered(keys, (1 << 40) + 1)
+    assert those.tolist() == wanted.tolist()
+    assert places.tolist() == inverse.tolist()

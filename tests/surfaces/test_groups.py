@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kinform.surfaces.groups import distinct, group_mean, group_sum, normal_equations, occurrences, sums_of
+from kinform.surfaces.groups import group_mean, group_sum, normal_equations, sums_of
 
 NUMBERS = st.lists(st.integers(0, 9), max_size=60)
 
@@ -42,12 +42,3 @@ def test_normal_equations_are_products_of_the_rows(numbers):
         own = rows[groups == group]
         assert np.allclose(matrix[group], own[:, :3].T @ own[:, :3], rtol=0.0, atol=1e-12)
         assert np.allclose(right[group], own[:, :3].T @ own[:, 3], rtol=0.0, atol=1e-12)
-
-
-@given(st.lists(st.integers(0, 1 << 40), max_size=40))
-def test_distinct_keys_and_how_often_each_occurs(numbers):
-    keys = np.array(numbers, dtype=np.int64)
-    found, times = occurrences(keys)
-    wanted, counted = np.unique(keys, return_counts=True)
-    assert found.tolist() == distinct(keys).tolist() == wanted.tolist()
-    assert times.tolist() == counted.tolist()

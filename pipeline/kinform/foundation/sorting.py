@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.model.arrays import Array, Ints
+from kinform.model.arrays import Array, Flags, Ints
 
 BITS = 63
 """Of a whole number without its sign."""
@@ -43,6 +43,39 @@ def sorted_keys(keys: Ints) -> Ints:
     few = keys.astype(np.int32)
     few.sort()
     return few.astype(np.int64)
+
+
+def heads(ordered: Ints) -> Flags:
+    """(n,) which of the ordered keys are the first of their value."""
+    out = np.ones(len(ordered), bool)
+    np.not_equal(ordered[1:], ordered[:-1], out=out[1:])
+    return out
+
+
+def distinct(keys: Ints) -> Ints:
+    """The distinct keys, ascending: sorting integers is faster than numpy's hashing."""
+    ordered = sorted_keys(keys)
+    return ordered.take(heads(ordered).nonzero()[0])
+
+
+def occurrences(keys: Ints) -> tuple[Ints, Ints]:
+    """The distinct keys, ascending, and how often each occurs."""
+    ordered = sorted_keys(keys)
+    first = heads(ordered).nonzero()[0]
+    times = np.empty(len(first), np.int64)
+    np.subtract(first[1:], first[:-1], out=times[:-1])
+    times[-1:] = len(ordered) - first[-1:]
+    return ordered.take(first), times
+
+
+def numbered(keys: Ints, below: int) -> tuple[Ints, Ints]:
+    """The distinct keys from 0 to less than `below`, ascending, and for each key its place among them (n,)."""
+    order = ascending(keys, below)
+    ordered = keys.take(order)
+    first = heads(ordered)
+    places = np.empty(len(keys), np.int64)
+    places[order] = first.cumsum() - 1
+    return ordered.take(first.nonzero()[0]), places
 
 
 def coarse(values: Array | Ints) -> Array:

@@ -11,9 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical_sign, dot
+from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Ints
 from kinform.surfaces import constants
-from kinform.surfaces.groups import columns_of, distinct, group_range, group_sum, members, normal_equations, parted
+from kinform.surfaces.groups import columns_of, group_range, group_sum, members, normal_equations, parted
 from kinform.surfaces.kinds.axial import angular_widths, azimuths, cylindrical
 from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.kinds.kind import Kind, widths

@@ -10,8 +10,8 @@ from functools import cached_property
 
 import numpy as np
 
-from kinform.foundation.sorting import ascending, sorted_keys
-from kinform.model.arrays import Array, Flags, Ints
+from kinform.foundation.sorting import ascending, heads
+from kinform.model.arrays import Array, Ints
 
 MANY = 4096
 """Numbers from which on two fast sorts take less time than one that keeps the order of equal ones."""
@@ -96,13 +96,6 @@ def renumbered(numbers: Ints, count: int) -> tuple[Ints, int]:
     return (seen.cumsum() - 1).take(numbers), int(np.count_nonzero(seen))
 
 
-def heads(ordered: Ints) -> Flags:
-    """(n,) which of the ordered keys are the first of their value."""
-    out = np.ones(len(ordered), bool)
-    np.not_equal(ordered[1:], ordered[:-1], out=out[1:])
-    return out
-
-
 def columns_of(table: Array, rows: Ints) -> Array:
     """These rows of a table, in memory column by column: what reads single columns afterwards is twice as fast."""
     if len(rows) < len(table):
@@ -114,22 +107,6 @@ def parted(keys: Ints, count: int) -> tuple[Ints, Ints]:
     """Quotient and remainder of keys that are not negative; the remainder by a product, which is faster."""
     first = keys // count
     return first, keys - first * count
-
-
-def distinct(keys: Ints) -> Ints:
-    """The distinct keys, ascending: sorting integers is faster than numpy's hashing."""
-    ordered = sorted_keys(keys)
-    return ordered.take(heads(ordered).nonzero()[0])
-
-
-def occurrences(keys: Ints) -> tuple[Ints, Ints]:
-    """The distinct keys, ascending, and how often each occurs."""
-    ordered = sorted_keys(keys)
-    first = heads(ordered).nonzero()[0]
-    times = np.empty(len(first), np.int64)
-    np.subtract(first[1:], first[:-1], out=times[:-1])
-    times[-1:] = len(ordered) - first[-1:]
-    return ordered.take(first), times
 
 
 def sums_of(groups: Ints, count: int) -> Callable[[Array], Array]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.foundation.sorting import ascending, coarse
+from kinform.foundation.sorting import ascending, coarse, distinct
 from kinform.model.arrays import Array, Ints, freeze
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
@@ -19,7 +19,7 @@ from kinform.model.tolerances import Tolerances
 from kinform.surfaces import constants
 from kinform.surfaces.constants import EPS32, THREAD_FACET
 from kinform.surfaces.describe import Description, curved, flat, freeform
-from kinform.surfaces.groups import distinct, members
+from kinform.surfaces.groups import members
 from kinform.surfaces.kinds.batch import Batch
 from kinform.surfaces.polygons.facets import Facets
 from kinform.surfaces.polygons.noise import Scale, Scales

@@ -23,6 +23,7 @@ from kinform.foundation.algebra.vectors import perpendicular
 from kinform.foundation.at_work import at_work_on
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_pose
 from kinform.foundation.meshes.index import MeshIndex
+from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Ints
 from kinform.model.contacts import Patch
 from kinform.model.names import PartName
@@ -293,5 +294,5 @@ def _hits(first: fcl.CollisionObject, second: fcl.CollisionObject) -> Ints:
     fcl.collide(
         first, second, fcl.CollisionRequest(num_max_contacts=constants.CROSSINGS_MOST, enable_contact=False), result
     )
-    key = np.unique(np.array([(c.b1 << 32) + c.b2 for c in result.contacts], dtype=np.int64))
+    key = distinct(np.array([(c.b1 << 32) + c.b2 for c in result.contacts], dtype=np.int64))
     return np.stack([key >> 32, key & 0xFFFFFFFF], axis=1)

@@ -26,6 +26,9 @@ from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 
+_ANALYTIC = np.array([kind in ANALYTIC_KINDS for kind in KINDS])
+"""Which kinds of surfaces have equations, by their numbers."""
+
 
 def one_sided_mates(pair: PairView, overlap: Flags) -> list[Mate]:
     """One-sided mates among the pairs of surfaces flagged in `overlap` (s, t)."""
@@ -88,9 +91,9 @@ def _givers_and_takers(view: PairView, overlap: Flags, first: bool) -> list[tupl
     """Analytic surfaces of the part that gives the normals with freeform ones of the other that rests on it, and planes
     with larger planes that they lie on askew; of planes of one size that of the `first` part gives."""
     giver, taker = view.near
-    analytic = np.isin(giver.kinds, [KINDS.index(kind) for kind in ANALYTIC_KINDS])
+    analytic = _ANALYTIC[giver.kinds]
     large = giver.areas >= GIVER_AREA * view.tolerance**2
-    loose = ~np.isin(taker.kinds, [KINDS.index(kind) for kind in ANALYTIC_KINDS])
+    loose = ~_ANALYTIC[taker.kinds]
     flags = (analytic & large)[:, None] & loose[None]
     # a ball touches the groove of a ring along a circle or at a point, as `rounds` knows, and does not rest in it
     flags &= ~((giver.kinds == KINDS.index("sphere"))[:, None] & (taker.kinds == KINDS.index("torus"))[None])

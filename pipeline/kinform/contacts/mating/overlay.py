@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from kinform.contacts import constants
 from kinform.contacts.mating.charts import Chart
+from kinform.foundation.sorting import numbered
 from kinform.model.arrays import Array, Flags, Ints
 
 
@@ -123,7 +124,7 @@ def _outline(flat: Array) -> list[Array]:
     corner = renamed.reshape(-1, 3)
     start, end = renamed, np.roll(corner, -1, axis=1).ravel()
     low, high = np.minimum(start, end), np.maximum(start, end)
-    edge, number = np.unique(low * count + high, return_inverse=True)
+    edge, number = numbered(low * count + high, int(count) ** 2)
     net = np.bincount(number, np.where(start < end, 1.0, -1.0)).astype(np.int64)
     times = np.abs(net)
     one: Ints = np.repeat(edge // count, times)
@@ -247,6 +248,7 @@ def overlay(chart: Chart, first: Array, second: Array, tolerance: float, thin: f
     corners = corners[np.abs(_signed(corners)) > 0.0]
     # Bins are counted from the region's own corner, so that they move with it.
     place = np.floor((corners.mean(axis=1) - corners.min(axis=(0, 1))) / size).astype(np.int64)
-    _, bins = np.unique(place[:, 0] * (place[:, 1].max() + 1) + place[:, 1], return_inverse=True)
+    across, along = (place.max(axis=0) + 1).tolist()
+    _, bins = numbered(place[:, 0] * along + place[:, 1], across * along)
     rim = _rim([polygon for polygons in pieces for polygon in polygons], flat)
-    return Cells(corners * tolerance, bins.ravel().astype(np.int64), rim * tolerance, tolerance, narrow)
+    return Cells(corners * tolerance, bins, rim * tolerance, tolerance, narrow)

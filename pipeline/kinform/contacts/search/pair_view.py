@@ -19,6 +19,7 @@ from kinform.foundation.meshes.index import MeshIndex, MeshStore
 from kinform.foundation.meshes.probes import Region
 from kinform.foundation.meshes.proximity import near_boxes
 from kinform.foundation.meshes.surface_table import SurfaceTable
+from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Part
 from kinform.model.names import PartName
@@ -159,13 +160,15 @@ def _near_surfaces(placed: PartView, low: Array, high: Array) -> NearSurfaces:
     labels = placed.surfaces.labels[near]
     order = np.argsort(labels, kind="stable")
     near, labels, low_f, high_f = near[order], labels[order], low_f[order], high_f[order]
-    ids, starts = np.unique(labels, return_index=True)
+    starts = np.flatnonzero(heads(labels))
+    ids = labels[starts]
     if len(ids) > MOST_SURFACES:
         # a crumpled mesh, every facet a surface of its own: the largest decide, and memory stays bounded
         largest = np.sort(np.lexsort((ids, -placed.table.areas[ids]))[:MOST_SURFACES])
         keep = np.isin(labels, ids[largest])
         near, labels, low_f, high_f = near[keep], labels[keep], low_f[keep], high_f[keep]
-        ids, starts = np.unique(labels, return_index=True)
+        starts = np.flatnonzero(heads(labels))
+        ids = labels[starts]
     empty = np.zeros((0, 3))
     return NearSurfaces(
         **placed.table.placed(ids, placed.X_FP),  # type: ignore[arg-type]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import fcl
 import numpy as np
 
+from kinform.foundation.sorting import numbered
 from kinform.model.arrays import Array, Ints
 
 UNIT = 2.0**20
@@ -39,5 +40,5 @@ def fcl_distance(
 
 def partial_model(vertices: Array, faces: Ints) -> fcl.BVHModel:
     """FCL's model of some facets, with the vertices that they use."""
-    used, corners = np.unique(faces, return_inverse=True)
+    used, corners = numbered(faces.ravel(), len(vertices))
     return fcl_model(vertices[used], corners.reshape(-1, 3))

@@ -6,13 +6,14 @@ less than to import a tree.
 
 from __future__ import annotations
 
+import sys
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
-from kinform.foundation.constants import FEW_PAIRS, LINE, MEASURED, SHARED_PAIRS
+from kinform.foundation.constants import FEW_PAIRS, LINE, MEASURED, MEASURED_BESIDE, SHARED_PAIRS
 from kinform.model.arrays import Array, Ints
 
 
@@ -63,16 +64,16 @@ class Near:
 
 class Nearest:
     """How far points are from the nearest of some (m, 3): measured, until a tree, to the same bits, would have been
-    worth its import."""
+    worth its making, and its import where nothing else has imported it."""
 
     def __init__(self, points: Array):
-        self._points, self._left = points, MEASURED
+        self._points, self._asked = points, 0
         self._tree: Any = None
 
     def away(self, places: Array) -> Array:
         """(n,) of places (n, 3)."""
-        self._left -= len(places) * len(self._points)
-        if self._left >= 0:
+        self._asked += len(places) * len(self._points)
+        if self._tree is None and self._asked <= (MEASURED_BESIDE if "scipy.spatial" in sys.modules else MEASURED):
             return self._measured(places)
         if self._tree is None:
             from scipy.spatial import cKDTree

@@ -18,6 +18,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.constants import HITS_A_PROBE, SLIVER_WIDTH, STEEP_LEAST
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, fcl_pose, partial_model
+from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 
@@ -93,7 +94,7 @@ class Region:
         fcl.collide(fcl.CollisionObject(self.bvh), fcl.CollisionObject(probe_model), request, result)
         pairs = np.array([(c.b2, c.b1) for c in result.contacts], dtype=np.int64).reshape(-1, 2)
         facets = np.int64(max(len(mesh.faces), 1))
-        probe, facet = np.divmod(np.unique(pairs[:, 0] * facets + pairs[:, 1]), facets)
+        probe, facet = np.divmod(distinct(pairs[:, 0] * facets + pairs[:, 1]), facets)
         if self.facets is not None:
             facet = self.facets[facet]
         normal = self.index.normals(facet)

@@ -11,9 +11,10 @@ from typing import Any, TypeAlias, TypeVar, cast
 
 import numpy as np
 
+from kinform.foundation.sorting import occurrences
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.constants import RUN_OF_PAIRS
-from kinform.surfaces.groups import columns_of, occurrences, parted
+from kinform.surfaces.groups import columns_of, parted
 from kinform.surfaces.polygons.patchwork import Patchwork
 
 Params = Array

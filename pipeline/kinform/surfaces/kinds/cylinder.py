@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.sorting import occurrences
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.constants import EQUAL_STEPS, LARGEST, LEAST_POINTS, RIDGES_AGREE, SAGITTA
-from kinform.surfaces.groups import columns_of, group_mean, group_moments, group_range, occurrences, spheres_of
+from kinform.surfaces.groups import columns_of, group_mean, group_moments, group_range, spheres_of
 from kinform.surfaces.kinds.axial import frames
 from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.kinds.ruled import Ruled, generators

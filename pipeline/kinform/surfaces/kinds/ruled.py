@@ -12,11 +12,11 @@ from typing import Protocol
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.groups import (
     columns_of,
-    distinct,
     in_order,
     normal_equations,
     parted,

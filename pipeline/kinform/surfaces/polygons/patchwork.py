@@ -15,10 +15,11 @@ from typing import Any
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces.constants import FLAT_NOISES, MOST_SLACK, SLACK_ROUNDINGS
-from kinform.surfaces.groups import Ragged, columns_of, distinct, parted
+from kinform.surfaces.groups import Ragged, columns_of, parted
 from kinform.surfaces.polygons.coplanar import coplanar_facets
 from kinform.surfaces.polygons.facets import Facets, angles
 from kinform.surfaces.polygons.noise import Scale

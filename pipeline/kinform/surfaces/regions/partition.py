@@ -12,9 +12,10 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.graphs.components import components
+from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
-from kinform.surfaces.groups import distinct, quantile, renumbered
+from kinform.surfaces.groups import quantile, renumbered
 from kinform.surfaces.kinds.batch import Batch
 from kinform.surfaces.kinds.cone import Cone
 from kinform.surfaces.kinds.cylinder import Cylinder

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.foundation.graphs.components import components
+from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces.groups import Ragged, distinct, parted
+from kinform.surfaces.groups import Ragged, parted
 from kinform.surfaces.kinds.batch import Batch
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
