@@ -168,7 +168,7 @@ def _split(corners: Array, size: Array) -> Array:
         edges *= edges
         length = np.sqrt(edges[..., 0] + edges[..., 1])
         large = (length > 1.0).any(axis=1)
-        rows = large.nonzero()[0]
+        rows = np.flatnonzero(large)
         if not len(rows):
             return corners
         turned = corners[rows[:, None], _TURNS[length[rows].argmax(axis=1)]]
