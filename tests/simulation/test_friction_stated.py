@@ -12,6 +12,7 @@ from kinform.errors import InputError
 from kinform.form import load
 from kinform.kinematics import functional
 from kinform.simulation import Course, port_model, simulate_system
+from kinform.simulation.solver import stick_slip
 
 G = 9.81
 
@@ -137,17 +138,105 @@ def test_a_sled_of_sticks_is_braked_by_its_weight_and_its_seal(tmp_path):
     np.testing.assert_allclose(np.abs(run.joint_velocity[-1, 0]), 1.0 - 0.1 * (0.1 * G + 0.25), rtol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("friction", "why"),
-    [
-        ("", "state its coefficient or its effort"),
-        ("coefficient = 0.3\nstatic = 0.2", "cannot be less"),
-    ],
-)
-def test_friction_that_is_not_known_keeps_the_level_from_being_dynamic_and_says_why(tmp_path, friction, why):
-    run = kinform.run(_sled(tmp_path, friction)).simulation
+def test_friction_that_is_not_known_keeps_the_level_from_being_dynamic_and_says_why(tmp_path):
+    run = kinform.run(_sled(tmp_path, "")).simulation
+    why = "state its coefficient or its effort"
     assert run.level != "dynamic"
     assert any(why in note for note in run.assumptions) or why in run.reason
+
+
+@pytest.mark.parametrize(
+    ("friction", "line"),
+    [("coefficient = 0.3\nstatic = 0.2", "static = 0.2"), ("effort = 3.0\nstatic_effort = 1.0", "static_effort = 1.0")],
+)
+def test_friction_at_rest_below_that_in_motion_is_refused_with_its_line(tmp_path, friction, line):
+    path = _sled(tmp_path, friction)
+    number = path.read_text().splitlines().index(line) + 1
+    with pytest.raises(InputError, match=f"sled.toml:{number}: .*cannot be less than that in motion"):
+        load(path)
+
+
+def test_friction_of_materials_that_do_not_exist_is_refused_and_the_nearest_named(tmp_path):
+    path = _sled(tmp_path, "coefficient = 0.3")
+    path.write_text(path.read_text() + '[[friction]]\nmaterials = ["steel", "bronse"]\ncoefficient = 0.3\n')
+    with pytest.raises(InputError, match=r'no material "bronse"[\s\S]*did you mean "bronze"'):
+        load(path)
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_friction_of_a_pair_of_materials_that_is_stated_twice_is_refused(tmp_path, turned):
+    path = _sled(tmp_path, "coefficient = 0.3")
+    second = '["pla", "steel"]' if turned else '["steel", "pla"]'
+    text = path.read_text() + '[[friction]]\nmaterials = ["steel", "pla"]\ncoefficient = 0.3\n'
+    path.write_text(text + f"[[friction]]\nmaterials = {second}\ncoefficient = 0.1\n")
+    with pytest.raises(InputError, match='"pla" and "steel" is stated twice: the first is at line'):
+        load(path)
+
+
+RAIL = """
+schema = 1
+[assembly]
+name = "rail"
+units = "mm"
+ground = "FIRST"
+[[part]]
+name = "FIRST"
+[[part]]
+name = "SECOND"
+mass = MASS
+centre_of_mass = [0, 0, 0]
+inertia = [[1e-3, 0, 0], [0, 1e-3, 0], [0, 0, 1e-3]]
+[function]
+[[function.joint]]
+name = "slide"
+between = BETWEEN
+type = "prismatic"
+axis = [1, 0, 0]
+point = [0, 0, 0]
+[[function.drive]]
+joint = "slide"
+kind = "friction"
+coefficient = 0.2
+length = 80
+[simulation]
+duration = 0.6
+step = 0.02
+[simulation.initial.slide]
+velocity = 1000
+"""
+
+
+def _rail(tmp_path, first, second, *, turned=False, mass=2.0):
+    names = (second, first) if turned else (first, second)
+    text = RAIL.replace("BETWEEN", f'["{names[0]}", "{names[1]}"]').replace("MASS", repr(mass))
+    path = tmp_path / f"{first}.toml"
+    path.write_text(text.replace("FIRST", first).replace("SECOND", second))
+    return kinform.run(path).simulation
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_names_do_not_decide_with_which_side_a_stated_length_goes_along(tmp_path, turned):
+    """With the carriage, the second of `between`, its weight stays in the middle; on a bed it comes to the end of what
+    carries, and presses there."""
+    one, other = _rail(tmp_path, "rail", "carriage", turned=turned), _rail(tmp_path, "bed", "sled", turned=turned)
+    places = [float(np.abs(run.joint_position[-1, 0])) for run in (one, other)]
+    assert places[0] == pytest.approx(places[1], rel=1e-9)
+    if turned:
+        assert places[0] < 0.2
+    else:
+        assert places[0] == pytest.approx(1.0 / (2.0 * 0.2 * G), rel=1e-9)
+
+
+@pytest.mark.parametrize("mass", [1e-3, 1.0, 1e6, 1e9])
+def test_how_heavy_it_is_changes_nothing(tmp_path, mass, monkeypatch):
+    """Neither the motion nor the steps that it takes."""
+    steps = []
+    slope = stick_slip._Driver._slope
+    monkeypatch.setattr(stick_slip._Driver, "_slope", lambda self, t, y: steps.append(t) or slope(self, t, y))
+    run = _rail(tmp_path, "rail", "carriage", mass=mass)
+    assert run.status == "done"
+    assert float(np.abs(run.joint_position[-1, 0])) == pytest.approx(1.0 / (2.0 * 0.2 * G), rel=1e-8)
+    assert 0 < len(steps) < 2000
 
 
 def test_static_friction_below_that_in_motion_is_refused_with_its_line(tmp_path):

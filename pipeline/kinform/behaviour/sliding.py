@@ -23,6 +23,7 @@ from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.function import Drive
 from kinform.model.kinematics import Joint, Kinematics
+from kinform.model.names import BodyName
 from kinform.model.surfaces import MeshSurfaces
 
 
@@ -37,6 +38,8 @@ class Sliding:
     """Materials that meet, sorted."""
     table: Mapping[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
     """(in motion, at rest) of pairs of materials, sorted."""
+    riding: bool = False
+    """Whether a length that is stated goes along with the second body: the second of `between`."""
 
     def coefficients(self) -> tuple[float, float]:
         """(in motion, at rest) of the materials. Raises ValueError where they are not known, or differ."""
@@ -69,7 +72,8 @@ class Sliding:
             out = replace(out, flank=math.radians(given["flank"]))
         if "length" in given:
             half = 0.5 * given["length"] * metres
-            out = replace(out, lower=-half, upper=half, riding=False, offset=np.zeros(3))
+            riding = out.riding if out.upper > out.lower else self.riding
+            out = replace(out, lower=-half, upper=half, riding=riding, offset=np.zeros(3))
         if self.problem and not {"radius", "thrust_radius", "length"} & given.keys():
             raise ValueError(f"{self.problem}: state its radius, or its friction as an effort")
         return out
@@ -86,18 +90,28 @@ def sliding_joints(
         first, second = sorted(one.materials)
         table[first, second] = (one.coefficient, one.static)
     parts = {body.name: body.parts for body in kinematics.bodies}
+    turned = _turned(assembly, kinematics)
     out: dict[str, Sliding] = {}
     for joint in kinematics.joints:
         patches = [] if contacts is None else [contacts.patches[k] for k in joint.patches]
         pairs = {_materials(assembly, patch) for patch in patches}
         ordered = tuple(sorted(pairs, key=lambda pair: tuple(name or "" for name in pair)))
-        sliding = Sliding(pairs=ordered, table=table)
+        riding = joint.bodies not in turned
+        sliding = Sliding(pairs=ordered, table=table, riding=riding)
         try:
-            rubs = _rubs(assembly, surfaces, joint, patches, parts[joint.bodies[1]])
+            rubs = _rubs(assembly, surfaces, joint, patches, parts[joint.bodies[1]], riding=riding)
             out[str(joint.name)] = replace(sliding, rubs=rubs)
         except ValueError as error:
             out[str(joint.name)] = replace(sliding, problem=str(error))
     return out
+
+
+def _turned(assembly: Assembly, kinematics: Kinematics) -> set[tuple[BodyName, BodyName]]:
+    """Pairs of bodies whose joint states their first one, by name, as the second of `between`."""
+    body_of = {part: body.name for body in kinematics.bodies for part in body.parts}
+    both = [joint.between for joint in assembly.function.joints if len(joint.between) == 2]
+    sides = [[body_of[assembly.parts_of(name)[0]] for name in names] for names in both]
+    return {(second, first) for first, second in sides if second < first}
 
 
 def _materials(assembly: Assembly, patch: Patch) -> tuple[str | None, str | None]:
@@ -111,6 +125,8 @@ def _rubs(
     joint: Joint,
     patches: Sequence[Patch],
     second: Iterable[str],
+    *,
+    riding: bool,
 ) -> Rubs:
     """What rubs in one joint; Rubs() without patches. Raises ValueError with why that is not known."""
     if not patches or joint.axis is None or joint.type not in ("revolute", "prismatic", "cylindrical", "screw"):
@@ -133,7 +149,7 @@ def _rubs(
     base = np.zeros(3) if joint.point is None or not np.all(np.isfinite(joint.point)) else joint.point
     if joint.type != "prismatic":
         centre = base
-    ends = _ends(assembly, surfaces, joint, round_ or faces, set(second), centre)
+    ends = _ends(assembly, surfaces, joint, round_ or faces, set(second), centre, riding=riding)
     out = replace(ends, offset=centre - base)
     if round_:
         apart = max(float(_distance(p.point[None], round_[0].point, axis)[0]) for p in round_)
@@ -188,8 +204,11 @@ def _ends(
     patches: Sequence[Patch],
     second: set[str],
     centre: Array,
+    *,
+    riding: bool,
 ) -> Rubs:
-    """Both ends of what carries loads across the axis, from `centre`; they go along with the shorter surfaces."""
+    """Both ends of what carries loads across the axis, from `centre`; they go along with the shorter surfaces, and of
+    surfaces as long as each other with the second body, or not, as `riding` has it."""
     axis = joint.axis
     assert axis is not None
     low, high, longest = [], [], [0.0, 0.0]
@@ -207,7 +226,9 @@ def _ends(
     if not low or max(high) <= min(low):
         return Rubs()
     at = float(centre @ axis)
-    return Rubs(lower=min(low) - at, upper=max(high) - at, riding=longest[1] < longest[0])
+    if abs(longest[1] - longest[0]) > ALIKE_RADII * max(longest):
+        riding = longest[1] < longest[0]
+    return Rubs(lower=min(low) - at, upper=max(high) - at, riding=riding)
 
 
 def _flat(

@@ -32,8 +32,8 @@ from kinform.model.simulation import Simulation
 Stage = TypeVar("Stage")
 Need = Literal[
     "meshes", "solid meshes", "closed meshes", "stated masses", "sizes", "contacts", "kinematics", "mass",
-    "attempt", "simulation", "motion", "forces", "comparisons", "stated mobility", "stated joints", "stated ranges",
-    "stated couplings",
+    "attempt", "simulation", "motion", "forces", "comparisons", "intended joints", "stated mobility", "stated joints",
+    "stated ranges", "stated couplings",
     "stated drives", "stated loads", "stated assumptions", "stated initial values", "inferred fasteners",
     "several parts", "stated mobility of sub-assemblies", "descriptions", "weighed shapes", "collision geometry",
     "described limits",
@@ -206,6 +206,8 @@ class Context:
             return inconclusive(f"the simulation is partial: {held}: held, because not understood")
         if need in ("motion", "forces"):
             return self.lacks("simulation") or self._unseen(need)
+        if need == "intended joints":
+            return self.lacks("stated joints") or self.lacks("kinematics")
         if need == "comparisons":
             no_geometry = skipped("all joints come from the function itself: there is no geometry to compare")
             missing = self.lacks("stated joints") or self.lacks("kinematics")
@@ -271,6 +273,11 @@ class Context:
     def comparisons(self) -> tuple[Comparison, ...]:
         """Each intended joint beside what geometry gives, sorted by name."""
         return self._result("comparisons", self._every_comparison)
+
+    @property
+    def intended(self) -> tuple[Comparison, ...]:
+        """The same, also where all joints come from the function itself."""
+        return self._result("intended joints", self._every_comparison)
 
     @cached_property
     def _every_comparison(self) -> tuple[Comparison, ...]:

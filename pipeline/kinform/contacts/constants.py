@@ -99,6 +99,8 @@ FACING_ROUNDED = 1e-9
 """By which the cosine of two facets may be off for rounding."""
 MANY_FACING = 20_000
 """Pairs of a probe and a facet from which on a grid tells sooner which of them are near each other."""
+MOST_ASKED = 20_000
+"""Facets beyond which finding out which probes can hit any of them takes longer than casting all."""
 ENCLOSED_HELD = 0.02
 """Singular value below which patches leave a motion that is to be looked at."""
 ENCLOSING_SPEED = 0.3

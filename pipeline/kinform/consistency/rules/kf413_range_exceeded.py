@@ -35,7 +35,7 @@ def check(context: Context) -> Outcome:
     """Both sides of every stated range beside the run."""
     stated = sorted((j for j in context.function.joints if j.range is not None), key=lambda joint: joint.name)
     run = context.simulation
-    joints = {item.intended.name: joint_as_intended(item) for item in context.comparisons}
+    joints = {item.intended.name: joint_as_intended(item) for item in context.intended}
     findings: list[Finding] = []
     unknown = []
     for intended in stated:
@@ -77,4 +77,4 @@ def _beyond(context: Context, run: Simulation, intended: IntendedJoint, joint: J
         )
 
 
-RULE = Rule("KF413", "range-exceeded", "warning", __doc__, check, needs=("stated ranges", "motion", "comparisons"))
+RULE = Rule("KF413", "range-exceeded", "warning", __doc__, check, needs=("stated ranges", "motion", "intended joints"))

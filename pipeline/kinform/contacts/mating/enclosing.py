@@ -141,6 +141,8 @@ def _can_hit(view: PairView, points: Array, normals: Array, reach: float, column
     wanted[view.near[1].ids[columns]] = True
     facets = np.arange(len(b.faces)) if b.region.facets is None else b.region.facets
     facets = facets[wanted[b.surfaces.labels[facets]]]
+    if len(facets) > constants.MOST_ASKED:
+        return np.ones(len(points), bool)
     half = reach * (np.abs(normals) + 2.0 * SLIVER_WIDTH)
     low, high = points - half, points + half
     low_b, high_b = boxes_of(b, facets)

@@ -156,7 +156,8 @@ class Friction(_Drive):
     length: NonNegative | None = Field(
         None,
         description="of journal or guide, about the joint's point; default from the contact; 0: moments across "
-        "the axis are carried without friction",
+        "the axis are carried without friction; of a joint that slides it goes along with the shorter side, or, where "
+        "contact does not show which that is, with the second of `between`",
     )
     flank: Annotated[float, Field(ge=0.0, lt=90.0)] | None = Field(
         None, description="degrees: half the angle of a thread; default from the contact"

@@ -156,13 +156,14 @@ class _AssemblyReader:
         )
         readers = [FunctionReader(scope, self.files, places, joints, grounds, meshed) for scope in self.scopes]
         intended = top.manifest.function
+        materials = {*BUILT_IN, *(name for scope in self.scopes for name in scope.manifest.materials)}
         function = Function(
             mobility=intended.mobility if intended else None,
             mobility_line=top.line("function", "mobility") if intended else None,
             joints=tuple(joint for reader in readers for joint in reader.intended()),
             couplings=tuple(coupling for reader in readers for coupling in reader.couplings()),
             drives=tuple(drive for reader in readers for drive in reader.drives()),
-            frictions=tuple(pair for reader in readers for pair in reader.frictions()),
+            frictions=tuple(pair for reader in readers for pair in reader.frictions(materials)),
             loads=tuple(load for reader in readers for load in reader.loads()),
             springs=tuple(spring for reader in readers for spring in springs_of(reader)),
             requirements=tuple(requirement for reader in readers for requirement in requirements_of(reader)),

@@ -23,6 +23,19 @@ def complain_of_drive(scope: Scope, table: Any, law: bool, *path: str | int) -> 
         _complain_of_controller(scope, table, *path)
     if table.kind == "dc_motor":
         _complain_of_motor(scope, table, law, *path)
+    if table.kind == "friction":
+        _complain_of_friction(scope, table, *path)
+
+
+def _complain_of_friction(scope: Scope, table: Any, *path: str | int) -> None:
+    """Problems of what the keys of a friction say about each other."""
+    for rest, motion in (("static", "coefficient"), ("static_effort", "effort")):
+        lesser, greater = getattr(table, rest), getattr(table, motion)
+        if lesser is not None and greater is not None and lesser < greater:
+            wrong = (
+                f"friction at rest ({rest} = {lesser:g}) cannot be less than that in motion ({motion} = {greater:g})"
+            )
+            scope.complain(wrong, f"give {rest} ≥ {motion}", *path, rest)
 
 
 def _complain_of_controller(scope: Scope, table: Any, *path: str | int) -> None:

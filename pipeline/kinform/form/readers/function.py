@@ -6,7 +6,7 @@ Requirements are read in `requirements`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -204,15 +204,25 @@ class FunctionReader:
             where = self.scope.where(*path)
             yield Drive(joint, table.kind, law, parameters, self.scope.metres, *where, table.freedom or "")
 
-    def frictions(self) -> Iterator[MaterialFriction]:
-        """`[[friction]]`."""
+    def frictions(self, materials: Collection[str]) -> Iterator[MaterialFriction]:
+        """`[[friction]]`, of these materials; each pair is stated once in a file."""
+        lines: dict[tuple[str, ...], int] = {}
         for path, table in self.scope.tables("friction"):
+            what = f"[[friction]] {path[1] + 1}"
+            for name in table.materials:
+                if name not in materials:
+                    remedy = did_you_mean(name, materials, "the materials")
+                    self.scope.complain(f"{what}: there is no material {in_quotes(name)}", remedy, *path, "materials")
+            pair = tuple(sorted(table.materials))
+            if pair in lines:
+                names = " and ".join(in_quotes(name) for name in pair)
+                wrong = f"{what}: the friction of {names} is stated twice: the first is at line {lines[pair]}"
+                self.scope.complain(wrong, "keep one of them", *path, "materials")
+            lines.setdefault(pair, self.scope.line(*path, "materials"))
             static = table.coefficient if table.static is None else table.static
             if static < table.coefficient:
                 wrong = "friction at rest cannot be less than that in motion"
-                self.scope.complain(
-                    f"[[friction]] {path[1] + 1}: {wrong}", "give static ≥ coefficient", *path, "static"
-                )
+                self.scope.complain(f"{what}: {wrong}", "give static ≥ coefficient", *path, "static")
             first, second = table.materials
             yield MaterialFriction((first, second), table.coefficient, static, *self.scope.where(*path))
 

@@ -57,6 +57,9 @@ class Rubbing:
     """Of these: how much more it is for y along the rate, and less against it, as a share of |y|."""
     called: str = "friction"
     """What it is in results: also gear_loss and rotor."""
+    thread: bool = False
+    """Whether it is that of a thread, on whose flanks only what the thread itself passes on presses: drives turn the
+    nut beside it."""
 
     @property
     def loaded(self) -> bool:
@@ -124,4 +127,5 @@ def rubbing_of(mechanism: Mechanism, system: System, joint: JointComponent, fric
     axis = np.zeros(3) if joint.geometry.axis is None else np.asarray(joint.geometry.axis)
     slide = slot.q.start + {"prismatic": 0, "cylindrical": 1}.get(joint.kind.name, -1 - slot.q.start)
     q, v = slot.q.start + friction.freedom, slot.v.start + friction.freedom
-    return Rubbing(friction, joint.subject, system.joints.index(joint), link, axis, q, v, slide)
+    thread = joint.kind.name == "screw"
+    return Rubbing(friction, joint.subject, system.joints.index(joint), link, axis, q, v, slide, thread=thread)

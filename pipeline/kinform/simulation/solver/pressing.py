@@ -33,6 +33,8 @@ class Responses:
     accelerations: Array
     given: Array
     needed: Array
+    size: float
+    """N·m or N of what is tried: of a mechanism of tons, what one newton changes is lost in rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +51,8 @@ class Sight:
     """(G, k) what all gears give their shafts at a."""
     sides: Ints
     """(G,) as of `gear_forces.Transmitted`."""
+    size: float
+    """N·m or N of the trials."""
 
     @property
     def base(self) -> Array:
@@ -58,7 +62,12 @@ class Sight:
     @property
     def slopes(self) -> Array:
         """(b, 3, k - 1) what a unit of each friction adds."""
-        return self.seen[:, :, 1:] - self.seen[:, :, :1]
+        return (self.seen[:, :, 1:] - self.seen[:, :, :1]) / self.size
+
+    @property
+    def carried(self) -> Array:
+        """(m, k - 1) what a unit of each friction adds to what lossy gears pass on."""
+        return (self.passed[:, 1:] - self.passed[:, :1]) / self.size
 
     def grips(self, vectors: Array) -> Array:
         """(m,) of vectors (b, 3)."""
@@ -66,7 +75,7 @@ class Sight:
 
     def flanks(self, u: Array, flanks: list[int]) -> list[int]:
         """Which sides push for the sizes u (k - 1,); as they were where nothing is passed on."""
-        efforts = self.geared[:, 0] + (self.geared[:, 1:] - self.geared[:, :1]) @ u
+        efforts = self.geared[:, 0] + (self.geared[:, 1:] - self.geared[:, :1]) / self.size @ u
         return [
             before if side < 0 or effort == 0.0 else int(side if effort > 0.0 else 1 - side)
             for before, side, effort in zip(flanks, self.sides, efforts, strict=True)
@@ -94,7 +103,11 @@ def pressing(run: Run, t: float, y: Array, to: Responses, held: Sequence[int], f
         found = reactions(dynamics, states, np.full(count, t), effort, run.settings.free, network, flanks)
         if found.gears is not None:
             geared, sides = found.gears.efforts[:, :, 0].T, found.gears.sides[0]
-        wrenches, R = found.on_second, states.poses[0, :, :3, :3]
+        wrenches, R = found.on_second.copy(), states.poses[0, :, :3, :3]
+        for k, one in enumerate(rubbings):
+            if one.thread and one.lost is None:
+                own = to.trials[:, k] + (to.needed[:, one.v] if k in held else 0.0)
+                wrenches[:, one.number, :3] -= (effort[:, one.v] - own)[:, None] * (R[one.link] @ one.axis)
         for k, one in enumerate(rubbings):
             if one.lost is not None and one.lost.gear >= 0 and found.gears is not None:
                 passed[k] = found.gears.efforts[:, one.lost.gear, one.lost.side]
@@ -109,7 +122,7 @@ def pressing(run: Run, t: float, y: Array, to: Responses, held: Sequence[int], f
         for k, one in enumerate(rubbings)
     ]
     owner = np.repeat(np.arange(len(rubbings)), [len(rows) for rows in each])
-    return Sight(np.concatenate(each), owner, passed, geared, sides)
+    return Sight(np.concatenate(each), owner, passed, geared, sides, to.size)
 
 
 def _through_motor(run: Run, t: float, y: Array, to: Responses, number: int, held: Sequence[int]) -> Array:

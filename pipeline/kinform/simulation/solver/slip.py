@@ -13,12 +13,14 @@ its linear part A u goes to the left side, and u ← (1 − A)⁻¹ (c(u) − A 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import norm
 from kinform.model.arrays import Array, Flags
 from kinform.simulation.constants import (
     DEPENDENT_GEARS,
@@ -82,10 +84,10 @@ def dry(run: Run, t: float, y: Array, acting: Mapping[int, Rub], held: Sequence[
     rubbings = dynamics.actuation.frictions
     columns = sorted(acting)
     signs = np.array([-acting[k].against for k in columns], dtype=np.float64)
-    trials = np.zeros((1 + len(columns), len(rubbings)))
+    trials, size = np.zeros((1 + len(columns), len(rubbings))), _size(dynamics)
     for row, (k, sign) in enumerate(zip(columns, signs, strict=True), start=1):
-        trials[row, k] = sign
-    to = Responses(trials, *_respond(run, t, y, trials))
+        trials[row, k] = sign * size
+    to = Responses(trials, *_respond(run, t, y, trials), size)
     toothed = pressing_teeth(dynamics)
     flanks = _FLANKS.get(dynamics, [0] * len(dynamics.system.gears))
     for _ in range(2 + 2 * len(toothed)):
@@ -106,10 +108,16 @@ def dry(run: Run, t: float, y: Array, acting: Mapping[int, Rub], held: Sequence[
     set_efforts(dynamics, efforts)
 
     def added(of: Array) -> Array:
-        return np.asarray(of[0] + np.tensordot(u, of[1:] - of[0], axes=1))
+        return np.asarray(of[0] + np.tensordot(u, (of[1:] - of[0]) / size, axes=1))
 
     leans = np.array([one.lean for one in rubbings]) * added(sight.passed.T)
     return Answer(efforts, sight.grips(sight.base + sight.slopes @ u), leans, added(to.needed), added(to.accelerations))
+
+
+def _size(dynamics: Dynamics) -> float:
+    """N·m or N: a power of two near the moment of all weights, one at least."""
+    moment = float(dynamics.mass.sum()) * norm(dynamics.gravity) * dynamics.mechanism.length
+    return 2.0 ** max(round(math.log2(max(moment, 1.0))), 0)
 
 
 def _settled(
@@ -126,7 +134,7 @@ def _settled(
     lean, passed, share = np.array([one.lean for one, _ in pairs]), sight.passed[columns], None
     if lean.any():
         leaning = np.array([rub.against for _, rub in pairs]) * rates * lean
-        left = np.eye(len(columns)) - leaning[:, None] * (passed[:, 1:] - passed[:, :1])
+        left = np.eye(len(columns)) - leaning[:, None] * sight.carried[columns]
         least = least + leaning * passed[:, 0]
         share = np.linalg.inv(left) if np.linalg.det(left) > 0.0 else np.full(left.shape, np.inf)
         steep = np.abs(share) @ steep if np.all(np.isfinite(share)) else np.full(left.shape, 2.0)

@@ -16,12 +16,14 @@ from functools import partial
 import numpy as np
 
 from kinform.behaviour.signals import Sine
+from kinform.foundation.algebra.vectors import norm
 from kinform.model.arrays import Array, Flags
 from kinform.simulation import constants
 from kinform.simulation.kernel import layout
 from kinform.simulation.kernel.calls import engine, ready
 from kinform.simulation.mechanism.actuation import Stop
 from kinform.simulation.mechanism.dynamics import Dynamics
+from kinform.simulation.mechanism.states import states_at
 from kinform.simulation.settings import Conduct
 from kinform.simulation.solver.friction_stops import strike
 from kinform.simulation.solver.record import FrictionRecord, Record
@@ -107,6 +109,16 @@ class _Driver:
         self.run.derivative(t, y.copy(), out)
         return out
 
+    def _energy(self) -> float:
+        """J: the size of what friction may turn into heat: the motion's energy, and that of all weights in a fall as
+        high as the mechanism."""
+        run = self.run
+        dynamics, mechanism = run.dynamics, run.dynamics.mechanism
+        q, v = dynamics.tables.unpack(run.y)
+        states = states_at(mechanism, q[None], v[None], np.zeros_like(v)[None])
+        weight = float(dynamics.mass.sum()) * norm(dynamics.gravity)
+        return float(dynamics.energy(q[None], v[None], states)[0][0]) + weight * mechanism.length
+
     def _smooth(self, t: float, end: float) -> tuple[float, str]:
         """Integrate up to the next change, or to the end: (how far, why it cannot go on)."""
         from scipy.integrate import DOP853
@@ -115,6 +127,8 @@ class _Driver:
         # Nothing depends on meters: their errors do not shorten steps.
         atol = np.full_like(run.y, settings.atol)
         atol[run.dynamics.tables.metered] = np.inf
+        # work is as large as what moves is heavy, and the motion is not
+        atol[-1] *= max(1.0, self._energy())
         solver = DOP853(self._slope, t, run.y.copy(), end, rtol=settings.rtol, atol=atol, max_step=self._longest())
         while solver.status == "running":
             solver.step()
