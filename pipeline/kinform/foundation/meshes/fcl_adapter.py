@@ -5,6 +5,7 @@ from __future__ import annotations
 import fcl
 import numpy as np
 
+from kinform.foundation.memory import give_back
 from kinform.foundation.sorting import numbered
 from kinform.model.arrays import Array, Ints
 
@@ -13,11 +14,16 @@ UNIT = 2.0**20
 2e-4 of what it counts in: it is given about micrometres, by a power of two, which rounds nothing."""
 
 
+MANY_FACETS = 300_000
+"""Facets from which on a model takes so much memory, a kilobyte each, that what is free is given back first."""
+
 _DISTANCE = fcl.DistanceRequest()
 
 
 def fcl_model(vertices: Array, faces: Ints) -> fcl.BVHModel:
     """FCL's model of triangles: vertices (V, 3) m and faces (F, 3). To be placed and measured by the two below."""
+    if len(faces) > MANY_FACETS:
+        give_back()
     model = fcl.BVHModel()
     model.beginModel(len(vertices), len(faces))
     model.addSubModel(np.ascontiguousarray(UNIT * vertices), np.ascontiguousarray(faces))

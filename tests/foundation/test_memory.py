@@ -1,0 +1,50 @@
+"""Memory goes back to the system, where the C library keeps it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from manifold3d import Manifold
+
+from kinform.foundation.memory import give_back
+from kinform.foundation.meshes import fcl_adapter
+
+KEPT = """
+import ctypes, sys
+sys.path[:0] = {path!r}
+import numpy as np
+from kinform.foundation.memory import give_back
+def held():
+    return int(open("/proc/self/statm").read().split()[1]) * 4096
+np.ones(4_000_000)  # from here on arrays of this size come from the heap
+rows = [np.ones(1_000_000) for _ in range(40)]
+last = np.ones(1000)
+full = held()
+del rows
+kept = held()
+give_back()
+print(full - kept, kept - held())
+"""
+
+
+def test_what_was_freed_is_given_back():
+    if not sys.platform.startswith("linux"):
+        pytest.skip("only Linux tells how much a process holds")
+    give_back()
+    code = KEPT.format(path=[path for path in sys.path if path])
+    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    freed, given = map(int, ran.stdout.split())
+    assert freed + given > 200e6
+
+
+def test_large_models_are_what_small_ones_are(monkeypatch):
+    monkeypatch.setattr(fcl_adapter, "MANY_FACETS", 0)
+    asked = []
+    monkeypatch.setattr(fcl_adapter, "give_back", lambda: asked.append(True))
+    mesh = Manifold.sphere(1.0, 16).to_mesh()
+    points, faces = np.asarray(mesh.vert_properties, float), np.asarray(mesh.tri_verts, np.int64)
+    assert fcl_adapter.fcl_model(points, faces).num_tries_() == len(faces)
+    assert asked
