@@ -54,8 +54,13 @@ MOTION = '[[function.drive]]\njoint = "thread"\nkind = "motion"\nlaw = {{ type =
 NAMES = [("base", "nut"), ("screw", "nut")]
 
 
-def _run(tmp_path, names, drive, mu, pitch=1e3 * LEAD):
-    text = NUT.replace("PITCH", repr(pitch)).replace("MU", repr(mu)).replace("DRIVE", drive)
+def _run(tmp_path, names, drive, mu, pitch=1e3 * LEAD, shaft="[function]\n"):
+    text = (
+        NUT.replace("[function]\n", shaft, 1)
+        .replace("PITCH", repr(pitch))
+        .replace("MU", repr(mu))
+        .replace("DRIVE", drive)
+    )
     path = tmp_path / "jack.toml"
     path.write_text(text.replace("BASE", names[0]).replace("NUT", names[1]))
     run = kinform.run(path).simulation
@@ -90,3 +95,34 @@ def test_a_nut_that_is_led_takes_the_torque_of_the_handbook(tmp_path, names, way
     exact = MASS * G * _arm(0.12, 0.005, way)
     assert exact * way > 0.0
     np.testing.assert_allclose(np.abs(run.drive_effort[1, led]), abs(exact), rtol=1e-9)
+
+
+SHAFT = """[[part]]
+name = "shaft"
+mass = 0.1
+centre_of_mass = [100, 0, 0]
+inertia = [[1e-4, 0, 0], [0, 1e-4, 0], [0, 0, 1e-4]]
+[function]
+[[function.joint]]
+name = "motor"
+between = ["BASE", "shaft"]
+type = "revolute"
+axis = [0, 0, 1]
+point = [100, 0, 0]
+[[function.coupling]]
+joints = JOINTS
+ratio = RATIO
+"""
+
+
+@pytest.mark.parametrize("names", NAMES)
+@pytest.mark.parametrize("turned", [False, True])
+def test_what_a_coupling_gives_the_nut_does_not_press_on_its_thread_either(tmp_path, names, turned):
+    """A motor turns five times as fast as the nut, the other way."""
+    shaft = SHAFT.replace("JOINTS", '["thread", "motor"]' if turned else '["motor", "thread"]')
+    shaft = shaft.replace("RATIO", "-0.2" if turned else "-5.0")
+    run = _run(tmp_path, names, EFFORT.format(-0.3).replace("thread", "motor"), 0.08, shaft=shaft)
+    arm, forward = _arm(0.08, LEAD, 1), LEAD / (2.0 * math.pi)
+    exact = (5.0 * 0.3 - MASS * G * arm) / (INERTIA + 25.0 * 1e-4 + MASS * forward * arm)
+    nut = run.body_names.index(names[1])
+    assert run.p_WB[-1, nut, 2] - run.p_WB[0, nut, 2] == pytest.approx(0.5 * exact * forward * 0.1**2, rel=1e-8)

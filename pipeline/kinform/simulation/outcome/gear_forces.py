@@ -39,6 +39,18 @@ def toothed(system: System) -> Flags:
     return np.array([_sides(system, gear) is not None for gear in system.gears], dtype=np.bool_)
 
 
+def on_shafts(dynamics: Dynamics, gears: Transmitted) -> Array:
+    """(T, n) what the rates get from gears of which nobody knows where their teeth push: they act in the joints,
+    between the two bodies of each, as drives do."""
+    mechanism, system = dynamics.mechanism, dynamics.system
+    first = {slot.name: slot.v.start for slot in mechanism.slots}
+    out = np.zeros((len(gears.efforts), mechanism.rates))
+    for k in np.flatnonzero(~toothed(system)):
+        at = first[system.joint_at(system.gears[k].name, "a").subject]
+        out += gears.efforts[:, k, 0, None] / mechanism.gear_v[k, at] * mechanism.gear_v[k]
+    return out
+
+
 def _sides(system: System, gear: Gear) -> tuple[str, str, str] | None:
     """Names of the body that bears both joints, of the other at a and of the other at b."""
     if gear.pitch_point is None or gear.flank is None or gear.back is None:

@@ -17,7 +17,7 @@ from kinform.simulation.kernel import layout
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.efforts import effort_of
 from kinform.simulation.mechanism.states import states_at
-from kinform.simulation.outcome.gear_forces import toothed
+from kinform.simulation.outcome.gear_forces import on_shafts, toothed
 from kinform.simulation.outcome.reactions import Network, reactions
 from kinform.simulation.solver.run_state import Run
 
@@ -104,6 +104,8 @@ def pressing(run: Run, t: float, y: Array, to: Responses, held: Sequence[int], f
         if found.gears is not None:
             geared, sides = found.gears.efforts[:, :, 0].T, found.gears.sides[0]
         wrenches, R = found.on_second.copy(), states.poses[0, :, :3, :3]
+        if any(one.thread for one in rubbings) and found.gears is not None:
+            effort = effort + on_shafts(dynamics, found.gears)
         for k, one in enumerate(rubbings):
             if one.thread and one.lost is None:
                 own = to.trials[:, k] + (to.needed[:, one.v] if k in held else 0.0)
