@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from support.nuts import MASS, G, arm, nut
 
 import kinform
 
@@ -241,49 +242,12 @@ def test_a_journal_whose_load_the_nut_and_its_guide_share_leaves_friction_open(t
     assert "redundant constraints share" in findings["KF902"].message
 
 
-NUT = """schema = 1
-[assembly]
-name = "jack"
-units = "m"
-ground = "base"
-[[part]]
-name = "base"
-[[part]]
-name = "nut"
-mass = 20
-centre_of_mass = [0, 0, 0]
-inertia = [[0.001, 0, 0], [0, 0.001, 0], [0, 0, 0.002]]
-[function]
-[[function.joint]]
-name = "thread"
-between = ["base", "nut"]
-type = "screw"
-axis = [0, 0, 1]
-point = [0, 0, 0]
-pitch = 0.02
-[[function.drive]]
-joint = "thread"
-kind = "friction"
-coefficient = 0.08
-static = 0.1
-radius = 0.01
-flank = 14.5
-"""
-
-
-def _torque(mu, way):
-    """N·m at a load of 20 kg (Shigley's Mechanical Engineering Design, equations 8-1 and 8-2)."""
-    slope = np.arctan(0.02 / (2.0 * np.pi * 0.01))
-    normal = np.arctan(np.tan(np.radians(14.5)) * np.cos(slope))
-    return 20.0 * 9.81 * 0.01 * np.tan(slope + way * np.arctan(mu / np.cos(normal)))
-
-
 @pytest.mark.parametrize("fits", [True, False])
 def test_a_nut_on_a_screw_at_rest_is_held_and_driven_at_the_torques_of_the_handbook(tmp_path, fits):
     aside = 1.0 + (1e-6 if fits else -1e-6)
-    holds = float(_torque(0.1, -1)) * aside
-    text = NUT + _requirement("hold", joint='"thread"', limit=repr(holds))
+    holds = MASS * G * arm(0.1, -1) * aside
+    text = nut(static=0.1) + _requirement("hold", joint='"thread"', limit=repr(holds))
     assert ("KF424" in _asked(tmp_path, text)[0]) != fits
-    share = float(_torque(0.0, 1) / _torque(0.08, 1)) / aside
-    text = NUT + _requirement("efficiency", joint='"thread"', minimum=repr(share))
+    share = arm(0.0, 1) / arm(0.08, 1) / aside
+    text = nut(static=0.1) + _requirement("efficiency", joint='"thread"', minimum=repr(share))
     assert ("KF434" in _asked(tmp_path, text)[0]) != fits

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from support.devices import Z, intended, joint, rod, sine
 from support.requirements import ORIGIN, G, Y, circle, design, state, wheel
+from support.sleds import sled
 
 import kinform
 from kinform.consistency import check
@@ -216,37 +217,9 @@ def test_a_motion_of_whole_oscillations_between_output_times_leaves_its_range_un
     assert "output times 2 s apart" in ran.reason
 
 
-BEYOND = """
-schema = 1
-[assembly]
-name = "sled"
-units = "mm"
-ground = "bed"
-[[part]]
-name = "bed"
-[[part]]
-name = "sled"
-mass = 2.0
-centre_of_mass = [0, 0, 0]
-inertia = [[1e-3, 0, 0], [0, 1e-3, 0], [0, 0, 1e-3]]
-[function]
-[[function.joint]]
-name = "slide"
-between = ["bed", "sled"]
-type = "prismatic"
-axis = [1, 0, 0]
-range = [-10, 10]
-[simulation]
-duration = 0.5
-step = 0.1
-[simulation.initial.slide]
-velocity = VELOCITY
-"""
-
-
 @pytest.mark.parametrize(("velocity", "side"), [(1000, "upper"), (-1000, "lower"), (15, "")])
 def test_bodies_without_meshes_leave_their_range_too(tmp_path, velocity, side):
     path = tmp_path / "sled.toml"
-    path.write_text(BEYOND.replace("VELOCITY", str(velocity)))
+    path.write_text(sled("bed", "sled", "range = [-10, 10]", velocity=velocity))
     found = [f for f in kinform.run(path).findings if f.code == "KF413"]
     assert [f"beyond the {side} end" in f.message for f in found] == ([True] if side else [])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from support.sleds import sled
 from support.solids import box, rod, save
 
 import kinform
@@ -173,44 +174,12 @@ def test_friction_of_a_pair_of_materials_that_is_stated_twice_is_refused(tmp_pat
         load(path)
 
 
-RAIL = """
-schema = 1
-[assembly]
-name = "rail"
-units = "mm"
-ground = "FIRST"
-[[part]]
-name = "FIRST"
-[[part]]
-name = "SECOND"
-mass = MASS
-centre_of_mass = [0, 0, 0]
-inertia = [[1e-3, 0, 0], [0, 1e-3, 0], [0, 0, 1e-3]]
-[function]
-[[function.joint]]
-name = "slide"
-between = BETWEEN
-type = "prismatic"
-axis = [1, 0, 0]
-point = [0, 0, 0]
-[[function.drive]]
-joint = "slide"
-kind = "friction"
-coefficient = 0.2
-length = 80
-[simulation]
-duration = 0.6
-step = 0.02
-[simulation.initial.slide]
-velocity = 1000
-"""
+GUIDE = '[[function.drive]]\njoint = "slide"\nkind = "friction"\ncoefficient = 0.2\nlength = 80\n'
 
 
-def _rail(tmp_path, first, second, *, turned=False, mass=2.0):
-    names = (second, first) if turned else (first, second)
-    text = RAIL.replace("BETWEEN", f'["{names[0]}", "{names[1]}"]').replace("MASS", repr(mass))
+def _rail(tmp_path, first, second, **more):
     path = tmp_path / f"{first}.toml"
-    path.write_text(text.replace("FIRST", first).replace("SECOND", second))
+    path.write_text(sled(first, second, GUIDE, **more))
     return kinform.run(path).simulation
 
 
