@@ -101,6 +101,12 @@ RING_OPEN = np.radians(200.0)
 """rad: the widest angle about the axis without a flat. Half a ring, as of a half-bearing, goes round enough."""
 RING_DIRECTIONS = 24
 """Directions of ridges that are looked at, the longest first: crumpled meshes have thousands."""
+RING_SPARE = 1e-3
+"""Share by which a row of flats misses a limit of the above before it is left out at first sight: sums about a middle
+are good to far less."""
+RING_FLAT = 1e-8
+"""Corners whose spread across their length is no more than the root of this share of it are on a line at first sight:
+beyond, sums about their middle keep eight digits."""
 MOST_RINGS = 64
 """Rings along one direction that are looked at, those of the longest ridges."""
 
@@ -126,5 +132,7 @@ HULL_THICKNESS = 1e-7
 mesh is exact to."""
 ROWS_TOGETHER = 64
 """Rows of an array that are looked at as one for the least and the greatest of its columns."""
+KEPT_EDGES = 200_000
+"""Facets up to which the shared edges of a mesh are kept: 10 MB."""
 KEPT_SPANS = 200_000
 """Facets up to which the spans of a mesh are kept: 5 MB; of more those that are asked for are computed anew."""

@@ -8,16 +8,17 @@ import fcl
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
-from kinform.foundation.constants import BALL_PARTS, BALL_SHARE, KEPT_SPANS, RAYS
+from kinform.foundation.constants import BALL_PARTS, BALL_SHARE, KEPT_EDGES, KEPT_SPANS, RAYS
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
-from kinform.foundation.meshes.edges import shared_edges
+from kinform.foundation.meshes.edges import SharedEdges, shared_edges
 from kinform.foundation.meshes.fcl_adapter import fcl_model
 from kinform.foundation.meshes.near import Nearest
 from kinform.foundation.meshes.parity import Ray
 from kinform.foundation.meshes.probes import Region
 from kinform.foundation.meshes.rings import Ring, rings_of
 from kinform.foundation.meshes.surface_table import SurfaceTable
+from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
@@ -30,6 +31,7 @@ class MeshIndex:
         self.mesh = mesh
         self._bvh: fcl.BVHModel | None = None
         self._spans: Array | None = None
+        self._edges: SharedEdges | None = None
         self._borders: Ints | None = None
         self._shells: Ints | None = None
         self._boxes: FacetBoxes | None = None
@@ -88,14 +90,25 @@ class MeshIndex:
         """All facets."""
         return Region(self, None)
 
+    @property
+    def edges(self) -> SharedEdges:
+        """The shared edges by corner, kept of meshes that are not large."""
+        if self._edges is not None:
+            return self._edges
+        edges = shared_edges(self.mesh.faces, len(self.mesh.vertices), by_corner=True)
+        if len(self.mesh.faces) <= KEPT_EDGES:
+            self._edges = edges
+        return edges
+
     def borders(self, surfaces: MeshSurfaces) -> Ints:
         """(k, 2) pairs of surfaces that share an edge, both ways round, sorted."""
         if self._borders is None:
-            edges = shared_edges(self.mesh.faces, len(self.mesh.vertices), by_corner=True)
-            first, second = surfaces.labels[edges.facets.T]
+            first, second = surfaces.labels[self.edges.facets.T]
+            apart = np.flatnonzero(first != second)
+            first, second = first[apart], second[apart]
             count = np.int64(max(len(surfaces.surfaces), 1))
-            keys = np.concatenate([first * count + second, second * count + first])
-            self._borders = np.stack(np.divmod(np.unique(keys[np.tile(first != second, 2)]), count), axis=1)
+            keys = distinct(np.concatenate([first * count + second, second * count + first]))
+            self._borders = np.stack(np.divmod(keys, count), axis=1)
         return self._borders
 
     def neighbours(self, surfaces: MeshSurfaces, surface: int) -> list[int]:
@@ -107,7 +120,7 @@ class MeshIndex:
     def rings(self, surfaces: MeshSurfaces) -> tuple[Ring, ...]:
         """Rings of flats, which may be meant as round."""
         if self._rings is None:
-            self._rings = rings_of(self.mesh, surfaces)
+            self._rings = rings_of(self.mesh, surfaces, self.edges)
         return self._rings
 
     @property

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.foundation import constants
-from kinform.foundation.algebra.vectors import canonical, cross, dot, perpendicular, widest_gap
+from kinform.foundation.algebra.vectors import canonical, cross, dot, normalised, perpendicular, widest_gap
 from kinform.foundation.graphs.components import components
-from kinform.foundation.meshes.edges import shared_edges
-from kinform.foundation.sorting import median
+from kinform.foundation.meshes.edges import SharedEdges
+from kinform.foundation.sorting import distinct, heads, median, numbered
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
@@ -68,35 +68,39 @@ class _Ridges:
         return _Ridges(*(getattr(self, name)[rows] for name in self.__dataclass_fields__))
 
 
-def rings_of(mesh: Mesh, surfaces: MeshSurfaces) -> tuple[Ring, ...]:
-    """The rings among the planes of a mesh, by axis and lowest facet."""
+def rings_of(mesh: Mesh, surfaces: MeshSurfaces, edges: SharedEdges) -> tuple[Ring, ...]:
+    """The rings among the planes of a mesh with these shared edges (by corner), by direction, sense and lowest
+    facet."""
     plane = np.array([surface.kind == "plane" for surface in surfaces.surfaces], dtype=bool)
     if plane.sum() < constants.RING_SIDES:
         return ()
-    piece, ridges = _ridges(mesh, surfaces, plane)
-    rings: list[Ring] = []
-    left = np.argsort(-ridges.length, kind="stable")
-    for _ in range(constants.RING_DIRECTIONS):
-        if len(left) < constants.RING_SIDES:
-            break
-        along = np.abs(ridges.direction[left] @ ridges.direction[left[0]]) > np.cos(constants.RING_PARALLEL)
-        for convex in (True, False):
-            chosen = np.sort(left[along & (ridges.convex[left] == convex)])
-            rings += _along(mesh, surfaces, piece, ridges.where(chosen))
-        left = left[~along]
-    return tuple(rings)
+    piece, ridges = _ridges(mesh, surfaces, edges, plane)
+    family = _families(ridges)
+    ridges, family = ridges.where(family >= 0), family[family >= 0]
+    if len(family) < constants.RING_SIDES - 1:
+        return ()
+    label = np.zeros(int(piece.max()) + 1, np.int64)
+    label[piece] = surfaces.labels
+    rows = _rows_of_flats(ridges, family)
+    found = [
+        _ring(mesh, surfaces, piece, row, label[row.pieces])
+        for row, plausible in zip(rows, _may_be_round(mesh, surfaces, rows, label), strict=True)
+        if plausible
+    ]
+    return tuple(ring for ring in found if ring is not None)
 
 
-def _ridges(mesh: Mesh, surfaces: MeshSurfaces, plane: Flags) -> tuple[Ints, _Ridges]:
+def _ridges(mesh: Mesh, surfaces: MeshSurfaces, edges: SharedEdges, plane: Flags) -> tuple[Ints, _Ridges]:
     """(F,) connected piece of its plane of each facet, and the ridges between pieces."""
     labels, vertices = surfaces.labels, mesh.vertices
-    edges = shared_edges(mesh.faces, len(vertices), by_corner=True)
-    first, second = edges.facets.T
-    flat = plane[labels[first]] & plane[labels[second]]
-    inside = flat & (labels[first] == labels[second])
-    piece = components(first[inside], second[inside], len(labels))
-    edges = edges.where(flat & ~inside & edges.opposed)
-    first, second = edges.facets.T
+    facets = edges.facets
+    of_first, of_second = labels[facets[:, 0]], labels[facets[:, 1]]
+    flat = plane[of_first] & plane[of_second]
+    inside = flat & (of_first == of_second)
+    piece = components(*facets[inside].T, len(labels))
+    between = flat & ~inside & edges.opposed
+    edges = edges.where(between)
+    first, second = facets[between].T
     axes = np.array([surface.axis for surface in surfaces.surfaces]).reshape(-1, 3)
     one, two = axes[labels[first]], axes[labels[second]]
     across, along = cross(one, two), edges.along(vertices)
@@ -115,42 +119,142 @@ def _ridges(mesh: Mesh, surfaces: MeshSurfaces, plane: Flags) -> tuple[Ints, _Ri
     return piece, ridges.where(bent & straight & (length > 0.0))
 
 
-def _along(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, ridges: _Ridges) -> list[Ring]:
-    """The rings about one direction, of ridges of one sense."""
-    if len(ridges.length) < constants.RING_SIDES - 1:
-        return []
-    pieces, number = np.unique(ridges.pieces, return_inverse=True)
+def _families(ridges: _Ridges) -> Ints:
+    """(e,) number of the direction and the sense (convex ones first) that each ridge has, the longest first; −1 of
+    those that too few share."""
+    out = np.full(len(ridges.length), -1)
+    left = np.argsort(-ridges.length, kind="stable")
+    for number in range(constants.RING_DIRECTIONS):
+        if len(left) < constants.RING_SIDES:
+            break
+        along = np.abs(ridges.direction[left] @ ridges.direction[left[0]]) > np.cos(constants.RING_PARALLEL)
+        out[left[along]] = 2 * number
+        left = left[~along]
+    out[(out >= 0) & ~ridges.convex] += 1
+    return out
+
+
+@dataclass(frozen=True, eq=False)
+class _Row:
+    """Flats of one family that hang together."""
+
+    pieces: Ints
+    """Ascending."""
+    ridges: _Ridges
+
+
+def _rows_of_flats(ridges: _Ridges, family: Ints) -> list[_Row]:
+    """Flats that meet in ridges of one family (e,), where they are enough for a ring, by family and lowest facet."""
+    count = np.int64(ridges.pieces.max() + 1)
+    nodes, number = numbered((family[:, None] * count + ridges.pieces).ravel(), int(count) * (int(family.max()) + 1))
     number = number.reshape(-1, 2)
-    group = components(number[:, 0], number[:, 1], len(pieces))
+    group = components(number[:, 0], number[:, 1], len(nodes))
     of_edge = group[number[:, 0]]
-    wide = np.flatnonzero(np.bincount(group) >= constants.RING_SIDES)
-    weight = np.bincount(of_edge, ridges.length, int(group.max()) + 1)[wide]
-    wide = wide[np.argsort(-weight, kind="stable")[: constants.MOST_RINGS]]
-    wide = np.sort(wide)
-    wide = wide[_closed(number, of_edge, len(pieces))[wide]]
-    of_ring, of_piece = (
-        np.split(np.argsort(g, kind="stable"), np.cumsum(np.bincount(g))[:-1]) for g in (of_edge, group)
-    )
-    found = (_ring(mesh, surfaces, piece, pieces[of_piece[k]], ridges.where(of_ring[k])) for k in wide.tolist())
-    return [ring for ring in found if ring is not None]
+    total = int(group.max()) + 1
+    of_family = np.zeros(total, np.int64)
+    of_family[of_edge] = family
+    weight = np.bincount(of_edge, ridges.length, total)
+    wide = np.flatnonzero(np.bincount(group, minlength=total) >= constants.RING_SIDES)
+    wide = wide[np.lexsort((-weight[wide], of_family[wide]))]
+    # the longest of each family
+    first = np.searchsorted(of_family[wide], of_family[wide])
+    wide = np.sort(wide[np.arange(len(wide)) - first < constants.MOST_RINGS])
+    wide = wide[_closed(number, of_edge, len(nodes))[wide]]
+    edges, pieces = _members(of_edge, wide), _members(group, wide)
+    return [_Row(nodes[p] % count, ridges.where(e)) for e, p in zip(edges, pieces, strict=True)]
+
+
+def _members(group: Ints, wanted: Ints) -> list[Ints]:
+    """Which are of each wanted group, ascending; the groups are numbered from 0."""
+    order = np.argsort(group, kind="stable")
+    ends = np.cumsum(np.bincount(group))
+    return [order[end - size : end] for end, size in zip(ends[wanted], np.bincount(group)[wanted], strict=True)]
 
 
 def _closed(number: Ints, of_edge: Ints, count: int) -> Flags:
     """(groups,) whether so many pieces of each group meet, by the pairs (e, 2) that do, that their corners can tell a
     circle: two lines are on many circles, and three of an open row are on one whatever they are."""
     key = np.sort(number.min(axis=1) * np.int64(count) + number.max(axis=1))
-    first = np.ones(len(key), bool)
-    np.not_equal(key[1:], key[:-1], out=first[1:])
     group = np.zeros(count, np.int64)
     group[number[:, 0]] = group[number[:, 1]] = of_edge
     total = int(of_edge.max()) + 1
-    met = np.bincount(group[key[first] // count], minlength=total)
+    met = np.bincount(group[key[heads(key)] // count], minlength=total)
     size = np.bincount(group, minlength=total)
     return np.asarray((met > 3) | ((met == 3) & (size <= 3)))
 
 
-def _ring(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, pieces: Ints, ridges: _Ridges) -> Ring | None:
-    """The ring of these pieces of planes, unless their corners are on no circle or do not go round it."""
+@dataclass(frozen=True, eq=False)
+class _Circles:
+    """Circles through the corners of rows of flats, nearly."""
+
+    axis: Array
+    """(r, 3) unit, of either sign."""
+    centre: Array
+    """(r, 3) m."""
+    radius: Array
+    """(r,) m; not a number where the corners are on a line."""
+    off: Array
+    """(r,) m: the farthest corner's distance from the circle."""
+
+
+def _circles(mesh: Mesh, rows: list[_Row]) -> _Circles:
+    """The circles of all rows at once, by sums over their corners about their middles."""
+    count = len(rows)
+    row = np.repeat(np.arange(count), [len(r.ridges.length) for r in rows])
+    direction = np.concatenate([r.ridges.direction for r in rows])
+    length = np.concatenate([r.ridges.length for r in rows])
+    lead = direction[np.flatnonzero(heads(row))]
+    sense = np.sign(dot(direction, lead[row]))
+    axis = normalised(np.add.reduceat((sense * length)[:, None] * direction, np.flatnonzero(heads(row))))
+    vertices = np.int64(len(mesh.vertices))
+    ends = np.concatenate([r.ridges.ends for r in rows])
+    row, vertex = np.divmod(distinct((row[:, None] * vertices + ends).ravel()), vertices)
+    starts = np.flatnonzero(heads(row))
+    number = np.bincount(row, minlength=count)
+    corners = mesh.vertices[vertex]
+    middle = np.add.reduceat(corners, starts) / number[:, None]
+    least = np.eye(3)[np.abs(axis).argmin(axis=1)]
+    u = normalised(cross(least, axis))
+    v = cross(axis, u)
+    arm = corners - middle[row]
+    x, y = dot(arm, u[row]), dot(arm, v[row])
+    square = x * x + y * y
+    sums = np.add.reduceat(np.stack([x * x, x * y, y * y, x * square, y * square, square], axis=1), starts)
+    xx, xy, yy, xs, ys, s = sums.T
+    determinant = xx * yy - xy * xy
+    determinant[determinant <= constants.RING_FLAT * (xx + yy) ** 2] = np.nan
+    one, two = 0.5 * (yy * xs - xy * ys) / determinant, 0.5 * (xx * ys - xy * xs) / determinant
+    radius = np.sqrt(s / number + one * one + two * two)
+    off = np.maximum.reduceat(np.abs(np.hypot(x - one[row], y - two[row]) - radius[row]), starts)
+    return _Circles(axis, middle + one[:, None] * u + two[:, None] * v, radius, off)
+
+
+def _may_be_round(mesh: Mesh, surfaces: MeshSurfaces, rows: list[_Row], label: Ints) -> Flags:
+    """(r,) rows that are not left out at first sight: most are boxes, pockets and steps. `label` (pieces,) tells the
+    plane of each piece."""
+    if not rows:
+        return np.zeros(0, bool)
+    circles = _circles(mesh, rows)
+    spare = 1.0 + constants.RING_SPARE
+    with np.errstate(invalid="ignore"):
+        out = ~(circles.off > spare * (constants.RING_ROUND * circles.radius + constants.RING_NOISES * surfaces.noise))
+        planes = [np.unique(label[r.pieces]) for r in rows]
+        sizes = np.array([len(p) for p in planes])
+        row, starts = np.repeat(np.arange(len(rows)), sizes), np.cumsum(sizes) - sizes
+        every = [surfaces.surfaces[k] for k in np.concatenate(planes).tolist()]
+        axes, points = np.array([s.axis for s in every]), np.array([s.point for s in every])
+        side = np.array([1.0 if r.ridges.convex[0] else -1.0 for r in rows])
+        reach = side[row] * dot(points - circles.centre[row], axes)
+        low, high = np.minimum.reduceat(reach, starts), np.maximum.reduceat(reach, starts)
+        out &= ~(low < -constants.RING_SPARE * circles.radius)
+        out &= ~((sizes <= constants.RING_FEW) & (high - low > spare * constants.RING_EVEN * circles.radius))
+    return out
+
+
+def _ring(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, row: _Row, labels: Ints) -> Ring | None:
+    """The ring of a row of flats, pieces of the planes `labels`, unless their corners are on no circle or do not go
+    round it."""
+    ridges, labels = row.ridges, np.unique(labels)
     sense = np.sign(ridges.direction @ ridges.direction[0])
     axis = canonical((sense * ridges.length) @ ridges.direction)
     corners = mesh.vertices[np.unique(ridges.ends)]
@@ -163,8 +267,6 @@ def _ring(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, pieces: Ints, ridges:
     off = float(np.abs(np.hypot(flat[:, 0] - x, flat[:, 1] - y) - corner).max())
     if off > constants.RING_ROUND * corner + constants.RING_NOISES * surfaces.noise:
         return None
-    facets = np.flatnonzero(np.isin(piece, pieces))
-    labels = np.unique(surfaces.labels[facets])
     planes = [surfaces.surfaces[k] for k in labels]
     normals = np.array([plane.axis for plane in planes])
     if widest_gap(normals, axis) > constants.RING_OPEN:
@@ -178,6 +280,7 @@ def _ring(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, pieces: Ints, ridges:
     if len(planes) <= constants.RING_FEW and reach.max() - reach.min() > constants.RING_EVEN * corner:
         # the corners of every box are on a circle
         return None
+    facets = np.flatnonzero(np.isin(piece, row.pieces))
     heights = (mesh.vertices[np.unique(mesh.faces[facets])] - point) @ axis
     return Ring(
         axis=axis,
