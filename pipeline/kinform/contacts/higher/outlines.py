@@ -23,6 +23,7 @@ from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import shared_edges
 from kinform.foundation.meshes.near import Near
+from kinform.foundation.sorting import ascending, heads
 from kinform.model.arrays import Array, Flags, Ints
 
 
@@ -110,16 +111,19 @@ class Sheet:
     """Facets of a part (ascending), and pairs (k, 2) of them that meet in a smooth edge: a bent or a flat one."""
 
     facets: Ints
+    normals: Array
+    """(n, 3) unit, in the frame of the pair; zero of facets without area."""
     bends: Ints
     flats: Ints
 
     @staticmethod
     def of(part: PartView, facets: Ints, flat: float, smooth: float) -> Sheet:
         """The sheet of these facets; an edge is bent above `flat` and smooth below `smooth` (rad)."""
-        pairs = facets[shared_edges(part.faces[facets], len(part.vertices), by_corner=True).facets]
-        cosine = dot(part.normals(pairs[:, 0]), part.normals(pairs[:, 1]))
+        normals = part.normals(facets)
+        pairs = shared_edges(part.faces[facets], len(part.vertices), by_corner=True).facets
+        cosine = dot(normals[pairs[:, 0]], normals[pairs[:, 1]])
         bent = cosine < math.cos(flat)
-        return Sheet(facets, pairs[bent & (cosine > math.cos(smooth))], pairs[~bent])
+        return Sheet(facets, normals, facets[pairs[bent & (cosine > math.cos(smooth))]], facets[pairs[~bent]])
 
 
 def segments(part: PartView, sheet: Sheet, direction: Array, alignment: float, grain: float) -> Segments | None:
@@ -127,8 +131,8 @@ def segments(part: PartView, sheet: Sheet, direction: Array, alignment: float, g
     that bends along it too; ends nearer to each other than `grain` (m) are one."""
     upright = np.zeros(len(part.faces), dtype=bool)
     facets = sheet.facets
-    upright[facets] = np.abs(part.normals(facets) @ direction) < math.sin(alignment)
-    upright[facets] &= part.index.areas(facets) > 0.0
+    upright[facets] = np.abs(sheet.normals @ direction) < math.sin(alignment)
+    upright[facets] &= sheet.normals.any(axis=1)
     if not upright.any():
         return None
     inner, outer = np.concatenate([sheet.bends, sheet.bends[:, ::-1]]).T
@@ -148,12 +152,11 @@ def segments(part: PartView, sheet: Sheet, direction: Array, alignment: float, g
     flat, height = (corners @ plane.T).reshape(-1, 2), (corners @ direction).ravel()
     owner = np.repeat(face, 3)
     reach = np.einsum("ik,ik->i", flat, along[owner])
-    order = np.lexsort((reach, owner))
-    ends = np.searchsorted(owner[order], np.arange(len(lead) + 1))
-    first, last = order[ends[:-1]], order[ends[1:] - 1]
-    lows, highs = np.full(len(lead), np.inf), np.full(len(lead), -np.inf)
-    np.minimum.at(lows, owner, height)
-    np.maximum.at(highs, owner, height)
+    order = ascending(owner, len(lead))
+    starts = np.flatnonzero(heads(owner.take(order)))
+    first, last = _ends(reach, order, starts)
+    ordered = height.take(order)
+    lows, highs = np.minimum.reduceat(ordered, starts), np.maximum.reduceat(ordered, starts)
     keep = reach[last] - reach[first] > grain
     if not keep.any():
         return None
@@ -172,6 +175,16 @@ def segments(part: PartView, sheet: Sheet, direction: Array, alignment: float, g
         return None
     labels = part.surfaces.labels[lead[keep]][number]
     return Segments(points, start[long], end[long], low[long], high[long], labels[long])
+
+
+def _ends(values: Array, order: Ints, starts: Ints) -> tuple[Ints, Ints]:
+    """Where the least and the greatest of values (n,) are in each run of `order` (n,) that begins at `starts` (r,): of
+    equal ones the first and the last."""
+    ordered, number = values.take(order), np.diff(np.append(starts, len(order)))
+    low = np.flatnonzero(ordered == np.repeat(np.minimum.reduceat(ordered, starts), number))
+    high = np.flatnonzero(ordered == np.repeat(np.maximum.reduceat(ordered, starts), number))
+    after = np.append(starts[1:], len(order))
+    return order[low[np.searchsorted(low, starts)]], order[high[np.searchsorted(high, after) - 1]]
 
 
 def _faces(count: int, facets: Ints, flats: Ints) -> Ints:

@@ -112,9 +112,15 @@ def _sheet(part: PartView, low: Array, high: Array, tolerances: Tolerances) -> S
     chosen = np.zeros(len(part.faces), dtype=bool)
     chosen[near_facets(part, low, high)[0]] = True
     inside = np.zeros(len(part.vertices), dtype=bool)
+    corners = [np.ascontiguousarray(column) for column in part.faces.T]
+    fresh = np.flatnonzero(chosen)
     for _ in range(constants.SHEET_RINGS):
-        inside[part.faces[chosen]] = True
-        chosen |= inside[part.faces].any(axis=1)
+        inside[part.faces[fresh]] = True
+        around = inside[corners[0]] | inside[corners[1]] | inside[corners[2]]
+        fresh = np.flatnonzero(around & ~chosen)
+        if not len(fresh):
+            break
+        chosen[fresh] = True
     return Sheet.of(part, np.flatnonzero(chosen), tolerances.coplanar, tolerances.smooth_edge)
 
 
