@@ -21,6 +21,9 @@ FACE_SHARE = 0.5
 """Share of the smaller extent of two faces beyond which a gap between them is none of contact."""
 HALF_RADIUS_SHARE = 3.0
 """A radial gap of the radius divided by this is no fit."""
+FEW_BESIDE = 1000
+"""Facets in the common box of two parts up to which all are taken for near: to look closer takes as long as FCL's model
+of the rest."""
 MOST_SURFACES = 3000
 """Surfaces of one part that a pair looks at: a bound of memory for crumpled meshes."""
 FACING_LEAST = 0.5

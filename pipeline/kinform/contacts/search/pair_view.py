@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.contacts.constants import CLEARANCE_SHARE, MATING_REACH, MOST_SURFACES
+from kinform.contacts.constants import CLEARANCE_SHARE, FEW_BESIDE, MATING_REACH, MOST_SURFACES
 from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.meshes.boxes import facet_boxes
 from kinform.foundation.meshes.index import MeshIndex, MeshStore
@@ -101,10 +101,12 @@ def _facing(a: PartView, b: PartView, low: Array, high: Array, margin: float) ->
     """Both parts, with the facets in the box from `low` to `high` (3,) that come within `margin` (m) of the other
     as those that probes can meet."""
     (facets_a, low_a, high_a), (facets_b, low_b, high_b) = near_facets(a, low, high), near_facets(b, low, high)
-    keep_a, keep_b = near_boxes(low_a, high_a, low_b, high_b, margin)
+    if len(facets_a) + len(facets_b) > FEW_BESIDE or not len(facets_a) or not len(facets_b):
+        keep_a, keep_b = near_boxes(low_a, high_a, low_b, high_b, margin)
+        facets_a, facets_b = facets_a[keep_a], facets_b[keep_b]
     return (
-        replace(a, region=a.index.region(facets_a[keep_a]), clear=margin),
-        replace(b, region=b.index.region(facets_b[keep_b]), clear=margin),
+        replace(a, region=a.index.region(facets_a), clear=margin),
+        replace(b, region=b.index.region(facets_b), clear=margin),
     )
 
 

@@ -81,8 +81,9 @@ class MeshIndex:
         return self._bvh
 
     def region(self, facets: Ints) -> Region:
-        """These facets (ascending) as something to cast probes against; all of them where they are most."""
-        if 2 * len(facets) >= len(self.mesh.faces):
+        """These facets (ascending) as something to cast probes against: few meshes have more than one neighbour that
+        comes near most of them, and a model of all would not be asked for twice."""
+        if len(facets) == len(self.mesh.faces):
             return self.whole()
         return Region(self, facets)
 
