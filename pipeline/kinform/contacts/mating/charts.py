@@ -102,19 +102,22 @@ class _Axial:
     point: Array
     base: Array
 
-    def _polar(self, points: Array) -> tuple[Array, Array, Array, Array]:
-        """Height along the axis, radius, azimuth in [−π, π] and radial unit vectors of points (…, 3)."""
+    def _arms(self, points: Array) -> tuple[Array, Array]:
+        """Height along the axis of points (…, 3), and what leads to them across it (…, 3)."""
         arm = points - self.point
         along = arm @ self.axis
-        across = arm - along[..., None] * self.axis
-        azimuth = np.arctan2(across @ cross(self.axis, self.base), across @ self.base)
-        return along, np.linalg.norm(across, axis=-1), azimuth, _unit_rows(across)
+        return along, arm - along[..., None] * self.axis
+
+    def _azimuth(self, across: Array) -> Array:
+        """(…,) in [−π, π] of vectors across the axis (…, 3)."""
+        return np.asarray(np.arctan2(across @ cross(self.axis, self.base), across @ self.base))
 
     def _unrolled(self, triangles: Array) -> tuple[Array, Array, Array]:
         """Height, radius and azimuth (n, 3) of the corners, each azimuth within π of its centroid's."""
-        along, radius, azimuth, _ = self._polar(triangles)
-        middle = self._polar(triangles.mean(axis=1))[2][:, None]
-        turn = azimuth - middle
+        along, across = self._arms(triangles)
+        radius = np.linalg.norm(across, axis=-1)
+        middle = self._azimuth(self._arms(triangles.mean(axis=1))[1])[:, None]
+        turn = self._azimuth(across) - middle
         turn -= 2.0 * math.pi * np.round(turn / (2.0 * math.pi))
         turn = np.where(radius > 1e-9 * radius.max(initial=0.0), turn, 0.0)
         return along, radius, middle + turn
@@ -157,10 +160,10 @@ class CylinderChart(_Axial):
         return np.asarray(self.point + self.radius * radial + flat[:, 1:] * self.axis)
 
     def normals(self, points: Array) -> Array:
-        return self._polar(points)[3]
+        return _unit_rows(self._arms(points)[1])
 
     def heights(self, points: Array) -> Array:
-        return np.asarray(self._polar(points)[1] - self.radius)
+        return np.asarray(np.linalg.norm(self._arms(points)[1], axis=-1) - self.radius)
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,11 +198,12 @@ class ConeChart(_Axial):
         return np.asarray(self.point + slant[:, None] * ray)
 
     def normals(self, points: Array) -> Array:
-        radial = self._polar(points)[3]
+        radial = _unit_rows(self._arms(points)[1])
         return np.asarray(math.cos(self.half_angle) * radial - math.sin(self.half_angle) * self.axis)
 
     def heights(self, points: Array) -> Array:
-        along, radius, _, _ = self._polar(points)
+        along, across = self._arms(points)
+        radius = np.linalg.norm(across, axis=-1)
         return np.asarray(radius * math.cos(self.half_angle) - along * math.sin(self.half_angle))
 
 

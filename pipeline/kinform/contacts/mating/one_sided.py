@@ -29,6 +29,8 @@ from kinform.model.surfaces import KINDS
 _ANALYTIC = np.array([kind in ANALYTIC_KINDS for kind in KINDS])
 """Which kinds of surfaces have equations, by their numbers."""
 
+_PLANE = KINDS.index("plane")
+
 
 def one_sided_mates(pair: PairView, overlap: Flags) -> list[Mate]:
     """One-sided mates among the pairs of surfaces flagged in `overlap` (s, t)."""
@@ -43,14 +45,15 @@ def one_sided_mates(pair: PairView, overlap: Flags) -> list[Mate]:
 
 
 def _beside(view: PairView, pairs: list[tuple[int, int]]) -> Iterator[tuple[int, int, Ints]]:
-    """The pairs of a giver with a taker, sorted, of which facets of the taker lie in the giver's box, with these: all
-    takers of a giver at once, for most of them have none there."""
+    """The pairs of a giver with a taker, sorted, of which facets of the taker lie in the giver's box, and face it where
+    it is plane, with these: all takers of a giver at once, for most of them have none there."""
     giver, taker = view.near
     columns = sorted({column for _, column in pairs})
     if not columns:
         return
     every = np.concatenate([taker.facets[column] for column in columns])
     low, high = facet_boxes(view.b.vertices, view.b.faces[every])
+    normals = view.b.normals(every)
     ends = np.cumsum([len(taker.facets[column]) for column in columns]).tolist()
     place = {column: (start, end) for column, start, end in zip(columns, [0, *ends], ends, strict=False)}
     for row, group in groupby(pairs, key=itemgetter(0)):
@@ -58,6 +61,9 @@ def _beside(view: PairView, pairs: list[tuple[int, int]]) -> Iterator[tuple[int,
         at = np.concatenate([np.arange(*place[column]) for column in takers])
         bounds = giver.lows[row] - view.tolerance, giver.highs[row] + view.tolerance
         inside = at[((low[at] <= bounds[1]) & (high[at] >= bounds[0])).all(axis=1)]
+        if giver.kinds[row] == _PLANE:
+            outward = np.broadcast_to(giver.sides[row] * giver.axes[row], (len(inside), 3))
+            inside = inside[dot(outward, normals[inside]) < FACING_OPPOSED]
         first = np.searchsorted(inside, [place[column][0] for column in takers]).tolist()
         last = np.searchsorted(inside, [place[column][1] for column in takers]).tolist()
         for column, i, j in zip(takers, first, last, strict=True):
@@ -97,8 +103,7 @@ def _givers_and_takers(view: PairView, overlap: Flags, first: bool) -> list[tupl
     flags = (analytic & large)[:, None] & loose[None]
     # a ball touches the groove of a ring along a circle or at a point, as `rounds` knows, and does not rest in it
     flags &= ~((giver.kinds == KINDS.index("sphere"))[:, None] & (taker.kinds == KINDS.index("torus"))[None])
-    plane = KINDS.index("plane")
-    planes = (giver.kinds == plane)[:, None] & (taker.kinds == plane)[None]
+    planes = (giver.kinds == _PLANE)[:, None] & (taker.kinds == _PLANE)[None]
     angle = np.arccos(np.clip(-(giver.axes @ taker.axes.T), -1.0, 1.0))
     spread = giver.axis_uncertainty[:, None] + taker.axis_uncertainty[None]
     larger = giver.areas[:, None] > taker.areas[None]

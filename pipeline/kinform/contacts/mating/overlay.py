@@ -130,8 +130,11 @@ def _outline(flat: Array) -> list[Array]:
     one: Ints = np.repeat(edge // count, times)
     two: Ints = np.repeat(edge % count, times)
     forward = np.repeat(net > 0, times)
+    leaving, reaching = np.where(forward, one, two), np.where(forward, two, one)
+    if int(np.bincount(leaving).max(initial=0)) == 1:
+        return _simple_loops(points, leaving, reaching)
     onward: dict[int, list[int]] = {}
-    for a, b in zip(np.where(forward, one, two).tolist(), np.where(forward, two, one).tolist(), strict=True):
+    for a, b in zip(leaving.tolist(), reaching.tolist(), strict=True):
         onward.setdefault(a, []).append(b)
     loops = []
     for begin in sorted(onward):
@@ -143,6 +146,25 @@ def _outline(flat: Array) -> list[Array]:
                 at = onward[at].pop()
             if len(loop) > 2:
                 loops.append(points[loop])
+    return loops
+
+
+def _simple_loops(points: Array, leaving: Ints, reaching: Ints) -> list[Array]:
+    """The loops of edges (k,), no two of which leave one corner, each from its lowest corner on."""
+    onward = np.full(len(points), -1)
+    onward[leaving] = reaching
+    after, seen = onward.tolist(), bytearray(len(points))
+    loops = []
+    for begin in np.sort(leaving).tolist():
+        if seen[begin]:
+            continue
+        loop, at = [begin], after[begin]
+        while at != begin:
+            loop.append(at)
+            seen[at] = True
+            at = after[at]
+        if len(loop) > 2:
+            loops.append(points[loop])
     return loops
 
 

@@ -66,6 +66,8 @@ def _cells(pair: PairView, mate: Mate) -> Cells | None:
     if cells is None:
         return None
     within = np.abs(mate.gaps(mate.chart.lift(cells.centroids))) <= mate.limit
+    if within.all():
+        return cells
     return cells.kept(within) if within.any() else None
 
 

@@ -97,10 +97,10 @@ def _part_view(part: Part, index: MeshIndex, surfaces: MeshSurfaces, X_FP: Array
     return PartView(part, index, surfaces, table, pose, X_FP is None, vertices, low, high, region, 0.0)
 
 
-def _facing(a: PartView, b: PartView, low: Array, high: Array, margin: float) -> tuple[PartView, PartView]:
-    """Both parts, with the facets in the box from `low` to `high` (3,) that come within `margin` (m) of the other
-    as those that probes can meet."""
-    (facets_a, low_a, high_a), (facets_b, low_b, high_b) = near_facets(a, low, high), near_facets(b, low, high)
+def _facing(a: PartView, b: PartView, beside: tuple[_Boxed, _Boxed], margin: float) -> tuple[PartView, PartView]:
+    """Both parts, with those of their facets `beside` each other that come within `margin` (m) of the other as those
+    that probes can meet."""
+    (facets_a, low_a, high_a), (facets_b, low_b, high_b) = beside
     if len(facets_a) + len(facets_b) > FEW_BESIDE or not len(facets_a) or not len(facets_b):
         keep_a, keep_b = near_boxes(low_a, high_a, low_b, high_b, margin)
         facets_a, facets_b = facets_a[keep_a], facets_b[keep_b]
@@ -110,7 +110,11 @@ def _facing(a: PartView, b: PartView, low: Array, high: Array, margin: float) ->
     )
 
 
-def near_facets(placed: PartView, low: Array, high: Array) -> tuple[Ints, Array, Array]:
+_Boxed = tuple[Ints, Array, Array]
+"""Facets (n,), ascending, and lowest and highest corners (n, 3) of their boxes."""
+
+
+def near_facets(placed: PartView, low: Array, high: Array) -> _Boxed:
     """Facets whose boxes meet the box from `low` to `high` (3,), ascending, and their boxes (n, 3)."""
     if placed.at_home:
         boxes = placed.index.boxes
@@ -156,9 +160,12 @@ class NearSurfaces(SurfaceTable):
         return np.flatnonzero(wanted)
 
 
-def _near_surfaces(placed: PartView, low: Array, high: Array) -> NearSurfaces:
-    """Surfaces of the part that have facets whose boxes meet the box from `low` to `high` (3,)."""
-    near, low_f, high_f = near_facets(placed, low, high)
+def _near_surfaces(placed: PartView, beside: _Boxed, low: Array, high: Array) -> NearSurfaces:
+    """Surfaces of the part that have facets whose boxes meet the box from `low` to `high` (3,), all among those
+    `beside` it."""
+    near, low_f, high_f = beside
+    meets = ((low_f <= high) & (high_f >= low)).all(axis=1)
+    near, low_f, high_f = near[meets], low_f[meets], high_f[meets]
     labels = placed.surfaces.labels[near]
     order = np.argsort(labels, kind="stable")
     near, labels, low_f, high_f = near[order], labels[order], low_f[order], high_f[order]
@@ -348,6 +355,7 @@ def pair_view(
     if (low > high).any():
         return None
     margin = max(a.table.slack, b.table.slack)
-    a, b = _facing(a, b, low - margin, high + margin, reach + margin)
-    near = (_near_surfaces(a, low, high), _near_surfaces(b, low, high))
+    beside = near_facets(a, low - margin, high + margin), near_facets(b, low - margin, high + margin)
+    a, b = _facing(a, b, beside, reach + margin)
+    near = (_near_surfaces(a, beside[0], low, high), _near_surfaces(b, beside[1], low, high))
     return PairView(a, b, near, tolerance, play, tolerances), home.X_WP, reach
