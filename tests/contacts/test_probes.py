@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from support.analytic_solids import MM, box_loop, extrusion, revolution, round_loop
 
+from kinform.foundation.meshes import probes
 from kinform.foundation.meshes.index import MeshIndex
 
 
@@ -26,6 +27,24 @@ def test_slivers_miss_no_sample_within_their_reach(gap):
     assert set(hits.probe) == set(range(500))
     np.testing.assert_allclose(hits.along, gap * MM, atol=1e-12)
     np.testing.assert_allclose(hits.facing, -1.0)
+
+
+@pytest.mark.parametrize("width", [1e-3, 0.05])
+def test_few_probes_and_many_hit_the_same(width, monkeypatch):
+    rng = np.random.default_rng(4)
+    points = rng.uniform([-52 * MM, -52 * MM, -6 * MM], [52 * MM, 52 * MM, 1 * MM], (300, 3))
+    directions = rng.normal(size=(300, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    reach = rng.uniform(1 * MM, 9 * MM, 300)
+    for region in (plate().whole(), plate().region(np.arange(0, len(plate().mesh.faces), 2))):
+        found = []
+        for few in (10**9, -1):
+            monkeypatch.setattr(probes, "PROBED_FEW", few)
+            found.append(region.cast(points, directions, reach, width))
+        by_axes, by_fcl = found
+        assert len(by_axes.probe) > 100
+        for name in ("probe", "facet", "along", "facing"):
+            assert getattr(by_axes, name).tobytes() == getattr(by_fcl, name).tobytes(), name
 
 
 def test_slivers_do_not_hit_what_is_beyond_their_reach():

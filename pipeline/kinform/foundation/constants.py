@@ -68,6 +68,9 @@ SLIVER_WIDTH = 1e-3
 """Width of a sliver relative to its length: zero width misses most facets."""
 HITS_A_PROBE = 256
 """Facets that one probe may hit on average."""
+PROBED_FEW = 200_000
+"""Slivers times facets in their common box up to which all are asked about: a millisecond, in which FCL makes a model
+of a few hundred facets."""
 STEEP_LEAST = 1e-3
 """Least cosine between a probe and a facet's normal at which the place where they meet is known."""
 

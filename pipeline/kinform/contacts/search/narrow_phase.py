@@ -1,6 +1,6 @@
 """The narrow phase: do both parts really have facets here, facing each other, with nothing between?
 
-A probe stands on the common surface along its normal and is cast against both meshes as an FCL sliver.
+A probe stands on the common surface along its normal and is cast against both meshes as a sliver.
 It holds if it meets the wanted surface of each part, turned towards the other, and if no other facet of
 either part lies between the two: a thin wall, or a step, in between means that these surfaces do not
 touch there.

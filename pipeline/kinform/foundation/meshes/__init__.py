@@ -1,1 +1,1 @@
-"""Facets: edges, shells, boxes, nearness, FCL, parity of rays."""
+"""Facets: edges, shells, boxes, nearness, FCL, what few triangles meet, parity of rays."""

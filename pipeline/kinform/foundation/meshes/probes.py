@@ -2,8 +2,9 @@
 
 A contact list of FCL between two meshes is not usable as a patch: it misses facets that touch exactly
 and facets that penetrate in parallel. A thin triangle that stands across the surface does hit, whatever
-the gap, so every question here is put as one BVH of such slivers against the BVH of a mesh. Slivers are
-given in the mesh's own frame: the BVH never has to be built again for another pose.
+the gap, so every question here is put as such slivers against facets: many as one BVH against that of the
+mesh, few to all facets whose boxes they meet, which is the same question (`slivers`). Slivers are given in
+the mesh's own frame: the BVH never has to be built again for another pose.
 """
 
 from __future__ import annotations
@@ -16,8 +17,9 @@ import fcl
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
-from kinform.foundation.constants import HITS_A_PROBE, SLIVER_WIDTH, STEEP_LEAST
+from kinform.foundation.constants import HITS_A_PROBE, PROBED_FEW, SLIVER_WIDTH, STEEP_LEAST
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, fcl_pose, partial_model
+from kinform.foundation.meshes.slivers import beside, meeting
 from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
@@ -78,31 +80,42 @@ class Region:
 
         `width` of the slivers, relative to their reach.
         """
-        count, mesh = len(points), self.index.mesh
+        mesh = self.index.mesh
         empty = np.zeros(0)
-        if count == 0 or self.empty:
+        if len(points) == 0 or self.empty:
             return Hits(empty.astype(np.int64), empty.astype(np.int64), empty, empty)
         least = np.eye(3)[np.argmin(np.abs(directions), axis=1)]
         across = cross(directions, least)
         across *= (width * reach / np.linalg.norm(across, axis=1))[:, None]
         tip = points + reach[:, None] * directions
         slivers = np.stack([points - reach[:, None] * directions, tip + across, tip - across], axis=1)
-        probe_model = fcl_model(slivers.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3))
-        # Contact points stay off: they cost, come several to a facet, and depend on FCL's own tolerance.
-        request = fcl.CollisionRequest(num_max_contacts=HITS_A_PROBE * (count + 16), enable_contact=False)
-        result = fcl.CollisionResult()
-        fcl.collide(fcl.CollisionObject(self.bvh), fcl.CollisionObject(probe_model), request, result)
-        pairs = np.array([(c.b2, c.b1) for c in result.contacts], dtype=np.int64).reshape(-1, 2)
-        facets = np.int64(max(len(mesh.faces), 1))
-        probe, facet = np.divmod(distinct(pairs[:, 0] * facets + pairs[:, 1]), facets)
-        if self.facets is not None:
-            facet = self.facets[facet]
+        probe, facet = self._meeting(slivers)
         normal = self.index.normals(facet)
         facing = dot(normal, directions[probe])
         height = dot(normal, mesh.vertices[mesh.faces[facet, 0]] - points[probe])
         steep = np.abs(facing) > STEEP_LEAST
         along = np.where(steep, height / np.where(steep, facing, 1.0), 0.0)
         return Hits(probe, facet, np.clip(along, -reach[probe], reach[probe]), facing)
+
+    def _meeting(self, slivers: Array) -> tuple[Ints, Ints]:
+        """Slivers (n, 3, 3) and the facets that they meet, by sliver, then by facet."""
+        mesh = self.index.mesh
+        own = np.arange(len(mesh.faces)) if self.facets is None else self.facets
+        faces = mesh.faces if self.facets is None else mesh.faces[own]
+        near = beside(slivers, mesh.vertices, faces)
+        if len(slivers) * len(near) <= PROBED_FEW:
+            probe, facet = meeting(slivers, mesh.vertices[faces[near]])
+            return probe, own[near[facet]]
+        probe_model = fcl_model(slivers.reshape(-1, 3), np.arange(3 * len(slivers)).reshape(-1, 3))
+        # Contact points stay off: they cost, come several to a facet, and depend on FCL's own tolerance.
+        most = HITS_A_PROBE * (len(slivers) + 16)
+        request = fcl.CollisionRequest(num_max_contacts=most, enable_contact=False)
+        result = fcl.CollisionResult()
+        fcl.collide(fcl.CollisionObject(self.bvh), fcl.CollisionObject(probe_model), request, result)
+        pairs = np.array([(c.b2, c.b1) for c in result.contacts], dtype=np.int64).reshape(-1, 2)
+        facets = np.int64(max(len(mesh.faces), 1))
+        probe, facet = np.divmod(distinct(pairs[:, 0] * facets + pairs[:, 1]), facets)
+        return probe, own[facet]
 
     def depths(self, points: Array) -> tuple[Array, Ints]:
         """Distance (n,) m of points (n, 3) of the part frame to these facets, and the nearest of them (n,)."""

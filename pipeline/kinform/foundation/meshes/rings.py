@@ -97,7 +97,7 @@ def _ridges(mesh: Mesh, surfaces: MeshSurfaces, edges: SharedEdges, plane: Flags
     of_first, of_second = labels[facets[:, 0]], labels[facets[:, 1]]
     flat = plane[of_first] & plane[of_second]
     inside = flat & (of_first == of_second)
-    piece = components(*facets[inside].T, len(labels))
+    piece = components(facets[inside, 0], facets[inside, 1], len(labels))
     between = flat & ~inside & edges.opposed
     edges = edges.where(between)
     first, second = facets[between].T

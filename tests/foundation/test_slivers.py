@@ -1,0 +1,91 @@
+"""Which triangles meet, against FCL, and where exact arithmetic tells."""
+
+import fcl
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from kinform.foundation.meshes.fcl_adapter import fcl_model
+from kinform.foundation.meshes.slivers import beside, meeting
+
+
+def told_by_fcl(first, second):
+    """Pairs of triangles (n, 3, 3) and (m, 3, 3) that meet."""
+    models = [fcl_model(t.reshape(-1, 3), np.arange(3 * len(t)).reshape(-1, 3)) for t in (first, second)]
+    result = fcl.CollisionResult()
+    request = fcl.CollisionRequest(num_max_contacts=100_000, enable_contact=False)
+    fcl.collide(*(fcl.CollisionObject(model) for model in models), request, result)
+    return sorted({(c.b1, c.b2) for c in result.contacts})
+
+
+def pairs(first, second):
+    return list(zip(*(found.tolist() for found in meeting(first, second)), strict=True))
+
+
+def scene(seed, thin=0.3, size=1.0):
+    rng = np.random.default_rng(seed)
+    middles, arms = rng.uniform(-0.3, 0.3, (40, 1, 3)), rng.normal(size=(40, 3, 3))
+    arms[:20, 2] = arms[:20, 1] + thin * 1e-2 * rng.normal(size=(20, 3))
+    triangles = size * (middles + 0.4 * arms)
+    return triangles[:20], triangles[20:]
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 10**6), st.sampled_from([1e-6, 1e-3, 1.0, 1e4]))
+def test_triangles_meet_as_fcl_finds(seed, size):
+    first, second = scene(seed, size=size)
+    found = pairs(first, second)
+    assert found == told_by_fcl(first, second)
+    assert found
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 10**6))
+def test_the_answer_of_a_pair_does_not_hang_on_the_others_nor_on_their_order(seed):
+    first, second = scene(seed)
+    rng = np.random.default_rng(seed + 1)
+    rows, columns = rng.permutation(20)[:7], rng.permutation(20)[:9]
+    every = set(pairs(first, second))
+    some = pairs(first[rows], second[columns])
+    assert some == sorted(some)
+    assert {(rows[i], columns[j]) for i, j in some} == {(i, j) for i, j in every if i in rows and j in columns}
+
+
+FLAT = np.array([[[0, 0, 0], [4, 0, 0], [0, 4, 0]]], dtype=float)
+
+
+@pytest.mark.parametrize(
+    ("other", "met"),
+    [
+        ([[1, 1, 0], [1, 1, 3], [2, 1, 3]], True),  # a corner on the face
+        ([[4, 0, 0], [4, 0, 3], [5, 0, 3]], True),  # a corner on a corner
+        ([[1, 1, 1], [1, 1, 3], [2, 1, 3]], False),  # above it
+        ([[3, 3, -1], [3, 3, 1], [4, 3, 0]], False),  # through its plane, beside it
+        ([[1, 1, 0], [2, 1, 0], [1, 2, 0]], True),  # in its plane, within it
+        ([[2, 2, 0], [4, 2, 0], [2, 4, 0]], True),  # in its plane, at its edge
+        ([[3, 2, 0], [5, 2, 0], [3, 4, 0]], False),  # in its plane, its box in the other's
+        ([[0, 4, 0], [4, 0, 0], [4, 4, 5]], True),  # along a whole edge
+    ],
+)
+def test_what_touches_meets_and_nothing_else(other, met):
+    triangle = np.array([other], dtype=float)
+    for turn in range(3):
+        assert bool(pairs(FLAT, np.roll(triangle, turn, axis=1))) == met
+        assert bool(pairs(triangle[:, ::-1], np.roll(FLAT, turn, axis=1))) == met
+
+
+def test_facets_without_area_meet_what_they_lie_on():
+    line = np.array([[[1, 1, -1], [1, 1, 1], [1, 1, 0]]], dtype=float)
+    assert pairs(FLAT, line) == [(0, 0)]
+    assert pairs(FLAT, line + [4, 0, 0]) == []
+
+
+def test_facets_beside_are_all_whose_boxes_meet_that_of_all():
+    rng = np.random.default_rng(3)
+    vertices, faces = rng.uniform(-1, 1, (200, 3)), rng.integers(0, 200, (300, 3))
+    slivers = 0.1 * rng.normal(size=(5, 3, 3))
+    low, high = slivers.min(axis=(0, 1)), slivers.max(axis=(0, 1))
+    corners = vertices[faces]
+    held = [(c.min(axis=0) <= high).all() and (c.max(axis=0) >= low).all() for c in corners]
+    assert beside(slivers, vertices, faces).tolist() == np.flatnonzero(held).tolist()
