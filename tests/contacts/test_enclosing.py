@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 import pytest
 from manifold3d import Manifold
@@ -49,3 +51,26 @@ def test_faces_that_look_the_same_way_are_left_out(monkeypatch):
     derived(plate=box(-9, 9, -9, 9, 0, 5) - rod(3.05, -1, 6, 24), pin=pin)
     assert able
     assert any(not flags.all() for flags in able)
+
+
+def test_surfaces_that_never_face_each_other_have_no_facets_that_do(monkeypatch):
+    """Pins with a neck in one bore, and shafts with collars in stepped ones: what is passed over has nothing near."""
+    rng = np.random.default_rng(5)
+    said = []
+    asked = enclosing._may_face
+
+    def watched(pair, unread):
+        may = asked(pair, unread)
+        near = enclosing._near(pair, unread) if unread.any() else None
+        assert may or near is None
+        said.append((may, near is None))
+        return may
+
+    monkeypatch.setattr(enclosing, "_may_face", watched)
+    for play, pose in product((0.02, 0.3, 0.48, 0.52, 0.8), (np.eye(4), random_pose(rng))):
+        shaft = rod(3.0, -6, 9, 24) + rod(4.0, 4, 6, 24)
+        block = box(-8, 8, -8, 8, -5, 8) - rod(3.05, -7, 5, 28) - rod(4.0 + play, 4 - play, 9, 24)
+        derived(pose, block=block, shaft=shaft)
+        pin = rod(3.0, 0, 2.5, 24) + rod(3.05 - play, 2.5, 5, 24)
+        derived(pose, plate=box(-9, 9, -9, 9, 0, 5) - rod(3.05, -1, 6, 24), pin=pin)
+    assert {may for may, _ in said} == {True, False}

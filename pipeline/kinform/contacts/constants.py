@@ -96,6 +96,9 @@ tessellated by tangents: the chord error is most of it then."""
 
 TOUCHING = ("point", "line")
 """Kinds of higher pairs."""
+FACING_NEVER = 0.25
+"""Cosine between normals of surfaces up to which none of their facets face each other, whose normals scatter: half of
+what a probe asks for."""
 ENCLOSING_PROBES = 600
 """Middles of facets of either part that are looked at."""
 FACING_ROUNDED = 1e-9
