@@ -232,12 +232,16 @@ OF_THEIR_OWN = {
     "KF502": (lambda _: of_run(wheel(RUN), status="stopped", reason="singular"), lambda _: wheel(RUN)),
     "KF503": (lambda _: of_run(wheel(RUN), residual=np.full(101, 1e-3)), lambda _: wheel(RUN)),
     "KF508": (lambda _: of_run(wheel(RUN), dampings=(Damping(0.0, 1e4, 5.0),)), lambda _: wheel(RUN)),
+    "KF509": (
+        lambda _: of_run(wheel(RUN), level="kinematic", not_dynamic=(("disc", "its mass is not known"),)),
+        lambda _: of_run(wheel(RUN, level="kinematic"), level="kinematic"),
+    ),
     "KF504": (lambda _: of_run(wheel(RUN), energy=np.linspace(0, 1, 303).reshape(101, 3)), lambda _: wheel(RUN)),
 }  # fmt: skip
 """Code → a design on which the rule fires, and one on which it does not."""
 
 
-WHOLE = {"KF110", "KF301", "KF302", "KF303", "KF440", "KF501", "KF502", "KF503", "KF504", "KF508"}
+WHOLE = {"KF110", "KF301", "KF302", "KF303", "KF440", "KF501", "KF502", "KF503", "KF504", "KF508", "KF509"}
 """Rules about the assembly, a run or the settings as a whole: they have no place in space."""
 ELSEWHERE_IN_SPACE = {"KF409", "KF410", "KF421", "KF432", "KF902"}
 """Rules whose place is that of something that may not be there, or a direction."""

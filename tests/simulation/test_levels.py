@@ -79,7 +79,7 @@ def test_with_all_masses_known_the_level_is_dynamic():
 def test_without_masses_it_is_kinematic_and_says_why():
     run = simulate(*meshed(*massless(*hinge(duration=0.1))))
     assert (run.status, run.level) == ("done", "kinematic")
-    assert any("arm" in note and "mass" in note for note in run.assumptions)
+    assert run.not_dynamic == (("arm", "its mass is not known"),)
     assert np.isnan(run.joint_effort).all()
     assert np.isnan(run.energy).all()
 
@@ -94,6 +94,7 @@ def test_a_level_can_be_forced_by_argument_and_by_manifest(level):
     made = meshed(*hinge(duration=0.1, intended=wanted))
     assert simulate(*made, level=level).level == level
     assert simulate(*meshed(*hinge(duration=0.1, intended=wanted, level=level))).level == level
+    assert simulate(*massless(*made), level="kinematic").not_dynamic == ()
 
 
 def test_an_unknown_level_is_an_error_that_lists_the_known_ones():
@@ -197,7 +198,7 @@ def test_drives_that_are_not_modelled_keep_a_run_from_being_dynamic(kind):
     assert simulate(*made, level="dynamic").status == "refused"
     run = simulate(*made)
     assert run.level == "kinematic"
-    assert any(kind in note for note in run.assumptions)
+    assert any(kind in why for _, why in run.not_dynamic)
 
 
 def test_forces_play_no_part_below_dynamics_and_the_run_says_so():

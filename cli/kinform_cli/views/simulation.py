@@ -9,7 +9,7 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from kinform.design import Design
-from kinform.foundation.words import counted
+from kinform.foundation.words import by_cause, counted
 from kinform.function import as_intended, designers_joints
 from kinform.model.simulation import Simulation
 from kinform_cli.constants import BALANCED, NAMED_PAIRS, REST
@@ -28,6 +28,8 @@ def render(design: Design) -> RenderableType:
     if design.kinematics is not None:
         run = as_intended(run, designers_joints(design.assembly, design.kinematics))
     items: list[RenderableType] = [Text(headline(run), style="bold")]
+    if run.not_dynamic:
+        items.append(f"not dynamic: {by_cause(run.not_dynamic)}")
     if len(run.time) and run.joint_names:
         from kinform.reports.values.runs import coordinates
         from kinform_cli.views import series

@@ -100,10 +100,22 @@ def telling(shown: Callable[[float, int], str], *values: float) -> Callable[[flo
 
 def quoted(names: Iterable[str], limit: int = 4) -> str:
     """Names in quotes, with commas; beyond the limit "and 3 more"."""
-    every = [f"'{name}'" for name in names]
-    if len(every) > limit + 1:
-        return ", ".join(every[:limit]) + f" and {len(every) - limit} more"
-    return listed(every)
+    return few([f"'{name}'" for name in names], limit)
+
+
+def few(words: Sequence[str], limit: int = 4) -> str:
+    """Words with commas; beyond the limit "and 3 more"."""
+    if len(words) > limit + 1:
+        return ", ".join(words[:limit]) + f" and {len(words) - limit} more"
+    return listed(words)
+
+
+def by_cause(reasons: Iterable[tuple[str, str]]) -> str:
+    """Pairs of what and why, each why once: "arm and hand: its mass is not known; slide: no law"."""
+    subjects: dict[str, list[str]] = {}
+    for subject, why in reasons:
+        subjects.setdefault(why, []).append(subject)
+    return "; ".join(f"{few(names)}: {why}" for why, names in subjects.items())
 
 
 def listed(words: Sequence[str]) -> str:

@@ -90,6 +90,8 @@ class Simulation:
     """Every value that was assumed, in sentences."""
     failures: tuple[Reason, ...] = ()
     """(subject, what cannot be simulated and why)."""
+    not_dynamic: tuple[Reason, ...] = ()
+    """(subject, why) of what keeps it below the dynamic level, where no level was asked for."""
     joint_acceleration: Annotated[Array, "rad/s² or m/s²"] = field(default_factory=lambda: np.zeros((0, 0)))
     """(T, n) rad/s² or m/s²; nan where unknown."""
     F_A: Annotated[Array, "N·m, N"] = field(default_factory=lambda: np.zeros((0, 0, 6)))

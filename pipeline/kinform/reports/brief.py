@@ -15,7 +15,7 @@ from itertools import groupby
 from kinform.design import Design
 from kinform.foundation.words import counted, one_line, shortened, shortened_ends
 from kinform.function.body_titles import body_titles
-from kinform.model.findings import CheckReport
+from kinform.model.findings import CheckReport, Finding
 from kinform.reports import constants
 from kinform.reports.phrases import answers_line, rule_counts, severity_counts, verdict_told
 
@@ -237,15 +237,26 @@ def _cut(text: str, room: int) -> str:
 
 
 def _notes(report: CheckReport, width: int) -> list[str]:
-    """A line for each rule that has notes: how many, and about what."""
+    """A line for each rule that has notes: how many, and about what; what the verdict stands on is told in full."""
+    undecided = {rule.code for rule in report.rules if rule.outcome == "inconclusive"}
     notes = sorted((f for f in report.findings if f.severity == "note"), key=lambda f: f.code)
     lines = []
     for (code, rule), group in groupby(notes, lambda f: (f.code, f.rule)):
+        if code in constants.TOLD_NOTES:
+            if code not in undecided:
+                lines += _in_full(next(group), width)
+            continue
         subjects = list(dict.fromkeys(one_line(", ".join(f.subject)) for f in group))
         head = f"note: {code} {rule}: "
         many = f" and {len(subjects) - 1} more" if len(subjects) > 1 else ""
         lines.append(head + _names([subjects[0]], max(width - len(head) - len(many), 8)) + many)
     return lines
+
+
+def _in_full(note: Finding, width: int) -> list[str]:
+    """A note with all of what was found."""
+    text = f"note: {note.code} {note.rule}: {one_line(note.found or note.message)}"
+    return textwrap.wrap(text, width, subsequent_indent="  ", break_on_hyphens=False)
 
 
 def _assumed(report: CheckReport, design: Design, width: int) -> list[str]:

@@ -24,6 +24,9 @@ two of the next commands and the prompt."""
 COMPARED = ("KF3", "KF4")
 """Rules, by how their codes begin, that compare with what is stated: what was found says little without it."""
 
+TOLD_NOTES = ("KF509",)
+"""Rules whose notes stand on the first screen with all that was found: what was simulated at all."""
+
 LEAST_BESIDE = 12
 """Characters beside a rule below which a finding goes below it: two shortened names and what was found need so many."""
 

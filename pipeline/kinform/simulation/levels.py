@@ -7,10 +7,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from kinform.behaviour import Behaviour, EndStop, Friction, RigidBody, System
-from kinform.function import FREEDOMS, acted_freedom, resolve_joint
+from kinform.function import FREEDOMS, acted_freedom, acting_by_force, resolve_joint
 from kinform.model.assembly import Assembly
 from kinform.model.function import Drive
 from kinform.model.kinematics import Kinematics, Meshing
+from kinform.model.quantities import Reason
 from kinform.simulation.constants import WHOLE_TURN
 from kinform.simulation.mechanism.mechanism import Mechanism
 
@@ -20,8 +21,9 @@ class Choice:
     """The level, or "" with failures when the level asked for cannot be had."""
 
     level: str
-    notes: tuple[str, ...] = ()
-    failures: tuple[tuple[str, str], ...] = ()
+    failures: tuple[Reason, ...] = ()
+    not_dynamic: tuple[Reason, ...] = ()
+    """(subject, why) of what keeps it below the dynamic level, where no level is asked for."""
 
 
 def choose(
@@ -36,12 +38,10 @@ def choose(
         return Choice(asked)
     if not obstacles:
         return Choice("dynamic")
-    subject, why = obstacles[0]
-    more = f", and {len(obstacles) - 1} more" if len(obstacles) > 1 else ""
-    return Choice(without_forces, (f"the level is {without_forces}, not dynamic: {subject}: {why}{more}",))
+    return Choice(without_forces, not_dynamic=obstacles)
 
 
-def _obstacles(behaviour: Behaviour, mechanism: Mechanism, adrift: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
+def _obstacles(behaviour: Behaviour, mechanism: Mechanism, adrift: tuple[str, ...]) -> tuple[Reason, ...]:
     """(subject, why) of all that keeps the model from being dynamic."""
     link_of = dict(zip(mechanism.bodies, mechanism.link_of, strict=True))
     out = [(name, "no joints connect this body with the ground") for name in adrift]
@@ -195,8 +195,6 @@ def notes_of_level(
     if not gears and assembly.function.couplings:
         yield from _intended_ratios(assembly, kinematics, behaviour)
     if level != "dynamic":
-        forces = sorted({f"{d.kind} on {d.joint}" for d in assembly.function.drives if d.kind != "motion"})
-        forces += sorted({f"load on {load.part}" for load in assembly.function.loads})
-        forces += sorted({spring.name for spring in assembly.function.springs})
+        forces = acting_by_force(assembly.function)
         if forces:
             yield f"forces play no part at the {level} level: {', '.join(forces)}"

@@ -66,7 +66,6 @@ def simulate_assembly(
         return refuse(f"the {asked} level needs more than is known", choice.failures)
     notes = (
         *_notes_of_request(assembly),
-        *choice.notes,
         *notes_of_joints(kinematics),
         *notes_of_teeth(kinematics),
         *notes_of_freedoms(assembly, kinematics),
@@ -83,6 +82,7 @@ def simulate_assembly(
     course = Course(request.duration, request.step, np.asarray(request.gravity, dtype=np.float64), choice.level)
     probes, silent = probes_of(assembly, kinematics, mass, joints, choice.level)
     run = run_course(system, mechanism, course, stated, (*notes, *silent), conduct, probes)
+    run = replace(run, not_dynamic=choice.not_dynamic)
     return _partial(run, behaviour.held) if behaviour.held else run
 
 

@@ -1,8 +1,8 @@
 """A simulation needs forces, and a moving part has no mass.
 
 An error when the manifest asks for `level = "dynamic"`, or for no level but for efforts, springs,
-dampers, servos, motors, loads or initial velocities, which only dynamics can answer. A note when only
-motions are asked for: they are then simulated without forces. Parts of a stated ground need no mass.
+dampers, friction, servos, motors, loads, losses of gears or initial velocities, which only dynamics can answer. A
+note when only motions are asked for: they are then simulated without forces. Parts of a stated ground need no mass.
 A mesh that is not watertight has no mass either: that is KF101.
 
 Why it matters: a mass that is guessed gives torques that look right and are not.
@@ -19,7 +19,8 @@ from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, skipped
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import quoted
-from kinform.model.assembly import Assembly, Part
+from kinform.function import needing_forces
+from kinform.model.assembly import Part
 
 
 def check(context: Context) -> Outcome:
@@ -30,7 +31,7 @@ def check(context: Context) -> Outcome:
     level = request.level if request is not None else None
     if level in ("functional", "kinematic"):
         return skipped(f"the requested level is {level}: it needs no mass")
-    severity = "error" if level == "dynamic" or _needs_forces(context.assembly) else "note"
+    severity = "error" if level == "dynamic" or needing_forces(context.assembly) else "note"
     demand = "a dynamic simulation needs it" if severity == "error" else "motion is simulated without forces"
     ground = _ground(context)
     return decided(
@@ -48,12 +49,6 @@ def check(context: Context) -> Outcome:
         for part in context.assembly.parts
         if _lack(part) and part.name not in ground and part.name not in context.assembly.weighed
     )
-
-
-def _needs_forces(assembly: Assembly) -> bool:
-    function, request = assembly.function, assembly.simulation
-    moving = request is not None and any(value.velocity != 0.0 for value in request.initial)
-    return moving or bool(function.loads) or any(drive.kind != "motion" for drive in function.drives)
 
 
 def _ground(context: Context) -> frozenset[str]:

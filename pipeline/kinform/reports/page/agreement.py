@@ -168,6 +168,7 @@ class _Table:
         ]
         level = f"{run.level} simulation " if run.level else "simulation "
         text = f"{level}{run.status}" + (f": {run.reason}" if run.reason else "")
+        text += f"; not dynamic: {words.by_cause(run.not_dynamic)}" if run.not_dynamic else ""
         form = ""
         if design.mass is not None:
             weighed = sum(part.mass is not None for part in design.mass.parts)

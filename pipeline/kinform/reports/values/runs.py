@@ -44,6 +44,7 @@ def simulation_values(design: Design) -> dict[str, Any]:
         "status": run.status,
         "reason": run.reason or None,
         "level": run.level or None,
+        "not_dynamic": [{"subject": subject, "message": why} for subject, why in run.not_dynamic],
         "duration": run.time[-1] if ran else None,
         "samples": len(run.time),
         "bodies": run.body_names,

@@ -61,6 +61,7 @@ LAYOUT = Layout(
     Table("dampings"),
     Texts("assumptions"),
     Table("failures"),
+    Table("not_dynamic"),
     *COLLISIONS,
 )
 
