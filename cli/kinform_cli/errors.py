@@ -126,9 +126,7 @@ def _print_os_error(error: OSError) -> None:
 
 def _print_problem(problem: Problem) -> None:
     place = problem.file if problem.file is not None else "kinform"
-    if problem.line is not None:
-        place += f":{problem.line}"
-    _print(place, problem.message, problem.remedy)
+    _print(place + problem.within, problem.message, problem.remedy)
 
 
 def _print(place: str, message: str, remedy: str | None = None) -> None:

@@ -14,7 +14,7 @@ class KinformError(Exception):
 class Problem:
     """One thing wrong with the input: what, where, and what to do about it.
 
-    `file` is as the user wrote it or relative to the manifest; `line` is 1-based; `remedy` is an
+    `file` is as the user wrote it or relative to the manifest; `line` and `column` are 1-based; `remedy` is an
     imperative sentence.
     """
 
@@ -22,11 +22,15 @@ class Problem:
     file: str | None = None
     line: int | None = None
     remedy: str | None = None
+    column: int | None = None
+
+    @property
+    def within(self) -> str:
+        """Where in the file it is, as it follows the file's name: ":12:5", or ""."""
+        return "".join(f":{number}" for number in (self.line, self.column) if number is not None)
 
     def __str__(self) -> str:
-        place = "" if self.file is None else self.file
-        if self.line is not None:
-            place += f":{self.line}"
+        place = f"{self.file or ''}{self.within}"
         text = f"{place}: {self.message}" if place else self.message
         return f"{text}\n  remedy: {self.remedy}" if self.remedy else text
 

@@ -30,7 +30,7 @@ def test_a_trapezoidal_thread_has_its_mean_radius_and_its_flanks(derive_design, 
 
 def test_a_journal_with_collars_has_its_radius_its_ends_and_its_rings(derive_design):
     found = _sliding(derive_design, "revolute_collars")
-    assert found.problem == "" and found.pairs == (("aluminium", "steel"),)
+    assert not found.open and found.pairs == (("aluminium", "steel"),)
     assert found.coefficients() == (0.47, 0.61)
     rubs = found.rubs
     assert abs(rubs.radius - 10.025e-3) < 1e-6
@@ -46,15 +46,16 @@ def test_a_drawer_has_two_pairs_of_faces_at_right_angles(derive_design):
 
 
 @pytest.mark.parametrize(
-    ("name", "why"),
+    ("name", "why", "kind", "key"),
     [
-        ("prismatic_dovetail", "3 directions"),
-        ("prismatic_two_dowels", "several axes"),
-        ("revolute_cone", "cone"),
+        ("prismatic_dovetail", "3 directions", "prismatic", "length"),
+        ("prismatic_two_dowels", "several axes", "prismatic", "length"),
+        ("revolute_cone", "cone", "revolute", "radius and its thrust_radius"),
     ],
 )
-def test_what_surfaces_share_in_unknown_ways_has_no_radius_but_a_reason(derive_design, name, why):
+def test_what_surfaces_share_in_unknown_ways_has_no_radius_but_a_reason(derive_design, name, why, kind, key):
     found = _sliding(derive_design, name)
-    assert why in found.problem
-    with pytest.raises(ValueError, match=why):
-        found.stated(Drive("any", "friction", None, {"coefficient": 0.1}, 1.0, "", 1))
+    assert found.open and all(why in told for told in found.open.values())
+    of = (kind, "turn" if kind == "revolute" else "slide")
+    with pytest.raises(ValueError, match=f"{why}.*state its {key}"):
+        found.stated(Drive("any", "friction", None, {"coefficient": 0.1}, 1.0, "", 1), *of)

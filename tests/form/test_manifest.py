@@ -7,6 +7,7 @@ import pytest
 
 from kinform.errors import InputError
 from kinform.form import load, schema
+from kinform.form.constants import MANIFEST_DEPTH
 
 HEAD = 'schema = 1\n[assembly]\nname = "x"\nunits = "mm"\n'
 TWO = HEAD + '[[part]]\nname = "a"\n[[part]]\nname = "b"\n'
@@ -105,6 +106,110 @@ def test_a_table_law_is_read_and_its_faults_have_lines(tmp_path):
     with pytest.raises(InputError) as caught:
         read(tmp_path, TWO + joint + drive)
     assert [(p.file, p.line) for p in caught.value.problems] == [("t.csv", 3), ("t.csv", 4)]
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ('schema = 1\n[assembly]\nname = "x\n', (3, 10)),
+        ("schema = 1\n  a b = 2\n", (2, 5)),
+        ("schema = 1\r\nx = [1, 2\r\n", (3, 1)),
+        ("schema = 1\n" + "x = " + 200 * "[", (2, 5 + MANIFEST_DEPTH)),
+    ],
+)
+def test_what_is_no_toml_is_shown_by_line_and_column(tmp_path, text, place):
+    (tmp_path / "m.toml").write_bytes(text.encode())
+    with pytest.raises(InputError, match=f"m.toml:{place[0]}:{place[1]}: ") as caught:
+        load(tmp_path / "m.toml")
+    (problem,) = caught.value.problems
+    assert (problem.line, problem.column) == place
+
+
+SLIDE = (
+    TWO + '[[function.joint]]\nname = "j"\nbetween = ["a", "b"]\ntype = "{type}"\naxis = [0, 0, 1]\npoint = [0, 0, 0]\n'
+    '[[function.drive]]\njoint = "j"\nkind = "friction"\n'
+)
+"""Keys of the friction follow on line 18."""
+
+
+@pytest.mark.parametrize(
+    ("kind", "keys", "idle"),
+    [
+        ("prismatic", "coefficient = 0.1\nradius = 1", "radius"),
+        ("prismatic", "static = 0.1\nthrust_radius = 0", "thrust_radius"),
+        ("prismatic", "length = 3\nflank = 1", "flank"),
+        ("revolute", "coefficient = 0.1\nflank = 1", "flank"),
+        ("cylindrical", "length = 3\nflank = 1", "flank"),
+        ("cylindrical", 'freedom = "slide"\nradius = 1', "radius"),
+        ("planar", "coefficient = 0.1\nlength = 1", "length"),
+        ("revolute", "effort = 0.1\nradius = 1", "radius"),
+        ("revolute", "effort = 0.1\nleast_reactions = true", "least_reactions"),
+    ],
+)
+def test_keys_of_friction_that_cannot_act_are_errors(tmp_path, kind, keys, idle):
+    ((line, message),) = problems(tmp_path, SLIDE.format(type=kind) + keys + "\n")
+    assert line == 19 and message.startswith(f"{idle} does nothing")
+
+
+@pytest.mark.parametrize(
+    ("kind", "keys"),
+    [
+        ("prismatic", "coefficient = 0.1\nlength = 1"),
+        ("prismatic", "effort = 1.0"),
+        ("revolute", "radius = 1\nthrust_radius = 0\nlength = 0"),
+        ("revolute", "effort = 1.0\ncoefficient = 0.1\nradius = 1\nleast_reactions = true"),
+        ("cylindrical", "radius = 1\nthrust_radius = 2\nlength = 3"),
+        ("cylindrical", 'freedom = "slide"\nlength = 1'),
+    ],
+)
+def test_keys_of_friction_that_act_are_none(tmp_path, kind, keys):
+    (drive,) = read(tmp_path, SLIDE.format(type=kind) + keys + "\n").function.drives
+    assert set(drive.parameters) == {line.split()[0] for line in keys.splitlines()} - {"freedom"}
+
+
+def test_geometry_that_a_type_of_joint_does_not_have_is_an_error(tmp_path):
+    text = SLIDE.format(type="revolute").partition("[[function.drive]]")[0] + "pitch = 2\naxis2 = [1, 0, 0]\n"
+    found = problems(tmp_path, text)
+    assert [line for line, _ in found] == [15, 16]
+    assert all("does nothing: a revolute joint has none" in message for _, message in found)
+
+
+RANGED = SLIDE.partition("[[function.drive]]")[0]
+
+
+@pytest.mark.parametrize(
+    ("more", "wrong"),
+    [
+        ("[simulation]\nrestitution = 0.5\n", (16, "restitution is of stops, which are not asked for")),
+        ('[simulation]\nstops = "range"\n', (16, 'stops = "range", and no joint states a range')),
+        ('range = [-inf, inf]\n[simulation]\nstops = "range"\n', (17, 'stops = "range", and no joint states a range')),
+        ('[simulation]\nstops = "found"\nrestitution = 0.5\n', None),
+        ('range = [-inf, 3]\n[simulation]\nstops = "range"\nrestitution = 0.5\n', None),
+    ],
+)
+def test_stops_that_nothing_says_are_errors(tmp_path, more, wrong):
+    text = RANGED.format(type="revolute") + more
+    if wrong is None:
+        assert read(tmp_path, text).simulation.restitution == 0.5
+    else:
+        assert problems(tmp_path, text) == [wrong]
+
+
+@pytest.mark.parametrize("at", [0.1, 0.2])
+def test_friction_of_one_pair_in_two_files_is_one_friction(tmp_path, at):
+    stated = "[[friction]]\nmaterials = {}\ncoefficient = {}\n"
+    (tmp_path / "sub.toml").write_text(HEAD + '[[part]]\nname = "a"\n' + stated.format('["steel", "brass"]', at))
+    places = "".join(f'[[subassembly]]\nname = "{name}"\nfile = "sub.toml"\n' for name in ("one", "two"))
+    text = TWO + places + stated.format('["brass", "steel"]', 0.1)
+    if at == 0.1:
+        assert len(read(tmp_path, text).function.frictions) == 3
+        return
+    with pytest.raises(InputError) as caught:
+        read(tmp_path, text)
+    (problem,) = caught.value.problems
+    assert (problem.file, problem.line) == ("sub.toml", 7)
+    assert '"brass" and "steel" is 0.2 in motion' in problem.message
+    assert "at m.toml:15 it is 0.1 in motion" in problem.message
 
 
 WRONG = {

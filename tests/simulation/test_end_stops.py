@@ -175,3 +175,26 @@ def test_a_manifest_has_stops_at_the_ends_of_stated_ranges(named, axis, tmp_path
     expected = np.where(run.time < 0.3, 0.1 * run.time, 0.03 - 0.05 * (run.time - 0.3))
     np.testing.assert_allclose(np.abs(run.joint_position[:, 0]), np.abs(expected), atol=1e-9)
     assert [use.kind for use in run.drives] == ["stop"]
+
+
+def _railed(tmp_path, kind, more):
+    path = tmp_path / "rail.toml"
+    path.write_text(
+        'schema = 1\n[assembly]\nname = "rail"\nunits = "mm"\nground = "rail"\n[[part]]\nname = "rail"\n'
+        + stated_part("block", 1.0)
+        + stated_part("cart", 1.0)
+        + stated_joint("way", ("rail", "cart"), "prismatic", (1.0, 0.0, 0.0))
+        + "range = [-1000, 30]\n"
+        + stated_joint("aside", ("cart", "block"), kind, (0.0, 1.0, 0.0))
+        + more
+    )
+    return kinform.run(path).simulation.assumptions
+
+
+def test_joints_that_are_asked_to_stop_and_have_no_stop_are_named(tmp_path):
+    asked = '[simulation]\nstops = "range"\nduration = 0.1\n'
+    assert "block~cart has no stop: no range of it is stated" in _railed(tmp_path, "prismatic", asked)
+    told = _railed(tmp_path, "planar", "range = [-1, 1]\n" + asked + "gravity = [0, 0, 0]\n")
+    assert "block~cart has no stop, although a range is stated: it has 3 freedoms" in told
+    told = _railed(tmp_path, "prismatic", asked + 'level = "kinematic"\n')
+    assert any("stops play no part at the kinematic level" in note for note in told)

@@ -143,7 +143,7 @@ def test_friction_that_is_not_known_keeps_the_level_from_being_dynamic_and_says_
     run = kinform.run(_sled(tmp_path, "")).simulation
     why = "state its coefficient or its effort"
     assert run.level != "dynamic"
-    assert any(why in note for note in run.assumptions) or why in run.reason
+    assert any(why in told for _, told in run.not_dynamic)
 
 
 @pytest.mark.parametrize(
@@ -259,3 +259,31 @@ def test_a_friction_for_each_direction_of_a_surface_is_refused_and_one_alone_is_
     assert any("moved along others too" in said for said in alone.assumptions) == moved_aside
     assert crossed.status != "done"
     assert "opposes the way in which a surface slides" in str((crossed.reason, crossed.failures))
+
+
+def test_a_radius_that_cannot_act_keeps_the_run_from_being_dynamic_where_only_geometry_shows_it(tmp_path):
+    """The manifest names the joint as kinform does, and does not say that it slides."""
+    path = _sled(tmp_path, "coefficient = 0.1\nradius = 0.01")
+    path.write_text(path.read_text().replace('joint = "slide"', 'joint = "bed~sled"'))
+    run = kinform.run(path).simulation
+    assert run.level != "dynamic"
+    ((subject, why),) = run.not_dynamic
+    assert subject == "bed~sled" and "radius does nothing on the slide of a prismatic joint: length would" in why
+
+
+@pytest.mark.parametrize(("radius", "thrust", "known"), [(10, None, False), (None, 14, False), (10, 14, True)])
+def test_a_stated_ring_does_not_stand_for_journals_that_differ(tmp_path, radius, thrust, known):
+    """A shaft in two bores of different radii, with two rings of different radii: each is stated for itself."""
+    housing = box(-40, 40, -40, 40, 0, 40) - rod(10, -1, 20, 64) - rod(14, 20, 41, 64)
+    save(housing, tmp_path / "housing.stl")
+    save(rod(10, -5, 20, 64) + rod(14, 20, 45, 64) + rod(22, -15, 0, 64) + rod(30, 40, 50, 64), tmp_path / "wheel.stl")
+    stated = "".join(f"{key} = {value}\n" for key, value in (("radius", radius), ("thrust_radius", thrust)) if value)
+    text = WHEEL.replace("GRAVITY", "-5.0").replace('kind = "friction"\n', 'kind = "friction"\n' + stated)
+    (tmp_path / "wheel.toml").write_text(text)
+    run = kinform.run(tmp_path / "wheel.toml").simulation
+    if known:
+        assert run.level == "dynamic"
+        assert any("journal of radius 10 mm, 40 mm long; thrust ring of mean" in note for note in run.assumptions)
+    else:
+        ((_, why),) = run.not_dynamic
+        assert ("state its thrust_radius" if radius else "state its radius") in why

@@ -34,7 +34,7 @@ from kinform.behaviour.shafts import (
 )
 from kinform.behaviour.signals import STEADY, Constant, Signal, signal
 from kinform.behaviour.sliding import Sliding
-from kinform.function import acted_freedom
+from kinform.function import FREEDOMS, acted_freedom
 from kinform.model.assembly import Assembly
 from kinform.model.function import Coupling, Drive, Load
 from kinform.model.kinematics import Coupling as Found
@@ -144,7 +144,9 @@ def _friction(drive: Drive, on: OneFreedom, name: str, found: Mapping[str, Slidi
     friction = Friction(name, drive.joint, kinetic, static, effort, rest, least=least, freedom=on.freedom, rates=rates)
     if static == 0.0:
         return friction
-    return replace(friction, **sliding.stated(drive).levers(joint.kind, joint.geometry, on.freedom))
+    freedom = FREEDOMS[joint.kind.name][on.freedom]
+    rubs = sliding.stated(drive, joint.kind.name, freedom)
+    return replace(friction, **rubs.levers(joint.kind, joint.geometry, on.freedom))
 
 
 def _signal(drive: Drive, scale: float) -> Signal:

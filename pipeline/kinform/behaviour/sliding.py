@@ -4,7 +4,7 @@ A journal is a coaxial cylinder; its ends are those of the overlap of both surfa
 A thrust ring is a flat patch across the axis: its mean radius is that of a load spread evenly over it. A thread is a
 helicoid: mean radius and lean of the flanks are those of its samples. A guide between flat faces has their normals.
 What several unlike surfaces would share (journals of different radii, cones, a guide with faces in three directions) is
-not determined by rigid bodies: then there are no radii but the reason, and the manifest can state them.
+not determined by rigid bodies: then there is no radius but the reason, and the manifest can state it, each for itself.
 """
 
 from __future__ import annotations
@@ -17,11 +17,12 @@ import numpy as np
 
 from kinform.behaviour.constants import ALIKE_RADII, ALONG_AXIS, MATERIAL_PAIRS
 from kinform.behaviour.rubbing import Rubs
+from kinform.foundation.words import listed
 from kinform.kinematics.mobility.guides import span_along
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
-from kinform.model.function import Drive
+from kinform.model.function import ARMS, Drive, friction_arms
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.names import BodyName
 from kinform.model.surfaces import MeshSurfaces
@@ -32,8 +33,8 @@ class Sliding:
     """What is known of the sliding surfaces of a joint."""
 
     rubs: Rubs = field(default_factory=Rubs)
-    problem: str = ""
-    """Why the radii are not known; "": they are, or there are no patches."""
+    open: Mapping[str, str] = field(default_factory=dict)
+    """Why what contact shows does not say what rubs, by the key of the manifest that says it instead."""
     pairs: tuple[tuple[str | None, str | None], ...] = ()
     """Materials that meet, sorted."""
     table: Mapping[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
@@ -59,10 +60,20 @@ class Sliding:
             raise ValueError("its contacts are of materials with different friction: state its coefficient")
         return known.pop()
 
-    def stated(self, drive: Drive) -> Rubs:
-        """What rubs, with what the drive states in place of what contact shows. Raises ValueError with what neither
-        says."""
+    def stated(self, drive: Drive, kind: str, freedom: str) -> Rubs:
+        """What rubs in a joint of this kind, along this freedom, with what the drive states in place of what contact
+        shows. Raises ValueError with what neither says, and with what is stated to no effect."""
+        acting = friction_arms(kind, freedom)
+        idle = sorted(ARMS & drive.parameters.keys() - acting)
+        if idle:
+            has = f"{listed(sorted(acting))} would" if acting else "no length or radius does"
+            raise ValueError(f"{idle[0]} does nothing on the {freedom} of a {kind} joint: {has}")
         given, metres = drive.parameters, drive.metres_per_unit
+        open_ = {key if key in acting else "length": why for key, why in self.open.items()}
+        missing = [key for key in open_ if key not in given]
+        if missing:
+            keys = " and ".join(f"its {key}" for key in missing)
+            raise ValueError(f"{open_[missing[0]]}: state {keys}, or its friction as an effort")
         out = self.rubs
         if "radius" in given:
             out = replace(out, radius=given["radius"] * metres)
@@ -74,8 +85,6 @@ class Sliding:
             half = 0.5 * given["length"] * metres
             riding = out.riding if out.upper > out.lower else self.riding
             out = replace(out, lower=-half, upper=half, riding=riding, offset=np.zeros(3))
-        if self.problem and not {"radius", "thrust_radius", "length"} & given.keys():
-            raise ValueError(f"{self.problem}: state its radius, or its friction as an effort")
         return out
 
 
@@ -97,12 +106,9 @@ def sliding_joints(
         pairs = {_materials(assembly, patch) for patch in patches}
         ordered = tuple(sorted(pairs, key=lambda pair: tuple(name or "" for name in pair)))
         riding = joint.bodies not in turned
-        sliding = Sliding(pairs=ordered, table=table, riding=riding)
-        try:
-            rubs = _rubs(assembly, surfaces, joint, patches, parts[joint.bodies[1]], riding=riding)
-            out[str(joint.name)] = replace(sliding, rubs=rubs)
-        except ValueError as error:
-            out[str(joint.name)] = replace(sliding, problem=str(error))
+        doubts: dict[str, str] = {}
+        rubs = _rubs(assembly, surfaces, joint, patches, parts[joint.bodies[1]], doubts, riding=riding)
+        out[str(joint.name)] = Sliding(rubs, doubts, ordered, table, riding)
     return out
 
 
@@ -125,10 +131,11 @@ def _rubs(
     joint: Joint,
     patches: Sequence[Patch],
     second: Iterable[str],
+    doubts: dict[str, str],
     *,
     riding: bool,
 ) -> Rubs:
-    """What rubs in one joint; Rubs() without patches. Raises ValueError with why that is not known."""
+    """What rubs in one joint, as far as contact says; Rubs() without patches. `doubts` gets what it leaves open."""
     if not patches or joint.axis is None or joint.type not in ("revolute", "prismatic", "cylindrical", "screw"):
         return Rubs()
     if joint.type == "screw":
@@ -136,13 +143,15 @@ def _rubs(
     axis = joint.axis
     round_ = [p for p in patches if p.kind == "cylinder" and abs(float(p.axis @ axis)) > ALONG_AXIS]
     flat = [p for p in patches if p.kind == "plane"]
-    others = [p.kind for p in patches if p not in round_ and p not in flat]
-    if others:
-        raise ValueError(f"what presses on its {others[0]} contact is not determined")
     rings = [p for p in flat if abs(float(p.axis @ axis)) > ALONG_AXIS]
     faces = [p for p in flat if p not in rings]
     if joint.type == "prismatic" and rings:
         faces, rings = flat, []
+    others = [p.kind for p in patches if p not in round_ and p not in flat]
+    if others or (faces and joint.type != "prismatic"):
+        what = f"{others[0]} contact" if others else "flat faces"
+        for key in ("length",) if joint.type == "prismatic" else ("radius", "thrust_radius"):
+            doubts[key] = f"what presses on its {what} is not determined"
     bearing = round_ or faces or patches
     weights = np.concatenate([p.weights for p in bearing])
     centre = weights @ np.concatenate([p.points for p in bearing]) / weights.sum()
@@ -151,19 +160,20 @@ def _rubs(
         centre = base
     ends = _ends(assembly, surfaces, joint, round_ or faces, set(second), centre, riding=riding)
     out = replace(ends, offset=centre - base)
+    slides = joint.type == "prismatic"
     if round_:
         apart = max(float(_distance(p.point[None], round_[0].point, axis)[0]) for p in round_)
+        key = "length" if slides else "radius"
         if apart > ALIKE_RADII * min(p.radii[0] for p in round_):
-            raise ValueError("its journals lie on several axes, and how they share loads is open")
-        out = replace(out, radius=_one_radius([0.5 * (p.radii[0] + p.radii[1]) for p in round_], "journals"))
+            doubts.setdefault(key, "its journals lie on several axes, and how they share loads is open")
+        radii = [0.5 * (p.radii[0] + p.radii[1]) for p in round_]
+        out = replace(out, radius=_one_radius(radii, "journals", key, doubts))
     if rings:
         means = [float(p.weights @ _distance(p.points, base, axis) / p.weights.sum()) for p in rings]
-        out = replace(out, thrust=_one_radius(means, "thrust rings"))
-    if joint.type == "prismatic" and faces:
-        twist, normals = _flat(faces, axis, centre, round_=bool(round_))
+        out = replace(out, thrust=_one_radius(means, "thrust rings", "thrust_radius", doubts))
+    if slides and faces:
+        twist, normals = _flat(faces, axis, centre, doubts, round_=bool(round_))
         out = replace(out, twist=twist, faces=normals)
-    elif faces:
-        raise ValueError("what presses on its flat faces is not determined")
     return out
 
 
@@ -189,11 +199,12 @@ def _distance(points: Array, base: Array, axis: Array) -> Array:
     return np.asarray(np.linalg.norm(np.cross(points - base, axis), axis=1))
 
 
-def _one_radius(radii: Sequence[float], what: str) -> float:
-    """The radius that all have. Raises ValueError where they differ."""
+def _one_radius(radii: Sequence[float], what: str, key: str, doubts: dict[str, str]) -> float:
+    """The radius that all have; a doubt where they differ."""
     low, high = min(radii), max(radii)
     if high - low > ALIKE_RADII * high:
-        raise ValueError(f"its {what} have radii of {1e3 * low:.4g} to {1e3 * high:.4g} mm, and which carries is open")
+        told = f"its {what} have radii of {1e3 * low:.4g} to {1e3 * high:.4g} mm, and which carries is open"
+        doubts.setdefault(key, told)
     return 0.5 * (low + high)
 
 
@@ -232,10 +243,10 @@ def _ends(
 
 
 def _flat(
-    faces: Sequence[Patch], axis: Array, centre: Array, *, round_: bool
+    faces: Sequence[Patch], axis: Array, centre: Array, doubts: dict[str, str], *, round_: bool
 ) -> tuple[float, tuple[Array, Array] | None]:
-    """The arm at which flat faces along a slide carry torques, and their normals where they carry forces too. Raises
-    ValueError where more than two directions share loads."""
+    """The arm at which flat faces along a slide carry torques, and their normals where they carry forces too. A doubt
+    where more than two directions share loads."""
     arm = max(float(np.abs(np.cross(p.points - centre, p.normals) @ axis).max()) for p in faces)
     lines: list[Array] = []
     for patch in faces:
@@ -246,5 +257,7 @@ def _flat(
     if round_:
         return arm, None
     if len(lines) != 2:
-        raise ValueError(f"its faces have normals in {len(lines)} directions, and how they share loads is open")
+        told = f"its faces have normals in {len(lines)} directions, and how they share loads is open"
+        doubts.setdefault("length", told)
+        return 0.0, None
     return arm, (lines[0], lines[1])

@@ -20,12 +20,12 @@ class Problems:
     def __len__(self) -> int:
         return len(self._items)
 
-    def add(self, message: str, file: str | None, line: int | None, remedy: str) -> None:
+    def add(self, message: str, file: str | None, line: int | None, remedy: str, column: int | None = None) -> None:
         """Note a problem; the same problem is kept once, and of very many only the first."""
         if len(self._items) >= PROBLEMS_MOST:
             self._more += 1
         else:
-            self._items.setdefault(Problem(message=message, file=file, line=line, remedy=remedy))
+            self._items.setdefault(Problem(message=message, file=file, line=line, remedy=remedy, column=column))
 
     def add_alike(self, what: str, fault: str, file: str | None, line: int | None, remedy: str) -> None:
         """Note that `what` has a `fault` that others of the file have too: they become one problem, at the first."""

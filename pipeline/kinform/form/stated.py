@@ -39,7 +39,7 @@ def toml_of(path: Path, what: str) -> tuple[str, dict[str, Any]]:
     except TextError as error:
         raise InputError([Problem(error.message, str(path), None, error.remedy or f"name {what}")]) from None
     except TomlError as error:
-        raise InputError([Problem(error.message, str(path), error.line, error.remedy)]) from None
+        raise InputError([Problem(error.message, str(path), error.line, error.remedy, error.column)]) from None
 
 
 def _tables(path: Path) -> dict[str, Any]:

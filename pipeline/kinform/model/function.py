@@ -131,6 +131,24 @@ class Drive:
         return math.pi / 180.0 if rotational else self.metres_per_unit
 
 
+ARMS = frozenset({"radius", "thrust_radius", "length", "flank"})
+"""Keys of a friction that say where what presses in a joint rubs."""
+_TURN, _SLIDE = frozenset({"radius", "thrust_radius", "length"}), frozenset({"length"})
+_ARMS_OF = {
+    ("revolute", "turn"): _TURN,
+    ("prismatic", "slide"): _SLIDE,
+    ("cylindrical", "turn"): _TURN,
+    ("cylindrical", "slide"): _SLIDE,
+    ("screw", "turn"): frozenset({"radius", "flank"}),
+}
+
+
+def friction_arms(joint: str, freedom: str = "") -> frozenset[str]:
+    """Those of `ARMS` that act in a joint of this type, on this freedom; "": on any that it has."""
+    every = (arms for (kind, name), arms in _ARMS_OF.items() if kind == joint and freedom in ("", name))
+    return frozenset().union(*every)
+
+
 @dataclass(frozen=True)
 class MaterialFriction:
     """Coulomb friction between two materials."""

@@ -23,7 +23,7 @@ __all__ = [
     "simulate", "simulate_system",
 ]  # fmt: skip
 
-CODE_VERSION: int = 33
+CODE_VERSION: int = 34
 
 __getattr__ = first_used(
     __name__,

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from kinform.behaviour import Behaviour, EndStop, Friction, RigidBody, System
-from kinform.function import FREEDOMS, acted_freedom, acting_by_force, resolve_joint
+from kinform.function import FREEDOMS, acted_freedom, acting_by_force, resolve_joint, stated_ranges
 from kinform.model.assembly import Assembly
 from kinform.model.function import Drive
 from kinform.model.kinematics import Kinematics, Meshing
@@ -118,22 +118,25 @@ def notes_of_freedoms(assembly: Assembly, kinematics: Kinematics) -> Iterator[st
             yield f"{what} {name} acts on its {FREEDOMS[meant.joint.type][meant.freedom]}: {meant.because}"
 
 
-def notes_of_stops(assembly: Assembly, system: System) -> Iterator[str]:
-    """Where joints stop because meshes meet there, and which have no such end."""
-    if assembly.simulation is None or assembly.simulation.stops != "found":
-        return
+def notes_of_stops(assembly: Assembly, kinematics: Kinematics, system: System) -> Iterator[str]:
+    """Where joints stop because meshes meet there, and which have no such end, or no end of a stated range."""
+    asked = assembly.simulation.stops if assembly.simulation is not None else ""
     stops = {stop.subject: stop for stop in system.components if isinstance(stop, EndStop)}
-    for joint in system.joints:
+    ranged = dict(stated_ranges(assembly, kinematics))
+    for joint in system.joints if asked else ():
         if joint.kind.rates != 1:
+            if asked == "range" and joint.subject in ranged:
+                yield f"{joint.subject} has no stop, although a range is stated: it has {joint.kind.rates} freedoms"
             continue
         stop, turns = stops.get(joint.subject), joint.kind.coordinates[0][1]
         ends = [] if stop is None else [end for end in (stop.lower, stop.upper) if math.isfinite(end)]
         shown = [f"{math.degrees(end):.4g}°" if turns else f"{1e3 * end:.4g} mm" for end in ends]
-        if shown:
+        if shown and asked == "found":
             alone = "its parts meet there when it is moved from the pose of the meshes, alone or with its loops"
             yield f"{joint.subject} stops at {' and '.join(shown)}: {alone}"
-        else:
-            yield f"{joint.subject} has no stop: no end of its range was found"
+        elif not shown:
+            why = "no end of its range was found" if asked == "found" else "no range of it is stated"
+            yield f"{joint.subject} has no stop: {why}"
 
 
 def notes_of_teeth(kinematics: Kinematics) -> Iterator[str]:
@@ -195,6 +198,8 @@ def notes_of_level(
     if not gears and assembly.function.couplings:
         yield from _intended_ratios(assembly, kinematics, behaviour)
     if level != "dynamic":
+        if assembly.simulation is not None and assembly.simulation.stops:
+            yield f"stops play no part at the {level} level: joints go where the motions lead them"
         forces = acting_by_force(assembly.function)
         if forces:
             yield f"forces play no part at the {level} level: {', '.join(forces)}"

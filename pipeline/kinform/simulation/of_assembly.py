@@ -69,7 +69,7 @@ def simulate_assembly(
         *notes_of_joints(kinematics),
         *notes_of_teeth(kinematics),
         *notes_of_freedoms(assembly, kinematics),
-        *notes_of_stops(assembly, behaviour.system),
+        *notes_of_stops(assembly, kinematics, behaviour.system),
         *(notes_of_drives(assembly.function.drives) if choice.level == "dynamic" else ()),
         *(notes_of_friction(behaviour.system) if choice.level == "dynamic" else ()),
         *notes_of_level(assembly, kinematics, behaviour, choice.level, adrift, gears),

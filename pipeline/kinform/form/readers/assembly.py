@@ -20,6 +20,7 @@ from kinform.form.manifest.parts import TolerancesTable
 from kinform.form.materials import BUILT_IN, density_of
 from kinform.form.meshes.primitives import primitive
 from kinform.form.problems import Problems
+from kinform.form.readers.frictions import one_for_each_pair
 from kinform.form.readers.function import FunctionReader
 from kinform.form.readers.grounds import grounds_of
 from kinform.form.readers.open_manifest import Parsed, Scope, parse
@@ -163,7 +164,9 @@ class _AssemblyReader:
             joints=tuple(joint for reader in readers for joint in reader.intended()),
             couplings=tuple(coupling for reader in readers for coupling in reader.couplings()),
             drives=tuple(drive for reader in readers for drive in reader.drives()),
-            frictions=tuple(pair for reader in readers for pair in reader.frictions(materials)),
+            frictions=one_for_each_pair(
+                (pair for reader in readers for pair in reader.frictions(materials)), self.problems
+            ),
             loads=tuple(load for reader in readers for load in reader.loads()),
             springs=tuple(spring for reader in readers for spring in springs_of(reader)),
             requirements=tuple(requirement for reader in readers for requirement in requirements_of(reader)),
@@ -184,7 +187,7 @@ class _AssemblyReader:
             tolerances=tolerances,
             infer_fasteners=top.manifest.fasteners.infer,
             function=function,
-            simulation=_request(readers[0]),
+            simulation=_request(readers[0], function),
             subassemblies=tuple(sorted(self.subassemblies, key=lambda s: s.name)),
             source=top.source("assembly"),
             files=tuple(sorted(self.files.names)),
@@ -324,10 +327,20 @@ class _AssemblyReader:
         )
 
 
-def _request(reader: FunctionReader) -> SimulationRequest | None:
+def _request(reader: FunctionReader, function: Function) -> SimulationRequest | None:
     """`[simulation]` with its sensors."""
     request = reader.simulation()
-    return None if request is None else replace(request, sensors=tuple(sensors_of(reader)))
+    if request is None:
+        return None
+    if request.stops == "range" and not any(_ends(joint.range) for joint in function.joints):
+        remedy = 'add range = [lower, upper] to a [[function.joint]], or ask for stops = "found"'
+        reader.scope.complain('stops = "range", and no joint states a range', remedy, "simulation", "stops")
+    return replace(request, sensors=tuple(sensors_of(reader)))
+
+
+def _ends(bounds: tuple[float, float] | None) -> bool:
+    """Whether a range has an end."""
+    return bounds is not None and not all(map(math.isinf, bounds))
 
 
 def _complete(scope: Scope) -> bool:

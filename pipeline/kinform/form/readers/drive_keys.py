@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from kinform.form.readers.open_manifest import Scope
+from kinform.foundation.words import listed
+from kinform.model.function import ARMS, friction_arms
 
 
 def efficiencies(scope: Scope, table: Any, *path: str | int) -> tuple[float, float]:
@@ -17,14 +19,15 @@ def efficiencies(scope: Scope, table: Any, *path: str | int) -> tuple[float, flo
     return table.efficiency, back
 
 
-def complain_of_drive(scope: Scope, table: Any, law: bool, *path: str | int) -> None:
-    """Problems of a `[[function.drive]]`, with a law or without."""
+def complain_of_drive(scope: Scope, table: Any, law: bool, joint: str | None, *path: str | int) -> None:
+    """Problems of a `[[function.drive]]`, with a law or without, on a joint that is stated to be of this type."""
     if table.kind in ("servo", "dc_motor"):
         _complain_of_controller(scope, table, *path)
     if table.kind == "dc_motor":
         _complain_of_motor(scope, table, law, *path)
     if table.kind == "friction":
         _complain_of_friction(scope, table, *path)
+        _complain_of_arms(scope, table, joint, *path)
 
 
 def _complain_of_friction(scope: Scope, table: Any, *path: str | int) -> None:
@@ -36,6 +39,21 @@ def _complain_of_friction(scope: Scope, table: Any, *path: str | int) -> None:
                 f"friction at rest ({rest} = {lesser:g}) cannot be less than that in motion ({motion} = {greater:g})"
             )
             scope.complain(wrong, f"give {rest} ≥ {motion}", *path, rest)
+
+
+def _complain_of_arms(scope: Scope, table: Any, joint: str | None, *path: str | int) -> None:
+    """Problems of radii and lengths that cannot act: without a coefficient, or on another type of joint."""
+    by_load = table.coefficient is not None or table.static is not None
+    if not by_load and (table.effort is not None or table.static_effort is not None):
+        for key in sorted((ARMS | {"least_reactions"}) & table.model_fields_set):
+            wrong = f"{key} does nothing: friction of an effort alone does not depend on what presses"
+            scope.complain(wrong, "state a coefficient too, or remove it", *path, key)
+        return
+    acting = ARMS if joint is None else friction_arms(joint, table.freedom or "")
+    for key in sorted((ARMS & table.model_fields_set) - acting):
+        which = f"the {table.freedom} of a" if table.freedom else "a"
+        takes = f"remove it: friction there has {listed(sorted(acting))}" if acting else "remove it"
+        scope.complain(f"{key} does nothing in the friction on {which} {joint} joint", takes, *path, key)
 
 
 def _complain_of_controller(scope: Scope, table: Any, *path: str | int) -> None:

@@ -94,6 +94,10 @@ class FunctionReader:
         for key, kinds in NEEDED.items():
             if kind in kinds and getattr(table, key) is None:
                 scope.complain(f"{what}: a {kind} joint needs {key}", f"add {key}", *path)
+        for key in ("axis2", "pitch"):
+            if kind not in NEEDED[key] and getattr(table, key, None) is not None:
+                right = f"remove it, or state type = {in_quotes(NEEDED[key][0])}"
+                scope.complain(f"{what}: {key} does nothing: a {kind} joint has none", right, *path, key)
         axis = scope.direction(table.axis, *path, "axis")
         axis2 = scope.direction(table.axis2, *path, "axis2")
         if axis is not None and axis2 is not None and np.linalg.norm(np.cross(axis, axis2)) < PARALLEL_AXES:
@@ -198,8 +202,8 @@ class FunctionReader:
                 exclude={"joint", "kind", "law", "freedom"}, exclude_none=True, exclude_unset=True
             )
             law = self._law(getattr(table, "law", None), *path, "law")
-            complain_of_drive(self.scope, table, law is not None, *path)
             joint = self.joint(table.joint, *path, "joint")
+            complain_of_drive(self.scope, table, law is not None, self.joints.get(joint), *path)
             parameters = {key: float(value) for key, value in stated.items()}
             where = self.scope.where(*path)
             yield Drive(joint, table.kind, law, parameters, self.scope.metres, *where, table.freedom or "")
@@ -282,6 +286,9 @@ class FunctionReader:
         table = self.scope.manifest.simulation
         if table is None:
             return None
+        if table.stops is None and "restitution" in table.model_fields_set:
+            remedy = 'add stops = "range" or stops = "found", or remove it'
+            self.scope.complain("restitution is of stops, which are not asked for", remedy, "simulation", "restitution")
         if table.step > table.duration:
             self.scope.complain("the step is longer than the duration", "give a shorter step", "simulation", "step")
         elif table.duration / table.step > OUTPUTS:

@@ -154,7 +154,7 @@ def parse(path: Path, file: str, files: DesignFiles, problems: Problems, changes
     except TomlError as error:
         other = f"; if it is no manifest: {path.suffix} is not read, export STEP, GLB or 3MF"
         remedy = error.remedy + ("" if path.suffix.lower() in (".toml", "") else other)
-        problems.add(error.message, file, error.line, remedy)
+        problems.add(error.message, file, error.line, remedy, error.column)
         return None
     lines = LineTable(text)
     stated = raw["assembly"].get("from") if isinstance(raw.get("assembly"), dict) else None

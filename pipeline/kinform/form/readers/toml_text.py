@@ -26,29 +26,35 @@ _TOKEN = re.compile(
     re.VERBOSE | re.DOTALL,
 )
 _STEP = re.compile(_KEY)
-_PLACE = re.compile(r"\(at line (\d+), column \d+\)")
+_PLACE = re.compile(r"\(at (?:line (\d+), column (\d+)|end of document)\)")
 
 
 class TomlError(Exception):
-    """A text is no TOML, or more than is read of one: what is wrong, at which line, and what to do about it."""
+    """A text is no TOML, or more than is read of one: what is wrong, at which line and column (from 1), and what to do
+    about it."""
 
-    def __init__(self, message: str, line: int, remedy: str):
-        self.message, self.line, self.remedy = message, line, remedy
-        super().__init__(f"{message} at line {line}")
+    def __init__(self, message: str, place: tuple[int, int], remedy: str):
+        self.message, (self.line, self.column), self.remedy = message, place, remedy
+        super().__init__(f"{message} at line {self.line}, column {self.column}")
 
 
 def read_toml(text: str) -> dict[str, Any]:
     """The values of a TOML text; raises TomlError."""
     for start, message, remedy in _excesses(text):
-        raise TomlError(message, text.count("\n", 0, start) + 1, remedy)
+        raise TomlError(message, _place(text, start), remedy)
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         said = str(error)
-        place = _PLACE.search(said)
-        line = int(place[1]) if place else text.count("\n") + 1
-        message = "not valid TOML: " + _PLACE.sub("", said).replace("(at end of document)", "").strip()
-        raise TomlError(message, line, "correct the syntax: see toml.io") from None
+        told = _PLACE.search(said)
+        place = (int(told[1]), int(told[2])) if told and told[1] else _place(text, len(text))
+        message = "not valid TOML: " + _PLACE.sub("", said).strip()
+        raise TomlError(message, place, "correct the syntax: see toml.io") from None
+
+
+def _place(text: str, position: int) -> tuple[int, int]:
+    """Line and column of a character of the text, from 1."""
+    return text.count("\n", 0, position) + 1, position - text.rfind("\n", 0, position)
 
 
 def _excesses(text: str) -> Iterator[tuple[int, str, str]]:
