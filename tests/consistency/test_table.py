@@ -302,3 +302,12 @@ def test_every_rule_is_in_the_table():
     tables = (WRONG, UNDECIDED, OF_A_HINGE, OF_THEIR_OWN)
     listed = [code for table in tables for code in table]
     assert sorted([*listed, *ELSEWHERE]) == [rule.code for rule in RULES]
+
+
+def test_a_mobility_that_two_ways_to_count_give_differently_is_not_decided(hinge):
+    for stated in (1, 2):
+        made = of_mobility(
+            changed_function(hinge, mobility=stated), on_edge=True, finite_reason="a rank is on the edge"
+        )
+        (rule,) = (rule for rule in check(made).rules if rule.code == "KF301")
+        assert (rule.outcome, rule.reason) == ("inconclusive", "a rank is on the edge")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.assemblies import assembly
 from support.assemblies import part as stick
-from support.gear_trains import cam_and_follower, gear_pair, rack_and_pinion
+from support.gear_trains import cam_and_follower, gear_pair, pinion_in_a_ring, rack_and_pinion
 from support.solids import derived, part, random_pose, rod
 
 from kinform.kinematics import functional
@@ -106,3 +106,21 @@ def test_a_screw_couples_its_turn_to_the_slide_of_its_nut():
     assert coupling.joints == ("frame~nut", "frame~spindle")
     # the spindle turns right-handed and stays: relative to the nut it moves along +z, so the nut goes along -z
     assert coupling.ratio == pytest.approx(-0.004 / (2 * np.pi))
+
+
+def test_a_pinion_in_a_ring_has_the_ratio_of_its_teeth():
+    kinematics, _ = derived(**pinion_in_a_ring(20, 50))
+    (found,) = kinematics.couplings
+    assert kinematics.mobility.effective == 1
+    assert (found.status, found.meshing.teeth) == ("determined", (20, 50))
+    assert found.meshing.ratio == pytest.approx(2.5)
+
+
+@pytest.mark.parametrize("X", [None, random_pose(np.random.default_rng(5))])
+def test_teeth_whose_tips_lean_leave_open_whether_they_turn(X):
+    """The chamfers of the tips touch before the flanks do, and miss the one motion that is left by a little."""
+    kinematics, _ = derived(X, **pinion_in_a_ring(18, 61, points=12))
+    (teeth,) = (joint for joint in kinematics.joints if "frame" not in joint.bodies)
+    assert teeth.status == "ambiguous"
+    assert "leave a motion of the joints around them but for 0.36 %" in teeth.reason
+    assert kinematics.mobility.uncertain == (teeth.name,)

@@ -141,3 +141,24 @@ def test_short_cycles_walk_round_and_are_a_basis():
                 incidence[row, k] += sign
                 assert edges[k][1 if sign > 0 else 0] == edges[after][0 if next_sign > 0 else 1]
         assert np.linalg.matrix_rank(incidence) == len(cycles) == count - nodes + 1
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("rounding", [0.0, 1e-8, 1e-6])
+@pytest.mark.parametrize("mixed", [np.eye(2), np.array([[0.8, 0.6], [-0.6, 0.8]])])
+def test_a_slide_that_turns_by_rounding_does_not_make_a_loop_look_large(scale, rounding, mixed):
+    """Two wheels and their teeth, which leave a turn about the pitch point and a slide, whose axis is far away."""
+    turns = [twist_at([0, 0, 1], np.array(point) * scale) for point in ([0, 0, 0], [5, 0, 0], [2, 0, 0])]
+    slide = np.array([rounding / scale, 0, 0, 0, 0, 1.0])
+    teeth = mixed @ np.array([turns[2] / scale, slide])
+    spaces = [turns[0][None], turns[1][None], teeth]
+    closure = close(3, [(0, 1), (0, 2), (1, 2)], spaces, 0, size=8.0 * scale, doubts=np.full((3, 2), 1e-3 * scale))
+    (solution,) = closure.solutions
+    assert closure.blocks[0].frame.length < 10.0 * scale
+    rates = dict(zip(solution.columns.tolist(), solution.rates.tolist(), strict=True))
+    assert rates[1] / rates[0] == pytest.approx(-2.0 / 3.0, rel=1e-6)
+
+
+def twist_at(axis, point):
+    """(6,) of a turn of 1 rad/s."""
+    return np.array([*axis, *np.cross(point, axis)], dtype=float)

@@ -104,3 +104,19 @@ def cam_and_follower(turn=0.7, segments=64):
     frame = box(-8, 8, -8, 8, -6, -3) + post() + box(-8, 8, -8, 40, -9, -6)
     frame += box(-8, 8, top + 8, top + 20, -9, 12) - box(-3, 3, top + 7, top + 21, 1, WIDTH - 1)
     return {"frame": frame, "cam": wheel(outline), "follower": follower}, reach
+
+
+def pinion_in_a_ring(first=20, second=50, points=60, turn=-0.23):
+    """A pinion on a journal of a frame, and a ring around it that turns on a shaft above. Their tips are cut: of few
+    `points` the flanks end in chamfers."""
+    apart, outer = 0.5 * (second - first), 0.5 * second + 6
+    tool = limited(
+        Gear(second, thin=-0.08, points=points).outline(turn * first / second), 0.5 * second - 0.75, 0.5 * second + 1.2
+    )
+    pinion = wheel(limited(Gear(first, thin=0.04, points=points).outline(turn), 0.0, 0.5 * first + 0.7), apart)
+    turned = rod(outer, 0, 14, 96) - extrusion(tool, -1, 10)
+    turned += rod(3, 14, 28, 48) + rod(5, 14, 20, 48) + rod(5, 26, 27, 48)
+    low, high = -outer - 10, outer + 3
+    frame = box(low, high, -high, high, -6, -3) + box(low, low + 5, -high, high, -6, 26) + post(apart)
+    frame += box(low, high, -high, high, 20, 26) - rod(3, 19, 27, 48)
+    return {"frame": frame, "pinion": pinion, "ring": turned}

@@ -310,6 +310,9 @@ WAY_LOST = 1e-3
 
 DOUBTFUL_MOTION = 3.0
 """A motion that the rows miss by less than this many times what is allowed is doubtful."""
+NEARLY_LEFT = 0.02
+"""Share of what rows hold of other motions below which holding one is doubtful: chamfers and reliefs of teeth lean by
+degrees more than their facets show. Two flanks of a pinion in a ring with chamfered tips disagreed by 0.5 %."""
 MOST_TURNED = 0.1
 """Share of a motion that may lie outside the space of a pair that nearly contains it: up to the alignment the space is
 turned, beyond it the pair is ambiguous. Of the fixtures and twelve robots none is turned by more than 1e-14."""

@@ -196,9 +196,10 @@ def functional(assembly: Assembly) -> Kinematics:
     return _with_couplings(mechanism, kinematics) if assembly.function.couplings else kinematics
 
 
-def mobility_within(kinematics: Kinematics, part_names: Sequence[str]) -> int:
+def mobility_within(kinematics: Kinematics, part_names: Sequence[str]) -> int | None:
     """Freedoms of some parts among themselves, finite where that is known: the bodies they belong to and
-    the joints between those, relative to the first of these bodies (or ground, if it is among them)."""
+    the joints between those, relative to the first of these bodies (or ground, if it is among them); None where two
+    ways to count them disagree."""
     wanted = set(part_names)
     bodies = tuple(b for b in kinematics.bodies if wanted.intersection(b.parts))
     if not bodies:
@@ -207,8 +208,10 @@ def mobility_within(kinematics: Kinematics, part_names: Sequence[str]) -> int:
     graph = JointGraph(bodies, tuple(j for j in kinematics.joints if names.issuperset(j.bodies)))
     size = kinematics.matrix.length
     count = graph.close(size).mobility
-    finite = finite_mobility(graph.edges, graph.joints, len(bodies), count, size).count
-    return count if finite is None else finite
+    finite = finite_mobility(graph.edges, graph.joints, len(bodies), count, size)
+    if finite.on_edge:
+        return None
+    return count if finite.count is None else finite.count
 
 
 def _body_of_part(bodies: Sequence[Body]) -> dict[PartName, BodyName]:
@@ -286,6 +289,7 @@ def _mobility(mechanism: _Mechanism) -> tuple[Mobility, tuple[Coupling, ...]]:
         finite_reason=finite.reason,
         infinitesimal=finite.infinitesimal,
         singular=finite.singular,
+        on_edge=finite.on_edge,
         certificates=finite.certificates,
         named=named_freedoms(graph, closure, turns, mechanism.places, mechanism.size),
         redundancies=(*filter(None, within), *redundancies_of_loops(joints, closure, size)),

@@ -318,6 +318,8 @@ class Mobility:
     """Freedoms that exist at first order only (a shaky structure); those of a bifurcation do not count."""
     singular: bool = False
     """The pose has more freedoms than the poses that it can move to."""
+    on_edge: bool = False
+    """Two ways to count the freedoms of first order disagree: none of the counts is certain."""
     certificates: tuple[FiniteCertificate, ...] = ()
     """One a block of joints with loops and freedoms, in the order of the joints."""
     named: tuple[Freedom, ...] = ()

@@ -34,6 +34,8 @@ def check(context: Context) -> Outcome:
     if ambiguous:
         return inconclusive(f"the mobility depends on joints that are ambiguous: {quoted(ambiguous)}")
     mobility = kinematics.mobility
+    if mobility.on_edge:
+        return inconclusive(mobility.finite_reason)
     if mobility.effective == intended:
         return decided(reason=f"{counted(intended, 'freedom')}, as intended")
     whole, line = context.assembly.source, context.function.mobility_line

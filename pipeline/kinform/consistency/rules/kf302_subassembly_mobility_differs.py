@@ -26,10 +26,11 @@ def check(context: Context) -> Outcome:
         parts = tuple(p.name for p in context.assembly.parts if p.name.startswith(f"{sub.name}/"))
         bodies = {kinematics.body_of(part).name for part in parts}
         inside = [j for j in kinematics.joints if bodies.issuperset(j.bodies)]
-        if any(joint.status == "ambiguous" for joint in inside):
+        ambiguous = any(joint.status == "ambiguous" for joint in inside)
+        mobility = None if ambiguous else mobility_within(kinematics, parts)
+        if mobility is None:
             unknown.append(sub.name)
             continue
-        mobility = mobility_within(kinematics, parts)
         if mobility != sub.mobility:
             findings.append(
                 RULE.finding(
@@ -42,7 +43,9 @@ def check(context: Context) -> Outcome:
                     remedy="Check the sub-assembly on its own; correct its joints, or its `mobility`.",
                 )
             )
-    return settled(findings, f"joints inside are ambiguous: {quoted(unknown)}" if unknown else "")
+    return settled(
+        findings, f"joints inside are ambiguous, or a rank is on the edge: {quoted(unknown)}" if unknown else ""
+    )
 
 
 RULE = Rule(

@@ -16,7 +16,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, scaled, span, twist_at_origin
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.graphs.graph import UnionFind
-from kinform.kinematics.constants import AT_REST, DOUBTFUL_MOTION, MOST_TURNED, SIGMAS
+from kinform.kinematics.constants import AT_REST, DOUBTFUL_MOTION, MOST_TURNED, NEARLY_LEFT, SIGMAS
 from kinform.kinematics.loops.assembly_closure import body_twists
 from kinform.kinematics.loops.joint_graph import JointGraph
 from kinform.kinematics.pair.certainty import TOUCHING, meets
@@ -121,9 +121,10 @@ def _preserved_motions(pairs: Sequence[_Pair], motions: list[int]) -> tuple[Arra
     rows = np.concatenate([pair.rows[:, motions] for pair in pairs])
     slip = np.concatenate([pair.slip[:, motions] for pair in pairs])
     speed = np.maximum(np.linalg.norm(slip, axis=2).max(axis=0), 1e-300)
-    _, _, right = np.linalg.svd(rows / speed)
+    _, values, right = np.linalg.svd(rows / speed)
+    misses = np.concatenate([values, np.zeros(len(motions) - len(values))])
     kept = np.zeros((0, len(motions)))
-    for combination in right[::-1] / speed:
+    for combination, miss in zip(right[::-1] / speed, misses[::-1], strict=True):
         share = 0.0
         for pair in pairs:
             relative = combination @ pair.relative[motions]
@@ -132,8 +133,10 @@ def _preserved_motions(pairs: Sequence[_Pair], motions: list[int]) -> tuple[Arra
             missed = np.abs(pair.rows[:, motions] @ combination)
             share = max(share, float((missed / np.maximum(allowed, 1e-300)).max()) if missed.max() > 0.0 else 0.0)
         if share > 1.0:
-            doubtful = share < DOUBTFUL_MOTION
-            return kept, "teeth or cams hold a motion by hardly more than their uncertainty" if doubtful else ""
+            if share < DOUBTFUL_MOTION:
+                return kept, "teeth or cams hold a motion by hardly more than their uncertainty"
+            nearly = f"teeth or cams leave a motion of the joints around them but for {100.0 * miss / misses[0]:.2g} %"
+            return kept, nearly if miss < NEARLY_LEFT * misses[0] else ""
         kept = np.vstack([kept, combination])
     return kept, ""
 

@@ -111,8 +111,8 @@ def axes_frame(spaces: Sequence[Array], size: float) -> Frame:
 
 def _by_turn(space: Array) -> Array:
     """The same twists (f, 6) combined so that what turns and what slides are apart: of a turn and a slide, each with a
-    part of the other, the axis may be anywhere."""
-    if len(space) < 3:
+    part of the other, the axis may be anywhere, and so may that of a slide that turns by rounding."""
+    if len(space) < 2:
         return space
     left, values, _ = np.linalg.svd(space[:, :3])
     turning = int(np.count_nonzero(values > constants.PART_OF_TURN * values[0])) if values[0] > 0.0 else 0

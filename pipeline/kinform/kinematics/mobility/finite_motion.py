@@ -38,6 +38,7 @@ class Finite:
     infinitesimal: int
     singular: bool
     certificates: tuple[FiniteCertificate, ...]
+    on_edge: bool = False
 
 
 def finite_mobility(
@@ -70,7 +71,7 @@ def finite_mobility(
     statements = [c.statement for c in sorted(certificates, key=lambda c: c.finite is not None) if c.statement]
     if len(first) == len(certificates) and open_ended + sum(first) != instantaneous:
         why = "two ways to count the freedoms of first order disagree: a rank is on the edge"
-        return Finite(None, why, 0, False, tuple(certificates))
+        return Finite(None, why, 0, False, tuple(certificates), on_edge=True)
     if len(statements) > MOST_STATEMENTS:
         shown = MOST_STATEMENTS - 1
         statements = [*statements[:shown], f"and {len(statements) - shown} more blocks of joints"]

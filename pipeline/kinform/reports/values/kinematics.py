@@ -100,7 +100,7 @@ def mobility_values(design: Design) -> dict[str, Any]:
     mobility = kinematics.mobility
     return {
         **mobility_counts(mobility),
-        **fields(mobility, "idle_bodies", "uncertain", "finite_reason", "infinitesimal", "singular"),
+        **fields(mobility, "idle_bodies", "uncertain", "finite_reason", "infinitesimal", "singular", "on_edge"),
         "certificates": [asdict(certificate) for certificate in mobility.certificates],
         "bodies": [body.name for body in kinematics.bodies],
         "gruebler": mobility.gruebler,

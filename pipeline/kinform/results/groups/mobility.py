@@ -15,7 +15,7 @@ LAYOUT = Layout(
     Numbers("freedoms"),
     Texts("idle_bodies"),
     Texts("uncertain"),
-    Row("finite", "finite_reason", "infinitesimal", "singular"),
+    Row("finite", "finite_reason", "infinitesimal", "singular", "on_edge"),
     Table("certificates"),
     Table("named", Table("drives", owner="freedom")),
     Table("redundancies", Ragged("redundant_patches", "patches"), Ragged("redundant_wrenches", "wrenches", width=6)),
