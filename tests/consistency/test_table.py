@@ -311,3 +311,14 @@ def test_a_mobility_that_two_ways_to_count_give_differently_is_not_decided(hinge
         )
         (rule,) = (rule for rule in check(made).rules if rule.code == "KF301")
         assert (rule.outcome, rule.reason) == ("inconclusive", "a rank is on the edge")
+
+
+@pytest.mark.parametrize("status", ["determined", "ambiguous"])
+def test_an_unintended_joint_that_is_ambiguous_is_no_error(status):
+    made = triangle("revolute")
+    *others, last = made.kinematics.joints
+    last = replace(last, status=status)
+    report = check(replace(made, kinematics=replace(made.kinematics, joints=(*others, last))))
+    (rule,) = (rule for rule in report.rules if rule.code == "KF406")
+    assert rule.outcome == ("failed" if status == "determined" else "inconclusive")
+    assert any(f.code == "KF406" for f in report.findings) == (status == "determined")

@@ -2,7 +2,7 @@
 
 Applies when `[[function.joint]]` is stated at all, to bodies that an intended joint names. Joints to
 other bodies (pins, bearings, screws) are means and are not compared; those bodies are listed by KF408.
-Flat or irregular contact is KF407. Inconclusive when the joint is ambiguous.
+Flat or irregular contact is KF407. Of a joint that is ambiguous the rule finds nothing, and is inconclusive.
 
 Why it matters: a guide, journal or socket that nobody wanted takes freedoms away.
 
@@ -24,9 +24,10 @@ from kinform.model.kinematics import Aside, Joint
 def check(context: Context) -> Outcome:
     """Lower pairs, other than planar, between bodies of the function that no intended joint joins."""
     joints = context.unintended_joints
-    findings = [_finding(context, joint) for joint in joints if joint.type not in ("planar", "general")]
-    findings += [_beside(context, one) for one in context.kinematics.asides if one.type not in ("planar", "general")]
     unknown = [joint.name for joint in joints if joint.status == "ambiguous"]
+    found = [joint for joint in joints if joint.name not in unknown and joint.type not in ("planar", "general")]
+    findings = [_finding(context, joint) for joint in found]
+    findings += [_beside(context, one) for one in context.kinematics.asides if one.type not in ("planar", "general")]
     return settled(findings, f"not intended and ambiguous: {quoted(unknown)}" if unknown else "")
 
 
