@@ -49,6 +49,17 @@ def test_the_scatter_is_read_from_the_mesh():
         )
 
 
+def test_a_glance_that_ends_early_hides_no_scatter():
+    for size in (0.0, 1e-7, 1e-6, 1e-5):
+        noisy = scattered(drilled(), size)
+        facets = Facets.of(noisy.vertices, noisy.faces)
+        whole = scatter(facets, np.radians(32))
+        for least in np.geomspace(1e-9, 1e-4, 31):
+            glance = scatter(facets, np.radians(32), least)
+            assert glance == whole or (glance == 0.0 and whole <= least)
+        assert scatter(facets, np.radians(32), 1e-3) == 0.0
+
+
 def staggered(radius, length, segments, bands):
     """A closed cylinder whose rings of vertices are turned by half a step from one to the next."""
     step = 2 * np.pi / segments

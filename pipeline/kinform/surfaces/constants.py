@@ -71,6 +71,9 @@ REPEATED = 1e-2
 REPEATED_ROW = 12
 """Vertices in a row that is long."""
 
+PLAINLY = 1e-9
+"""Share of the area by which a sum is beyond doubt, whatever the order in which it was made."""
+
 RUN_OF_EDGES = 1 << 16
 """Edges that are worked on at a time, to keep memory small."""
 

@@ -44,11 +44,10 @@ def slippage(work: Patchwork, patch: Ints, polygon: Ints, count: int) -> Slippag
     middle = group_mean(patch, work.centre[polygon], count, weight)
     offset = work.centre[polygon] - middle[patch]
     size = np.maximum(np.sqrt(sums(weight * dot(offset, offset)) / total), 1e-12)
-    rows = np.concatenate([cross(offset / size[patch][:, None], normal), normal], axis=1)
+    rows = np.concatenate([cross(offset / size[patch][:, None], normal), normal], axis=1).T
     matrix: Array = np.empty((count, 6, 6))
     for i in range(6):
-        for j in range(i, 6):
-            matrix[:, i, j] = matrix[:, j, i] = sums(weight * rows[:, i] * rows[:, j]) / total
+        matrix[:, i, i:] = matrix[:, i:, i] = (sums(weight * rows[i] * rows[i:]) / total).T
     values, vectors = np.linalg.eigh(np.nan_to_num(matrix))
     speed = np.sqrt(np.maximum(values, 0.0))
     return Slippage(middle, size, vectors[:, :3, 0], vectors[:, 3:, 0], speed[:, 0], speed[:, 1])

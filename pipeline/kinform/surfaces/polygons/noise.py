@@ -40,8 +40,8 @@ class Scale:
     def of(cls, mesh: Facets, rounding: float, tolerances: Tolerances) -> Scale:
         """Those of a mesh that was stored with this rounding: vertices that scatter more widen everything to four
         standard deviations."""
-        sigma = scatter(mesh, tolerances.smooth_edge)
         noise = max(tolerances.fit / constants.FITS_PER_NOISE, constants.NOISE_ROUNDINGS * rounding)
+        sigma = scatter(mesh, tolerances.smooth_edge, noise / constants.SCATTER_SHOWS)
         fit = max(tolerances.fit, constants.FITS_PER_NOISE * noise)
         if constants.SCATTER_SHOWS * sigma > noise:
             return cls(
@@ -100,8 +100,9 @@ def _corners(mesh: Facets, edges: Ints) -> tuple[Ints, Ints, Ints, Ints]:
     return mesh.ends[:, 0].take(edges), mesh.ends[:, 1].take(edges), *mesh.opposite(edges)
 
 
-def scatter(mesh: Facets, smooth_edge: float) -> float:
-    """Standard deviation of the vertices about their surfaces in one coordinate, as far as it can be read.
+def scatter(mesh: Facets, smooth_edge: float, least: float = 0.0) -> float:
+    """Standard deviation of the vertices about their surfaces in one coordinate, as far as it can be read; 0 where
+    it is plainly no more than `least`, which most meshes show at the first look.
 
     Saddles mix signs too, but smoothly: what one vertex shows, its neighbours show as well.
     """
@@ -116,7 +117,11 @@ def scatter(mesh: Facets, smooth_edge: float) -> float:
         np.maximum.at(above, row, off)
         np.maximum.at(below, row, -off)
         seen += np.bincount(row, minlength=count)
-    mixed = _calmest(mesh, np.minimum(above, below), seen >= constants.LEAST_EDGES, constants.CALM_SHARE)
+    mixing, readable = np.minimum(above, below), seen >= constants.LEAST_EDGES
+    # what is left of it at the end, in standard deviations, is no more than what there is here
+    if _is_calm(mesh, mixing, readable, constants.CALM_SHARE, constants.MIXED_PER_SIGMA * least):
+        return 0.0
+    mixed = _calmest(mesh, mixing, readable, constants.CALM_SHARE)
     a, b = mesh.ends[near].T
     spokes = np.maximum(np.bincount(a, minlength=count) + np.bincount(b, minlength=count), 1)
     mean = (np.bincount(a, off, count) + np.bincount(b, off, count)) / spokes
@@ -125,7 +130,7 @@ def scatter(mesh: Facets, smooth_edge: float) -> float:
     if mixed <= 0.0 or ripple <= constants.RIPPLE * mixed:
         return 0.0
     irregular = _irregular(mesh, inner, above, below)
-    return _calmest(mesh, irregular, seen >= constants.LEAST_EDGES, constants.CALM_SHARE) / constants.MIXED_PER_SIGMA
+    return _calmest(mesh, irregular, readable, constants.CALM_SHARE) / constants.MIXED_PER_SIGMA
 
 
 def _irregular(mesh: Facets, inner: Ints, above: Array, below: Array) -> Array:
@@ -142,10 +147,21 @@ def _irregular(mesh: Facets, inner: Ints, above: Array, below: Array) -> Array:
 
 def _calmest(mesh: Facets, value: Array, readable: Flags, share: float) -> float:
     """The value of vertices that is reached on so large a share of the area, from the smallest up."""
-    first, second, third = (value.take(mesh.faces[:, k]) for k in range(3))
-    each = np.maximum(np.minimum(first, second), np.minimum(np.maximum(first, second), third))
-    whole = readable[mesh.faces[:, 0]] & readable[mesh.faces[:, 1]] & readable[mesh.faces[:, 2]]
-    weight = np.where(whole, mesh.area, 0.0)
+    each, weight = _of_facets(mesh, value, readable)
     order = np.argsort(each, kind="stable")
     reached = np.cumsum(weight[order])
     return float(each[order][np.searchsorted(reached, share * reached[-1])]) if reached[-1] > 0 else 0.0
+
+
+def _is_calm(mesh: Facets, value: Array, readable: Flags, share: float, limit: float) -> bool:
+    """Whether `_calmest` is plainly within the limit, without an order."""
+    each, weight = _of_facets(mesh, value, readable)
+    return bool(weight[each <= limit].sum() >= (1.0 + constants.PLAINLY) * share * weight.sum())
+
+
+def _of_facets(mesh: Facets, value: Array, readable: Flags) -> tuple[Array, Array]:
+    """(F,) the middle value at the corners of each facet, and the area that it counts with."""
+    first, second, third = (value.take(mesh.faces[:, k]) for k in range(3))
+    each = np.maximum(np.minimum(first, second), np.minimum(np.maximum(first, second), third))
+    whole = readable[mesh.faces[:, 0]] & readable[mesh.faces[:, 1]] & readable[mesh.faces[:, 2]]
+    return each, np.where(whole, mesh.area, 0.0)
