@@ -147,3 +147,19 @@ class Batch:
             region, shared, times = self._shared
             out._shared = region.take(rows), shared.take(rows), times.take(rows)
         return out
+
+    def compact(self) -> tuple[Batch, Ints]:
+        """The batch without regions that are empty, with what sorting has found of the others, and the number that each
+        had."""
+        number = self.size.nonzero()[0]
+        if len(number) == self.count:
+            return self, number
+        new = np.full(self.count, -1)
+        new[number] = np.arange(len(number))
+        out = Batch(self.patchwork, new.take(self.region), self.polygon, len(number))
+        out._corners, out._points = self._corners, self._points
+        if self._edges is not None:
+            out._edges = new.take(self._edges[0]), *self._edges[1:]
+        if self._shared is not None:
+            out._shared = new.take(self._shared[0]), *self._shared[1:]
+        return out, number

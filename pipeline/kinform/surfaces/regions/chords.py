@@ -34,8 +34,8 @@ class Rounds:
     @classmethod
     def of(cls, kind: Cylinder, batch: Batch, side: Ints) -> Rounds:
         """Those of the pieces that have polygons enough."""
-        large = batch.where(batch.size >= constants.LEAST_CHORDS)
-        return cls(large, side, kind.propose(large))
+        large, number = batch.where(batch.size >= constants.LEAST_CHORDS).compact()
+        return cls(large, side[number], kind.propose(large))
 
 
 def decimated(territory: Territory, kind: Cylinder, rounds: Rounds, factor: float) -> Growth:
@@ -43,7 +43,7 @@ def decimated(territory: Territory, kind: Cylinder, rounds: Rounds, factor: floa
     loose = territory.scales.wider(factor)
     growth = whole(replace(territory, scales=loose), kind, rounds.batch, rounds.side, rounds.proposal)
     regular = _round(kind, growth, territory.scales_of(growth.batch))
-    return replace(growth, batch=growth.batch.select(regular[growth.batch.region]))
+    return replace(growth, batch=growth.batch.where(regular))
 
 
 def _round(kind: Cylinder, growth: Growth, scale: Scales) -> Flags:

@@ -6,7 +6,7 @@ small neighbourhood, whose fit is coarse, only has to predict a region about twi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,37 +26,40 @@ class Growth:
 
     surfaces: Candidates
     batch: Batch
+    origin: Ints
+    """(R,) number of the piece, or the seed, that each comes of."""
 
 
 def whole(
     territory: Territory, kind: Kind, batch: Batch, side: Ints, proposal: tuple[Params, Flags] | None = None
 ) -> Growth:  # fmt: skip
-    """Regions of pieces that are one surface for the greatest part, without growth; the others come back empty.
+    """Regions of pieces that are one surface for the greatest part, without growth; of others come empty ones or none.
 
     Four fits out of five end at the first look, so that comes before anything that costs more. `proposal` is that of
     the kind for the batch, where it was made before.
     """
     params, usable = proposal or kind.propose(batch)
-    pieces = batch.where(usable)
-    side = _facing(kind, pieces, params) if kind.saddle else side
-    fit = territory.scales_of(batch).fit
+    pieces, origin = batch.where(usable).compact()
+    params = params[origin]
+    side = _facing(kind, pieces, params) if kind.saddle else side[origin]
+    fit = territory.scales_of(pieces).fit
     surfaces = Candidates(kind, params, side, constants.LOOSE * fit).refine(pieces, 2)
     fits = surfaces.conforms(pieces, surfaces.reach(pieces))
-    share = np.bincount(pieces.region, fits, batch.count) / np.maximum(batch.size, 1)
-    pieces, number = _compact(pieces.select(fits & (share >= constants.MAJORITY)[pieces.region]))
+    share = np.bincount(pieces.region, fits, pieces.count) / pieces.size
+    pieces, number = pieces.select(fits & (share >= constants.MAJORITY)[pieces.region]).compact()
     kept = surfaces.of(number).within(fit[number]).refine(pieces, 2)
     kept = kept.within(_justify(kept, pieces, territory.scales_of(pieces)))
     pieces = _large(kind, territory.connected(_conforming(kept, pieces)))
-    return _credible(territory, surfaces, pieces, kept.refine(pieces, 1), number)
+    return _credible(territory, kept.refine(pieces, 1), pieces, origin[number])
 
 
 def absorb(territory: Territory, growth: Growth) -> Growth:
     """Regions with what conforms beside them, and their fits over it. Only what gained is fitted again."""
-    kind, params = growth.surfaces.kind, growth.surfaces.params.copy()
-    batch, number = _compact(growth.batch)
+    params = growth.surfaces.params.copy()
+    batch, number = growth.batch.compact()
     hopeful = _hopeful(territory, growth.surfaces.of(number), batch)
-    finished = [_keys(batch.select(~hopeful[batch.region]), number)]
-    batch, kept = _compact(batch.select(hopeful[batch.region]))
+    finished = [_keys(batch.where(~hopeful), number)]
+    batch, kept = batch.where(hopeful).compact()
     number = number[kept]
     surfaces = growth.surfaces.of(number)
     for _ in range(constants.ABSORPTIONS):
@@ -64,32 +67,32 @@ def absorb(territory: Territory, growth: Growth) -> Growth:
             break
         larger = territory.spread(surfaces, batch, surfaces.reach(batch), constants.LAYERS_OF_WHOLE)
         gained = larger.size > batch.size
-        finished.append(_keys(batch.select(~gained[batch.region]), number))
-        batch, kept = _compact(larger.select(gained[larger.region]))
+        finished.append(_keys(batch.where(~gained), number))
+        batch, kept = larger.where(gained).compact()
         number = number[kept]
         surfaces = surfaces.of(kept).refine(batch, 1)
         params[number] = surfaces.params
         batch = _settle(territory, surfaces, batch)
     finished.append(_keys(batch, number))
     grown = Batch.of_keys(territory.patchwork, np.sort(np.concatenate(finished)), growth.batch.count)
-    return Growth(Candidates(kind, params, growth.surfaces.side, growth.surfaces.tolerance), grown)
+    return Growth(replace(growth.surfaces, params=params), grown, growth.origin)
 
 
 def pursue(territory: Territory, kind: Kind, batch: Batch, side: Ints) -> Growth:
-    """Fits, grows, fits again until nothing changes; regions that fail come back empty.
+    """Fits, grows, fits again until nothing changes; of regions that fail come empty ones or none.
 
     A seed must conform to its own hypothesis with at least `kind.least` polygons.
     """
-    fit = territory.scales_of(batch).fit
     params, usable = kind.propose(batch)
-    batch = batch.where(usable)
-    surfaces = Candidates(kind, params, side, constants.LOOSE * fit).refine(batch, 2)
+    batch, origin = batch.where(usable).compact()
+    fit = territory.scales_of(batch).fit
+    surfaces = Candidates(kind, params[origin], side[origin], constants.LOOSE * fit).refine(batch, 2)
     batch, surfaces = _grow(territory, surfaces, _settle(territory, surfaces, batch))
-    batch, number = _compact(batch)
+    batch, number = batch.compact()
     kept = surfaces.of(number).refine(batch, 2)
     kept = kept.within(_justify(kept, batch, territory.scales_of(batch)))
     batch = _settle(territory, kept, batch)
-    return _credible(territory, surfaces, batch, kept.refine(batch, 2), number)
+    return _credible(territory, kept.refine(batch, 2), batch, origin[number])
 
 
 def _grow(territory: Territory, surfaces: Candidates, batch: Batch) -> tuple[Batch, Candidates]:
@@ -98,7 +101,7 @@ def _grow(territory: Territory, surfaces: Candidates, batch: Batch) -> tuple[Bat
     count, params = batch.count, surfaces.params.copy()
     fit = territory.scales_of(batch).fit
     finished = []
-    batch, number = _compact(batch)
+    batch, number = batch.compact()
     growing = surfaces.of(number)
     for stage in range(constants.STAGES):
         if not len(batch.region):
@@ -111,8 +114,8 @@ def _grow(territory: Territory, surfaces: Candidates, batch: Batch) -> tuple[Bat
         )
         params[number] = growing.params
         still = batch.size == before if stage else np.zeros(batch.count, bool)
-        finished.append(_keys(batch.select(still[batch.region]), number))
-        batch, kept = _compact(batch.select(~still[batch.region]))
+        finished.append(_keys(batch.where(still), number))
+        batch, kept = batch.where(~still).compact()
         growing, number = growing.of(kept), number[kept]
     finished.append(_keys(batch, number))
     grown = Batch.of_keys(territory.patchwork, np.sort(np.concatenate(finished)), count)
@@ -133,14 +136,6 @@ def _hopeful(territory: Territory, surfaces: Candidates, batch: Batch) -> Flags:
     beside = Batch.of_keys(territory.patchwork, keys[~among(keys, batch.keys)], batch.count)
     fits = surfaces.conforms(beside, np.full(batch.count, constants.WIDEST + constants.FACET_ROUNDING))
     return np.asarray(np.bincount(beside.region[fits], minlength=batch.count) > 0)
-
-
-def _compact(batch: Batch) -> tuple[Batch, Ints]:
-    """The batch with its regions numbered without gaps, and the old number of each."""
-    number = np.flatnonzero(batch.size)
-    new = np.full(batch.count, -1)
-    new[number] = np.arange(len(number))
-    return Batch(batch.patchwork, new[batch.region], batch.polygon, len(number)), number
 
 
 def _keys(batch: Batch, number: Ints) -> Ints:
@@ -184,10 +179,7 @@ def _justify(surfaces: Candidates, batch: Batch, scale: Scales) -> Array:
     return np.clip(constants.TOLERANCE_MEDIANS * surfaces.scatter(batch), scale.noise, scale.fit)
 
 
-def _credible(territory: Territory, surfaces: Candidates, batch: Batch, kept: Candidates, number: Ints) -> Growth:
-    """Those of the regions that there is evidence enough for, with their surfaces, under their old numbers."""
-    kind, params, tolerance = surfaces.kind, surfaces.params.copy(), surfaces.tolerance.copy()
-    params[number], tolerance[number] = kept.params, kept.tolerance
-    batch = batch.select(kind.credible(batch, kept.params, territory.scales_of(batch))[batch.region])
-    regions = Batch.of_keys(territory.patchwork, _keys(batch, number), len(params))
-    return Growth(Candidates(kind, params, surfaces.side, tolerance), regions)
+def _credible(territory: Territory, surfaces: Candidates, batch: Batch, origin: Ints) -> Growth:
+    """Those of the regions that there is evidence enough for."""
+    credible = surfaces.kind.credible(batch, surfaces.params, territory.scales_of(batch))
+    return Growth(surfaces, batch.where(credible), origin)

@@ -144,9 +144,11 @@ def _whole_pieces(
             break
         low, high = kind.bends
         suits = (middle >= low) & (middle <= high) & (batch.size >= kind.least)
-        growths.append(whole(territory, kind, batch.where(suits), side))
-        explained = growths[-1].batch.size >= constants.EXPLAINED * batch.size
-        batch = batch.where(~explained)
+        pieces, number = batch.where(suits).compact()
+        growths.append(whole(territory, kind, pieces, side[number]))
+        size = np.zeros(batch.count)
+        size[number[growths[-1].origin]] = growths[-1].batch.size
+        batch = batch.where(size < constants.EXPLAINED * batch.size)
     return growths
 
 
@@ -190,9 +192,9 @@ def _search(territory: Territory, tried: Flags, bent: Curvature) -> list[Growth]
             (least <= kind.bends[1] + constants.BEND_SLACK) & (most >= kind.bends[0] - constants.BEND_SLACK)
         )
         batch = _around(territory, seeds[suits], side[suits], constants.STRAIGHT[kind.name])
-        batch = batch.select((batch.size >= kind.least)[batch.region])
+        batch, number = batch.where(batch.size >= kind.least).compact()
         if len(batch.region):
-            growths.append(pursue(territory, kind, batch, side[suits]))
+            growths.append(pursue(territory, kind, batch, side[suits[number]]))
     return growths
 
 
