@@ -28,6 +28,9 @@ LARGEST = 10.0
 FACET_ROUNDING = 1e-3
 """Angle that is added to the greatest that a facet may subtend: what rounding makes of equal facets."""
 
+PLAINLY = 1e-9
+"""Share by which a sum is beyond doubt, in whatever order it was made."""
+
 # ---- polygons.noise
 
 FITS_PER_NOISE = 10
@@ -70,9 +73,6 @@ REPEATED = 1e-2
 
 REPEATED_ROW = 12
 """Vertices in a row that is long."""
-
-PLAINLY = 1e-9
-"""Share of the area by which a sum is beyond doubt, whatever the order in which it was made."""
 
 RUN_OF_EDGES = 1 << 16
 """Edges that are worked on at a time, to keep memory small."""

@@ -6,7 +6,7 @@ and of what single-precision storage loses, times COVERAGE. Coordinates here are
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,8 +25,7 @@ from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.candidates import Candidates
 
 
-@dataclass(frozen=True, eq=False)
-class Description:
+class Description(NamedTuple):
     """One surface in unit coordinates; fields as those of `Surface`."""
 
     kind: str
@@ -74,13 +73,14 @@ def flat(work: Patchwork, number: Ints, scale: Scale) -> list[Description]:
     spread = np.maximum(np.sqrt(variances[:, 1] * samples), constants.LEAST_SPREAD)
     angular = np.minimum(constants.COVERAGE * scatter / spread, np.pi / 2)
     linear = np.maximum(constants.COVERAGE * scatter / np.sqrt(np.maximum(samples, 1)), scale.rounding)
+    deep, of_samples = deepest.tolist(), samples.tolist()
+    numbers = zip(angular.tolist(), linear.tolist(), squares.tolist(), strict=True)
     return [
         Description(
-            "plane", planes[k], normal[k], centre[k], residual=float(deepest[k]),
-            axis_uncertainty=float(angular[k]), point_uncertainty=float(linear[k]), chord=float(deepest[k]),
-            squares=float(squares[k]), samples=int(samples[k]),
+            "plane", planes[k], normal[k], centre[k], residual=deep[k], axis_uncertainty=turn, point_uncertainty=shift,
+            chord=deep[k], squares=square, samples=of_samples[k],
         )
-        for k in range(count)
+        for k, (turn, shift, square) in enumerate(numbers)
     ]  # fmt: skip
 
 
@@ -93,14 +93,28 @@ def _deviations(region: Ints, distance: Array, count: int) -> tuple[Array, Ints,
     return squares, samples, deepest
 
 
-def freeform(work: Patchwork, polygons: Ints, numbers: Ints) -> Description:
-    """A patch that no analytic surface explains; `numbers` are its inner edges."""
-    a, b, length = work.a[numbers], work.b[numbers], np.maximum(work.length[numbers], 1e-300)
+def freeform(polygons: Ints, chord: float) -> Description:
+    """A patch that no analytic surface explains."""
+    return Description("freeform", polygons, np.zeros(3), np.zeros(3), chord=chord)
+
+
+def standoffs(work: Patchwork, edges: Ints) -> Array:
+    """(n,) how far the facets at these edges may stand off a smooth surface through their vertices."""
+    a, b, length = work.a[edges], work.b[edges], np.maximum(work.length[edges], 1e-300)
     area = np.minimum(work.area[a], work.area[b])
     # a short common edge says nothing of how far the two polygons reach from it
     width = np.minimum(area / length, 2 * np.sqrt(area))
-    chord = float((width * work.angle[numbers]).max() / 8) if len(numbers) else 0.0
-    return Description("freeform", polygons, np.zeros(3), np.zeros(3), chord=chord)
+    return np.asarray(width * work.angle[edges] / 8)
+
+
+def patch_chords(work: Patchwork, number: Ints) -> Array:
+    """(n,) the greatest of those inside each patch of polygons (P,), numbered from 0, -1 for none."""
+    edges = np.flatnonzero(work.smooth)
+    mine = number[work.a[edges]]
+    inside = np.flatnonzero((mine >= 0) & (mine == number[work.b[edges]]))
+    out = np.zeros(int(number.max(initial=-1)) + 1)
+    np.maximum.at(out, mine[inside], standoffs(work, edges[inside]))
+    return out
 
 
 def curved(surfaces: Candidates, batch: Batch, scale: Scales) -> list[Description]:

@@ -7,18 +7,18 @@ neither the size of a part nor the order in its file changes what is found.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.sorting import ascending, coarse, distinct
+from kinform.foundation.sorting import ascending, coarse
 from kinform.model.arrays import Array, Ints, freeze
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import constants
 from kinform.surfaces.constants import EPS32, THREAD_FACET
-from kinform.surfaces.describe import Description, curved, flat, freeform
+from kinform.surfaces.describe import Description, curved, flat, freeform, patch_chords
 from kinform.surfaces.groups import members
 from kinform.surfaces.kinds.batch import Batch
 from kinform.surfaces.polygons.facets import Facets
@@ -123,7 +123,7 @@ def _describe_all(starts: Sequence[_Start]) -> list[list[Description]]:
         regions.sort(key=lambda region: int(joint.mesh[region.polygons[0]]))
         for surface in _surfaces_of_kind(joint, regions, scales) if regions else ():
             mesh = int(joint.mesh[surface.polygons[0]])
-            found[mesh].append(replace(surface, polygons=surface.polygons - first[mesh]))
+            found[mesh].append(surface._replace(polygons=surface.polygons - first[mesh]))
     return [
         _describe(start, curved, parts.planes[low:high], parts.freeform[low:high])
         for start, curved, low, high in zip(starts, found, first[:-1], first[1:], strict=True)
@@ -141,11 +141,11 @@ def _describe(start: _Start, curved: list[Description], planes: Ints, patches: I
         rest[thread.polygons] = alone[thread.polygons] = -1
     alone[alone >= 0] = np.unique(alone[alone >= 0], return_inverse=True)[1]
     out += flat(work, coincident_planes(work, alone, scale), scale)
+    chords = patch_chords(work, rest)
     for surface in sliding(work, rest, scale):
-        chord = freeform(work, surface.polygons, _inner(work, rest, surface.polygons)).chord
-        out.append(replace(surface, chord=chord))
+        out.append(surface._replace(chord=float(chords[rest[surface.polygons]].max())))
         rest[surface.polygons] = -1
-    return out + [freeform(work, patch, _inner(work, rest, patch)) for patch in members(rest)]
+    return out + [freeform(patch, float(chords[rest[patch[0]]])) for patch in members(rest)]
 
 
 def _surfaces_of_kind(work: Patchwork, regions: list[Region], scales: Scales) -> list[Description]:
@@ -169,15 +169,6 @@ def _surfaces_of_kind(work: Patchwork, regions: list[Region], scales: Scales) ->
     return curved(surfaces.of(heads).within(loosest), batch, scales.at(batch.mesh))
 
 
-def _inner(work: Patchwork, number: Ints, polygons: Ints) -> Ints:
-    """Smooth edges inside the patch that these polygons are."""
-    _, edges = work.sides.expand(polygons)
-    edges = distinct(edges)
-    edges = edges[work.smooth[edges]]
-    inside: Ints = edges[number[work.a[edges]] == number[work.b[edges]]]
-    return inside
-
-
 def _assemble(mesh: Mesh, start: _Start, descriptions: list[Description]) -> MeshSurfaces:
     """Back to metres and to the mesh's own facets, in the promised order."""
     work, order, centre, diagonal = start.work, start.order, start.centre, start.diagonal
@@ -194,33 +185,46 @@ def _assemble(mesh: Mesh, start: _Start, descriptions: list[Description]) -> Mes
     position[rank] = np.arange(len(rank))
     labels = position[facet_owner]
     faces = members(labels)
-    sizes = area.tolist()
-    surfaces = tuple(
-        _surface(descriptions[k], sizes[k], faces[i], centre, diagonal) for i, k in enumerate(rank.tolist())
-    )
     squares = sum(item.squares for item in descriptions)
     samples = sum(item.samples for item in descriptions)
     noise = diagonal * float(np.sqrt(squares / samples)) if samples else 0.0
+    surfaces = _surfaces([descriptions[k] for k in rank.tolist()], area[rank], members(labels), centre, diagonal)
     freeze(labels)
     return MeshSurfaces(mesh.digest, surfaces, labels, noise)
 
 
-def _surface(item: Description, area: float, faces: Ints, centre: Array, diagonal: float) -> Surface:
+def _surfaces(
+    items: list[Description], area: Array, faces: list[Ints], centre: Array, diagonal: float
+) -> tuple[Surface, ...]:  # fmt: skip
+    """The surfaces in metres, in this order."""
+    axes = np.array([item.axis for item in items]) + 0.0
+    points = np.array([item.point for item in items]) * diagonal + centre
+    points[[item.kind == "freeform" for item in items]] = 0.0
+    areas = (area * diagonal**2).tolist()
+    freeze(axes)
+    freeze(points)
+    return tuple(
+        _surface(item, axis, point, size, freeze(mine), diagonal)
+        for item, axis, point, size, mine in zip(items, axes, points, areas, faces, strict=True)
+    )
+
+
+def _surface(item: Description, axis: Array, point: Array, area: float, faces: Ints, diagonal: float) -> Surface:
     return Surface(
         kind=item.kind,
-        axis=freeze(item.axis + 0.0),
-        point=freeze(item.point * diagonal + centre if item.kind != "freeform" else np.zeros(3)),
+        axis=axis,
+        point=point,
         radius=item.radius * diagonal,
         half_angle=item.half_angle,
         side=item.side,
-        area=area * diagonal**2,
+        area=area,
         extent=(item.extent[0] * diagonal, item.extent[1] * diagonal),
         sweep=item.sweep,
         residual=item.residual * diagonal,
         axis_uncertainty=item.axis_uncertainty,
         point_uncertainty=item.point_uncertainty * diagonal,
         chord=item.chord * diagonal,
-        faces=freeze(faces),
+        faces=faces,
         minor_radius=item.minor_radius * diagonal,
         pitch=item.pitch * diagonal,
     )

@@ -20,7 +20,7 @@ from kinform.foundation.graphs.components import components
 from kinform.foundation.sorting import median
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
-from kinform.surfaces.describe import Description, freeform
+from kinform.surfaces.describe import Description, standoffs
 from kinform.surfaces.polygons.noise import Scale
 from kinform.surfaces.polygons.patchwork import Patchwork
 
@@ -69,14 +69,21 @@ def threads(work: Patchwork, loose: Flags, others: Sequence[Description], scale:
     out: list[Description] = []
     if int(free.sum()) < constants.THREAD_POLYGONS:
         return out
+    edges = _beside(work, free)
     for axis, point in _lines(work, free, others):
         if int(free.sum()) < constants.THREAD_POLYGONS:
             break
-        thread = _about(work, free, axis, point, scale)
+        thread = _about(work, free, edges, axis, point, scale)
         if thread is not None:
             out.append(thread)
             free[thread.polygons] = False
+            edges = _beside(work, free)
     return out
+
+
+def _beside(work: Patchwork, free: Flags) -> Ints:
+    """Edges of free polygons."""
+    return np.flatnonzero(free[work.a] | ((work.b >= 0) & free[work.b]))
 
 
 def _lines(work: Patchwork, free: Flags, others: Sequence[Description]) -> list[tuple[Array, Array]]:
@@ -134,9 +141,10 @@ def _turning(work: Patchwork, free: Flags) -> list[tuple[Array, Array]]:
     return out
 
 
-def _about(work: Patchwork, free: Flags, axis: Array, point: Array, scale: Scale) -> Description | None:
-    """The thread about a line, if there is one."""
-    edges = np.flatnonzero(free[work.a] | ((work.b >= 0) & free[work.b]))
+def _about(
+    work: Patchwork, free: Flags, edges: Ints, axis: Array, point: Array, scale: Scale
+) -> Description | None:  # fmt: skip
+    """The thread about a line, if there is one, among free polygons, whose edges these are."""
     if len(edges) < constants.THREAD_POLYGONS:
         return None
     start = _Screw(axis, point, 0.0)
@@ -198,6 +206,8 @@ def _advances(work: Patchwork, edges: Ints, start: _Screw, scale: Scale) -> list
     advance, doubt, turn, usable = _slopes(work, work.ends[edges], start, scale, constants.WIDE[0])
     rows = np.flatnonzero(usable & (doubt < constants.ADVANCE_SHOWS * np.abs(advance)))
     out: list[float] = []
+    if np.abs(turn[rows]).sum() < (1.0 - constants.PLAINLY) * 2 * np.pi * constants.TURNED:
+        return out
     for _ in range(constants.MOST_ADVANCES):
         if len(rows) < constants.THREAD_POLYGONS // 2:
             break
@@ -342,7 +352,7 @@ def _chord(work: Patchwork, helices: _Helices, members: Ints) -> float:
     use = (work.b >= 0) & inside[work.a] & (work.angle < constants.BENT)
     use[use] &= inside[work.b[use]]
     use &= ~_are_edges(work, helices)
-    return freeform(work, members, np.flatnonzero(use)).chord
+    return float(standoffs(work, np.flatnonzero(use)).max(initial=0.0))
 
 
 def _description(work: Patchwork, edges: Ints, screw: _Screw, members: Ints, scale: Scale) -> Description | None:
