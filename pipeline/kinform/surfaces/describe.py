@@ -17,7 +17,7 @@ from kinform.surfaces import constants
 from kinform.surfaces.groups import columns_of, group_range, group_sum, members, normal_equations, parted
 from kinform.surfaces.kinds.axial import angular_widths, azimuths, cylindrical
 from kinform.surfaces.kinds.batch import Batch, Params
-from kinform.surfaces.kinds.kind import Kind, widths
+from kinform.surfaces.kinds.kind import Kind
 from kinform.surfaces.kinds.ruled import with_apices
 from kinform.surfaces.polygons.coplanar import fit_planes
 from kinform.surfaces.polygons.noise import Scale, Scales
@@ -137,7 +137,7 @@ def curved(surfaces: Candidates, batch: Batch, scale: Scales) -> list[Descriptio
     has_axis = kind.name != "sphere"
     angular, linear = _uncertainties(group, columns, squares, samples, scale, has_axis)
     chords = _chords(kind, batch, params)
-    width = angular_widths(batch, placed) if kind.name == "torus" else widths(kind, batch, params)
+    width = angular_widths(batch, placed) if kind.name == "torus" else kind.widths(batch, params)
     sweeps = angles_covered(placed, batch, width) if has_axis else np.zeros(count)
     out = []
     for k, polygons in enumerate(members(batch.region)):

@@ -177,35 +177,35 @@ def _assemble(mesh: Mesh, start: _Start, descriptions: list[Description]) -> Mes
         owner[item.polygons] = number
     facet_owner = np.empty(len(order), np.int64)
     facet_owner[order] = owner[work.polygon]
-    area = np.bincount(owner[work.polygon], work.facet_area, len(descriptions))
+    area: Array = np.bincount(owner[work.polygon], work.facet_area, len(descriptions)).astype(float)
     first = np.full(len(descriptions), len(order))
     np.minimum.at(first, facet_owner, np.arange(len(order)))
     rank = np.lexsort((first, -coarse(area)))
     position = np.empty(len(rank), np.int64)
     position[rank] = np.arange(len(rank))
     labels = position[facet_owner]
-    faces = members(labels)
     squares = sum(item.squares for item in descriptions)
     samples = sum(item.samples for item in descriptions)
     noise = diagonal * float(np.sqrt(squares / samples)) if samples else 0.0
-    surfaces = _surfaces([descriptions[k] for k in rank.tolist()], area[rank], members(labels), centre, diagonal)
+    surfaces = _surfaces(
+        [descriptions[k] for k in rank.tolist()], area[rank] * diagonal**2, members(labels), centre, diagonal
+    )
     freeze(labels)
     return MeshSurfaces(mesh.digest, surfaces, labels, noise)
 
 
 def _surfaces(
-    items: list[Description], area: Array, faces: list[Ints], centre: Array, diagonal: float
+    items: list[Description], areas: Array, faces: list[Ints], centre: Array, diagonal: float
 ) -> tuple[Surface, ...]:  # fmt: skip
-    """The surfaces in metres, in this order."""
+    """The surfaces in metres, in this order; `areas` are in square metres."""
     axes = np.array([item.axis for item in items]) + 0.0
     points = np.array([item.point for item in items]) * diagonal + centre
     points[[item.kind == "freeform" for item in items]] = 0.0
-    areas = (area * diagonal**2).tolist()
     freeze(axes)
     freeze(points)
     return tuple(
         _surface(item, axis, point, size, freeze(mine), diagonal)
-        for item, axis, point, size, mine in zip(items, axes, points, areas, faces, strict=True)
+        for item, axis, point, size, mine in zip(items, axes, points, areas.tolist(), faces, strict=True)
     )
 
 

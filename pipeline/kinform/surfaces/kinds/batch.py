@@ -25,6 +25,10 @@ Look: TypeAlias = Callable[[Params, Array], Any]
 """What points (N, 3) are about surfaces (N, 8)."""
 
 
+Widths: TypeAlias = Callable[["Batch", Params], Array]
+"""Angles (pairs,) that polygons subtend on surfaces (R, 8)."""
+
+
 class Batch:
     """R candidate regions: (region, polygon) pairs sorted by region, and what belongs to them."""
 
@@ -40,6 +44,7 @@ class Batch:
         self._mesh: Ints | None = None
         self._parts: list[Batch] | None = None
         self._seen: tuple[Params, Look, Any] | None = None
+        self._widths: tuple[Params, Widths, Array] | None = None
 
     def parts(self) -> list[Batch]:
         """The batch cut into runs of pairs, so that what is computed for every corner stays small."""
@@ -59,6 +64,13 @@ class Batch:
             points = np.concatenate([self.patchwork.middles(self.polygon).T, self.points.T], axis=1).T
             self._seen = params, look, (group, look(columns_of(params, group), points))
         return cast("tuple[Ints, Seen]", self._seen[2])
+
+    def widths(self, params: Params, find: Widths) -> Array:
+        """(pairs,) angles that `find` says polygons subtend on the surfaces (R, 8) of their regions. They are each for
+        itself, so those found last are kept, also for the pairs that are selected."""
+        if self._widths is None or self._widths[0] is not params or self._widths[1] != find:
+            self._widths = params, find, np.concatenate([find(part, params) for part in self.parts()])
+        return self._widths[2]
 
     @classmethod
     def of_keys(cls, patchwork: Patchwork, keys: Ints, count: int) -> Batch:
@@ -133,7 +145,11 @@ class Batch:
         rows = keep.nonzero()[0]
         if len(rows) == len(keep):
             return self
-        return Batch(self.patchwork, self.region.take(rows), self.polygon.take(rows), self.count)
+        out = Batch(self.patchwork, self.region.take(rows), self.polygon.take(rows), self.count)
+        if self._widths is not None:
+            params, find, widths = self._widths
+            out._widths = params, find, widths.take(rows)
+        return out
 
     def where(self, regions: Flags) -> Batch:
         """The batch without the polygons of some of its regions (R,), with what sorting has found of the others."""

@@ -148,6 +148,10 @@ class DoublyCurved(Kind, Protocol):
         return batch.seen(params, self.probe)
 
     def widths(self, batch: Batch, params: Params) -> Array:
+        """Twice the greatest angle of normals within each polygon."""
+        return batch.widths(params, self._spans)
+
+    def _spans(self, batch: Batch, params: Params) -> Array:
         """Twice the greatest angle between the normals at a polygon's middle and at a vertex of it."""
         owner, _ = batch.corners
         normal, count = self.held(batch, params)[1].normal, len(batch.polygon)
@@ -170,8 +174,3 @@ def distinct_angles(region: Ints, angle: Array, step: Array, count: int) -> Ints
     region, angle = region.take(order), angle.take(order)
     fresh = np.r_[True, (region[1:] != region[:-1]) | (np.diff(angle) > step[region[1:]])]
     return np.bincount(region[fresh], minlength=count).astype(np.int64)
-
-
-def widths(kind: Kind, batch: Batch, params: Params) -> Array:
-    """(pairs,) `kind.widths`, run by run."""
-    return np.concatenate([kind.widths(part, params) for part in batch.parts()])

@@ -110,7 +110,7 @@ class Ruled(Kind, Protocol):
 
     def widths(self, batch: Batch, params: Params) -> Array:
         """Angle about the axis of each polygon."""
-        return angular_widths(batch, params)
+        return batch.widths(params, angular_widths)
 
     def defining(self, batch: Batch, params: Params, tolerance: Array) -> tuple[Ints, Ints]:
         """Ends of inner ridges, of outer generators that lie on the surface, and vertices with three polygons of the

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,7 +12,6 @@ from kinform.surfaces.constants import FACET_ROUNDING, NORMAL_SLACK, TYPICAL_WID
 from kinform.surfaces.groups import columns_of, in_order, ordered_quantile, quantile
 from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.kinds.kind import Kind
-from kinform.surfaces.kinds.kind import widths as widths_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,15 +31,16 @@ class Candidates:
 
     def within(self, tolerance: Array) -> Candidates:
         """The same surfaces, held to another tolerance."""
-        return replace(self, tolerance=tolerance)
+        return Candidates(self.kind, self.params, self.side, tolerance)
 
     def refine(self, batch: Batch, steps: int) -> Candidates:
         """Fitted again to their regions."""
-        return replace(self, params=self.kind.refine(batch, self.params, self.tolerance, steps))
+        params = self.kind.refine(batch, self.params, self.tolerance, steps)
+        return Candidates(self.kind, params, self.side, self.tolerance)
 
     def reach(self, batch: Batch) -> Array:
         """(R,) greatest angle that a facet of each region may subtend, judged by the facets it has."""
-        width = widths_of(self.kind, batch, self.params)
+        width = self.kind.widths(batch, self.params)
         # regions are in order already
         region, ascending = batch.region, width.take(in_order(batch.region, width, batch.count))
         typical = ordered_quantile(region, ascending, batch.count, TYPICAL_WIDTH)

@@ -49,7 +49,7 @@ def whole(
     pieces, number = pieces.select(fits & (share >= constants.MAJORITY)[pieces.region]).compact()
     kept = surfaces.of(number).within(fit[number]).refine(pieces, 2)
     kept = kept.within(_justify(kept, pieces, territory.scales_of(pieces)))
-    pieces = _large(kind, territory.connected(_conforming(kept, pieces)))
+    pieces = _large(kind, _connected(territory, _conforming(kept, pieces)))
     return _credible(territory, kept.refine(pieces, 1), pieces, origin[number])
 
 
@@ -151,26 +151,30 @@ def _drop_shared(batch: Batch) -> Batch:
     polygon = batch.polygon[order]
     head = np.r_[True, polygon[1:] != polygon[:-1]]
     unshared = np.bincount(batch.region[order][head], minlength=batch.count)
-    return batch.select((unshared > constants.UNSHARED * batch.size)[batch.region])
+    return batch.where(unshared > constants.UNSHARED * batch.size)
 
 
 def _conforming(surfaces: Candidates, batch: Batch) -> Batch:
     return batch.select(surfaces.conforms(batch, surfaces.reach(batch)))
 
 
+def _connected(territory: Territory, batch: Batch) -> Batch:
+    return batch.select(territory.connected(batch))
+
+
 def _large(kind: Kind, batch: Batch) -> Batch:
-    return batch.select((batch.size >= kind.least)[batch.region])
+    return batch.where(batch.size >= kind.least)
 
 
 def _settle(territory: Territory, surfaces: Candidates, batch: Batch) -> Batch:
     """The batch, whose regions are connected, without polygons that do not conform, and without regions that fell
     apart and became too small."""
     kept = _conforming(surfaces, batch)
-    torn = kept.size < batch.size
-    if torn.any():
-        loose = torn[kept.region]
-        keys = np.concatenate([kept.select(~loose).keys, territory.connected(kept.select(loose)).keys])
-        kept = Batch.of_keys(territory.patchwork, np.sort(keys), batch.count)
+    torn = (kept.size < batch.size)[kept.region].nonzero()[0]
+    if len(torn):
+        keep = np.ones(len(kept.region), bool)
+        keep[torn] = territory.connected(Batch(kept.patchwork, kept.region[torn], kept.polygon[torn], kept.count))
+        kept = kept.select(keep)
     return _large(surfaces.kind, kept)
 
 

@@ -15,7 +15,6 @@ from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.groups import members
 from kinform.surfaces.kinds.batch import Batch
-from kinform.surfaces.kinds.kind import widths
 from kinform.surfaces.polygons.noise import Scale, Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.candidates import Candidates
@@ -146,6 +145,6 @@ def _one_fit(work: Patchwork, surfaces: Candidates, families: list[Ints]) -> Fla
     batch, fit = _batch(work, families), surfaces.tolerance
     fitted = surfaces.within(constants.MERGING_FITS * fit).refine(batch, 2).within(fit).refine(batch, 3)
     reach = np.zeros(batch.count)
-    np.maximum.at(reach, batch.region, widths(fitted.kind, batch, fitted.params))
+    np.maximum.at(reach, batch.region, fitted.kind.widths(batch, fitted.params))
     good = fitted.conforms(batch, constants.MERGED_REACH * reach + constants.FACET_ROUNDING)
     return np.asarray(np.bincount(batch.region, ~good, batch.count) == 0)

@@ -80,11 +80,11 @@ class Territory:
             return batch
         return Batch.of_keys(self.patchwork, np.sort(np.concatenate(gained)), batch.count)
 
-    def connected(self, batch: Batch) -> Batch:
-        """The largest connected piece of each region (ties: the piece of the lowest polygon)."""
+    def connected(self, batch: Batch) -> Flags:
+        """(pairs,) the largest connected piece of each region (ties: the piece of the lowest polygon)."""
         work = self.patchwork
         if not len(batch.region):
-            return batch
+            return np.ones(0, bool)
         keys = batch.keys
         owner, edge = self.links.expand(batch.polygon)
         target = batch.region[owner] * np.int64(work.count) + work.other(edge, batch.polygon[owner])
@@ -97,7 +97,7 @@ class Territory:
         head = order[np.r_[True, batch.region[order][1:] != batch.region[order][:-1]]]
         best = np.full(batch.count, -1)
         best[batch.region[head]] = label[head]
-        return batch.select(best[batch.region] == label)
+        return np.asarray(best[batch.region] == label)
 
 
 def among(keys: Ints, ordered: Ints) -> Flags:
