@@ -37,7 +37,7 @@ def test_the_order_of_groups_changes_nothing(numbers):
 @given(NUMBERS)
 def test_normal_equations_are_products_of_the_rows(numbers):
     groups, rows = np.array(numbers, dtype=np.int64), values_of(numbers, 4)
-    matrix, right = normal_equations(groups, rows[:, :3], rows[:, 3], 10)
+    matrix, right = normal_equations(sums_of(groups, 10), rows[:, :3].T, rows[:, 3])
     for group in range(10):
         own = rows[groups == group]
         assert np.allclose(matrix[group], own[:, :3].T @ own[:, :3], rtol=0.0, atol=1e-12)

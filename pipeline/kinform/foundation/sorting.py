@@ -47,7 +47,8 @@ def sorted_keys(keys: Ints) -> Ints:
 
 def heads(ordered: Ints) -> Flags:
     """(n,) which of the ordered keys are the first of their value."""
-    out = np.ones(len(ordered), bool)
+    out = np.empty(len(ordered), bool)
+    out[:1] = True
     np.not_equal(ordered[1:], ordered[:-1], out=out[1:])
     return out
 

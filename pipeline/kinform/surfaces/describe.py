@@ -14,7 +14,7 @@ from kinform.foundation.algebra.vectors import canonical_sign, dot
 from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Ints
 from kinform.surfaces import constants
-from kinform.surfaces.groups import columns_of, group_range, group_sum, members, normal_equations, parted
+from kinform.surfaces.groups import columns_of, group_range, group_sum, members, normal_equations, parted, sums_of
 from kinform.surfaces.kinds.axial import angular_widths, azimuths, cylindrical
 from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.kinds.kind import Kind
@@ -192,7 +192,7 @@ def _uncertainties(
     count, free = len(samples), columns.shape[1]
     freedom = np.maximum(samples - free, 1)
     scatter = np.maximum(np.sqrt(squares / freedom), constants.ROUNDED_SCATTER * scale.rounding)
-    matrix, _ = normal_equations(region, columns, np.zeros(len(columns)), count)
+    matrix, _ = normal_equations(sums_of(region, count), columns.T, np.zeros(len(columns)))
     size = np.sqrt(np.maximum(np.einsum("rii->ri", matrix), 1e-300))
     outer = size[:, :, None] * size[:, None, :]
     inverse = np.linalg.pinv(matrix / outer, hermitian=True, rcond=constants.SINGULAR) / outer

@@ -25,6 +25,6 @@ def components(a: Ints, b: Ints, count: int) -> Ints:
         a, b = a[apart], b[apart]
         np.minimum.at(root, np.maximum(a, b), np.minimum(a, b))
         higher = root[root]
-        while not np.array_equal(higher, root):
+        while not (higher == root).all():
             root, higher = higher, higher[higher]
     return np.asarray((np.cumsum(root == every) - 1)[root])

@@ -18,6 +18,7 @@ from kinform.surfaces.groups import (
     slices,
     solve_normal,
     spheres_of,
+    sums_of,
 )
 from kinform.surfaces.kinds.axial import frames
 from kinform.surfaces.kinds.batch import Batch, Params
@@ -82,7 +83,7 @@ def _taper(batch: Batch, axis: Array, region: Ints, edge: Ints) -> tuple[Params,
     v -= centre[group, 1]
     rho = np.hypot(u, v, out=u)
     del v
-    line = solve_normal(*normal_equations(group, [np.ones_like(t), t], rho, count))
+    line = solve_normal(*normal_equations(sums_of(group, count), np.array([np.ones_like(t), t]), rho))
     params = np.zeros((count, 8))
     params[:, :3] = axis
     params[:, 3:6] = middle + centre[:, :1] * x + centre[:, 1:] * y

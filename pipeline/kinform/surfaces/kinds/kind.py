@@ -12,9 +12,10 @@ from typing import Protocol
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.constants import DAMPING, NEAR
-from kinform.surfaces.groups import columns_of, in_order, normal_equations, solve_normal
+from kinform.surfaces.groups import columns_of, in_order, normal_equations, solve_normal, sums_of
 from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.polygons.noise import Scales
 
@@ -41,11 +42,11 @@ class Moving:
 
     def only(self, region: Ints, vertex: Ints) -> tuple[Ints, Ints]:
         """The vertices of meshes that go on; those without any do not."""
-        mesh = self._batch.mesh[region]
+        mesh = self._batch.mesh.take(region)
         self._mesh &= np.bincount(mesh, minlength=len(self._mesh)) > 0
         if self._mesh.all():
             return region, vertex
-        rows = np.flatnonzero(self._mesh[mesh])
+        rows = self._mesh.take(mesh).nonzero()[0]
         return region.take(rows), vertex.take(rows)
 
     def taken(self, stepped: Params, params: Params) -> Params:
@@ -133,9 +134,8 @@ class DoublyCurved(Kind, Protocol):
             if not len(region):
                 break
             mine, points = columns_of(params, region), batch.patchwork.at(vertex)
-            matrix, right = normal_equations(
-                region, self.jacobian(mine, points), self.probe(mine, points).distance, batch.count
-            )
+            columns, distance = self.jacobian(mine, points).T, self.probe(mine, points).distance
+            matrix, right = normal_equations(sums_of(region, batch.count), columns, distance)
             change = -solve_normal(matrix, right, DAMPING)
             stepped = self.step(params, change)
             finite = np.isfinite(stepped).all(axis=1, keepdims=True)
@@ -164,7 +164,7 @@ class DoublyCurved(Kind, Protocol):
         """Vertices that enough of the region's polygons share, where they lie on the surface."""
         region, vertex = batch.inner_vertices(self.shared)
         distance = np.abs(self.probe(columns_of(params, region), batch.patchwork.at(vertex)).distance)
-        rows = np.flatnonzero(distance < NEAR * tolerance[region])
+        rows = (distance < (NEAR * tolerance).take(region)).nonzero()[0]
         return region.take(rows), vertex.take(rows)
 
 
@@ -172,5 +172,6 @@ def distinct_angles(region: Ints, angle: Array, step: Array, count: int) -> Ints
     """Number of angles of each region that differ by more than its step (count,)."""
     order = in_order(region, angle, count)
     region, angle = region.take(order), angle.take(order)
-    fresh = np.r_[True, (region[1:] != region[:-1]) | (np.diff(angle) > step[region[1:]])]
+    fresh = heads(region)
+    fresh[1:] |= angle[1:] - angle[:-1] > step.take(region[1:])
     return np.bincount(region[fresh], minlength=count).astype(np.int64)

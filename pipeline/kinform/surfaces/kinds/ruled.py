@@ -40,24 +40,27 @@ class Ruled(Kind, Protocol):
 
     def refine(self, batch: Batch, params: Params, tolerance: Array, steps: int) -> Params:
         """Gauss–Newton over offset, tilt, radius and, for cones, half-angle."""
-        work, count = batch.patchwork, batch.count
+        work = batch.patchwork
         moving = Moving(batch)
         for step in range(steps):
             if step in (0, 2):
                 region, vertex = moving.only(*self.defining(batch, params, tolerance))
             if not len(region):
                 break
-            at, before = self._about(work, params, region, vertex), params
-            params, middle = _recentre(params, region, at.t, count)
-            at.t[:] -= middle[region]
-            group, columns, residual = region, *self._equations(at, params, region)
+            at, before, sums = self._about(work, params, region, vertex), params, sums_of(region, batch.count)
+            params, middle = _recentre(params, region, sums(at.t))
+            at.t[:] -= middle.take(region)
+            frame = frames(params[:, :3])
+            columns, residual = self._equations(at, params, frame, region)
             if self.tapers:
-                tips = np.flatnonzero(at.rho < constants.APEX * params[region, 6])
-                mine, points = params[region[tips]], work.at(vertex[tips])
-                group, columns, residual = with_apices(mine, points, region, columns, residual, tips)
-            matrix, right = normal_equations(group, columns, residual, count)
+                tips = (at.rho < (constants.APEX * params[:, 6]).take(region)).nonzero()[0]
+                if len(tips):
+                    mine, points = params[region[tips]], work.at(vertex[tips])
+                    group, columns, residual = with_apices(mine, points, region, columns, residual, tips)
+                    sums = sums_of(group, batch.count)
+            matrix, right = normal_equations(sums, columns.T, residual)
             change = -solve_normal(matrix, right, constants.DAMPING)
-            params = moving.taken(self.step(params, change), before)
+            params = moving.taken(self.step(params, change, frame), before)
             region, vertex = moving.after(change, constants.CONVERGED, region, vertex)
         return params
 
@@ -65,20 +68,24 @@ class Ruled(Kind, Protocol):
     def _about(work: Patchwork, params: Params, region: Ints, vertex: Ints) -> Cylindrical:
         """The vertices as the axes of their regions see them."""
         count = len(region)
+        if count <= constants.ROWS:
+            return cylindrical(columns_of(params, region), work.at(vertex))
         at = Cylindrical(np.empty(count), np.empty(count), np.empty((3, count)).T)
         for rows in slices(count, constants.ROWS):
             part = cylindrical(columns_of(params, region[rows]), work.at(vertex[rows]))
             at.t[rows], at.rho[rows], at.radial[rows] = part
         return at
 
-    def _equations(self, at: Cylindrical, params: Params, region: Ints) -> tuple[Array, Array]:
+    def _equations(
+        self, at: Cylindrical, params: Params, frame: tuple[Array, Array], region: Ints
+    ) -> tuple[Array, Array]:  # fmt: skip
         """Derivatives (N, 5 or 6) and distances (N,) of points at these coordinates about their regions' axes."""
         columns, residual = np.empty((6 if self.tapers else 5, len(region))).T, np.empty(len(region))
-        x, y = frames(params[:, :3])
+        x, y = frame
         for rows in slices(len(region), constants.ROWS):
             mine = region[rows]
             part = Cylindrical(at.t[rows], at.rho[rows], at.radial[rows])
-            radius, angle = params[mine, 6], params[mine, 7]
+            radius, angle = params[:, 6].take(mine), params[:, 7].take(mine)
             columns[rows] = self._columns(part, (columns_of(x, mine), columns_of(y, mine)), radius, angle)
             residual[rows] = part.rho - radius
             if self.tapers:
@@ -161,22 +168,24 @@ class Ruled(Kind, Protocol):
         np.multiply(-lever, ry, out=out[:, 3])
         return out
 
-    def step(self, params: Params, change: Array) -> Params:
-        """The surfaces with their free parameters changed, within bounds; as they were where that is not finite."""
-        x, y = frames(params[:, :3])
-        limit = np.abs(params[:, 6])[:, None] + constants.SHIFT_LIMIT
-        shift = np.clip(change[:, :2], -limit, limit)
-        tilt = np.clip(change[:, 2:4], -constants.TILT_LIMIT, constants.TILT_LIMIT)
+    def step(self, params: Params, change: Array, frame: tuple[Array, Array]) -> Params:
+        """The surfaces with their free parameters changed, within bounds; as they were where that is not finite.
+        `frame` is that of their axes."""
+        (x, y), radius = frame, params[:, 6]
+        most = np.empty(change.shape)
+        most[:, [0, 1, 4]] = (np.abs(radius) + constants.SHIFT_LIMIT)[:, None]
+        most[:, [2, 3, *range(5, change.shape[1])]] = constants.TILT_LIMIT
+        least = -most
+        least[:, 4] /= 2
+        change = np.minimum(np.maximum(change, least), most)
         out = params.copy()
-        out[:, 3:6] += shift[:, :1] * x + shift[:, 1:] * y
-        axis = params[:, :3] + tilt[:, :1] * x + tilt[:, 1:] * y
+        out[:, 3:6] += change[:, :1] * x + change[:, 1:2] * y
+        axis = params[:, :3] + change[:, 2:3] * x + change[:, 3:4] * y
         length = np.sqrt(axis[:, 0] ** 2 + axis[:, 1] ** 2 + axis[:, 2] ** 2)
         out[:, :3] = axis / np.maximum(length, 1e-300)[:, None]
-        out[:, 6] = np.maximum(
-            params[:, 6] + np.clip(change[:, 4], -limit[:, 0] / 2, limit[:, 0]), constants.LEAST_RADIUS
-        )
+        out[:, 6] = np.maximum(radius + change[:, 4], constants.LEAST_RADIUS)
         if self.tapers:
-            taper = params[:, 7] + np.clip(change[:, 5], -constants.TILT_LIMIT, constants.TILT_LIMIT)
+            taper = params[:, 7] + change[:, 5]
             out[:, 7] = np.clip(taper, -constants.STEEPEST_CONE, constants.STEEPEST_CONE)
         finite = np.isfinite(out)
         return out if finite.all() else np.where(finite.all(axis=1, keepdims=True), out, params)
@@ -254,10 +263,10 @@ def with_apices(
     )
 
 
-def _recentre(params: Params, region: Ints, t: Array, count: int) -> tuple[Params, Array]:
-    """Moves each reference point along its axis beside the mean of the points; by how much (R,)."""
-    size = np.maximum(np.bincount(region, minlength=count), 1)
-    middle = sums_of(region, count)(t) / size
+def _recentre(params: Params, region: Ints, total: Array) -> tuple[Params, Array]:
+    """Moves each reference point along its axis beside the mean of the points, whose places along it have this `total`
+    (R,); by how much (R,)."""
+    middle = total / np.maximum(np.bincount(region, minlength=len(total)), 1)
     out = params.copy()
     out[:, 3:6] += middle[:, None] * params[:, :3]
     out[:, 6] += middle * np.tan(params[:, 7])

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.constants import FACET_ROUNDING, NORMAL_SLACK, TYPICAL_WIDTH, WIDER, WIDEST
 from kinform.surfaces.groups import columns_of, in_order, ordered_quantile, quantile
@@ -43,14 +44,15 @@ class Candidates:
         width = self.kind.widths(batch, self.params)
         # regions are in order already
         region, ascending = batch.region, width.take(in_order(batch.region, width, batch.count))
-        typical = ordered_quantile(region, ascending, batch.count, TYPICAL_WIDTH)
-        following = np.append(ascending[1:], 0.0)
-        last = np.append(region[1:] != region[:-1], True) if len(region) else np.zeros(0, bool)
-        gap = ~last & (ascending >= typical[region]) & (following > WIDER * ascending)
-        top = np.full(batch.count, np.inf)
-        np.minimum.at(top, region[gap], ascending[gap])
-        largest = np.zeros(batch.count)
-        largest[region[last]] = np.maximum(ascending[last], 0.0)
+        typical = ordered_quantile(batch.size, ascending, TYPICAL_WIDTH)
+        last = heads(region[::-1])[::-1].nonzero()[0]
+        gap = ascending >= typical.take(region)
+        gap[:-1] &= ascending[1:] > WIDER * ascending[:-1]
+        gap[last] = False
+        rows = gap.nonzero()[0]
+        top, largest = np.full(batch.count, np.inf), np.zeros(batch.count)
+        np.minimum.at(top, region.take(rows), ascending.take(rows))
+        largest[region.take(last)] = np.maximum(ascending.take(last), 0.0)
         return np.asarray(np.minimum(WIDER * np.minimum(top, largest), WIDEST) + FACET_ROUNDING)
 
     def conforms(self, batch: Batch, reach: Array) -> Flags:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.kinds.batch import Batch, Params
@@ -70,6 +71,8 @@ def absorb(territory: Territory, growth: Growth) -> Growth:
         finished.append(_keys(batch.where(~gained), number))
         batch, kept = larger.where(gained).compact()
         number = number[kept]
+        if not len(number):
+            break
         surfaces = surfaces.of(kept).refine(batch, 1)
         params[number] = surfaces.params
         batch = _settle(territory, surfaces, batch)
@@ -147,10 +150,10 @@ def _drop_shared(batch: Batch) -> Batch:
     """The batch with regions emptied most of whose polygons belong to a larger region as well."""
     if not len(batch.region):
         return batch
-    order = np.lexsort((batch.region, -batch.size[batch.region], batch.polygon))
-    polygon = batch.polygon[order]
-    head = np.r_[True, polygon[1:] != polygon[:-1]]
-    unshared = np.bincount(batch.region[order][head], minlength=batch.count)
+    order = np.lexsort((batch.region, (-batch.size).take(batch.region), batch.polygon))
+    polygon = batch.polygon.take(order)
+    first = order.take(heads(polygon).nonzero()[0])
+    unshared = np.bincount(batch.region.take(first), minlength=batch.count)
     return batch.where(unshared > constants.UNSHARED * batch.size)
 
 

@@ -221,15 +221,15 @@ def _around(territory: Territory, seeds: Ints, side: Ints, straightness: float) 
     """Both polygons of each seed and their neighbours across edges along the seed (all, when 0)."""
     work = territory.patchwork
     numbers = np.arange(len(seeds))
-    polygon = np.r_[work.a[seeds], work.b[seeds]]
-    region = np.r_[numbers, numbers]
+    polygon = np.concatenate([work.a[seeds], work.b[seeds]])
+    region = np.concatenate([numbers, numbers])
     owner, edge = territory.links.expand(polygon)
     target = work.other(edge, polygon[owner])
     mine = region[owner]
     cosine = np.abs(dot(work.along(edge), work.along(seeds[mine])))
     near = cosine >= straightness * work.length[edge] * work.length[seeds[mine]]
     keep = near & territory.free[target] & (work.sign[edge] * side[mine] >= 0)
-    keys = np.r_[region, mine[keep]] * np.int64(work.count) + np.r_[polygon, target[keep]]
+    keys = np.concatenate([region, mine[keep]]) * np.int64(work.count) + np.concatenate([polygon, target[keep]])
     return Batch.of_keys(work, distinct(keys), len(seeds))
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.foundation.graphs.components import components
-from kinform.foundation.sorting import distinct
+from kinform.foundation.sorting import distinct, heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.groups import Ragged, parted
 from kinform.surfaces.kinds.batch import Batch
@@ -94,7 +94,7 @@ class Territory:
         first = np.full(len(size), len(keys))
         np.minimum.at(first, label, np.arange(len(keys)))
         order = np.lexsort((first[label], -size[label], batch.region))
-        head = order[np.r_[True, batch.region[order][1:] != batch.region[order][:-1]]]
+        head = order.take(heads(batch.region.take(order)).nonzero()[0])
         best = np.full(batch.count, -1)
         best[batch.region[head]] = label[head]
         return np.asarray(best[batch.region] == label)
