@@ -28,11 +28,9 @@ class Cylinder(Ruled):
     def propose(self, batch: Batch) -> tuple[Params, Flags]:
         """Circle through the ends of the ridges, seen along the axis."""
         work = batch.patchwork
-        ridge, agreement = _axis_of_edges(batch)
-        normal, weight = work.normals(batch.polygon), work.area.take(batch.polygon)
-        matrix = group_moments(batch.region, normal.T, batch.count, weight)
-        _, vectors = np.linalg.eigh(np.nan_to_num(matrix))
-        axis = np.where((agreement > RIDGES_AGREE)[:, None], ridge, vectors[:, :, 0])
+        axis, agreement = _axis_of_edges(batch)
+        vague, number = batch.select(~(agreement > RIDGES_AGREE).take(batch.region)).compact()
+        axis[number] = _axis_of_normals(vague)
         params = np.zeros((batch.count, 8))
         params[:, :3], params[:, 6] = axis, np.inf
         region, edge, inner, smooth = generators(batch, params)
@@ -59,10 +57,10 @@ class Cylinder(Ruled):
         region, edge, inner, _ = generators(batch, params)
         region, edge = region[inner], edge[inner]
         total = np.int64(work.count)
-        key, times = occurrences(np.r_[region * total + work.a[edge], region * total + work.b[edge]])
+        key, times = occurrences(np.concatenate([region * total + work.a[edge], region * total + work.b[edge]]))
         whole = np.isin(batch.keys, key[times >= 2])
-        angle = np.r_[self.widths(batch, params)[whole], work.angle[edge]]
-        low, high = group_range(np.r_[batch.region[whole], region], angle, count)
+        angle = np.concatenate([self.widths(batch, params)[whole], work.angle[edge]])
+        low, high = group_range(np.concatenate([batch.region[whole], region]), angle, count)
         return np.asarray((np.bincount(batch.region[whole], minlength=count) >= 2) & (high < EQUAL_STEPS * low))
 
 
@@ -75,6 +73,14 @@ def _axis_of_edges(batch: Batch) -> tuple[Array, Array]:
     values, vectors = np.linalg.eigh(np.nan_to_num(matrix))
     total = np.maximum(values.sum(axis=1), 1e-300)
     return np.ascontiguousarray(vectors[:, :, 2]), values[:, 2] / total
+
+
+def _axis_of_normals(batch: Batch) -> Array:
+    """(R, 3) direction across which the normals of each region are most nearly."""
+    work = batch.patchwork
+    normal, weight = work.normals(batch.polygon), work.area.take(batch.polygon)
+    _, vectors = np.linalg.eigh(np.nan_to_num(group_moments(batch.region, normal.T, batch.count, weight)))
+    return np.asarray(vectors[:, :, 0])
 
 
 def _circle(batch: Batch, axis: Array, region: Ints, vertex: Ints) -> tuple[Params, Flags]:

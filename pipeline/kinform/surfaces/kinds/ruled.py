@@ -19,8 +19,8 @@ from kinform.surfaces.groups import (
     columns_of,
     in_order,
     normal_equations,
+    ordered_quantile,
     parted,
-    quantile,
     slices,
     solve_normal,
     sums_of,
@@ -200,14 +200,14 @@ class Ruled(Kind, Protocol):
         ordered = width.take(in_order(batch.region, width, count))
         even = np.zeros(count, bool)
         several = batch.size >= 2
-        last = np.cumsum(batch.size)[several] - 1
+        last = batch.size.cumsum()[several] - 1
         even[several] = ordered[last - 1] >= constants.SECOND_STRIP * ordered[last]
         region, vertex = self.defining(batch, params, scale.fit)
         if not len(region):
             return np.zeros(count, np.int64), sweep, even
         mine = columns_of(params, region)
         angle = azimuths(mine, cylindrical(mine, batch.patchwork.at(vertex)).radial)
-        step = constants.RING_APART * quantile(batch.region, width, count, 0.75)
+        step = constants.RING_APART * ordered_quantile(batch.size, ordered, 0.75)
         return distinct_angles(region, angle, step, count), sweep, even
 
 

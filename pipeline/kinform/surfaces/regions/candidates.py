@@ -66,23 +66,27 @@ class Candidates:
         """A polygon conforms where its vertices lie on the surface, its middle no deeper than a chord of the widest
         facet, and its normal is that of the surface to within half a facet."""
         work, region, polygon = batch.patchwork, batch.region, batch.polygon
-        owner, _ = batch.corners
         count = len(region)
         group, held = self.kind.held(batch, self.params)
         chord = (1 - np.cos(np.minimum(reach, np.pi) / 2)).take(group)
         chord *= held.curvature_radius
         limit = self.tolerance.take(group)
         chord += limit
-        deep = held.distance <= -chord
+        np.negative(chord, out=chord)
+        deep = held.distance <= chord
         # a flat has all its vertices on the surface, but is wider than the facets of it
-        off = deep[:count]
+        fits = ~deep[:count]
         if self.kind.saddle:
             deep = held.distance <= -limit
-        outside = deep[count:] | (held.distance[count:] >= limit[count:])
-        off[owner.take(outside.nonzero()[0])] = True
-        cosine = dot(held.normal[:count], work.normals(polygon)) * self.side.take(region)
-        widest = np.minimum((0.5 * reach + NORMAL_SLACK).take(region) + work.slack.take(polygon), WIDEST)
-        return np.asarray(~off & (cosine > np.cos(widest)))
+        outside = deep[count:]
+        outside |= held.distance[count:] >= limit[count:]
+        fits[batch.corners[0].take(outside.nonzero()[0])] = False
+        cosine = dot(held.normal[:count], work.normals(polygon))
+        cosine *= self.side.take(region)
+        widest = (0.5 * reach + NORMAL_SLACK).take(region)
+        widest += work.slack.take(polygon)
+        fits &= cosine > np.cos(np.minimum(widest, WIDEST, out=widest), out=widest)
+        return fits
 
     def scatter(self, batch: Batch) -> Array:
         """(R,) middle distance of each region's vertices from its surface."""

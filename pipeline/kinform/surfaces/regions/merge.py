@@ -91,7 +91,7 @@ def coincident_regions(work: Patchwork, surfaces: Candidates, polygons: list[Int
     done[heads[whole]] = True
     open_ = (root[larger] == larger) & (root[smaller] == smaller) & ~(done[larger] | done[smaller])
     larger, smaller = larger[open_], smaller[open_]
-    couples = [np.r_[polygons[i], polygons[j]] for i, j in zip(larger, smaller, strict=True)]
+    couples = [np.concatenate([polygons[i], polygons[j]]) for i, j in zip(larger, smaller, strict=True)]
     same = _one_fit(work, surfaces.of(larger), couples)
     paired = _roots(larger[same], smaller[same], size)
     return np.where(paired != np.arange(count), paired, root)
@@ -119,11 +119,13 @@ def _partners(surfaces: Candidates, batch: Batch, size: Array | Ints, scale: Sca
     final = starts[np.searchsorted(batch.mesh, batch.mesh[smaller], side="right")] - 1
     near = constants.MERGING_FITS * scale.fit[smaller]
     distance = np.zeros(len(larger))
-    for k in range(constants.SAMPLES):
+    # most are far from each other at the first vertices
+    for some in (range(1), range(1, 3), range(3, constants.SAMPLES)):
         first, last = starts[smaller[alive]], starts[smaller[alive] + 1] - 1
-        at = first + (k * np.maximum(last - first, 0)) // (constants.SAMPLES - 1)
-        point = work.vertices[vertex[np.minimum(at, final[alive])]]
-        distance[alive] = np.maximum(distance[alive], np.abs(kind.probe(params[larger[alive]], point).distance))
+        at = first[:, None] + (np.array(some) * np.maximum(last - first, 0)[:, None]) // (constants.SAMPLES - 1)
+        points = work.vertices[vertex[np.minimum(at, final[alive][:, None])]].reshape(-1, 3)
+        away = np.abs(kind.probe(params[larger[alive].repeat(len(some))], points).distance).reshape(-1, len(some))
+        distance[alive] = np.maximum(distance[alive], away.max(axis=1))
         alive = alive[distance[alive] < near[alive]]
     distance = np.where(distance < near, distance, np.inf)
     order = np.lexsort((larger, distance, smaller))
