@@ -137,5 +137,11 @@ ROWS_TOGETHER = 64
 """Rows of an array that are looked at as one for the least and the greatest of its columns."""
 KEPT_EDGES = 200_000
 """Facets up to which the shared edges of a mesh are kept: 10 MB."""
+LARGE_MESH = 1_000_000
+"""Facets from which on a model of all of them, half a gigabyte, is made only where one of some does not do."""
+ABOUT = 0.02
+"""Distance from another part, in diagonals of a large mesh, within which its facets are expected to be asked for."""
+MOST_EXPECTED = 0.8
+"""Share of its facets above which a model of all is made, which does for every other part."""
 KEPT_SPANS = 200_000
 """Facets up to which the spans of a mesh are kept: 5 MB; of more those that are asked for are computed anew."""

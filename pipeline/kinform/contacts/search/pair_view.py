@@ -104,10 +104,12 @@ def _facing(a: PartView, b: PartView, beside: tuple[_Boxed, _Boxed], margin: flo
     if len(facets_a) + len(facets_b) > FEW_BESIDE or not len(facets_a) or not len(facets_b):
         keep_a, keep_b = near_boxes(low_a, high_a, low_b, high_b, margin)
         facets_a, facets_b = facets_a[keep_a], facets_b[keep_b]
-    return (
-        replace(a, region=a.index.region(facets_a), clear=margin),
-        replace(b, region=b.index.region(facets_b), clear=margin),
-    )
+    a = replace(a, region=a.index.region(facets_a), clear=margin)
+    b = replace(b, region=b.index.region(facets_b), clear=margin)
+    for one, other, facets in ((a, b, facets_b), (b, a, facets_a)):
+        if one.index.is_large and one.region.facets is None:
+            one.index.expect(*facet_boxes(one.to_part(other.vertices), other.faces[facets]))
+    return a, b
 
 
 _Boxed = tuple[Ints, Array, Array]

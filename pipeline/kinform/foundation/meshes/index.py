@@ -8,14 +8,24 @@ import fcl
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
-from kinform.foundation.constants import BALL_PARTS, BALL_SHARE, KEPT_EDGES, KEPT_SPANS, RAYS
+from kinform.foundation.constants import (
+    ABOUT,
+    BALL_PARTS,
+    BALL_SHARE,
+    KEPT_EDGES,
+    KEPT_SPANS,
+    LARGE_MESH,
+    MOST_EXPECTED,
+    RAYS,
+)
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
 from kinform.foundation.meshes.edges import SharedEdges, shared_edges
-from kinform.foundation.meshes.fcl_adapter import fcl_model
+from kinform.foundation.meshes.fcl_adapter import fcl_model, partial_model
 from kinform.foundation.meshes.near import Nearest
 from kinform.foundation.meshes.parity import Ray
 from kinform.foundation.meshes.probes import Region
+from kinform.foundation.meshes.proximity import near_boxes
 from kinform.foundation.meshes.rings import Ring, rings_of
 from kinform.foundation.meshes.surface_table import SurfaceTable
 from kinform.foundation.sorting import distinct
@@ -30,6 +40,8 @@ class MeshIndex:
     def __init__(self, mesh: Mesh):
         self.mesh = mesh
         self._bvh: fcl.BVHModel | None = None
+        self._about: Flags | None = None
+        self._local: fcl.BVHModel | None = None
         self._spans: Array | None = None
         self._edges: SharedEdges | None = None
         self._borders: Ints | None = None
@@ -77,8 +89,43 @@ class MeshIndex:
     def bvh(self) -> fcl.BVHModel:
         """FCL's model of the mesh in the part frame (m)."""
         if self._bvh is None:
+            self._local = None
             self._bvh = fcl_model(self.mesh.vertices, self.mesh.faces)
         return self._bvh
+
+    @property
+    def is_large(self) -> bool:
+        """Whether a model of all of it takes much memory."""
+        return len(self.mesh.faces) > LARGE_MESH
+
+    def expect(self, low: Array, high: Array) -> None:
+        """What follows is asked about facets beside these boxes (n, 3) of the part frame: a model will be of them."""
+        boxes, apart = self.boxes, ABOUT * self.mesh.diagonal
+        about, _ = near_boxes(boxes.low, boxes.high, low, high, apart)
+        if self._about is None or not self._about[about].all():
+            self._about, self._local = about, None
+
+    def model_near(self, low: Array, high: Array) -> tuple[fcl.BVHModel, Ints | None]:
+        """FCL's model of facets, all that boxes (n, 3) of the part frame meet among them, and which facets it is of
+        (None: all).
+
+        Of a large mesh it is of those that were expected, as long as they are enough: half a kilobyte each.
+        """
+        if self._bvh is not None or self._about is None or not self._suffice(self._about, low, high):
+            return self.bvh, None
+        facets = np.flatnonzero(self._about)
+        if self._local is None:
+            self._local = partial_model(self.mesh.vertices, self.mesh.faces[facets])
+        return self._local, facets
+
+    def _suffice(self, some: Flags, low: Array, high: Array) -> bool:
+        """Whether these boxes (n, 3) meet none but some facets (F,), which are not nearly all."""
+        if not 0.0 < np.count_nonzero(some) <= MOST_EXPECTED * len(some):
+            return False
+        boxes, others = self.boxes, np.flatnonzero(~some)
+        meeting = (boxes.low[others] <= high.max(axis=0)) & (boxes.high[others] >= low.min(axis=0))
+        others = others[meeting.all(axis=1)]
+        return not near_boxes(boxes.low[others], boxes.high[others], low, high, 0.0)[0].any()
 
     def region(self, facets: Ints) -> Region:
         """These facets (ascending) as something to cast probes against: few meshes have more than one neighbour that

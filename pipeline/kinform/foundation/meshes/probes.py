@@ -16,8 +16,10 @@ from typing import Protocol
 import fcl
 import numpy as np
 
+from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.constants import HITS_A_PROBE, PROBED_FEW, SLIVER_WIDTH, STEEP_LEAST
+from kinform.foundation.meshes.boxes import facet_boxes
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, fcl_pose, partial_model
 from kinform.foundation.meshes.slivers import beside, meeting
 from kinform.foundation.sorting import distinct
@@ -33,6 +35,15 @@ class Facets(Protocol):
     @property
     def bvh(self) -> fcl.BVHModel:
         """FCL's model of all of it (m)."""
+        ...
+
+    @property
+    def is_large(self) -> bool:
+        """Whether a model of all of it takes much memory."""
+        ...
+
+    def model_near(self, low: Array, high: Array) -> tuple[fcl.BVHModel, Ints | None]:
+        """FCL's model of facets, all that boxes (n, 3) meet among them, and which facets it is of (None: all)."""
         ...
 
     def normals(self, facets: Ints) -> Array:
@@ -111,11 +122,15 @@ class Region:
         most = HITS_A_PROBE * (len(slivers) + 16)
         request = fcl.CollisionRequest(num_max_contacts=most, enable_contact=False)
         result = fcl.CollisionResult()
-        fcl.collide(fcl.CollisionObject(self.bvh), fcl.CollisionObject(probe_model), request, result)
+        if self.facets is None:
+            model, of_model = self.index.model_near(slivers.min(axis=1), slivers.max(axis=1))
+        else:
+            model, of_model = self.bvh, self.facets
+        fcl.collide(fcl.CollisionObject(model), fcl.CollisionObject(probe_model), request, result)
         pairs = np.array([(c.b2, c.b1) for c in result.contacts], dtype=np.int64).reshape(-1, 2)
         facets = np.int64(max(len(mesh.faces), 1))
         probe, facet = np.divmod(distinct(pairs[:, 0] * facets + pairs[:, 1]), facets)
-        return probe, own[facet]
+        return probe, facet if of_model is None else of_model[facet]
 
     def depths(self, points: Array) -> tuple[Array, Ints]:
         """Distance (n,) m of points (n, 3) of the part frame to these facets, and the nearest of them (n,)."""
@@ -134,8 +149,17 @@ class Region:
         if self.empty or other.empty:
             return False
         request = fcl.CollisionRequest(num_max_contacts=1, enable_contact=False)
-        placed = fcl.CollisionObject(other.bvh, fcl_pose(X_SO))
-        return bool(fcl.collide(fcl.CollisionObject(self.bvh), placed, request, fcl.CollisionResult()))
+        placed = fcl.CollisionObject(other._beside(self, inverse(X_SO)), fcl_pose(X_SO))
+        here = fcl.CollisionObject(self._beside(other, X_SO))
+        return bool(fcl.collide(here, placed, request, fcl.CollisionResult()))
+
+    def _beside(self, other: Region, X_SO: Array) -> fcl.BVHModel:
+        """FCL's model of facets, all that those of the other region can meet among them."""
+        if self.facets is not None or not self.index.is_large:
+            return self.bvh
+        mesh = other.index.mesh
+        faces = mesh.faces if other.facets is None else mesh.faces[other.facets]
+        return self.index.model_near(*facet_boxes(mesh.vertices @ X_SO[:3, :3].T + X_SO[:3, 3], faces))[0]
 
 
 @cache
