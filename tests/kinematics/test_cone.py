@@ -139,13 +139,13 @@ def test_the_samples_that_bound_a_plane_are_the_corners_of_its_hull():
     rng = np.random.default_rng(0)
     corners = np.array([[0, 0, 0], [4, 0, 0], [5, 2, 0], [1, 3, 0]], float)
     points = np.vstack([rng.dirichlet(np.ones(4), 200) @ corners, corners, 0.5 * (corners[:2] + corners[1:3])])
-    chosen = extreme_samples(patch(points, Z, "plane"))
+    (chosen,) = extreme_samples([patch(points, Z, "plane")])
     assert sorted(chosen) == [200, 201, 202, 203]
 
 
 @pytest.mark.parametrize("found", [cylinder(arc=(0.0, 2.5)), cylinder(), sphere(cap=-0.3), sphere()])
 def test_what_the_chosen_samples_allow_all_samples_allow(found):
-    chosen = extreme_samples(found)
+    (chosen,) = extreme_samples([found])
     rows = np.hstack([np.cross(found.points / 0.01, found.normals), found.normals])
     from scipy.optimize import nnls
 

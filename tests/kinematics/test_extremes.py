@@ -1,4 +1,6 @@
-"""Samples that bound a patch: corners of hulls and ends of sectors, whatever else is asked before."""
+"""Samples that bound a patch: corners of hulls and ends of sectors, whatever else is asked at once."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,17 +21,23 @@ def test_corners_are_those_that_qhull_finds(seed):
     assert hull(points, Z).tolist() == sorted(found.tolist())
 
 
-def test_samples_of_a_patch_do_not_depend_on_those_asked_before():
+def test_samples_of_a_patch_do_not_depend_on_those_asked_with_it():
     patches = [plane(), ring(), cylinder(), cylinder(arc=(0.0, 2.0)), plane(size=(0.02, 1e-4)), ring(inner=0.001)]
-    first = [extreme_samples(patch).tobytes() for patch in patches]
-    order = np.random.default_rng(3).permutation(len(patches))
-    assert [extreme_samples(patches[k]).tobytes() for k in order] == [first[k] for k in order]
+    patches += [replace(patch, points=patch.points + 0.1 * k) for k, patch in enumerate(patches)]
+    line = np.linspace(0.0, 1.0, len(ring().points))
+    patches += [replace(ring(), points=line[:, None] * [0.3, 0.1, 0.0]), replace(ring(), points=0.0 * ring().points)]
+    alone = [samples.tobytes() for patch in patches for samples in extreme_samples([patch])]
+    for seed in range(10):
+        rng = np.random.default_rng(seed)
+        chosen = rng.permutation(len(patches))[: int(rng.integers(1, len(patches) + 1))].tolist()
+        together = extreme_samples([patches[k] for k in chosen])
+        assert [samples.tobytes() for samples in together] == [alone[k] for k in chosen]
 
 
 def test_rows_of_a_cylinder_are_combinations_of_those_that_are_kept():
     patch = cylinder(arc=(0.0, 2.5))
     rows = np.hstack([np.cross(patch.points, patch.normals) / 0.01, patch.normals])
-    kept = extreme_samples(patch)
+    (kept,) = extreme_samples([patch])
     assert len(kept) < len(rows)
     assert max(nnls(rows[kept].T, row)[1] for row in rows) < 1e-9
 

@@ -23,11 +23,12 @@ from kinform.model.arrays import Array
 
 def components(direction: Array) -> str:
     """ "(0, 0.6, 0.8)"."""
-    return (
-        "("
-        + ", ".join(f"{x:.3g}" for x in np.where(np.abs(direction) < constants.SHOWN_COMPONENT, 0.0, direction))
-        + ")"
-    )
+    return _in_brackets(direction, constants.SHOWN_COMPONENT, "{:.3g}")
+
+
+def _in_brackets(numbers: Array, least: float, form: str) -> str:
+    """Numbers (3,) as text; those below `least` are zero."""
+    return "(" + ", ".join(form.format(0.0 if abs(x) < least else x) for x in numbers.tolist()) + ")"
 
 
 def direction_words(direction: Array) -> str:
@@ -50,7 +51,11 @@ def axis_word(direction: Array, near: float = constants.NAMED_AXIS) -> str:
 
 def group_of(basis: Array, frame: Frame) -> str:
     """Name of the subgroup that the span of `basis` (6, k; scaled in `frame`) is; "" where it is none."""
-    turns, slides = _split(basis)
+    return _group(*_split(basis))
+
+
+def _group(turns: Array, slides: Array) -> str:
+    """Name of the subgroup that these twists that turn and that slide span; "" where it is none."""
     kind = (turns.shape[1], slides.shape[1])
     if kind in _NAMES:
         return _NAMES[kind]
@@ -87,7 +92,7 @@ def motions_in_words(basis: Array, frame: Frame) -> str:
         parts.append("slides every way")
     elif directions.shape[1]:
         parts.append("slides along " + " and ".join(_axis_components(d) for d in directions.T))
-    name = group_of(basis, frame)
+    name = _group(turns, slides)
     return ", ".join(parts or ["does not move"]) + (f" ({name})" if name else "")
 
 
@@ -102,10 +107,10 @@ def _split(basis: Array) -> tuple[Array, Array]:
         count = int(np.count_nonzero(values > constants.EXACT_MOTION))
         mixed = basis @ right.T
     turns, slides = mixed[:, :count].copy(), mixed[:, count:].copy()
-    slides[:3] = 0.0
     if slides.shape[1]:
+        slides[:3] = 0.0
         slides[3:] = np.linalg.qr(slides[3:])[0]
-    turns[3:] -= slides[3:] @ (slides[3:].T @ turns[3:])
+        turns[3:] -= slides[3:] @ (slides[3:].T @ turns[3:])
     return turns, slides
 
 
@@ -157,12 +162,8 @@ def _tidy(directions: Array) -> Array:
 
 
 def _point(place: Array) -> str:
-    size = max(float(np.abs(place).max()), 1e-300)
-    return (
-        "("
-        + ", ".join(f"{1e3 * x:.4g}" for x in np.where(np.abs(place) < constants.SHOWN_COORDINATE * size, 0.0, place))
-        + ") mm"
-    )
+    size = max(*(abs(x) for x in place.tolist()), 1e-300)
+    return _in_brackets(1e3 * place, constants.SHOWN_COORDINATE * 1e3 * size, "{:.4g}") + " mm"
 
 
 def _axis_components(direction: Array) -> str:

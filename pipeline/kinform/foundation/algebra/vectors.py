@@ -83,6 +83,14 @@ def perpendicular(axis: Array) -> tuple[Array, Array]:
     return u, cross(axis, u)
 
 
+def sine(a: Array, b: Array) -> float:
+    """Of the angle between two unit vectors (3,)."""
+    x, y, z = a.tolist()
+    u, v, w = b.tolist()
+    i, j, k = y * w - z * v, z * u - x * w, x * v - y * u
+    return math.sqrt(i * i + j * j + k * k)
+
+
 def foot(point: Array, axis: Array, place: Array) -> Array:
     """The point of the line through `point` along the unit `axis` that is nearest to `place`, (3,) each."""
     return np.asarray(point + axis * float(axis @ (place - point)))
@@ -98,15 +106,20 @@ def canonical(axis: Array) -> Array:
 def canonical_sign(unit: Array) -> float:
     """The sign that makes the largest component of a unit vector (3,) positive; among components within 1e-3 of the
     largest the first of x, y, z decides."""
-    components = unit.tolist()
-    size = [abs(x) for x in components]
-    least = max(size) - 1e-3
-    first = next(x for x, of in zip(components, size, strict=True) if of >= least)
+    x, y, z = unit.tolist()
+    least = max(abs(x), abs(y), abs(z)) - 1e-3
+    first = x if abs(x) >= least else y if abs(y) >= least else z
     return 1.0 if first >= 0.0 else -1.0
 
 
 def widest_gap(vectors: Array, axis: Array) -> float:
     """rad: the widest angle about a unit axis (3,) that none of the vectors (n, 3) points into."""
     u, v = perpendicular(axis)
-    azimuth = np.sort(np.arctan2(vectors @ v, vectors @ u))
-    return float(np.diff(np.append(azimuth, azimuth[:1] + 2.0 * np.pi)).max())
+    return widest_turn(np.arctan2(vectors @ v, vectors @ u))
+
+
+def widest_turn(azimuths: Array) -> float:
+    """rad: the widest angle between neighbours among directions in a plane, (n,) rad from −π to π."""
+    azimuth = np.sort(azimuths)
+    between = azimuth[1:] - azimuth[:-1]
+    return float(max(between.max(initial=0.0), azimuth[0] + 2.0 * np.pi - azimuth[-1]))

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, norm, perpendicular
+from kinform.foundation.algebra.vectors import cross, perpendicular, sine
 from kinform.foundation.words import counted
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
@@ -105,7 +105,7 @@ def meets(patches: Sequence[Patch]) -> bool:
         return False  # nobody knows where facets touch next
     return any(patch.kind in TOUCHING for patch in patches) and all(
         patch.kind in TOUCHING
-        or (patch.kind == "plane" and lines and all(norm(cross(patch.axis, d)) < constants.ACROSS_LINE for d in lines))
+        or (patch.kind == "plane" and lines and all(sine(patch.axis, d) < constants.ACROSS_LINE for d in lines))
         for patch in patches
     )
 
@@ -279,7 +279,7 @@ def _advance(evidence: Evidence, axis: Array, point: Array) -> float:
 
 
 def _about(item: Item, axis: Array) -> bool:
-    return norm(cross(item.patch.axis, axis)) < constants.ALONG_AXIS
+    return sine(item.patch.axis, axis) < constants.ALONG_AXIS
 
 
 def _torn_doubt(evidence: Evidence, twists: Array, preserved: Flags, count: int, tolerances: Tolerances) -> str:

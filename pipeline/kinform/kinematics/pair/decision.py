@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, norm
+from kinform.foundation.algebra.vectors import norm, sine
 from kinform.kinematics import constants
 from kinform.kinematics.pair.certainty import Certainty, certainty, momentary
 from kinform.kinematics.pair.evidence import COAXIAL, GUIDES, Evidence, Item
@@ -50,11 +50,10 @@ def decide(evidence: Evidence, tolerances: Tolerances) -> Decision:
     """The joint between the two bodies of the evidence."""
     candidates = candidate_motions(evidence, tolerances.alignment)
     twists = np.array([m.twist for m in candidates]).reshape(-1, 6).T
-    speeds = evidence.rows @ twists
-    preserved = preserved_motions(evidence, twists, speeds)
+    preserved = preserved_motions(evidence, twists, evidence.rows @ twists)
     everything = np.ones(len(evidence.items), dtype=bool)
     strict, values = freedoms(evidence, twists, preserved, everything, tolerances)
-    chosen = _consensus(evidence, candidates, preserved, speeds, strict)
+    chosen = _consensus(evidence, candidates, preserved, strict)
     if chosen is not None:
         keep, motion = chosen
         basis, loosened = freedoms(evidence, twists, preserved, keep, tolerances)
@@ -96,19 +95,17 @@ def _other(
 
 
 def _consensus(
-    evidence: Evidence, candidates: tuple[Motion, ...], preserved: Flags, speeds: Array, strict: Array
+    evidence: Evidence, candidates: tuple[Motion, ...], preserved: Flags, strict: Array
 ) -> tuple[Flags, Motion] | None:
     """The patches to keep and the motion that they free, or None when all patches agree.
 
     Of the candidates the one that leaves out the smallest share of the area, the first of equals; `preserved` (items,
-    candidates), `speeds` (rows, candidates). Where contact already leaves a freedom (`strict`), only a turn about a
-    curved surface may be added.
+    candidates). Where contact already leaves a freedom (`strict`), only a turn about a curved surface may be added.
     """
     area = evidence.areas
     best: tuple[float, Flags, Motion] | None = None
-    for keep, motion, speed in zip(preserved.T, candidates, speeds.T, strict=True):
-        if keep.all() or not keep.any():
-            continue
+    for n in np.flatnonzero(preserved.any(axis=0) & ~preserved.all(axis=0)):
+        keep, motion = preserved[:, n], candidates[n]
         share = float(area[~keep].sum() / area.sum())
         small = share <= constants.MOST_LEFT_OUT
         stopped = share <= constants.MOST_STOPPED and _turns_on_journal(evidence, motion, keep)
@@ -119,7 +116,7 @@ def _consensus(
             continue
         if _frees_thrust(evidence, motion, keep):
             continue
-        if _excusable(evidence, motion, ~keep, speed, stops_only=not small):
+        if _excusable(evidence, motion, ~keep, stops_only=not small):
             best = share, keep, motion
     return None if best is None else best[1:]
 
@@ -130,7 +127,7 @@ def _frees_thrust(evidence: Evidence, motion: Motion, keep: Flags) -> bool:
         return False
 
     def along(item: Item) -> bool:
-        return norm(cross(item.patch.axis, motion.axis)) < constants.ALONG_AXIS
+        return sine(item.patch.axis, motion.axis) < constants.ALONG_AXIS
 
     shaft = any(item.patch.kind in COAXIAL and along(item) for item in evidence.chosen(keep))
     return shaft and any(item.patch.kind == "plane" and along(item) for item in evidence.chosen(~keep))
@@ -142,7 +139,7 @@ def _turns_on_journal(evidence: Evidence, motion: Motion, keep: Flags) -> bool:
     return motion.turn and motion.curved and any(p.kind in (*COAXIAL, "sphere") and not p.one_sided for p in patches)
 
 
-def _excusable(evidence: Evidence, motion: Motion, out: Flags, speed: Array, *, stops_only: bool) -> bool:
+def _excusable(evidence: Evidence, motion: Motion, out: Flags, *, stops_only: bool) -> bool:
     """May these patches be left out of the decision for this motion? `stops_only`: only end stops may.
 
     A shaft in its bore, a ball in its socket never, nor locators: what opposes the motion both ways, be it
@@ -166,7 +163,7 @@ def _excusable(evidence: Evidence, motion: Motion, out: Flags, speed: Array, *, 
             and -item.patch.gap > constants.PRESS_RATIO * press + constants.DEEP_OVERLAP * evidence.contact
         ):
             continue
-        along = speed[evidence.start[k] : evidence.start[k + 1]]
+        along = evidence.rows[evidence.start[k] : evidence.start[k + 1]] @ motion.twist
         large = constants.OPPOSING_SPEED * float(np.abs(along).max())
         up, down = bool((along > large).any()), bool((along < -large).any())
         if up and down:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -48,6 +49,11 @@ class Item:
     """m: likewise for its line or centre."""
     interferes: bool
 
+    @cached_property
+    def middle(self) -> Array:
+        """(3,) m: mean of the samples."""
+        return np.asarray(self.points.mean(axis=0))
+
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
@@ -73,7 +79,7 @@ class Evidence:
     """m: diagonal of the smaller body; 0: not known."""
     _forms: dict[int, tuple[Array, JointForm]] = field(default_factory=dict, repr=False)
 
-    @property
+    @cached_property
     def areas(self) -> Array:
         """(items,) m²."""
         return np.array([item.area for item in self.items])

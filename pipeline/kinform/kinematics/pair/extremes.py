@@ -6,12 +6,14 @@ So few rows stand for each patch in the constraint matrix, and in the cones of w
 from __future__ import annotations
 
 import functools
+from collections import defaultdict
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import norm, perpendicular
 from kinform.kinematics import constants
-from kinform.model.arrays import Array, Ints
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 
 _TURN = 2.0 * np.pi * np.arange(constants.HULL_DIRECTIONS) / constants.HULL_DIRECTIONS
@@ -19,50 +21,101 @@ _ROUND = np.stack([np.cos(_TURN), np.sin(_TURN)])
 """(2, 16) directions whose ends are corners of a hull."""
 
 
-def extreme_samples(patch: Patch) -> Ints:
-    """Indices of the samples that bound the patch, ascending: n·v ≥ 0 at these implies it at all samples.
+def extreme_samples(patches: Sequence[Patch]) -> list[Ints]:
+    """Of each patch the indices of the samples that bound it, ascending: n·v ≥ 0 at these implies it at all samples.
 
     Exact for planes, lines and for cylinders and cones sampled on a grid. Of other curved patches with many
-    samples the ends of sectors of normals are kept.
+    samples the ends of sectors of normals are kept. Patches of as many samples take little longer than one of them.
     """
-    points = patch.points
-    if patch.kind == "plane":
-        return hull(points, patch.axis)
-    if len(points) <= constants.FEW_SAMPLES or not (np.any(patch.axis) or patch.kind == "sphere"):
-        return np.arange(len(points), dtype=np.int64)
-    if patch.kind == "sphere":
-        return _rim(patch.normals)
-    u, v = perpendicular(patch.axis)
-    angle = np.arctan2(patch.normals @ v, patch.normals @ u)
-    height = points @ patch.axis
+    out: list[Ints | None] = [None] * len(patches)
+    alike: dict[tuple[Callable[[Sequence[Patch]], list[Ints]], int], list[int]] = defaultdict(list)
+    for k, patch in enumerate(patches):
+        count = len(patch.points)
+        if patch.kind == "plane":
+            alike[_corners, count].append(k)
+        elif count <= constants.FEW_SAMPLES or not (patch.kind == "sphere" or any(patch.axis.tolist())):
+            out[k] = np.arange(count, dtype=np.int64)
+        elif patch.kind == "sphere":
+            out[k] = _rim(patch.normals)
+        else:
+            alike[_ends_of_sectors, count].append(k)
+    for (bounds, count), members in alike.items():
+        step = max(1, constants.MOST_STACKED_SAMPLES // max(count, 1))
+        for first in range(0, len(members), step):
+            chosen = members[first : first + step]
+            for k, samples in zip(chosen, bounds([patches[k] for k in chosen]), strict=True):
+                out[k] = samples
+    return [samples for samples in out if samples is not None]
+
+
+def _ends_of_sectors(patches: Sequence[Patch]) -> list[Ints]:
+    """Of curved patches of as many samples, those at the ends of the sectors of normals about their axes."""
+    angle, height = (np.empty((len(patches), len(patches[0].points))) for _ in range(2))
+    for row, along, patch in zip(angle, height, patches, strict=True):
+        u, v = perpendicular(patch.axis)
+        np.arctan2(patch.normals @ v, patch.normals @ u, out=row)
+        np.matmul(patch.points, patch.axis, out=along)
     sector = np.floor(angle / (2.0 * np.pi / constants.NORMAL_SECTORS)).astype(int)
     turn = np.round(angle / constants.SAME_PLACE)
-    level = np.round(height / (constants.SAME_PLACE * max(float(np.ptp(height)), 1e-300)))
+    level = np.round(height / (constants.SAME_PLACE * np.maximum(np.ptp(height, axis=1, keepdims=True), 1e-300)))
     ends = [np.lexsort((p * level, q * turn, sector)) for p in (1.0, -1.0) for q in (1.0, -1.0)]
     ends += [np.lexsort((p * level, sector)) for p in (1.0, -1.0)]
-    ordered = sector[ends[0]]
-    first = np.flatnonzero(np.concatenate([[True], ordered[1:] != ordered[:-1]]))
-    bounds = np.zeros(len(points), dtype=np.bool_)
+    ordered = np.take_along_axis(sector, ends[0], axis=1)
+    first = np.ones(sector.shape, dtype=np.bool_)
+    first[:, 1:] = ordered[:, 1:] != ordered[:, :-1]
+    of_patch, place = np.nonzero(first)
+    bounds = np.zeros(sector.shape, dtype=np.bool_)
     for order in ends:
-        bounds[order[first]] = True
-    return np.flatnonzero(bounds).astype(np.int64)
+        bounds[of_patch, order[of_patch, place]] = True
+    return [np.flatnonzero(bound).astype(np.int64) for bound in bounds]
+
+
+def _corners(patches: Sequence[Patch]) -> list[Ints]:
+    """Of planes of as many samples, those at the corners of their convex hulls."""
+    return _hulls([(patch.points, patch.axis) for patch in patches])
 
 
 def hull(points: Array, axis: Array) -> Ints:
     """Indices, ascending, of the corners of the convex hull of the points (n, 3) seen along the axis."""
-    if len(points) <= 2:
-        return np.arange(len(points), dtype=np.int64)
-    u, v = perpendicular(axis)
-    flat = np.stack([points @ u, points @ v], axis=1)
-    flat = flat - flat.mean(axis=0)
-    size = float(np.abs(flat).max())
+    return _hulls([(points, axis)])[0]
+
+
+def _hulls(views: Sequence[tuple[Array, Array]]) -> list[Ints]:
+    """As `hull`, of several groups of as many points (n, 3), each seen along its axis (3,)."""
+    count = len(views[0][0])
+    if count <= 2:
+        return [np.arange(count, dtype=np.int64) for _ in views]
+    flat = np.empty((len(views), count, 2))
+    for across, (points, axis) in zip(flat, views, strict=True):
+        u, v = perpendicular(axis)
+        across[:, 0], across[:, 1] = points @ u, points @ v
+    flat = flat - flat.mean(axis=1, keepdims=True)
+    size = np.abs(flat).max(axis=(1, 2))
+    wide = _wide(flat, size)
+    inside = _inside(flat)
+    return [_hull(*of_view) for of_view in zip(flat, size.tolist(), wide.tolist(), inside, strict=True)]
+
+
+def _wide(flat: Array, size: Array) -> Flags:
+    """(m,): which of the groups of points (m, n, 2) about their means, as large as `size` (m,), are in no line for
+    certain: twice the least root mean square of their distances from one is more than what a line may be off."""
+    x, y = flat[..., 0], flat[..., 1]
+    xx, yy, xy = (x * x).mean(axis=1), (y * y).mean(axis=1), (x * y).mean(axis=1)
+    least = 0.5 * (xx + yy - np.sqrt((xx - yy) ** 2 + 4.0 * xy**2))
+    return np.asarray(least > (2.0 * constants.STRAIGHT_EDGE * size) ** 2)
+
+
+def _hull(flat: Array, size: float, wide: bool, inside: Flags) -> Ints:
+    """Indices, ascending, of the corners of the hull of points (n, 2) about their mean, as large as `size`; `wide`:
+    in no line for certain; `inside` (n,): of it for certain."""
     if size == 0.0:
         return np.zeros(1, dtype=np.int64)
-    _, _, right = np.linalg.svd(flat, full_matrices=False)
-    if float(np.abs(flat @ right[1]).max()) < constants.STRAIGHT_EDGE * size:
-        along = flat @ right[0]
-        return np.array(sorted((int(along.argmin()), int(along.argmax()))), dtype=np.int64)
-    corners = _around(flat)
+    if not wide:
+        _, _, right = np.linalg.svd(flat, full_matrices=False)
+        if float(np.abs(flat @ right[1]).max()) < constants.STRAIGHT_EDGE * size:
+            along = flat @ right[0]
+            return np.array(sorted((int(along.argmin()), int(along.argmax()))), dtype=np.int64)
+    corners = _around(flat, np.flatnonzero(~inside))
     while len(corners) > 3:
         here = flat[corners]
         before, after = here[_before(len(here))], here[_after(len(here))]
@@ -75,18 +128,20 @@ def hull(points: Array, axis: Array) -> Ints:
     return np.sort(corners)
 
 
-def _around(flat: Array) -> Ints:
-    """Indices of the corners of the convex hull of points (n, 2) that are not all in line, anticlockwise: the points in
-    the order of x, and of each chain those that turn left (A. M. Andrew, Inf. Proc. Letters 9, 1979).
+def _inside(flat: Array) -> Flags:
+    """(m, n): which points of (m, n, 2) lie inside of the polygon of those that are farthest in `HULL_DIRECTIONS`."""
+    ends = (flat @ _ROUND).argmax(axis=1)
+    corners = np.take_along_axis(flat, ends[..., None], axis=1)
+    edge = corners[:, _after(ends.shape[1])] - corners
+    inside = (ends == ends[:, _after(ends.shape[1])])[:, None]
+    for_x, for_y = (flat[..., k, None] - corners[:, None, :, k] for k in (0, 1))
+    return np.asarray((inside | (edge[:, None, :, 0] * for_y - edge[:, None, :, 1] * for_x > 0.0)).all(axis=2))
 
-    Points inside of the polygon of those that lie farthest in `HULL_DIRECTIONS` are left out before they are sorted.
-    """
-    ends = (flat @ _ROUND).argmax(axis=0)
-    ends = ends[ends != ends[_before(len(ends))]]
-    corners = flat[ends]
-    edge, arm = corners[_after(len(ends))] - corners, flat[:, None] - corners
-    inside = (edge[:, 0] * arm[..., 1] - edge[:, 1] * arm[..., 0] > 0.0).all(axis=1)
-    outer = np.flatnonzero(~inside)
+
+def _around(flat: Array, outer: Ints) -> Ints:
+    """Indices of the corners of the convex hull of points (n, 2) that are not all in line, anticlockwise, which are
+    among the `outer`: the points in the order of x, and of each chain those that turn left (A. M. Andrew, Inf. Proc.
+    Letters 9, 1979)."""
     outer = outer[np.lexsort((outer, flat[outer, 1], flat[outer, 0]))]
     places = flat[outer].tolist()
 

@@ -60,7 +60,7 @@ def _screws(evidence: Evidence, number: int, twists: Array, slack: float) -> Fla
     square = np.where(turning, square, 1.0)
     advance = np.einsum("ij,ij->j", angular, linear) / square
     feet = frame.centre[:, None] + np.cross(angular, linear, axis=0) / square
-    axis, middle = item.patch.axis, item.points.mean(axis=0)
+    axis, middle = item.patch.axis, item.middle
     direction = angular / np.sqrt(square)
     tilt = np.linalg.norm(np.cross(axis[:, None], direction, axis=0), axis=0)
     apart = foot(item.patch.point, axis, middle)[:, None] - feet

@@ -6,6 +6,7 @@ Axes that agree within what clearances and fits allow are one axis, fitted to al
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TypeVar
@@ -13,7 +14,7 @@ from typing import TypeVar
 import numpy as np
 
 from kinform.foundation.algebra.screws import rotation, translation
-from kinform.foundation.algebra.vectors import canonical, cross, foot, norm, perpendicular, weighted_mean
+from kinform.foundation.algebra.vectors import canonical, cross, foot, norm, perpendicular, sine, weighted_mean
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.wording import components
@@ -114,12 +115,10 @@ def coaxial_lines(evidence: Evidence, alignment: float) -> list[Line]:
 
 
 def _coaxial(a: Item, b: Item, alignment: float) -> bool:
-    sine = norm(cross(a.patch.axis, b.patch.axis))
-    if sine > np.sin(min(max(_tilt(a, alignment), _tilt(b, alignment)), 0.5 * np.pi)):
+    if sine(a.patch.axis, b.patch.axis) > np.sin(min(max(_tilt(a, alignment), _tilt(b, alignment)), 0.5 * np.pi)):
         return False
-    middle = b.points.mean(axis=0)
-    apart = foot(a.patch.point, a.patch.axis, middle) - foot(b.patch.point, b.patch.axis, middle)
-    reach = norm(middle - a.points.mean(axis=0))
+    apart = foot(a.patch.point, a.patch.axis, b.middle) - foot(b.patch.point, b.patch.axis, b.middle)
+    reach = norm(b.middle - a.middle)
     return norm(apart) <= a.position + b.position + a.angle * reach
 
 
@@ -140,14 +139,14 @@ def _fit_line(items: list[Item], indices: list[int]) -> Line:
     best = items[0]
     axis = canonical(best.patch.axis)
     if len(items) == 1:
-        return Line(axis, foot(best.patch.point, axis, best.points.mean(axis=0)), best.area, tuple(indices))
+        return Line(axis, foot(best.patch.point, axis, best.middle), best.area, tuple(indices))
     u, v = perpendicular(axis)
-    origin = np.average([i.points.mean(axis=0) for i in items], axis=0, weights=[i.area for i in items])
+    origin = np.average([i.middle for i in items], axis=0, weights=[i.area for i in items])
     origin = foot(best.patch.point, axis, origin)
     normal_matrix, right = np.zeros((4, 4)), np.zeros(4)
     for item in items:
         along = item.patch.axis if item.patch.axis @ axis > 0.0 else -item.patch.axis
-        z = float(axis @ (item.points.mean(axis=0) - origin))
+        z = float(axis @ (item.middle - origin))
         crossing = item.patch.point + along * ((z - float(axis @ (item.patch.point - origin))) / float(along @ axis))
         length = float(np.ptp((item.points - origin) @ axis)) + 1e-12
         # what a patch does not know better than its fit and its clearance, it says less loudly
@@ -181,6 +180,8 @@ def _centres(evidence: Evidence) -> list[Array]:
 def _directions(candidates: Iterable[Direction], alignment: float) -> list[Direction]:
     """Directions merged up to sign within `alignment`, by their weights, the heaviest first."""
 
+    near = math.sin(alignment)
+
     def mean(a: Direction, b: Direction) -> Direction:
         total = a[1] + b[1]
         direction = (a[0] * a[1] + (b[0] if b[0] @ a[0] > 0.0 else -b[0]) * b[1]) / total
@@ -188,7 +189,7 @@ def _directions(candidates: Iterable[Direction], alignment: float) -> list[Direc
 
     merged = _merge(
         [(canonical(axis), weight) for axis, weight in sorted(candidates, key=lambda c: -c[1])],
-        lambda a, b: bool(norm(cross(b[0], a[0])) <= np.sin(alignment)),
+        lambda a, b: sine(b[0], a[0]) <= near,
         mean,
     )
     return sorted(merged, key=lambda m: -m[1])[: constants.MOST_DIRECTIONS]
@@ -201,9 +202,10 @@ def _slides(
     directions in a plane, across the axes and across the coordinate axes."""
     planes = [(i.patch.axis, i.area) for i in evidence.items if i.patch.kind == "plane"]
     slides: list[tuple[Array, bool]] = [(line.axis, True) for line in lines]
+    distinct = constants.DISTINCT_SLIDE * math.sin(alignment)
 
     def add(direction: Array, curved: bool) -> None:
-        if all(norm(cross(direction, d)) > constants.DISTINCT_SLIDE * np.sin(alignment) for d, _ in slides):
+        if all(sine(direction, d) > distinct for d, _ in slides):
             slides.append((direction, curved))
 
     for axis, _ in _directions(
@@ -222,7 +224,9 @@ def _slides(
 
 def _refine(direction: Array, planes: list[tuple[Array, float]], alignment: float) -> Array:
     """The direction most perpendicular to all plane normals that are nearly so already."""
-    near = [(n, w) for n, w in planes if abs(float(n @ direction)) <= np.sin(alignment)]
+    if len(planes) < 2:
+        return direction
+    near = [(n, w) for n, w in planes if abs(float(n @ direction)) <= math.sin(alignment)]
     if len(near) < 2:
         return direction
     normals = np.array([n for n, _ in near])
@@ -236,9 +240,8 @@ def _refine(direction: Array, planes: list[tuple[Array, float]], alignment: floa
 
 def _middle(evidence: Evidence, normal: Array, alignment: float) -> Array:
     """Area centroid of the plane patches with this normal."""
-    members = [
-        i for i in evidence.items if i.patch.kind == "plane" and norm(cross(i.patch.axis, normal)) <= np.sin(alignment)
-    ]
+    near = math.sin(alignment)
+    members = [i for i in evidence.items if i.patch.kind == "plane" and sine(i.patch.axis, normal) <= near]
     points = np.concatenate([i.points for i in members])
     return weighted_mean(points, np.concatenate([i.weights for i in members]))
 

@@ -59,7 +59,7 @@ def bare_patches(patches: Sequence[Patch]) -> tuple[Patch, ...]:
 
 def answer_pair(question: Question) -> Answer:
     """The joint that the contact leaves, with the samples that bound each patch."""
-    extremes = tuple(extreme_samples(patch) for patch, _ in question.members)
+    extremes = tuple(extreme_samples([patch for patch, _ in question.members]))
     members = [(k, patch, turned) for k, (patch, turned) in enumerate(question.members)]
     evidence = gather(members, question.tolerances, question.contact, question.size)
     if evidence is None:

@@ -8,13 +8,15 @@ gives; where the answer hangs on them it is ambiguous (`certainty`). How much ar
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from kinform.foundation.algebra.vectors import widest_gap
 from kinform.kinematics import constants
-from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
-from kinform.kinematics.pair.hypotheses import coaxial_lines
-from kinform.model.arrays import Array, Flags
+from kinform.kinematics.pair.evidence import Evidence, Item
+from kinform.kinematics.pair.hypotheses import Line, coaxial_lines
+from kinform.model.arrays import Flags
 
 
 def scraps(evidence: Evidence, alignment: float) -> Flags:
@@ -22,8 +24,7 @@ def scraps(evidence: Evidence, alignment: float) -> Flags:
 
     `alignment` (rad): within this axes are one.
     """
-    areas, items = evidence.areas, evidence.items
-    share = areas / areas.sum()
+    items, share = evidence.items, evidence.areas / evidence.areas.sum()
     dips = [k for k, item in enumerate(items) if _dips(item, evidence.contact) and share[k] < constants.DIP_SHARE]
     slight = np.zeros(len(items), dtype=bool)
     planes = np.array([item.normals[0] if item.patch.kind == "plane" else np.zeros(3) for item in items])
@@ -38,12 +39,11 @@ def scraps(evidence: Evidence, alignment: float) -> Flags:
         slight[k] = (k in dips and not faced) or (item.patch.one_sided and share[k] < constants.SLIVER_SHARE) or alone
     for line in coaxial_lines(evidence, alignment):
         members = list(line.items)
-        arc = sum(_arc(items[k], line.axis) for k in members)
-        together = float(share[members].sum())
+        little = float(share[members].sum()) < constants.SLIVER_SHARE
         if all(items[k].patch.one_sided for k in members):
-            slight[members] = arc < constants.SLIVER_ARC_ONE_SIDED or together < constants.SLIVER_SHARE
+            slight[members] = little or _arc(items, line) < constants.SLIVER_ARC_ONE_SIDED
         else:
-            slight[members] = arc < constants.SLIVER_ARC and together < constants.SLIVER_SHARE
+            slight[members] = little and _arc(items, line) < constants.SLIVER_ARC
     return slight | narrow(evidence)
 
 
@@ -57,8 +57,6 @@ def _dips(item: Item, contact: float) -> bool:
     return item.patch.kind == "plane" and item.interferes and -item.patch.gap > constants.DIP * contact
 
 
-def _arc(item: Item, axis: Array) -> float:
-    """rad: angle about the axis (3,) that the normals of a patch cover."""
-    if item.patch.kind not in COAXIAL:
-        return 0.0
-    return 2.0 * np.pi - widest_gap(item.normals, axis)
+def _arc(items: Sequence[Item], line: Line) -> float:
+    """rad: angle about the line that the normals of its patches cover, all together."""
+    return sum(2.0 * np.pi - widest_gap(items[k].normals, line.axis) for k in line.items)

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, norm, perpendicular, widest_gap
+from kinform.foundation.algebra.vectors import cross, perpendicular, sine, widest_turn
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.pair.freedoms import freedoms
@@ -128,27 +128,33 @@ def _ends_guide(form: JointForm, guides: list[Item], faces: list[Item]) -> bool:
     running = [i for i in guides if i.patch.kind in (*COAXIAL, "extrusion", "plane") and _runs_along(i, axis)]
     if form.type not in ("cylindrical", "prismatic") or not running:
         return False
-    points = np.concatenate([i.points for i in running])
-    ends = np.concatenate([i.points for i in faces])
-    centre = form.point if form.type == "cylindrical" and form.point is not None else points.mean(axis=0)
-    at_end = _across(ends, centre, axis)
-    face_reach = float(np.linalg.norm(at_end, axis=1).max())
-    sections = [
-        (float(np.ptp(section @ axis)), float(np.linalg.norm(_across(section, centre, axis), axis=1).max()))
-        for section in _sections(running)
+    centre = form.point if form.type == "cylindrical" else None
+    if centre is None:
+        centre = np.concatenate([i.points for i in running]).mean(axis=0)
+    across = np.array(perpendicular(axis)).T
+    lengths = [
+        (_extent(section, axis), float(_distances((section - centre) @ across).max())) for section in _sections(running)
     ]
-    if all(length < constants.SLIDES_FROM * 2.0 * half for length, half in sections):
+    if all(length < constants.SLIDES_FROM * 2.0 * half for length, half in lengths):
         return False
-    reach = max(half for _, half in sections)
-    far = (ends - centre)[np.linalg.norm(at_end, axis=1) > constants.ROUND_FROM * face_reach]
-    beside = widest_gap(far, axis) > constants.BESIDE_AXIS
-    return face_reach <= constants.INSIDE_GUIDE * reach or beside
+    ends = (np.concatenate([i.points for i in faces]) - centre) @ across
+    away = _distances(ends)
+    face_reach = float(away.max())
+    if face_reach <= constants.INSIDE_GUIDE * max(half for _, half in lengths):
+        return True
+    far = ends[away > constants.ROUND_FROM * face_reach]
+    return widest_turn(np.arctan2(far[:, 1], far[:, 0])) > constants.BESIDE_AXIS
 
 
-def _across(points: Array, centre: Array, axis: Array) -> Array:
-    """(n, 2): points (n, 3) as seen along the axis, from the centre."""
-    u, v = perpendicular(axis)
-    return np.stack([(points - centre) @ u, (points - centre) @ v], axis=1)
+def _extent(points: Array, axis: Array) -> float:
+    """m: how far the points (n, 3) reach along the axis."""
+    along = points @ axis
+    return float(along.max() - along.min())
+
+
+def _distances(across: Array) -> Array:
+    """(n,) m from the axis, of what is seen along it (n, 2)."""
+    return np.asarray(np.sqrt(across[:, 0] ** 2 + across[:, 1] ** 2))
 
 
 def _sections(running: list[Item]) -> list[Array]:
@@ -171,7 +177,7 @@ def _runs_along(item: Item, axis: Array) -> bool:
     """Does the patch slide on itself along the axis?"""
     if item.patch.kind == "plane":
         return abs(float(item.patch.axis @ axis)) < constants.ALONG_AXIS
-    return norm(cross(item.patch.axis, axis)) < constants.ALONG_AXIS
+    return sine(item.patch.axis, axis) < constants.ALONG_AXIS
 
 
 def _short_flank(

@@ -11,10 +11,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, norm
+from kinform.foundation.algebra.vectors import sine
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Item
 from kinform.kinematics.pair.lower_pairs import JointForm
+from kinform.model.arrays import Array
 
 PLACED = ("revolute", "cylindrical", "screw", "spherical", "universal")
 """Joints whose axis or centre has a place."""
@@ -41,9 +42,8 @@ def disagreement(items: Sequence[Item], form: JointForm) -> float:
     for item in items:
         angle = _angle(item, form)
         if angle is not None and form.axis is not None:
-            sine = norm(cross(item.patch.axis, form.axis))
             cosine = abs(float(item.patch.axis @ form.axis))
-            out.append(max(angle, min(sine, cosine)))
+            out.append(max(angle, min(sine(item.patch.axis, form.axis), cosine)))
     return min(out, default=0.0)
 
 
@@ -79,14 +79,16 @@ def _angle(item: Item, form: JointForm) -> float | None:
     """rad: how well the patch says the joint's direction; None where it says nothing about it."""
     if form.axis is None or not any(item.patch.axis.tolist()):
         return None
-    sine = norm(cross(item.patch.axis, form.axis))
-    along = sine < constants.SAYS_DIRECTION
-    across = abs(float(item.patch.axis @ form.axis)) < constants.SAYS_DIRECTION
+    along = sine(item.patch.axis, form.axis) < constants.SAYS_DIRECTION
     if item.patch.kind in (*COAXIAL, "extrusion") and along:
         return item.patch.uncertainty[0]
-    if item.patch.kind == "plane" and (along or (across and form.type == "prismatic")):
+    if item.patch.kind == "plane" and (along or (form.type == "prismatic" and _across(item, form.axis))):
         return item.patch.uncertainty[0]
     return None
+
+
+def _across(item: Item, axis: Array) -> bool:
+    return abs(float(item.patch.axis @ axis)) < constants.SAYS_DIRECTION
 
 
 def _shift(item: Item, form: JointForm) -> float | None:
@@ -97,5 +99,5 @@ def _shift(item: Item, form: JointForm) -> float | None:
         return item.patch.uncertainty[1]
     if item.patch.kind not in COAXIAL or form.axis is None:
         return None
-    along = norm(cross(item.patch.axis, form.axis)) < constants.SAYS_DIRECTION
+    along = sine(item.patch.axis, form.axis) < constants.SAYS_DIRECTION
     return item.patch.uncertainty[1] if along else None

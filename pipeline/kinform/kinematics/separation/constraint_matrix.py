@@ -30,8 +30,10 @@ def constraint_matrix(
     owner = {index: joint for joint in joints for index in joint.patches}
     used = [k for k, p in enumerate(patches) if column[p.parts[0]] != column[p.parts[1]] and len(p.points)]
     world = Frame.of(np.concatenate([patches[k].points for k in used])) if used else Frame(np.zeros(3), 1.0)
-    looked_for = extremes or {}
-    samples = [looked_for[k] if k in looked_for else extreme_samples(patches[k]) for k in used]
+    looked_for = dict(extremes or {})
+    new = [k for k in used if k not in looked_for]
+    looked_for |= zip(new, extreme_samples([patches[k] for k in new]), strict=True)
+    samples = [looked_for[k] for k in used]
     bounds = np.cumsum([0, *map(len, samples)])
     none = np.zeros((0, 3))
     points = [patches[k].points[chosen] for k, chosen in zip(used, samples, strict=True)]

@@ -146,7 +146,7 @@ class ContactRows:
         if rows.start < rows.stop:
             return self._points[rows], sign * self._normals[rows], sign * self._moments[rows]
         patch = self._patches[k]
-        samples = extreme_samples(patch)
+        (samples,) = extreme_samples([patch])
         points, normals = patch.points[samples], sign * patch.normals[samples]
         return points, normals, cross(points - self._matrix.centre, normals)
 
