@@ -11,14 +11,19 @@ from typing import Any, TypeVar
 
 Result = TypeVar("Result")
 
-Answers = Callable[[str, Sequence[Any], Callable[[], Any]], Any]
-"""Somebody who knows what a step, by its name, gives for all that it is given, or has it computed."""
+Question = TypeVar("Question")
+
+Answers = Callable[[str, Sequence[Any], Callable[[list[Any]], Sequence[Any]]], list[Any]]
+"""Somebody who knows what a step, by its name, gives for each of several questions, or has those computed, all at once,
+of which it is not known."""
 
 
-def ask(answers: Answers | None, step: str, question: Sequence[Any], compute: Callable[[], Result]) -> Result:
-    """What `compute` gives, which depends on nothing but the `question`: None, numbers, texts, arrays, and tuples and
-    dataclasses of such."""
-    if answers is None:
-        return compute()
-    result: Result = answers(step, question, compute)
-    return result
+def ask(
+    answers: Answers | None,
+    step: str,
+    questions: Sequence[Question],
+    compute: Callable[[Sequence[Question]], Sequence[Result]],
+) -> Sequence[Result]:
+    """What `compute` gives for the questions, which depends for each on nothing but itself: None, numbers, texts,
+    arrays, and tuples and dataclasses of such."""
+    return compute(questions) if answers is None else answers(step, questions, compute)

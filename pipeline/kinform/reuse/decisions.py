@@ -8,6 +8,7 @@ a later run will find.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Any
 
 from kinform.kinematics.pair.question import Answer
@@ -30,17 +31,17 @@ class Decisions:
         self.asked: dict[str, tuple[str, str]] = {}
         """Packed answers with their seals, by the hash of the question: of those that were asked for."""
 
-    def __call__(self, step: str, given: Sequence[Any], compute: Callable[[], Any]) -> Any:
-        """What the step gives for what it is given."""
-        key = digest(step, self._code, *given)
-        kept = self._kept.get(key)
-        if kept is not None and kept[1] == seal(key, kept[0]):
-            try:
-                answer = unpack(kept[0], CLASSES)
-                self.asked[key] = kept
-                return answer
-            except (ValueError, TypeError, LookupError):  # nothing that this code packed
-                pass
-        text = pack(compute())
-        self.asked[key] = text, seal(key, text)
-        return unpack(text, CLASSES)
+    def __call__(self, step: str, questions: Sequence[Any], compute: Callable[[list[Any]], Sequence[Any]]) -> list[Any]:
+        """What the step gives for each of the questions."""
+        keys = [digest(step, self._code, question) for question in questions]
+        answers: dict[str, Any] = {}
+        for key in dict.fromkeys(keys):
+            kept = self._kept.get(key)
+            if kept is not None and kept[1] == seal(key, kept[0]):
+                with suppress(ValueError, TypeError, LookupError):  # nothing that this code packed
+                    answers[key], self.asked[key] = unpack(kept[0], CLASSES), kept
+        new = {key: question for key, question in zip(keys, questions, strict=True) if key not in answers}
+        for key, answer in zip(new, compute(list(new.values())) if new else (), strict=True):
+            text = pack(answer)
+            answers[key], self.asked[key] = unpack(text, CLASSES), (text, seal(key, text))
+        return [answers[key] for key in keys]

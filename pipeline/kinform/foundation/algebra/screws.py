@@ -7,6 +7,7 @@ constraint rows compare rotations with translations at the size of the contact.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,10 +64,19 @@ def scaled(twists: Array, frame: Frame) -> Array:
 
 def span(vectors: Array, tolerance: float = 1e-6) -> Array:
     """Orthonormal basis (n, r) of the span of the columns of `vectors` (n, k)."""
-    if vectors.shape[1] == 0:
-        return np.zeros((len(vectors), 0))
-    left, values, _ = np.linalg.svd(vectors, full_matrices=False)
-    return left[:, values > tolerance * max(values[0], 1e-300)]
+    return spans([vectors], tolerance)[0]
+
+
+def spans(spaces: Sequence[Array], tolerance: float = 1e-6) -> list[Array]:
+    """As `span`, of several sets of vectors (n, k), whose numbers k may differ."""
+    out = [np.zeros((len(vectors), 0)) for vectors in spaces]
+    for count in {vectors.shape[1] for vectors in spaces} - {0}:
+        members = [k for k, vectors in enumerate(spaces) if vectors.shape[1] == count]
+        left, values, _ = np.linalg.svd(np.array([spaces[k] for k in members]), full_matrices=False)
+        kept = values > tolerance * np.maximum(values[:, :1], 1e-300)
+        for k, vectors, of in zip(members, left, kept, strict=True):
+            out[k] = vectors[:, of]
+    return out
 
 
 def bracket(a: Array, b: Array) -> Array:

@@ -13,7 +13,7 @@ from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.bodies.stated_joints import Pair, stated_roots
 from kinform.kinematics.pair.evidence import Evidence, Member, gather
-from kinform.kinematics.pair.question import Answer, Question, answer_pair, joint_between
+from kinform.kinematics.pair.question import Answer, Question, answer_each, joint_between
 from kinform.model.arrays import Ints
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
@@ -38,18 +38,26 @@ class Pairs:
         self.extremes: dict[int, Ints] = {}
         """Samples that bound the patches that were looked at."""
 
-    def decide(self, members: Sequence[Member], bodies: Sequence[Body]) -> Answer:
-        """What the patches between two bodies say."""
+    def decide(self, pairs: Sequence[tuple[Sequence[Member], Sequence[Body]]]) -> list[Answer]:
+        """What the patches between two bodies say, of several pairs of bodies."""
+        questions = [self._question(members, bodies) for members, bodies in pairs]
+        answers = ask(self._answers, "pair", questions, answer_each)
+        for (members, _), answer in zip(pairs, answers, strict=True):
+            self.extremes |= {index: samples for (index, _, _), samples in zip(members, answer.extremes, strict=True)}
+        return [self._without_lost(answer, members) for answer, (members, _) in zip(answers, pairs, strict=True)]
+
+    def _question(self, members: Sequence[Member], bodies: Sequence[Body]) -> Question:
         tolerances = self.assembly.tolerances
         contact, size = _scales(members, bodies, tolerances, self._tolerance, self._extents)
-        question = Question(tuple((patch, turned) for _, patch, turned in members), tolerances, contact, size)
-        answer = ask(self._answers, "pair", (question,), lambda: answer_pair(question))
-        self.extremes |= {index: samples for (index, _, _), samples in zip(members, answer.extremes, strict=True)}
-        lost = sorted({part for _, patch, _ in members for part in patch.parts} & self.assembly.lost)
-        if lost and answer.joint is not None:
-            reason = f"the {'file' if len(lost) == 1 else 'files'} of {quoted(lost)} lost the shape: too few digits"
-            answer = replace(answer, joint=replace(answer.joint, status="ambiguous", reason=reason))
-        return answer
+        return Question(tuple((patch, turned) for _, patch, turned in members), tolerances, contact, size)
+
+    def _without_lost(self, answer: Answer, members: Sequence[Member]) -> Answer:
+        """The answer, which is not certain where files lost the shapes of parts."""
+        lost = {part for _, patch, _ in members for part in patch.parts} & self.assembly.lost
+        if not lost or answer.joint is None:
+            return answer
+        reason = f"the {'file' if len(lost) == 1 else 'files'} of {quoted(sorted(lost))} lost the shape: too few digits"
+        return replace(answer, joint=replace(answer.joint, status="ambiguous", reason=reason))
 
 
 def decide_all(pairs: Pairs, merger: Merger, *, fusing: bool = True) -> dict[Pair, tuple[Answer, Joint]]:
@@ -67,14 +75,14 @@ def decide_all(pairs: Pairs, merger: Merger, *, fusing: bool = True) -> dict[Pai
             a, b = of_part[patch.parts[0]], of_part[patch.parts[1]]
             if a != b and not nothing(*patch.parts):
                 touching[(a, b) if a < b else (b, a)].append((index, patch, a > b))
+        keys = {pair: tuple(-1 - i if turned else i for i, _, turned in touching[pair]) for pair in sorted(touching)}
+        new = {key: pair for pair, key in keys.items() if key not in known_answers}
+        decided = pairs.decide([(touching[pair], [of_name[n] for n in pair]) for pair in new.values()])
+        known_answers |= zip(new, decided, strict=True)
         out: dict[Pair, tuple[Answer, Joint]] = {}
         fused = False
-        for pair in sorted(touching):
-            members = touching[pair]
-            key = tuple(-1 - i if turned else i for i, _, turned in members)
-            if key not in known_answers:
-                known_answers[key] = pairs.decide(members, [of_name[n] for n in pair])
-            answer = known_answers[key]
+        for pair, key in keys.items():
+            members, answer = touching[pair], known_answers[key]
             if answer.joint is None:
                 continue
             places = [index for index, _, _ in members]

@@ -19,6 +19,7 @@ from kinform.foundation.words import counted
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.pair.freedoms import freedoms, preserved_motions
+from kinform.kinematics.pair.in_step import Steps
 from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.kinematics.pair.scraps import narrow, scraps
 from kinform.kinematics.pair.stops import ROLES, OtherReading, faces_in_words, freed_motions, one_sense, stop_reading
@@ -44,7 +45,7 @@ class Certainty:
 
 def certainty(
     evidence: Evidence, twists: Array, preserved: Flags, basis: Array, values: Array, tolerances: Tolerances
-) -> Certainty:
+) -> Steps[Certainty]:
     """How sure the freedoms `basis` (6, k) are, with singular values (6,), found among `twists` (6, n) of which
     `preserved` (items, n) says what each patch preserves."""
     count = basis.shape[1]
@@ -63,21 +64,21 @@ def certainty(
         )
     form = evidence.form(basis)
     touching = momentary(evidence, basis) or (form.type == "general" and meets([item.patch for item in evidence.items]))
-    doubt = "" if touching else _loose_doubt(evidence, twists, count, tolerances) or _stray_doubt(evidence)
-    doubt = doubt or _near_axes_doubt(evidence, twists, count, tolerances) or _thread_doubt(evidence, basis)
-    doubt = doubt or _torn_doubt(evidence, twists, preserved, count, tolerances)
+    doubt = ""
+    if not touching:
+        doubt = (yield from _loose_doubt(evidence, twists, count, tolerances)) or _stray_doubt(evidence)
+    doubt = doubt or (yield from _near_axes_doubt(evidence, twists, count, tolerances))
+    doubt = doubt or _thread_doubt(evidence, basis)
+    doubt = doubt or (yield from _torn_doubt(evidence, twists, preserved, count, tolerances))
     doubt = doubt or uncertainty_doubt(evidence.items, form, evidence.frame.length)
     if doubt:
         return Certainty("ambiguous", doubt)
     prism = _prism_reading(evidence, basis)
     if prism is not None:
         return Certainty("ambiguous", _prism_words(evidence, form, prism), prism)
-    other = (
-        _teeth_reading(evidence, twists, preserved, basis, tolerances)
-        if touching
-        else _scrap_reading(evidence, twists, preserved, basis, tolerances)
-    )
-    other = other or stop_reading(evidence, twists, preserved, basis, tolerances)
+    reading = _teeth_reading if touching else _scrap_reading
+    other = yield from reading(evidence, twists, preserved, basis, tolerances)
+    other = other or (yield from stop_reading(evidence, twists, preserved, basis, tolerances))
     if other is not None:
         faces = faces_in_words(evidence, other.out)
         words = f"{form.type} if {faces} holds; {other.form.type} if it is {ROLES[other.role]}"
@@ -135,13 +136,14 @@ def momentary(evidence: Evidence, basis: Array) -> bool:
     return False
 
 
-def _count(evidence: Evidence, twists: Array, keep: Flags, tolerances: Tolerances) -> int:
+def _count(evidence: Evidence, twists: Array, keep: Flags, tolerances: Tolerances) -> Steps[int]:
     """How many freedoms the kept patches leave."""
-    preserved = preserved_motions(evidence, twists, evidence.rows @ twists)
-    return int(freedoms(evidence, twists, preserved, keep, tolerances)[0].shape[1])
+    preserved = preserved_motions(evidence, twists)
+    basis, _ = yield from freedoms(evidence, twists, preserved, keep, tolerances)
+    return int(basis.shape[1])
 
 
-def _loose_doubt(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> str:
+def _loose_doubt(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> Steps[str]:
     """What the patches of known surfaces do not hold, the others do not hold for sure; bodies become one
     only by surfaces that are known on both sides."""
     firm = np.array([item.patch.kind not in HIGHER for item in evidence.items])
@@ -149,9 +151,10 @@ def _loose_doubt(evidence: Evidence, twists: Array, count: int, tolerances: Tole
         firm &= [not item.patch.one_sided for item in evidence.items]
     vague = [_vagueness(item.patch, fixed=count == 0) for item in evidence.items]
     clear = np.array(vague) <= constants.VAGUE_DIRECTION
-    if (firm & clear).all() or ((firm & clear).any() and _count(evidence, twists, firm & clear, tolerances) <= count):
+    sure = firm & clear
+    if sure.all() or (sure.any() and (yield from _count(evidence, twists, sure, tolerances)) <= count):
         return ""
-    if firm.all() or (firm.any() and _count(evidence, twists, firm, tolerances) <= count):
+    if firm.all() or (firm.any() and (yield from _count(evidence, twists, firm, tolerances)) <= count):
         least = min(v for v, known, other in zip(vague, firm, clear, strict=True) if known and not other)
         return (
             f"{count} of 6 freedoms are left only because of surfaces whose direction is known no better than to "
@@ -163,7 +166,7 @@ def _loose_doubt(evidence: Evidence, twists: Array, count: int, tolerances: Tole
 
 def _scrap_reading(
     evidence: Evidence, twists: Array, preserved: Flags, basis: Array, tolerances: Tolerances
-) -> OtherReading | None:
+) -> Steps[OtherReading | None]:
     """What the patches leave free without the scraps among them, where that is more than `basis` (6, k)."""
     slight = scraps(evidence, tolerances.alignment)
     if not slight.any():
@@ -173,7 +176,7 @@ def _scrap_reading(
     out = tuple(int(k) for k in np.flatnonzero(slight))
     if slight.all():
         return OtherReading(JointForm("general"), np.eye(6), out, role)
-    firm, _ = freedoms(evidence, twists, preserved, ~slight, tolerances)
+    firm, _ = yield from freedoms(evidence, twists, preserved, ~slight, tolerances)
     freed = freed_motions(basis, firm)
     if freed.shape[1] == 0:
         return None
@@ -190,7 +193,7 @@ def _scrap_reading(
 
 def _teeth_reading(
     evidence: Evidence, twists: Array, preserved: Flags, basis: Array, tolerances: Tolerances
-) -> OtherReading | None:
+) -> Steps[OtherReading | None]:
     """What faces leave free without the points and lines of contact beside them, where those hold all but one of it.
 
     Teeth and cams drive bodies that something else bears. Where the bodies bear on each other by faces, as planes do,
@@ -199,7 +202,7 @@ def _teeth_reading(
     flanks = np.array([item.patch.kind in TOUCHING for item in evidence.items])
     if basis.shape[1] > 1 or flanks.all() or not flanks.any():
         return None
-    firm, _ = freedoms(evidence, twists, preserved, ~flanks, tolerances)
+    firm, _ = yield from freedoms(evidence, twists, preserved, ~flanks, tolerances)
     if firm.shape[1] <= basis.shape[1]:
         return None
     out = tuple(int(k) for k in np.flatnonzero(flanks))
@@ -211,18 +214,17 @@ def _vagueness(patch: Patch, *, fixed: bool) -> float:
     return max(patch.uncertainty[0], patch.mismatch[0] if fixed else 0.0)
 
 
-def _near_axes_doubt(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> str:
+def _near_axes_doubt(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> Steps[str]:
     """Are bodies fixed only by axes or centres that miss each other by a little?"""
     if count:
         return ""
-    curved = [item.patch.kind in (*COAXIAL, "sphere") and not item.patch.one_sided for item in evidence.items]
-    wide = np.repeat(curved, np.diff(evidence.start))
+    wide = np.array([item.patch.kind in (*COAXIAL, "sphere") and not item.patch.one_sided for item in evidence.items])
     widened = replace(
         evidence,
         angle=np.where(wide, np.maximum(evidence.angle, constants.TILTED_AXES * tolerances.alignment), evidence.angle),
         position=evidence.position + np.where(wide, constants.MISSED_AXES * evidence.contact, 0.0),
     )
-    left = _count(widened, twists, np.ones(len(curved), dtype=bool), tolerances)
+    left = yield from _count(widened, twists, np.ones(len(wide), dtype=bool), tolerances)
     if left == 0:
         return ""
     return f"axes that miss each other by little hold the bodies: as one axis they would leave {left} of 6 freedoms"
@@ -282,12 +284,14 @@ def _about(item: Item, axis: Array) -> bool:
     return sine(item.patch.axis, axis) < constants.ALONG_AXIS
 
 
-def _torn_doubt(evidence: Evidence, twists: Array, preserved: Flags, count: int, tolerances: Tolerances) -> str:
+def _torn_doubt(evidence: Evidence, twists: Array, preserved: Flags, count: int, tolerances: Tolerances) -> Steps[str]:
     """Do flats that may be those of a coarse cylinder hold more than the rest does?"""
     flats = np.array([item.patch.kind == "plane" and item.patch.sides > 0 for item in evidence.items])
     if not flats.any():
         return ""
-    left = 6 if flats.all() else freedoms(evidence, twists, preserved, ~flats, tolerances)[0].shape[1]
+    if not flats.all():
+        basis, _ = yield from freedoms(evidence, twists, preserved, ~flats, tolerances)
+    left = 6 if flats.all() else basis.shape[1]
     if left <= count:
         return ""
     sides = max(item.patch.sides for item in evidence.chosen(flats))

@@ -7,6 +7,7 @@ when they are a small part of the contact; the answer is then `blocked`. The roo
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +18,7 @@ from kinform.kinematics.pair.certainty import Certainty, certainty, momentary
 from kinform.kinematics.pair.evidence import COAXIAL, GUIDES, Evidence, Item
 from kinform.kinematics.pair.freedoms import freedoms, preserved_motions
 from kinform.kinematics.pair.hypotheses import Motion, candidate_motions
+from kinform.kinematics.pair.in_step import Steps, in_step
 from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.kinematics.pair.uncertainty import uncertainty_doubt
 from kinform.model.arrays import Array, Flags
@@ -48,17 +50,26 @@ class Decision:
 
 def decide(evidence: Evidence, tolerances: Tolerances) -> Decision:
     """The joint between the two bodies of the evidence."""
+    return decide_each([(evidence, tolerances)])[0]
+
+
+def decide_each(pairs: Sequence[tuple[Evidence, Tolerances]]) -> list[Decision]:
+    """The joints of several pairs of bodies, each by the evidence of its own contacts alone."""
+    return in_step([_decide(evidence, tolerances) for evidence, tolerances in pairs])
+
+
+def _decide(evidence: Evidence, tolerances: Tolerances) -> Steps[Decision]:
     candidates = candidate_motions(evidence, tolerances.alignment)
     twists = np.array([m.twist for m in candidates]).reshape(-1, 6).T
-    preserved = preserved_motions(evidence, twists, evidence.rows @ twists)
+    preserved = preserved_motions(evidence, twists)
     everything = np.ones(len(evidence.items), dtype=bool)
-    strict, values = freedoms(evidence, twists, preserved, everything, tolerances)
+    strict, values = yield from freedoms(evidence, twists, preserved, everything, tolerances)
     chosen = _consensus(evidence, candidates, preserved, strict)
     if chosen is not None:
         keep, motion = chosen
-        basis, loosened = freedoms(evidence, twists, preserved, keep, tolerances)
+        basis, loosened = yield from freedoms(evidence, twists, preserved, keep, tolerances)
     if chosen is None or basis.shape[1] <= strict.shape[1]:
-        sure = certainty(evidence, twists, preserved, strict, values, tolerances)
+        sure = yield from certainty(evidence, twists, preserved, strict, values, tolerances)
         kept = tuple(range(len(evidence.items)))
         form = JointForm("general") if momentary(evidence, strict) else evidence.form(strict)
         other = None if sure.other is None else _other(evidence, sure, candidates, preserved, values)

@@ -10,10 +10,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import accumulate
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import Frame, rows
+from kinform.foundation.algebra.screws import Frame
+from kinform.foundation.algebra.vectors import cross
 from kinform.kinematics.constants import GAP_BANDS, LOOSE_ANGLE, SIGMAS, STRAY_SHARE, TOUCHING_GAP
 from kinform.kinematics.pair.lower_pairs import JointForm, name_space
 from kinform.model.arrays import Array, Flags, Ints
@@ -67,12 +69,12 @@ class Evidence:
     """(n,) weight of each row's square; sums to 1."""
     start: Ints
     """(items + 1,) first row of each patch."""
-    angle: Array
-    """(n,) rad, of the patch."""
-    position: Array
-    """(n,) m, of the patch."""
     arms: Array
     """(n, 3) samples from the centre, over the length."""
+    angle: Array
+    """(items,) rad, of each patch."""
+    position: Array
+    """(items,) m, of each patch."""
     contact: float
     """m: the contact tolerance of the pair."""
     size: float = 0.0
@@ -113,19 +115,20 @@ def gather(patches: Sequence[Member], tolerances: Tolerances, contact: float, si
         return None
     points = np.concatenate([item.points for item in items])
     frame = Frame.of(points)
-    counts = [len(item.points) for item in items]
+    arms = (points - frame.centre) / frame.length
+    normals = np.concatenate([item.normals for item in items])
     patch_weight = np.sqrt([item.area for item in items])
     patch_weight /= patch_weight.sum()
-    share = np.concatenate([w * item.weights / item.weights.sum() for w, item in zip(patch_weight, items, strict=True)])
+    share = [w * item.weights / item.area for w, item in zip(patch_weight.tolist(), items, strict=True)]
     return Evidence(
         items=tuple(items),
         frame=frame,
-        rows=rows(points, np.concatenate([item.normals for item in items]), frame),
-        share=share,
-        start=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
-        angle=np.repeat([item.angle for item in items], counts),
-        position=np.repeat([item.position for item in items], counts),
-        arms=(points - frame.centre) / frame.length,
+        rows=np.concatenate([cross(arms, normals), normals], axis=1),
+        share=np.concatenate(share),
+        start=np.array([0, *accumulate(len(item.points) for item in items)], dtype=np.int64),
+        arms=arms,
+        angle=np.array([item.angle for item in items]),
+        position=np.array([item.position for item in items]),
         contact=contact,
         size=size,
     )
@@ -139,11 +142,13 @@ def _stray(item: Item, total: float, contact: float) -> bool:
 
 def _item(index: int, patch: Patch, turned: bool, tolerances: Tolerances, contact: float) -> Item:
     """A patch with its weights, and with how far off it may be: by its fit, and by the clearance of what runs in it."""
-    band = np.empty(len(patch.points))
     relative = np.abs(patch.gaps) / max(patch.tolerance, contact)
-    for limit, weight in reversed(GAP_BANDS):
-        band[relative <= limit] = weight
-    weights = np.maximum(patch.weights, 1e-30) * band
+    weights = np.maximum(patch.weights, 1e-30)
+    if relative.max() > TOUCHING_GAP:
+        band = np.empty(len(patch.points))
+        for limit, weight in reversed(GAP_BANDS):
+            band[relative <= limit] = weight
+        weights *= band
     coaxial = patch.kind in (*COAXIAL, "sphere")
     clearance = max(patch.gap, 0.0) if coaxial else 0.0
     # facets of no known surface have no axis of their own: how uneven the gap is says how far off it may be

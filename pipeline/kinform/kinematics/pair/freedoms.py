@@ -9,27 +9,28 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import span
 from kinform.foundation.algebra.vectors import cross, foot, norm
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import Evidence
+from kinform.kinematics.pair.in_step import Remainder, Remains, Steps
 from kinform.kinematics.pair.lower_pairs import nearest_pair
 from kinform.model.arrays import Array, Flags
 from kinform.model.tolerances import Tolerances
 
 
-def preserved_motions(evidence: Evidence, twists: Array, speeds: Array, slack: float = 1.0) -> Flags:
+def preserved_motions(evidence: Evidence, twists: Array, slack: float = 1.0) -> Flags:
     """(items, motions): does the patch slide on itself, within `slack` times its tolerances?
 
-    `twists` (6, motions), scaled in the evidence's frame; `speeds` (n, motions) of the evidence's rows. Compared are
-    weighted sums of squares over the samples of a patch: of its speeds along the normals, and of those that a normal
-    off by `angle` and a surface off by `position` would give at the sample's own velocity.
+    `twists` (6, motions), scaled in the evidence's frame. Compared are weighted sums of squares over the samples of a
+    patch: of its speeds along the normals, and of those that a normal off by `angle` and a surface off by `position`
+    would give at the sample's own velocity.
     """
-    length = evidence.frame.length
+    counts = np.diff(evidence.start)
     velocity = twists[3:].T[None] + cross(twists[:3].T[None], evidence.arms[:, None])
     speed = np.linalg.norm(velocity, axis=2)
     turning = np.linalg.norm(twists[:3], axis=0)
-    allowed = evidence.angle[:, None] * speed + evidence.position[:, None] / length * turning
+    allowed = np.repeat(evidence.angle, counts)[:, None] * speed
+    allowed += np.repeat(evidence.position / evidence.frame.length, counts)[:, None] * turning
     for k, item in enumerate(evidence.items):
         if item.patch.kind == "cone":
             # the slope of a cone is a fact, not a misalignment: slides along it have no slack
@@ -40,7 +41,7 @@ def preserved_motions(evidence: Evidence, twists: Array, speeds: Array, slack: f
             ]
     weight = evidence.share[:, None]
     first = evidence.start[:-1]
-    missed = np.add.reduceat(weight * speeds**2, first, axis=0)
+    missed = np.add.reduceat(weight * (evidence.rows @ twists) ** 2, first, axis=0)
     limit = np.add.reduceat(weight * allowed**2, first, axis=0)
     preserved = np.asarray(missed <= slack**2 * limit + 1e-24)
     for k, item in enumerate(evidence.items):
@@ -53,7 +54,6 @@ def _screws(evidence: Evidence, number: int, twists: Array, slack: float) -> Fla
     """(motions,): is it the screw motion of this thread? Its slope is a fact, like that of a cone: however small,
     no tolerance makes a turn or a slide of it. Only the axis may be off."""
     item, frame = evidence.items[number], evidence.frame
-    row = int(evidence.start[number])
     angular, linear = twists[:3] / frame.length, twists[3:]
     square = np.einsum("ij,ij->j", angular, angular)
     turning = square > (constants.THREAD_TURNING / frame.length) ** 2
@@ -65,55 +65,53 @@ def _screws(evidence: Evidence, number: int, twists: Array, slack: float) -> Fla
     tilt = np.linalg.norm(np.cross(axis[:, None], direction, axis=0), axis=0)
     apart = foot(item.patch.point, axis, middle)[:, None] - feet
     apart = np.linalg.norm(apart - direction * np.einsum("ij,ij->j", direction, apart), axis=0)
-    angle, reach = float(evidence.angle[row]), float(np.linalg.norm(item.points - middle, axis=1).max())
+    angle, reach = float(evidence.angle[number]), float(np.linalg.norm(item.points - middle, axis=1).max())
     wanted = item.patch.pitch / (2.0 * np.pi)
     return np.asarray(
         turning
         & (tilt <= slack * angle)
-        & (apart <= slack * (float(evidence.position[row]) + angle * reach))
+        & (apart <= slack * (float(evidence.position[number]) + angle * reach))
         & (np.abs(advance - wanted) <= slack * constants.SAME_PITCH * abs(wanted))
     )
 
 
 def freedoms(
     evidence: Evidence, twists: Array, preserved: Flags, keep: Flags, tolerances: Tolerances
-) -> tuple[Array, Array]:
+) -> Steps[Remains]:
     """Basis (6, k) of what the kept patches leave free, and the singular values (6,) that say so.
 
     `preserved` (items, motions) is what `preserved_motions` says of the candidate `twists` (6, motions); `keep`
     (items,) which patches count.
-    A motion that differs from those already found by less than the patches can tell adds nothing.
     """
+    rows, share = evidence.rows, evidence.share
+    if not keep.all():
+        chosen = np.repeat(keep, np.diff(evidence.start))
+        rows, share, preserved = rows[chosen], share[chosen], preserved[keep]
+    known = _independent(evidence, twists[:, preserved.all(axis=0)], keep)
+    basis, values = yield Remainder(rows, share, known, tolerances.free)
+    if evidence.form(basis).type == "general":
+        rounded = nearest_pair(basis, evidence.frame)
+        if rounded is not None and _all_preserve(evidence, rounded, keep):
+            return (yield Remainder(rows, share, rounded, tolerances.free))
+    return basis, values
+
+
+def _independent(evidence: Evidence, twists: Array, keep: Flags) -> Array:
+    """Orthonormal basis (6, k) of twists (6, n) that the kept patches preserve. One that differs from those before it
+    by less than the patches can tell adds nothing."""
     basis = np.zeros((6, 0))
-    for twist in twists[:, preserved[keep].all(axis=0)].T:
-        rest = twist - basis @ (basis.T @ twist)
+    for twist in twists.T:
+        rest = twist - basis @ (basis.T @ twist) if basis.size else twist
         size = norm(rest)
         unit = rest / max(size, 1e-300)
         if size > constants.CLEARLY_NEW or (
             size > constants.NEW_FREEDOM and _all_preserve(evidence, unit, keep, constants.DIFFERENCE_SLACK)
         ):
             basis = np.column_stack([basis, unit])
-    chosen = np.repeat(keep, np.diff(evidence.start))
-    rows = evidence.rows[chosen] * np.sqrt(evidence.share[chosen] / evidence.share[chosen].sum())[:, None]
-    basis, values = _complete(rows, basis, tolerances)
-    if evidence.form(basis).type == "general":
-        rounded = nearest_pair(basis, evidence.frame)
-        if rounded is not None and _all_preserve(evidence, rounded, keep):
-            return _complete(rows, rounded, tolerances)
-    return basis, values
-
-
-def _complete(rows: Array, basis: Array, tolerances: Tolerances) -> tuple[Array, Array]:
-    """The basis with whatever else the rows leave free, and the singular values (6,) ascending."""
-    rows = rows - (rows @ basis) @ basis.T
-    triangle = np.linalg.qr(rows, mode="r") if len(rows) >= 6 else rows
-    _, values, right = np.linalg.svd(np.vstack([triangle, np.zeros((6, 6))]))
-    values = values[:6][::-1]
-    null = right[:6][::-1][values < tolerances.free].T
-    return span(null), values
+    return basis
 
 
 def _all_preserve(evidence: Evidence, twists: Array, keep: Flags, slack: float = 1.0) -> bool:
     """Does every kept patch slide on itself under the twist (6,), or each of the twists (6, n)?"""
     twists = twists.reshape(6, -1)
-    return bool(preserved_motions(evidence, twists, evidence.rows @ twists, slack)[keep].all())
+    return bool(preserved_motions(evidence, twists, slack)[keep].all())

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 
 from kinform.foundation.algebra.screws import twist_at_origin
-from kinform.kinematics.pair.decision import decide
-from kinform.kinematics.pair.evidence import gather
+from kinform.kinematics.constants import MOST_IN_STEP
+from kinform.kinematics.pair.decision import Decision, decide_each
+from kinform.kinematics.pair.evidence import Evidence, gather
 from kinform.kinematics.pair.extremes import extreme_samples
 from kinform.kinematics.pair.joint import joint_from_decision, misalignment
 from kinform.model.arrays import Array, Ints
@@ -57,14 +59,32 @@ def bare_patches(patches: Sequence[Patch]) -> tuple[Patch, ...]:
     return tuple(replace(patch, surfaces=(-1, -1)) for patch in patches)
 
 
-def answer_pair(question: Question) -> Answer:
-    """The joint that the contact leaves, with the samples that bound each patch."""
-    extremes = tuple(extreme_samples([patch for patch, _ in question.members]))
+def answer_each(questions: Sequence[Question]) -> list[Answer]:
+    """The joints that the contacts leave, each with the samples that bound its patches. An answer is the same, to the
+    last bit, whatever is asked with it."""
+    first = range(0, len(questions), MOST_IN_STEP)
+    return [answer for k in first for answer in _answer_each(questions[k : k + MOST_IN_STEP])]
+
+
+def _answer_each(questions: Sequence[Question]) -> list[Answer]:
+    bounds = iter(extreme_samples([patch for question in questions for patch, _ in question.members]))
+    extremes = [tuple(islice(bounds, len(question.members))) for question in questions]
+    evidences = [_evidence(question) for question in questions]
+    decisions = iter(
+        decide_each([(e, q.tolerances) for q, e in zip(questions, evidences, strict=True) if e is not None])
+    )
+    return [
+        Answer(samples, None) if evidence is None else _answer(samples, evidence, next(decisions))
+        for samples, evidence in zip(extremes, evidences, strict=True)
+    ]
+
+
+def _evidence(question: Question) -> Evidence | None:
     members = [(k, patch, turned) for k, (patch, turned) in enumerate(question.members)]
-    evidence = gather(members, question.tolerances, question.contact, question.size)
-    if evidence is None:
-        return Answer(extremes, None)
-    decision = decide(evidence, question.tolerances)
+    return gather(members, question.tolerances, question.contact, question.size)
+
+
+def _answer(extremes: tuple[Ints, ...], evidence: Evidence, decision: Decision) -> Answer:
     joint = joint_from_decision((BodyName(""), BodyName("")), evidence, decision)
     strict = twist_at_origin(decision.strict, evidence.frame).T if decision.status == "blocked" else None
     other = None if decision.other is None else joint_from_decision(joint.bodies, evidence, decision.other)

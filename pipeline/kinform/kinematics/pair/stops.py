@@ -26,6 +26,7 @@ from kinform.foundation.algebra.vectors import cross, perpendicular, sine, wides
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.pair.freedoms import freedoms
+from kinform.kinematics.pair.in_step import Steps
 from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.model.arrays import Array, Flags
 from kinform.model.tolerances import Tolerances
@@ -54,7 +55,7 @@ class OtherReading:
 
 def stop_reading(
     evidence: Evidence, twists: Array, preserved: Flags, strict: Array, tolerances: Tolerances
-) -> OtherReading | None:
+) -> Steps[OtherReading | None]:
     """The other reading of a pair whose freedoms are `strict` (6, k), if some of its faces may be a stop; None if not.
 
     `twists` (6, n) are candidate motions, `preserved` (items, n) which patches slide on themselves under them.
@@ -68,7 +69,7 @@ def stop_reading(
         free = preserved[keep].all(axis=0) if keep.any() else np.zeros(twists.shape[1], dtype=bool)
         if not (free & ~preserved[~keep].all(axis=0)).any():
             continue
-        basis, _ = freedoms(evidence, twists, preserved, keep, tolerances)
+        basis, _ = yield from freedoms(evidence, twists, preserved, keep, tolerances)
         if basis.shape[1] <= strict.shape[1]:
             continue
         reading = OtherReading(evidence.form(basis), basis, out, "stop")

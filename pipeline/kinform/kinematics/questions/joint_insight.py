@@ -152,7 +152,7 @@ def _alternatives(design: Derived, joint: Joint, evidence: Evidence | None) -> t
     wider: list[tuple[float, frozenset[int], str]] = []
     candidates = candidate_motions(evidence, tolerances.alignment)
     twists = np.array([m.twist for m in candidates]).reshape(-1, 6).T
-    preserved = preserved_motions(evidence, twists, evidence.rows @ twists)
+    preserved = preserved_motions(evidence, twists)
     for k, motion in enumerate(candidates):
         broken = np.flatnonzero(~preserved[:, k])
         without = frozenset(evidence.items[i].index for i in broken)

@@ -107,7 +107,7 @@ def separations(
             continue
         members = [links[k] for k in block]
         question = [(link.ends, link.cone, link.twists) for link in members]
-        solved = ask(answers, "opened", question, partial(_links_that_open, members))
+        solved = ask(answers, "opened", [question], partial(_answers_of, members))[0]
         if solved is None:
             reason = "whether parts can leave is not known of all: some loops of contacts are too large to decide"
             continue
@@ -117,6 +117,11 @@ def separations(
         more = f"{missing} more can move out of contact, but only together with many others, or while these move too"
         reason = f"{reason}; {more}" if reason else more
     return sets, reason
+
+
+def _answers_of(links: Sequence[Link], questions: Sequence[object]) -> list[tuple[int, ...] | None]:
+    """To the one question what it is of these links."""
+    return [_links_that_open(links) for _ in questions]
 
 
 def _links_that_open(links: Sequence[Link]) -> tuple[int, ...] | None:

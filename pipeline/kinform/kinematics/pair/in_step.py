@@ -1,0 +1,88 @@
+"""Many pairs decided in step: each goes its own way, and what they ask of linear algebra is answered for all at once.
+
+A decision is a generator. Where it needs to know what rows leave free it yields a `Remainder`, and is sent the answer.
+`in_step` lets all go on to their next question, stacks the questions of one shape, and so forth until none is left. The
+matrices of a stack are decomposed one by one: an answer is the same to the last bit whatever it is stacked with.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+
+from kinform.foundation.algebra.screws import spans
+from kinform.model.arrays import Array
+
+Result = TypeVar("Result")
+
+Remains = tuple[Array, Array]
+"""Orthonormal basis (6, k) of what rows leave free, and their singular values (6,) ascending."""
+
+
+@dataclass(frozen=True, eq=False)
+class Remainder:
+    """What do rows leave free, made exactly consistent with motions that they are known to leave free?"""
+
+    rows: Array
+    """(n, 6)."""
+    share: Array
+    """(n,) weight of each row's square."""
+    basis: Array
+    """(6, k) orthonormal, of the motions that are known."""
+    free: float
+    """Singular values below count as none."""
+
+
+Steps = Generator[Remainder, Remains, Result]
+"""A way to a result, with questions on it."""
+
+
+def in_step(ways: Sequence[Steps[Result]]) -> list[Result]:
+    """Where each of the ways leads."""
+    results: dict[int, Result] = {}
+    asked: dict[int, Remainder] = {}
+
+    def go_on(k: int, answer: Remains | None) -> None:
+        try:
+            asked[k] = next(ways[k]) if answer is None else ways[k].send(answer)
+        except StopIteration as end:
+            results[k] = end.value
+
+    for k in range(len(ways)):
+        go_on(k, None)
+    while asked:
+        questions, answers = list(asked), remains(list(asked.values()))
+        asked.clear()
+        for k, answer in zip(questions, answers, strict=True):
+            go_on(k, answer)
+    return [results[k] for k in range(len(ways))]
+
+
+def remains(questions: Sequence[Remainder]) -> list[Remains]:
+    """The answers to questions of any shapes."""
+    alike: dict[tuple[int, int], list[int]] = defaultdict(list)
+    for k, question in enumerate(questions):
+        alike[len(question.rows), question.basis.shape[1]].append(k)
+    answers: dict[int, Remains] = {}
+    for members in alike.values():
+        answers |= zip(members, _remains([questions[k] for k in members]), strict=True)
+    return [answers[k] for k in range(len(questions))]
+
+
+def _remains(questions: Sequence[Remainder]) -> list[Remains]:
+    """The answers to questions of one shape."""
+    share = np.array([question.share for question in questions])
+    basis = np.array([question.basis for question in questions])
+    rows = np.array([question.rows for question in questions])
+    rows *= np.sqrt(share / share.sum(axis=1, keepdims=True))[..., None]
+    rows = rows - (rows @ basis) @ np.swapaxes(basis, 1, 2)
+    triangle = np.linalg.qr(rows, mode="r") if rows.shape[1] >= 6 else rows
+    _, values, right = np.linalg.svd(np.concatenate([triangle, np.zeros((len(rows), 6, 6))], axis=1))
+    values, right = values[:, 5::-1], right[:, 5::-1]
+    free = np.array([question.free for question in questions])
+    null = [vectors[of] for vectors, of in zip(right, values < free[:, None], strict=True)]
+    return list(zip(spans([vectors.T for vectors in null]), values, strict=True))
