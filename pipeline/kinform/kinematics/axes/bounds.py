@@ -72,9 +72,10 @@ def uncertainties(joints: Sequence[Joint], patches: Sequence[Patch]) -> Array:
 
 def _uncertainty(joint: Joint, touching: Sequence[Patch], reach: float) -> tuple[float, float]:
     """By the best patch of those that say best where a joint is; never better than doubles know."""
-    directed = [p for p in touching if np.any(p.axis)] if joint.axis is not None else []
-    carriers = [p for p in touching if p.kind in CARRIERS] or directed
-    angle = min((p.uncertainty[0] for p in carriers if np.any(p.axis)), default=0.0)
+    carriers = [p for p in touching if p.kind in CARRIERS]
+    if not carriers and joint.axis is not None:
+        carriers = [p for p in touching if any(p.axis.tolist())]
+    angle = min((p.uncertainty[0] for p in carriers if any(p.axis.tolist())), default=0.0)
     position = min((p.uncertainty[1] for p in carriers), default=0.0)
     return max(angle, EXACT_AXIS), max(position, EXACT_AXIS * reach)
 
@@ -84,4 +85,5 @@ def _extent(touching: Sequence[Patch], reach: float) -> float:
     points = [p.points for p in touching if len(p.points)]
     if not points:
         return reach
-    return norm(np.ptp(np.concatenate(points), axis=0))
+    every = np.concatenate(points)
+    return norm(every.max(axis=0) - every.min(axis=0))

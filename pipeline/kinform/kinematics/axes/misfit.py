@@ -32,6 +32,8 @@ def misfit_of(moves: Sequence[Move]) -> Misfit:
 def _move(old: Joint, new: Joint) -> Move:
     """The turn of its axis; the shift of its line across itself, or of its centre."""
     angle = distance = 0.0
+    if old.axis is new.axis and old.point is new.point:
+        return Move(old.name, angle, distance)
     if old.axis is not None and new.axis is not None:
         angle = norm(cross(old.axis, new.axis))
     if old.point is not None and new.point is not None:

@@ -168,29 +168,41 @@ def _coaxial(bundle: Sequence[_Axis], direction: Array) -> list[list[_Axis]]:
     lines = np.array([a.line for a in bundle])
 
     def coaxial(leaders: Ints, k: int) -> Flags:
-        apart = np.linalg.norm(feet[leaders] - feet[k], axis=1)
+        apart = np.sqrt(np.square(feet[leaders] - feet[k]).sum(axis=1))
         return np.asarray(lines[leaders] & lines[k] & (apart <= most[leaders] + most[k]))
 
     def excess(group: Sequence[_Axis]) -> list[float]:
         mean = _mean_foot(group, direction)
         return [norm(a.foot(direction) - mean) / a.most_distance for a in group]
 
-    return _cluster(bundle, coaxial, excess)
+    return _cluster(bundle, coaxial, excess, _within(feet, 2.0 * float(most.max())))
+
+
+def _within(places: Array, reach: float) -> Callable[[int], Ints]:
+    """Of each of the places (n, 3) by its number, those that are no farther than `reach` from it along the coordinate
+    in which they differ most: all that are so near, and some more."""
+    along = places[:, int(np.ptp(places, axis=0).argmax())]
+    order = along.argsort(kind="stable")
+    reach += RCOND * float(np.abs(along).max())
+    low, high = (np.searchsorted(along[order], along + side * reach) for side in (-1.0, 1.0))
+    return lambda k: order[low[k] : high[k]]
 
 
 def _cluster(
     members: Sequence[_Axis],
     agree: Callable[[Ints, int], Flags],
     excess: Callable[[Sequence[_Axis]], list[float]],
+    near: Callable[[int], Ints] | None = None,
 ) -> list[list[_Axis]]:
-    """Greedy clusters: each member joins the first cluster whose leader it agrees with. `excess` says by what share of
-    its bound each of a cluster would be moved: the worst beyond it leaves, and starts anew with what else has left."""
+    """Greedy clusters: each member joins the first cluster whose leader it agrees with; `near`, where it is given, has
+    all members that one may agree with. `excess` says by what share of its bound each of a cluster would be moved: the
+    worst beyond it leaves, and starts anew with what else has left."""
     clusters: list[list[_Axis]] = []
     indices = {id(member): k for k, member in enumerate(members)}
     rest = list(members)
     while rest:
         left: list[_Axis] = []
-        for cluster in _greedy(rest, indices, agree):
+        for cluster in _greedy(rest, indices, agree, near):
             while len(cluster) > 1:
                 shares = excess(cluster)
                 worst = int(np.argmax(shares))
@@ -203,17 +215,23 @@ def _cluster(
 
 
 def _greedy(
-    members: Sequence[_Axis], indices: Mapping[int, int], agree: Callable[[Ints, int], Flags]
+    members: Sequence[_Axis],
+    indices: Mapping[int, int],
+    agree: Callable[[Ints, int], Flags],
+    near: Callable[[int], Ints] | None,
 ) -> list[list[_Axis]]:
     clusters: list[list[_Axis]] = []
     leaders = np.zeros(len(members), dtype=np.int64)
+    led = np.full(len(indices), -1)
     for member in members:
         k = indices[id(member)]
-        good = agree(leaders[: len(clusters)], k)
-        if good.any():
-            clusters[int(np.argmax(good))].append(member)
+        asked = leaders[: len(clusters)] if near is None else near(k)
+        asked = asked[led[asked] >= 0]
+        good = led[asked[agree(asked, k)]]
+        if len(good):
+            clusters[int(good.min())].append(member)
         else:
-            leaders[len(clusters)] = k
+            leaders[len(clusters)], led[k] = k, len(clusters)
             clusters.append([member])
     return clusters
 

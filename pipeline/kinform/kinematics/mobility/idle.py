@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, rotation, scaled, span, twist_at_origin
-from kinform.foundation.algebra.vectors import cross, norm, widest_gap
+from kinform.foundation.algebra.vectors import cross, norm, sine, widest_gap
 from kinform.kinematics import constants
 from kinform.kinematics.bodies.stated_joints import Pair, pair_between
 from kinform.kinematics.loops.joint_graph import JointGraph
@@ -110,14 +110,17 @@ def _idle_turns(held: _Held) -> Array:
     """
     if not held.joints or not held.patches or held.ground:
         return np.zeros((0, 6))
-    frame = Frame.of(np.concatenate([p.points for p in held.patches]))
     patches = [
         replace(p, kind="sphere", point=held.balls[k]) if k in held.balls else p for k, p in enumerate(held.patches)
     ]
-    spaces = [span(scaled(joint.twists.T, frame)) if joint.freedoms else np.zeros((6, 0)) for joint in held.joints]
+    lines = [line for line in _candidates(patches, held.size) if all(_turns_about(patch, line[0]) for patch in patches)]
+    if not lines or any(not joint.freedoms for joint in held.joints):
+        return np.zeros((0, 6))
+    frame = Frame.of(np.concatenate([p.points for p in held.patches]))
+    spaces = [span(scaled(joint.twists.T, frame)) for joint in held.joints]
     leaf = len(held.joints) == 1
     turns = []
-    for axis, point in _candidates(patches, held.size):
+    for axis, point in lines:
         twist = rotation(axis, point, frame)
         if (
             all(norm(twist - free @ (free.T @ twist)) < constants.IDLE_AXIS for free in spaces)
@@ -130,8 +133,10 @@ def _idle_turns(held: _Held) -> Array:
 
 def _independent(twists: Sequence[Array], frame: Frame) -> Array:
     """The first of the turns that are independent, of rate 1."""
-    kept: list[Array] = []
-    for twist in twists:
+    if not twists:
+        return np.zeros((0, 6))
+    kept: list[Array] = [twists[0]]
+    for twist in twists[1:]:
         if span(np.array([*kept, twist]).T).shape[1] > len(kept):
             kept.append(twist)
     turns = twist_at_origin(np.array(kept).reshape(-1, 6).T, frame).T
@@ -153,18 +158,22 @@ def _candidates(patches: Sequence[Patch], size: float) -> list[tuple[Array, Arra
     return lines
 
 
+def _turns_about(patch: Patch, axis: Array) -> bool:
+    """Is it of a surface that turns onto itself about axes of this direction?"""
+    if patch.kind == "sphere":
+        return True
+    return (patch.kind == "plane" or patch.kind in COAXIAL) and sine(patch.axis, axis) < constants.IDLE_AXIS
+
+
 def _invariant(patch: Patch, axis: Array, point: Array, size: float) -> bool:
-    """Does the patch, as bounded as it is, turn onto itself?"""
-    if patch.kind == "sphere" or patch.kind in COAXIAL:
-        parallel = patch.kind == "sphere" or norm(cross(patch.axis, axis)) < constants.IDLE_AXIS
-        away = norm(cross(patch.point - point, axis))
-        return parallel and away <= abs(patch.gap) + constants.IDLE_PLACE * size
-    if patch.kind != "plane" or norm(cross(patch.axis, axis)) > constants.IDLE_AXIS:
-        return False
+    """Does the patch, which turns onto itself about axes of this direction, do so about this one, as bounded as it
+    is?"""
+    if patch.kind != "plane":
+        return norm(cross(patch.point - point, axis)) <= abs(patch.gap) + constants.IDLE_PLACE * size
     # the middle of what turns onto itself is on the axis, whatever the attitude; and it goes all round
     arm = patch.points - point
     arm = arm - np.outer(arm @ axis, axis)
-    reach = float(patch.weights @ np.linalg.norm(arm, axis=1))
+    reach = float(patch.weights @ np.sqrt(np.square(arm).sum(axis=1)))
     if norm(patch.weights @ arm) > constants.IDLE_MIDDLE * reach:
         return False
     return widest_gap(arm, axis) < constants.IDLE_OPEN

@@ -7,6 +7,7 @@ many directions; what their sum exceeds the joint's is redundant, however rigid 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import sqrt
 
 import numpy as np
 
@@ -71,7 +72,7 @@ def sites(patches: Sequence[Patch]) -> list[list[int]]:
     """Indices of patches that lie together, by their first."""
     sets = UnionFind(len(patches))
     centres = [p.points.mean(axis=0) for p in patches]
-    radii = [float(np.linalg.norm(p.points - c, axis=1).max()) for p, c in zip(patches, centres, strict=True)]
+    radii = [sqrt(float(np.square(p.points - c).sum(axis=1).max())) for p, c in zip(patches, centres, strict=True)]
     for k in range(len(patches)):
         for n in range(k):
             if sets.find(k) == sets.find(n):
@@ -90,7 +91,7 @@ def sites(patches: Sequence[Patch]) -> list[list[int]]:
 def _distance(a: Array, b: Array) -> float:
     """Least distance between points (n, 3) and (m, 3) near to the origin."""
     square = (a**2).sum(axis=1)[:, None] + (b**2).sum(axis=1) - 2.0 * (a @ b.T)
-    return float(np.sqrt(max(float(square.min()), 0.0)))
+    return sqrt(max(float(square.min()), 0.0))
 
 
 def _held(patches: Sequence[Patch], joint: Joint, frame: Frame, tolerances: Tolerances) -> Array:

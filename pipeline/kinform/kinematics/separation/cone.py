@@ -82,18 +82,19 @@ def held_for_certain(pairs: Sequence[Array]) -> Flags:
         return held
     rows = np.concatenate([pairs[k] for k in active])
     counts = np.array([len(pairs[k]) for k in active])
-    values, vectors = np.linalg.eigh(grams(rows, np.ones(len(rows)), counts))
+    system = grams(rows, np.ones(len(rows)), counts)
+    values, vectors = np.linalg.eigh(system)
     loose = values < constants.CONE_FREE**2 * counts[:, None]
     still = np.einsum("pik,pk,pjk->pij", vectors, loose.astype(float), vectors)
     size = rows.shape[1]
     at = np.zeros((len(active), size))
-    for _ in range(constants.NEWTON_STEPS):
+    for step_number in range(constants.NEWTON_STEPS):
         exponent = np.einsum("ij,ij->i", rows, np.repeat(at, counts, axis=0))
         weight = np.exp(-np.clip(exponent, -constants.FAR_EXPONENT, constants.FAR_EXPONENT))
         start = np.concatenate([[0], np.cumsum(counts)[:-1]])
         pull = np.add.reduceat(weight[:, None] * rows, start, axis=0)
         pull -= np.einsum("pij,pj->pi", still, pull)
-        system = grams(rows, weight, counts)
+        system = grams(rows, weight, counts) if step_number else system
         scale = np.trace(system, axis1=1, axis2=2)[:, None, None]
         step = np.linalg.solve(system + scale * (still + 1e-15 * np.eye(size)), pull[:, :, None])[:, :, 0]
         change = np.einsum("ij,ij->i", rows, np.repeat(step, counts, axis=0))

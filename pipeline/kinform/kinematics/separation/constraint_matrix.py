@@ -13,9 +13,10 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, rows, scaled
 from kinform.kinematics.pair.extremes import extreme_samples
-from kinform.model.arrays import Ints
+from kinform.model.arrays import Array, Ints
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, ConstraintMatrix, Joint
+from kinform.model.names import JointName
 
 
 def constraint_matrix(
@@ -39,7 +40,7 @@ def constraint_matrix(
     points = [patches[k].points[chosen] for k, chosen in zip(used, samples, strict=True)]
     normals = [patches[k].normals[chosen] for k, chosen in zip(used, samples, strict=True)]
     relative = rows(np.concatenate([none, *points]), np.concatenate([none, *normals]), world)
-    free = {joint.name: np.linalg.qr(scaled(joint.twists.T, world))[0] for joint in joints if joint.patches}
+    free = _bases([joint for joint in joints if joint.patches], world)
     for k, start, end in zip(used, bounds[:-1].tolist(), bounds[1:].tolist(), strict=True):
         if k in owner:
             basis, of_patch = free[owner[k].name], relative[start:end]
@@ -58,3 +59,14 @@ def constraint_matrix(
         centre=world.centre,
         length=world.length,
     )
+
+
+def _bases(joints: Sequence[Joint], frame: Frame) -> dict[JointName, Array]:
+    """(6, f) orthonormal: the freedoms of each joint, scaled in the frame."""
+    out: dict[JointName, Array] = {}
+    for freedoms in {len(joint.twists) for joint in joints}:
+        alike = [joint for joint in joints if len(joint.twists) == freedoms]
+        twists = scaled(np.concatenate([joint.twists for joint in alike]).T, frame).T
+        bases = np.linalg.qr(np.swapaxes(twists.reshape(len(alike), freedoms, 6), 1, 2))[0]
+        out |= {joint.name: basis for joint, basis in zip(alike, bases, strict=True)}
+    return out
