@@ -228,6 +228,8 @@ STRAIGHT_EDGE = 1e-6
 """Corners of a hull that stand out less than this share of its size are on an edge."""
 HULL_DIRECTIONS = 16
 """Directions whose ends are corners of a hull: what lies inside of these corners is left out at once."""
+MOMENT_ROUNDING = 1e-13
+"""Share of its moments by which a sum of squares that follows from them may be off: hundreds of roundings."""
 MOST_IN_STEP = 250
 """Pairs that are decided in step: their samples take a few MB, and more gain nothing."""
 MOST_STACKED_SAMPLES = 8_000

@@ -20,6 +20,13 @@ def displacement(twist: Array) -> Array:
     return out
 
 
+def identities(*shape: int) -> Array:
+    """(*shape, 4, 4) displacements that move nothing."""
+    out = np.empty((*shape, 4, 4))
+    out[:] = np.eye(4)
+    return out
+
+
 def exponentials(screws: Array, q: Array) -> Array:
     """(D, n, 4, 4) exp(S q) of unit screws (n, 6), |ω| 1 or 0, for coordinates q (D, n); a slide has no ω and
     falls out of the same terms."""

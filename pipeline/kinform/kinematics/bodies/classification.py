@@ -86,12 +86,14 @@ def decide_all(pairs: Pairs, merger: Merger, *, fusing: bool = True) -> dict[Pai
             if answer.joint is None:
                 continue
             places = [index for index, _, _ in members]
-            other = None if answer.other is None else joint_between(answer.other, pair, places)
-            out[pair] = replace(answer, other=other), joint_between(answer.joint, pair, places)
+            joint = joint_between(answer.joint, pair, places)
+            if answer.other is not None:
+                answer = replace(answer, other=joint_between(answer.other, pair, places))
+            out[pair] = answer, joint
             parts = members[0][1].parts
             if not fusing or frozenset(merger.root(p) for p in parts) in stated:
                 continue
-            if answer.joint.type == "fixed" and answer.joint.status == "determined":
+            if joint.type == "fixed" and joint.status == "determined":
                 merger.fuse(parts[0], parts[1], f"contact {parts[0]}~{parts[1]} leaves no freedom")
                 fused = True
         if not fused:

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.algebra.displacements import carry, exponentials, inverse
+from kinform.foundation.algebra.displacements import carry, exponentials, identities, inverse
 from kinform.foundation.algebra.screws import Frame, bracket, scaled
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import forest
@@ -97,15 +97,18 @@ class LoopSystem:
         """Displacements of bodies, of coordinates within their joints, and across joints."""
         batch, joints = len(q), len(self.first)
         steps = exponentials(self.screws, q)
-        inside = np.empty((batch, len(self.screws), 4, 4))
-        across = np.broadcast_to(np.eye(4), (batch, joints, 4, 4)).copy()
-        for coordinates, members in self.levels:
-            inside[:, coordinates] = across[:, members]
-            across[:, members] = across[:, members] @ steps[:, coordinates]
-        bodies = np.broadcast_to(np.eye(4), (batch, 1 + sum(len(d[0]) for d in self.depths), 4, 4)).copy()
+        inside, across = identities(batch, len(self.screws)), identities(batch, joints)
+        for level, (coordinates, members) in enumerate(self.levels):
+            if level:
+                inside[:, coordinates] = across[:, members]
+                across[:, members] = across[:, members] @ steps[:, coordinates]
+            else:
+                across[:, members] = steps[:, coordinates]
+        bodies = identities(batch, len(self.reach))
         for nodes, parents, members, backward in self.depths:
             moves = across[:, members]
-            moves[:, backward] = inverse(moves[:, backward])
+            if backward.any():
+                moves[:, backward] = inverse(moves[:, backward])
             bodies[:, nodes] = bodies[:, parents] @ moves
         return bodies, inside, across
 

@@ -18,9 +18,10 @@ from kinform.foundation.algebra.vectors import cross, perpendicular, sine
 from kinform.foundation.words import counted
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
-from kinform.kinematics.pair.freedoms import freedoms, preserved_motions
+from kinform.kinematics.pair.freedoms import freedoms
 from kinform.kinematics.pair.in_step import Steps
 from kinform.kinematics.pair.lower_pairs import JointForm
+from kinform.kinematics.pair.preserved import preserved_motions
 from kinform.kinematics.pair.scraps import narrow, scraps
 from kinform.kinematics.pair.stops import ROLES, OtherReading, faces_in_words, freed_motions, one_sense, stop_reading
 from kinform.kinematics.pair.uncertainty import uncertainty_doubt

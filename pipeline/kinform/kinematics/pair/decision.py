@@ -16,10 +16,11 @@ from kinform.foundation.algebra.vectors import norm, sine
 from kinform.kinematics import constants
 from kinform.kinematics.pair.certainty import Certainty, certainty, momentary
 from kinform.kinematics.pair.evidence import COAXIAL, GUIDES, Evidence, Item
-from kinform.kinematics.pair.freedoms import freedoms, preserved_motions
+from kinform.kinematics.pair.freedoms import freedoms
 from kinform.kinematics.pair.hypotheses import Motion, candidate_motions
 from kinform.kinematics.pair.in_step import Steps, in_step
 from kinform.kinematics.pair.lower_pairs import JointForm
+from kinform.kinematics.pair.preserved import preserved_by_each
 from kinform.kinematics.pair.uncertainty import uncertainty_doubt
 from kinform.model.arrays import Array, Flags
 from kinform.model.tolerances import Tolerances
@@ -55,13 +56,18 @@ def decide(evidence: Evidence, tolerances: Tolerances) -> Decision:
 
 def decide_each(pairs: Sequence[tuple[Evidence, Tolerances]]) -> list[Decision]:
     """The joints of several pairs of bodies, each by the evidence of its own contacts alone."""
-    return in_step([_decide(evidence, tolerances) for evidence, tolerances in pairs])
+    candidates = [candidate_motions(evidence, tolerances.alignment) for evidence, tolerances in pairs]
+    twists = [np.array([m.twist for m in of_pair]).reshape(-1, 6).T for of_pair in candidates]
+    preserved = preserved_by_each([(evidence, of_pair) for (evidence, _), of_pair in zip(pairs, twists, strict=True)])
+    of_each = zip(pairs, candidates, twists, preserved, strict=True)
+    return in_step([_decide(*pair, motions, of_pair, flags) for pair, motions, of_pair, flags in of_each])
 
 
-def _decide(evidence: Evidence, tolerances: Tolerances) -> Steps[Decision]:
-    candidates = candidate_motions(evidence, tolerances.alignment)
-    twists = np.array([m.twist for m in candidates]).reshape(-1, 6).T
-    preserved = preserved_motions(evidence, twists)
+def _decide(
+    evidence: Evidence, tolerances: Tolerances, candidates: tuple[Motion, ...], twists: Array, preserved: Flags
+) -> Steps[Decision]:
+    """The joint by what the patches say of candidate motions, their `twists` (6, n), of which `preserved` (items, n)
+    says which patch preserves which."""
     everything = np.ones(len(evidence.items), dtype=bool)
     strict, values = yield from freedoms(evidence, twists, preserved, everything, tolerances)
     chosen = _consensus(evidence, candidates, preserved, strict)

@@ -118,8 +118,9 @@ def freed_motions(strict: Array, basis: Array) -> Array:
 def one_sense(evidence: Evidence, motion: Array, out: tuple[int, ...]) -> bool:
     """Do the items oppose the motion (6,) in one sense only?"""
     speeds = np.concatenate([evidence.rows[evidence.start[k] : evidence.start[k + 1]] @ motion for k in out])
-    large = constants.OPPOSING_SPEED * float(np.abs(speeds).max())
-    return not (bool((speeds > large).any()) and bool((speeds < -large).any()))
+    most, least = float(speeds.max()), float(speeds.min())
+    large = constants.OPPOSING_SPEED * max(most, -least)
+    return not (most > large and least < -large)
 
 
 def _ends_guide(form: JointForm, guides: list[Item], faces: list[Item]) -> bool:

@@ -17,8 +17,8 @@ from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.constants import MOST_PATCH_SETS, MOST_PATCHES
 from kinform.kinematics.pair.decision import decide
 from kinform.kinematics.pair.evidence import Evidence, Member
-from kinform.kinematics.pair.freedoms import preserved_motions
 from kinform.kinematics.pair.hypotheses import candidate_motions, motion_words
+from kinform.kinematics.pair.preserved import preserved_motions
 from kinform.kinematics.questions.derived import Derived
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
