@@ -138,8 +138,9 @@ def nothing_opens(rows: Array, fixed: Array) -> bool:
 def grams(rows: Array, weight: Array, counts: Ints) -> Array:
     """(pairs, 6, 6) Σ w r rᵀ of each pair's rows, one pair's after the other's and at least one of each."""
     start = np.concatenate([[0], np.cumsum(counts)[:-1]])
-    products = weight[:, None, None] * rows[:, :, None] * rows[:, None, :]
-    return np.asarray(np.add.reduceat(products, start, axis=0))
+    columns = np.ascontiguousarray(rows.T)
+    products = (columns * weight)[:, None] * columns
+    return np.ascontiguousarray(np.moveaxis(np.add.reduceat(products, start, axis=2), 2, 0))
 
 
 def opening(rows: Array) -> Opening:
@@ -165,14 +166,15 @@ def opening(rows: Array) -> Opening:
     return Opening(True if dual.status == 0 else None, np.zeros(6), speed)
 
 
-def extreme_rays(rows: Array) -> Array | None:
+def extreme_rays(rows: Array, opposed: Array | None = None) -> Array | None:
     """Extreme rays (k, d), unit, of {x : rows x ≥ 0} without its lineality; None where they are too many.
 
-    `rows` (n, d), unit. The rays are perpendicular to the lineality. Rows tight within rounding count as tight.
+    `rows` (n, d), unit; `opposed`: what `split_directions` says that they oppose, where that is known. The rays are
+    perpendicular to the lineality. Rows tight within rounding count as tight.
     """
     if len(rows) == 1:
         return rows
-    basis, _ = split_directions(rows)
+    basis = split_directions(rows)[0] if opposed is None else opposed
     inner = rows @ basis
     size = inner.shape[1]
     if size == 0:

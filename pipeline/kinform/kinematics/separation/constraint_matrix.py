@@ -37,8 +37,8 @@ def constraint_matrix(
     samples = [looked_for[k] for k in used]
     bounds = np.cumsum([0, *map(len, samples)])
     none = np.zeros((0, 3))
-    points = [patches[k].points[chosen] for k, chosen in zip(used, samples, strict=True)]
-    normals = [patches[k].normals[chosen] for k, chosen in zip(used, samples, strict=True)]
+    points = [patches[k].points.take(chosen, axis=0) for k, chosen in zip(used, samples, strict=True)]
+    normals = [patches[k].normals.take(chosen, axis=0) for k, chosen in zip(used, samples, strict=True)]
     relative = rows(np.concatenate([none, *points]), np.concatenate([none, *normals]), world)
     free = _bases([joint for joint in joints if joint.patches], world)
     for k, start, end in zip(used, bounds[:-1].tolist(), bounds[1:].tolist(), strict=True):

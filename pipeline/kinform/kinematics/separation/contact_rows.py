@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -35,10 +36,15 @@ class Cone:
     """(n, 6) unit: what the other patches allow one way; perpendicular to `fixed`."""
     frame: Frame
 
+    @cached_property
+    def opposed(self) -> Array:
+        """(6, c) orthonormal: directions that the rows oppose."""
+        return split_directions(self.rows)[0]
+
     @property
     def preserved(self) -> Array:
         """(6, f) orthonormal: contact-preserving motion."""
-        moved = np.hstack([split_directions(self.rows)[0], self.fixed.T])
+        moved = np.hstack([self.opposed, self.fixed.T])
         return np.linalg.svd(moved, full_matrices=True)[0][:, moved.shape[1] :] if moved.shape[1] else np.eye(6)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, twist_at_origin
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.kinematics import constants
-from kinform.kinematics.separation.cone import extreme_rays, held_for_certain, opening, split_directions, unit_rows
+from kinform.kinematics.separation.cone import extreme_rays, held_for_certain, opening, unit_rows
 from kinform.kinematics.separation.contact_rows import Cone
 from kinform.kinematics.wording import direction_words
 from kinform.model.arrays import Array, Flags
@@ -57,7 +57,7 @@ def leaving_of(cone: Cone, *, turns: bool = True) -> Leaving:
         if lp.held is None:
             bounds = f"between none (< {constants.CONE_FREE:g}) and certain (> {constants.CONE_HELD:g})"
             return Leaving(None, held_reason=f"contact opens at {lp.speed:.2g} of the motion: {bounds}")
-    rays = extreme_rays(cone.rows) if turns else None
+    rays = extreme_rays(cone.rows, cone.opposed) if turns else None
     releases = [release_of(np.concatenate([np.zeros(3), d]), cone.frame, extreme=not many) for d in slides]
     if rays is not None and len(rays) <= constants.MOST_RELEASES:
         others = [ray for ray in rays if not _slides_off(ray, cone, slides)]
@@ -118,9 +118,9 @@ def _distinct(rays: Array) -> Array:
 
 def _slides_off(ray: Array, cone: Cone, slides: Array) -> bool:
     """Is the ray one of the slides already told, but for contact-preserving motion?"""
-    basis, _ = split_directions(cone.rows)
+    basis = cone.opposed
     for slide in slides:
-        shadow = basis @ (basis.T @ np.concatenate([np.zeros(3), slide]))
+        shadow = basis @ (basis[3:].T @ slide)
         size = norm(shadow)
         if size > constants.SAME_DIRECTION and norm(shadow / size - ray) < constants.SAME_DIRECTION:
             return True

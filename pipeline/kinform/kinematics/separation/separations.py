@@ -45,12 +45,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Link:
-    """Two bodies in contact. `cone` is None where nothing opens: then `twists` (f, 6) are its freedoms."""
+    """Two bodies in contact. `cone` is None where nothing opens."""
 
     name: JointName
     ends: tuple[int, int]
     cone: Cone | None
     twists: Array
+    """(f, 6) its freedoms where nothing opens, (0, 6) elsewhere."""
     slides: tuple[Release, ...] | None = None
     """In which the second leaves the first; None where not known yet."""
 
@@ -83,8 +84,10 @@ def links_between(
         if cone is None:
             continue
         name = JointName(f"{clusters[a].name}~{clusters[b].name}")
-        kept = twist_at_origin(cone.preserved, cone.frame).T
-        out.append(Link(name, (a, b), None if next(certain) else cone, kept, slides.get(name)))
+        if next(certain):
+            out.append(Link(name, (a, b), None, twist_at_origin(cone.preserved, cone.frame).T, slides.get(name)))
+        else:
+            out.append(Link(name, (a, b), cone, np.zeros((0, 6)), slides.get(name)))
     for joint in joints:
         if is_stated(joint):
             ends = [min(cluster[p] for p in rows.parts_of(name)) for name in joint.bodies]
