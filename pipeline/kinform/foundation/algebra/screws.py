@@ -38,7 +38,9 @@ def rows(points: Array, normals: Array, frame: Frame) -> Array:
 
 def rotation(axis: Array, point: Array, frame: Frame, pitch: float = 0.0) -> Array:
     """Scaled unit twist (6,) of a rotation about the line (unit axis, point) that advances by `pitch` (m) a turn."""
-    velocity = cross(axis, frame.centre - point) + pitch / (2.0 * np.pi) * axis
+    velocity = cross(axis, frame.centre - point)
+    if pitch:
+        velocity = velocity + pitch / (2.0 * np.pi) * axis
     twist = np.concatenate([axis, velocity / frame.length])
     unit: Array = twist / norm(twist)
     return unit
@@ -46,7 +48,9 @@ def rotation(axis: Array, point: Array, frame: Frame, pitch: float = 0.0) -> Arr
 
 def translation(direction: Array) -> Array:
     """Scaled unit twist (6,) of a translation along the unit direction."""
-    return np.concatenate([np.zeros(3), direction])
+    twist = np.zeros(6)
+    twist[3:] = direction
+    return twist
 
 
 def twist_at_origin(scaled: Array, frame: Frame) -> Array:

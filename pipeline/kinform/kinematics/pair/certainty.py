@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import sqrt
 
 import numpy as np
 
@@ -94,10 +95,10 @@ def _spread(evidence: Evidence) -> float:
 
     By so much, and no more, do singular values change when the rows turn (H. Weyl, Math. Ann. 71, 1912).
     """
-    share = np.add.reduceat(evidence.share, evidence.start[:-1])
-    turns = np.array([item.patch.mismatch[0] for item in evidence.items])
-    share = np.where(turns <= constants.VAGUE_DIRECTION, share, 0.0)
-    return float(np.sqrt(share @ turns**2 / max(float(share.sum()), 1e-300)))
+    shares = np.add.reduceat(evidence.share, evidence.start[:-1]).tolist()
+    turns = [item.patch.mismatch[0] for item in evidence.items]
+    known = [(share, turn) for share, turn in zip(shares, turns, strict=True) if turn <= constants.VAGUE_DIRECTION]
+    return sqrt(sum(share * turn**2 for share, turn in known) / max(sum(share for share, _ in known), 1e-300))
 
 
 def meets(patches: Sequence[Patch]) -> bool:

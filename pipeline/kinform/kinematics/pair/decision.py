@@ -119,11 +119,11 @@ def _consensus(
     Of the candidates the one that leaves out the smallest share of the area, the first of equals; `preserved` (items,
     candidates). Where contact already leaves a freedom (`strict`), only a turn about a curved surface may be added.
     """
-    area = evidence.areas
+    total = float(evidence.areas.sum())
     best: tuple[float, Flags, Motion] | None = None
     for n in np.flatnonzero(preserved.any(axis=0) & ~preserved.all(axis=0)):
         keep, motion = preserved[:, n], candidates[n]
-        share = float(area[~keep].sum() / area.sum())
+        share = sum(item.area for item in evidence.chosen(~keep)) / total
         small = share <= constants.MOST_LEFT_OUT
         stopped = share <= constants.MOST_STOPPED and _turns_on_journal(evidence, motion, keep)
         if not (small or stopped) or (best is not None and share >= best[0]):

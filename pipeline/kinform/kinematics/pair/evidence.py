@@ -93,6 +93,14 @@ class Evidence:
             self._forms[id(basis)] = basis, name_space(basis, self.frame)
         return self._forms[id(basis)][1]
 
+    def rows_of(self, chosen: Flags) -> tuple[Array, Array]:
+        """Rows (n, 6) and weights (n,) of the items of the flags (items,) that are set, one at least."""
+        if chosen.all():
+            return self.rows, self.share
+        bounds = self.start.tolist()
+        parts = [slice(bounds[k], bounds[k + 1]) for k in np.flatnonzero(chosen).tolist()]
+        return np.concatenate([self.rows[part] for part in parts]), np.concatenate([self.share[part] for part in parts])
+
     def chosen(self, chosen: Flags) -> list[Item]:
         """The items of the flags (items,) that are set."""
         return [item for item, flag in zip(self.items, chosen, strict=True) if flag]

@@ -27,11 +27,8 @@ def freedoms(
     `preserved` (items, motions) is what `preserved_motions` says of the candidate `twists` (6, motions); `keep`
     (items,) which patches count.
     """
-    rows, share = evidence.rows, evidence.share
-    if not keep.all():
-        chosen = np.repeat(keep, np.diff(evidence.start))
-        rows, share, preserved = rows[chosen], share[chosen], preserved[keep]
-    known = _independent(evidence, twists[:, preserved.all(axis=0)], keep)
+    rows, share = evidence.rows_of(keep)
+    known = _independent(evidence, twists[:, preserved[keep].all(axis=0)], keep)
     basis, values = yield Remainder(rows, share, known, tolerances.free)
     if evidence.form(basis).type == "general":
         rounded = nearest_pair(basis, evidence.frame)
@@ -47,11 +44,11 @@ def _independent(evidence: Evidence, twists: Array, keep: Flags) -> Array:
     for twist in twists.T:
         rest = twist - basis @ (basis.T @ twist) if basis.size else twist
         size = norm(rest)
-        unit = rest / max(size, 1e-300)
-        if size > constants.CLEARLY_NEW or (
-            size > constants.NEW_FREEDOM and _all_preserve(evidence, unit, keep, constants.DIFFERENCE_SLACK)
-        ):
-            basis = np.column_stack([basis, unit])
+        if size <= constants.NEW_FREEDOM:
+            continue
+        unit = rest / size
+        if size > constants.CLEARLY_NEW or (_all_preserve(evidence, unit, keep, constants.DIFFERENCE_SLACK)):
+            basis = np.column_stack([basis, unit]) if basis.size else unit[:, None]
     return basis
 
 

@@ -146,7 +146,7 @@ def misalignment(evidence: Evidence, decision: Decision) -> tuple[float, float]:
         if patch.one_sided:
             continue
         clearance = max(patch.gap, 0.0) if patch.kind in COAXIAL else 0.0
-        engaged = float(np.ptp(item.points @ patch.axis)) if patch.kind in COAXIAL else 0.0
+        engaged = float(np.ptp(item.points @ patch.axis)) if clearance else 0.0
         allowed = 2.0 * clearance / engaged if engaged > 0.0 else 0.0
         allowed += _unevenness(item)
         excess = patch.misalignment - allowed - SIGMAS * max(patch.uncertainty[0], patch.mismatch[0])
@@ -160,7 +160,7 @@ def misalignment(evidence: Evidence, decision: Decision) -> tuple[float, float]:
 
 def _unevenness(item: Item) -> float:
     """rad by which facets of a plane face that is not quite flat may lean, over the extent of the patch."""
-    if item.patch.kind != "plane":
+    if item.patch.kind != "plane" or not item.patch.chord:
         return 0.0
     extent = norm(np.ptp(item.points, axis=0))
     return 2.0 * item.patch.chord / extent if extent > 0.0 else 0.0

@@ -32,11 +32,11 @@ def scraps(evidence: Evidence, alignment: float) -> Flags:
         if item.patch.kind != "plane":
             continue
         cosines = planes @ item.normals[0]
-        # the two flanks of a pressed key face each other
-        faced = bool((cosines[dips] < constants.FACED).any())
         one_way = float(share[cosines > -constants.FACED].sum())
-        alone = not (cosines < constants.FACED).any() and one_way < constants.SLIVER_SHARE
-        slight[k] = (k in dips and not faced) or (item.patch.one_sided and share[k] < constants.SLIVER_SHARE) or alone
+        alone = one_way < constants.SLIVER_SHARE and not (cosines < constants.FACED).any()
+        # the two flanks of a pressed key face each other
+        dips_alone = k in dips and not (cosines[dips] < constants.FACED).any()
+        slight[k] = alone or dips_alone or (item.patch.one_sided and share[k] < constants.SLIVER_SHARE)
     for line in coaxial_lines(evidence, alignment):
         members = list(line.items)
         little = float(share[members].sum()) < constants.SLIVER_SHARE

@@ -62,7 +62,6 @@ def stop_reading(
     Of several stops the one with the least area.
     """
     best: tuple[float, OtherReading] | None = None
-    areas = evidence.areas
     for out in _candidates(evidence):
         keep = np.ones(len(evidence.items), dtype=bool)
         keep[list(out)] = False
@@ -73,7 +72,7 @@ def stop_reading(
         if basis.shape[1] <= strict.shape[1]:
             continue
         reading = OtherReading(evidence.form(basis), basis, out, "stop")
-        area = float(areas[list(out)].sum())
+        area = sum(evidence.items[k].area for k in out)
         if (best is None or area < best[0]) and _may_be_stop(evidence, strict, reading, keep):
             best = area, reading
     return None if best is None else best[1]

@@ -39,7 +39,7 @@ class Cone:
     @cached_property
     def opposed(self) -> Array:
         """(6, c) orthonormal: directions that the rows oppose."""
-        return split_directions(self.rows)[0]
+        return self.rows.T if len(self.rows) == 1 else split_directions(self.rows)[0]
 
     @property
     def preserved(self) -> Array:

@@ -89,11 +89,11 @@ def _slides(cone: Cone) -> tuple[Array, bool]:
     rays = rays[(rays @ normals.T).max(axis=1, initial=0.0) > constants.CONE_HELD] if len(rays) else none
     if not len(rays):
         return none, False
-    rays = _distinct(rays @ straight.T)
+    rays = _distinct(rays @ straight.T) if len(rays) > 1 else rays @ straight.T
     if len(rays) > constants.MOST_RELEASES:
         middle = rays.sum(axis=0)
         return (middle / norm(middle))[None], True
-    return rays[np.lexsort(np.round(rays, 6).T)[::-1]], False
+    return rays[np.lexsort(np.round(rays, 6).T)[::-1]] if len(rays) > 1 else rays, False
 
 
 def _middle(normals: Array) -> Array:
