@@ -397,6 +397,12 @@ LONGEST_CHANGE = 0.5
 REDUCED_RATES = 60
 """Rates of a block from which on its closure is made triangular before its singular values are asked: at 100 to 420
 rates the two take 0.6 of the time of one, at 40 nine tenths."""
+INVERSE_ITERATIONS = 8
+"""Inverse iterations for the singular vectors that do not count: with a gap each gains digits by the square of it."""
+CONVERGED_VECTORS = 1e-14
+"""Share of a matrix that may be missing from its product with singular vectors that have converged."""
+LEAST_DIAGONAL = 1e-250
+"""Share of a triangle below which nothing can be divided by what is on its diagonal."""
 FINEST_VALUE = 1e-12
 """Relative singular value that a full solve still uses: near a singularity of fourth order they are that small."""
 STEP_KEPT = 0.9

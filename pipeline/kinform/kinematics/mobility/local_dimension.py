@@ -23,6 +23,7 @@ from kinform.foundation.algebra.vectors import norm
 from kinform.kinematics import constants
 from kinform.kinematics.loops.loop_kinematics import LoopSystem
 from kinform.kinematics.mobility.second_order import Pose, complement, independent, second_order, units
+from kinform.kinematics.mobility.truncation import truncated_solution
 from kinform.model.arrays import Array
 
 
@@ -94,14 +95,14 @@ def _regular(pose: Pose, mixes: Array, stride: float, step: float) -> tuple[floa
     q, kept = pose.q, 1.0
     for _ in range(round(step / stride)):
         ahead = q + stride * mixes
-        q, residual, jacobian = _solve(pose.system, ahead, stride, pose.rank)
+        q, residual, jacobian = _solve(pose.system, ahead, stride, pose)
         kept = min(kept, 1.0 - float(np.abs(((ahead - q) * mixes).sum(axis=1)).max()) / stride)
         if residual.max() > constants.CLOSED * step or kept < constants.STEP_KEPT:
             return None
     worst = float(residual.max())
     if worst > constants.CLOSURE_ROUNDING:
         # misfit of the axes grows with the step, an obstruction of third or higher order with its powers
-        _, half, _ = _solve(pose.system, pose.q + 0.5 * stride * mixes, stride, pose.rank)
+        _, half, _ = _solve(pose.system, pose.q + 0.5 * stride * mixes, stride, pose)
         if float(half.max()) < constants.HIGHER_ORDER * worst * stride / step:
             return None
     values = np.linalg.svd(jacobian, compute_uv=False)
@@ -113,34 +114,44 @@ def _regular(pose: Pose, mixes: Array, stride: float, step: float) -> tuple[floa
     )
 
 
-def _solve(system: LoopSystem, start: Array, step: float, rank: int | None = None) -> tuple[Array, Array, Array]:
+def _solve(system: LoopSystem, start: Array, step: float, pose: Pose | None = None) -> tuple[Array, Array, Array]:
     """Configurations (D, n) near `start` (D, n) that close the loops as well as Gauss–Newton can, their residuals (D,)
     and Jacobians (D, 6 loops, n).
 
-    No iteration moves by more than half of `step`. With `rank` only so many singular values are used, and convergence
-    is quadratic or there is none.
+    No iteration moves by more than half of `step`. With a `pose` only as many singular values are used as are its rank,
+    and convergence is quadratic or there is none.
     """
     q = start.copy()
     active = np.arange(len(q))
-    for _ in range(constants.SLOW_ITERATIONS if rank is None else constants.FAST_ITERATIONS):
+    for _ in range(constants.SLOW_ITERATIONS if pose is None else constants.FAST_ITERATIONS):
         closed = system.close(q[active])
-        jacobian, missed = closed.jacobian, closed.residual
-        if rank is not None:
-            jacobian, missed = _reduced(jacobian, missed)
-        left, values, right = np.linalg.svd(jacobian, full_matrices=False)
-        used = values > constants.FINEST_VALUE * values.max(axis=1, initial=1e-300, keepdims=True)
-        if rank is not None:
-            used[:, rank:] = False
-        parts = np.einsum("dri,dr->di", left, missed)
-        change = -np.einsum("di,din->dn", np.where(used, parts / np.where(used, values, 1.0), 0.0), right)
+        change = -_solutions(closed.jacobian, closed.residual, pose)
         size = np.linalg.norm(change, axis=1)
         change *= np.minimum(1.0, constants.LONGEST_CHANGE * step / np.maximum(size, 1e-300))[:, None]
         q[active] += change
-        active = active[size > (constants.SLOW_CHANGE if rank is None else constants.FAST_CHANGE)]
+        active = active[size > (constants.SLOW_CHANGE if pose is None else constants.FAST_CHANGE)]
         if not len(active):
             break
     closed = system.close(q)
     return q, np.abs(closed.residual).max(axis=1, initial=0.0), closed.jacobian
+
+
+def _solutions(jacobian: Array, missed: Array, pose: Pose | None) -> Array:
+    """(D, n) least solutions of J x = missed, (D, m, n) and (D, m), by all singular values that are any, or by those
+    that count at a pose beside."""
+    if pose is not None:
+        jacobian, missed = _reduced(jacobian, missed)
+        if jacobian.shape[2] >= constants.REDUCED_RATES and jacobian.shape[1] == jacobian.shape[2]:
+            found = [truncated_solution(*equations, pose.free) for equations in zip(jacobian, missed, strict=True)]
+            sure = [solution for solution in found if solution is not None]
+            if len(sure) == len(found):
+                return np.array(sure)
+    left, values, right = np.linalg.svd(jacobian, full_matrices=False)
+    used = values > constants.FINEST_VALUE * values.max(axis=1, initial=1e-300, keepdims=True)
+    if pose is not None:
+        used[:, pose.rank :] = False
+    parts = np.einsum("dri,dr->di", left, missed)
+    return np.asarray(np.einsum("di,din->dn", np.where(used, parts / np.where(used, values, 1.0), 0.0), right))
 
 
 def _reduced(jacobian: Array, residual: Array) -> tuple[Array, Array]:

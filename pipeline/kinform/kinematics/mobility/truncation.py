@@ -1,0 +1,40 @@
+"""Least changes that satisfy equations in as many directions as count, the least singular ones left out.
+
+Of a triangle R with singular values down to those that count and few that do not, the few singular vectors of the rest
+are found by inverse iteration, from those of a triangle nearby (Golub and Van Loan, Matrix Computations, 8.2): each
+step is a substitution. Without them in the right side and in the solution, a substitution more is the truncated
+solution. All singular values are asked for only where that does not converge, as where no gap parts what counts from
+what does not.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinform.foundation.algebra.vectors import norm
+from kinform.kinematics import constants
+from kinform.model.arrays import Array
+
+
+def truncated_solution(triangle: Array, right: Array, left_out: Array) -> Array | None:
+    """(n,) the least x with triangle (n, n) · x = right (n,) but for its least singular values, as many as `left_out`
+    (k, n) has rows: orthonormal, near their right singular vectors. None where it is not found to rounding."""
+    from scipy.linalg import solve_triangular
+
+    size = norm(triangle)
+    if float(np.abs(np.diag(triangle)).min()) <= constants.LEAST_DIAGONAL * size:
+        return None
+    inner = left_out.T
+    for _ in range(constants.INVERSE_ITERATIONS):
+        outer = np.linalg.qr(solve_triangular(triangle, inner, trans="T", check_finite=False))[0]
+        inner = np.linalg.qr(solve_triangular(triangle, outer, check_finite=False))[0]
+        image, preimage = triangle @ inner, triangle.T @ outer
+        missed = norm(image - outer @ (outer.T @ image)) + norm(preimage - inner @ (inner.T @ preimage))
+        if missed < constants.CONVERGED_VECTORS * size:
+            break
+    else:
+        return None
+    x = solve_triangular(triangle, right - outer @ (outer.T @ right), check_finite=False)
+    x = x - inner @ (inner.T @ x)
+    # a singular value that counts, but is hardly one
+    return np.asarray(x) if norm(x) * constants.FINEST_VALUE * size < norm(right) else None
