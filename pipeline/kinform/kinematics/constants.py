@@ -456,6 +456,8 @@ NAMED_CONTACT_AXIS = 0.02
 """Directions of contacts this near (sine) to an axis of the world have its name: contacts are not snapped."""
 SITE_GAP = 0.25
 """Patches whose gap is below this share of the radius of the smaller one belong together."""
+FEW_OF_SITE = 4
+"""One of so many samples is looked at before all are, where patches may lie together."""
 HELD_TWICE = 1e-9
 """1 − cosine of directions that two sites both hold."""
 MOST_SORTED_LOOPS = 60

@@ -71,7 +71,7 @@ def normalised(vectors: Array) -> Array:
 def norm(vector: Array) -> float:
     """The length of a vector, or the root of the sum of squares of any array, to the bits of np.linalg.norm: that asks
     for an order, an axis and a type first, which takes ten times as long as a product of three."""
-    flat = vector.ravel(order="K")
+    flat = vector if vector.ndim == 1 else vector.ravel(order="K")
     return math.sqrt(flat.dot(flat))
 
 

@@ -120,8 +120,9 @@ def _neighbours(loci: Sequence[Locus], sigmas: float) -> list[tuple[int, int]]:
     lines = _Lines(loci)
     pairs: set[tuple[int, int]] = set()
     for members in around.values():
+        every = np.array(members)
         for n, i in enumerate(members[:-1]):
-            others = np.array(members[n + 1 :])
+            others = every[n + 1 :]
             pairs.update((i, int(j)) for j in others[lines.may_meet(i, others, sigmas)])
     return sorted(pairs)
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import canonical, cross, norm, perpendicular
+from kinform.foundation.algebra.vectors import canonical, cross, norm, perpendicular, sine
 from kinform.kinematics.axes.bounds import MoveBounds
 from kinform.kinematics.axes.concurrence import Locus, meeting_shifts
 from kinform.kinematics.constants import DIRECTION_DECIMALS, MET, RCOND, SIGMAS
@@ -58,7 +58,7 @@ class _Axis:
 
     def turn(self, direction: Array) -> float:
         """Sine of the angle by which it would be turned to this direction."""
-        return norm(cross(self.direction, direction))
+        return sine(self.direction, direction)
 
     def shift(self, place: Array) -> float:
         """m: by which it would be shifted to a line or centre through this place, once it has its direction."""
@@ -97,7 +97,7 @@ class _Line:
 
 def snap_axes(joints: Sequence[Joint], bounds: MoveBounds) -> tuple[Joint, ...]:
     """The joints with snapped axes and points, none moved by more than its bounds."""
-    axes = [a for a in (_axis(k, joint, bounds) for k, joint in enumerate(joints)) if a is not None]
+    axes = _axes(joints, bounds)
     lines = _lines([a for a in axes if a.axis is not None])
     lines += [_Line((a,), None, None) for a in axes if a.axis is None]
     placed = [k for k, line in enumerate(lines) if line.direction is None or line.members[0].line]
@@ -126,23 +126,25 @@ def _lines(axes: Sequence[_Axis]) -> list[_Line]:
     return lines
 
 
-def _axis(index: int, joint: Joint, bounds: MoveBounds) -> _Axis | None:
-    if joint.type in ("general", "universal") or (joint.axis is None and joint.type != "spherical"):
-        return None
-    (angle, position), (most_angle, most_distance) = bounds.sigma[index], bounds.most[index]
-    allowed = float(bounds.allowed[index, 1])
-    return _Axis(
-        joint=index,
-        name=joint.name,
-        axis=joint.axis,
-        point=np.zeros(3) if joint.point is None else joint.point,
-        line=joint.type in LINES,
-        angle=0.0 if joint.axis is None else float(angle),
-        position=float(position),
-        most_angle=float(most_angle),
-        most_distance=float(most_distance),
-        allowed=allowed,
-    )
+def _axes(joints: Sequence[Joint], bounds: MoveBounds) -> list[_Axis]:
+    """Of the joints that have one, or a centre."""
+    of_joints = zip(joints, bounds.sigma.tolist(), bounds.most.tolist(), bounds.allowed.tolist(), strict=True)
+    return [
+        _Axis(
+            joint=index,
+            name=joint.name,
+            axis=joint.axis,
+            point=np.zeros(3) if joint.point is None else joint.point,
+            line=joint.type in LINES,
+            angle=0.0 if joint.axis is None else angle,
+            position=position,
+            most_angle=most_angle,
+            most_distance=most_distance,
+            allowed=allowed,
+        )
+        for index, (joint, (angle, position), (most_angle, most_distance), (_, allowed)) in enumerate(of_joints)
+        if joint.type == "spherical" or (joint.axis is not None and joint.type not in ("general", "universal"))
+    ]
 
 
 def _bundles(axes: Sequence[_Axis]) -> list[list[_Axis]]:
@@ -151,8 +153,8 @@ def _bundles(axes: Sequence[_Axis]) -> list[list[_Axis]]:
     most = np.array([a.most_angle for a in axes])
 
     def parallel(leaders: Ints, k: int) -> Flags:
-        sine = np.linalg.norm(cross(directions[leaders], directions[k]), axis=1)
-        return np.asarray(sine <= most[leaders] + most[k])
+        off = np.linalg.norm(cross(directions[leaders], directions[k]), axis=1)
+        return np.asarray(off <= most[leaders] + most[k])
 
     def excess(bundle: Sequence[_Axis]) -> list[float]:
         mean = _mean_direction(bundle)

@@ -113,7 +113,11 @@ def _idle_turns(held: _Held) -> Array:
     patches = [
         replace(p, kind="sphere", point=held.balls[k]) if k in held.balls else p for k, p in enumerate(held.patches)
     ]
-    lines = [line for line in _candidates(patches, held.size) if all(_turns_about(patch, line[0]) for patch in patches)]
+    lines = [
+        (axis, point)
+        for axis, point in _candidates(patches, held.size)
+        if all(_turns_about(patch, axis, point, held.size) for patch in patches)
+    ]
     if not lines or any(not joint.freedoms for joint in held.joints):
         return np.zeros((0, 6))
     frame = Frame.of(np.concatenate([p.points for p in held.patches]))
@@ -124,7 +128,7 @@ def _idle_turns(held: _Held) -> Array:
         twist = rotation(axis, point, frame)
         if (
             all(norm(twist - free @ (free.T @ twist)) < constants.IDLE_AXIS for free in spaces)
-            and all(_invariant(patch, axis, point, held.size) for patch in patches)
+            and all(_goes_all_round(patch, axis, point) for patch in patches if patch.kind == "plane")
             and not any(_names(wanted, axis, point, leaf, held.size) for wanted in held.intended)
         ):
             turns.append(twist)
@@ -158,18 +162,17 @@ def _candidates(patches: Sequence[Patch], size: float) -> list[tuple[Array, Arra
     return lines
 
 
-def _turns_about(patch: Patch, axis: Array) -> bool:
-    """Is it of a surface that turns onto itself about axes of this direction?"""
-    if patch.kind == "sphere":
-        return True
-    return (patch.kind == "plane" or patch.kind in COAXIAL) and sine(patch.axis, axis) < constants.IDLE_AXIS
+def _turns_about(patch: Patch, axis: Array, point: Array, size: float) -> bool:
+    """Does the surface of the patch turn onto itself about the axis?"""
+    if patch.kind == "plane":
+        return sine(patch.axis, axis) <= constants.IDLE_AXIS
+    if patch.kind != "sphere" and (patch.kind not in COAXIAL or sine(patch.axis, axis) >= constants.IDLE_AXIS):
+        return False
+    return norm(cross(patch.point - point, axis)) <= abs(patch.gap) + constants.IDLE_PLACE * size
 
 
-def _invariant(patch: Patch, axis: Array, point: Array, size: float) -> bool:
-    """Does the patch, which turns onto itself about axes of this direction, do so about this one, as bounded as it
-    is?"""
-    if patch.kind != "plane":
-        return norm(cross(patch.point - point, axis)) <= abs(patch.gap) + constants.IDLE_PLACE * size
+def _goes_all_round(patch: Patch, axis: Array, point: Array) -> bool:
+    """Does a patch of a plane across the axis turn onto itself, as bounded as it is?"""
     # the middle of what turns onto itself is on the axis, whatever the attitude; and it goes all round
     arm = patch.points - point
     arm = arm - np.outer(arm @ axis, axis)
@@ -188,5 +191,5 @@ def _names(wanted: IntendedJoint, axis: Array, point: Array, leaf: bool, size: f
         return True
     if wanted.type not in ("revolute", "cylindrical", "screw") or wanted.axis is None or wanted.point is None:
         return False
-    parallel = norm(cross(wanted.axis, axis)) < constants.INTENDED_AXIS
+    parallel = sine(wanted.axis, axis) < constants.INTENDED_AXIS
     return parallel and norm(cross(wanted.point - point, axis)) < constants.INTENDED_PLACE * size

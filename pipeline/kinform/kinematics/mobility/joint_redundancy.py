@@ -14,7 +14,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, rows, scaled, span
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.graphs.graph import UnionFind
-from kinform.kinematics.constants import HELD_TWICE, NAMED_CONTACT_AXIS, SITE_GAP
+from kinform.kinematics.constants import FEW_OF_SITE, HELD_TWICE, NAMED_CONTACT_AXIS, SITE_GAP
 from kinform.kinematics.pair.evidence import COAXIAL
 from kinform.kinematics.wording import Locked, locked_text, locked_wrenches, rows_too_many
 from kinform.model.arrays import Array
@@ -80,7 +80,9 @@ def sites(patches: Sequence[Patch]) -> list[list[int]]:
             near = SITE_GAP * min(radii[k], radii[n])
             if norm(centres[k] - centres[n]) - radii[k] - radii[n] > near:
                 continue
-            if _distance(patches[k].points - centres[k], patches[n].points - centres[k]) <= near:
+            a, b = patches[k].points - centres[k], patches[n].points - centres[k]
+            # where they lie together some of the samples mostly tell
+            if _distance(a[::FEW_OF_SITE], b[::FEW_OF_SITE]) <= near or _distance(a, b) <= near:
                 sets.union(k, n)
     groups: dict[int, list[int]] = {}
     for k in range(len(patches)):

@@ -318,10 +318,11 @@ def _push(start: int, rest: int, sides: dict[int, list[_Side]], direction: Array
 
 
 def _in_the_way(side: _Side, direction: Array) -> bool:
-    cone = side.cone
-    if len(cone.fixed) and float(np.abs(cone.fixed[:, 3:] @ direction).max()) > CONE_HELD:
+    held = side.cone.fixed[:, 3:] @ direction
+    if any(abs(speed) > CONE_HELD for speed in held.tolist()):
         return True
-    return bool((side.sign * (cone.rows[:, 3:] @ direction)).min() < -CONE_HELD)
+    speeds = side.cone.rows[:, 3:] @ direction
+    return bool(speeds.min() < -CONE_HELD if side.sign > 0.0 else speeds.max() > CONE_HELD)
 
 
 def _ways(group: set[int], sides: dict[int, list[_Side]]) -> tuple[Release, ...]:
