@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, norm
+from kinform.foundation.algebra.vectors import box, cross, norm
 from kinform.model.arrays import Array
 
 
@@ -26,7 +26,7 @@ class Frame:
     @staticmethod
     def of(points: Array) -> Frame:
         """Centre and half diagonal of the box of the points (n, 3)."""
-        low, high = points.min(axis=0), points.max(axis=0)
+        low, high = box(points)
         half = 0.5 * norm(high - low)
         return Frame(0.5 * (low + high), half if half > 0.0 else 1.0)
 

@@ -62,6 +62,13 @@ def weighted_mean(points: Array, weights: Array) -> Array:
     return np.asarray((points * column).sum(axis=0) / column.sum(axis=0))
 
 
+def box(points: Array) -> tuple[Array, Array]:
+    """(3,) least and greatest coordinates of points (n, 3): along columns that are stored as such, many times as fast
+    as across rows of three."""
+    columns = np.ascontiguousarray(points.T)
+    return columns.min(axis=1), columns.max(axis=1)
+
+
 def normalised(vectors: Array) -> Array:
     """Vectors (…, 3) of length one; zero vectors stay."""
     length = np.sqrt(np.einsum("...i,...i", vectors, vectors))

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import norm
+from kinform.foundation.algebra.vectors import box, norm
 from kinform.kinematics.constants import EXACT_AXIS, SIGMAS
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
@@ -85,5 +85,5 @@ def _extent(touching: Sequence[Patch], reach: float) -> float:
     points = [p.points for p in touching if len(p.points)]
     if not points:
         return reach
-    every = np.concatenate(points)
-    return norm(every.max(axis=0) - every.min(axis=0))
+    low, high = box(np.concatenate(points))
+    return norm(high - low)

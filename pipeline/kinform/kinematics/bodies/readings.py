@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, foot, norm
+from kinform.foundation.algebra.vectors import box, cross, foot, norm
 from kinform.kinematics.bodies.stated_joints import Pair, pair_between
 from kinform.kinematics.constants import INTENDED_AXIS, ON_ONE_LINE, READING_PLACE
 from kinform.kinematics.pair.joint import reading_of
@@ -83,8 +83,8 @@ def _is(joint: Joint, intended: IntendedJoint, patches: Sequence[Patch]) -> bool
     if intended.point is None or joint.point is None or joint.type in ("prismatic", "planar"):
         return True
     apart = joint.point - foot(intended.point, joint.axis, joint.point)
-    box = np.ptp(np.concatenate([patches[k].points for k in joint.patches]), axis=0)
-    return norm(apart) <= READING_PLACE * norm(box)
+    low, high = box(np.concatenate([patches[k].points for k in joint.patches]))
+    return norm(apart) <= READING_PLACE * norm(high - low)
 
 
 def _pins(decided: Decided, size: float) -> set[BodyName]:

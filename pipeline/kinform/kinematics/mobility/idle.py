@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, rotation, scaled, span, twist_at_origin
-from kinform.foundation.algebra.vectors import cross, norm, sine, widest_gap
+from kinform.foundation.algebra.vectors import cross, dot, norm, sine, widest_gap
 from kinform.kinematics import constants
 from kinform.kinematics.bodies.stated_joints import Pair, pair_between
 from kinform.kinematics.loops.joint_graph import JointGraph
@@ -176,7 +176,7 @@ def _goes_all_round(patch: Patch, axis: Array, point: Array) -> bool:
     # the middle of what turns onto itself is on the axis, whatever the attitude; and it goes all round
     arm = patch.points - point
     arm = arm - np.outer(arm @ axis, axis)
-    reach = float(patch.weights @ np.sqrt(np.square(arm).sum(axis=1)))
+    reach = float(patch.weights @ np.sqrt(dot(arm, arm)))
     if norm(patch.weights @ arm) > constants.IDLE_MIDDLE * reach:
         return False
     return widest_gap(arm, axis) < constants.IDLE_OPEN

@@ -12,7 +12,7 @@ from math import sqrt
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, rows, scaled, span
-from kinform.foundation.algebra.vectors import cross, norm
+from kinform.foundation.algebra.vectors import cross, dot, norm
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics.constants import FEW_OF_SITE, HELD_TWICE, NAMED_CONTACT_AXIS, SITE_GAP
 from kinform.kinematics.pair.evidence import COAXIAL
@@ -72,7 +72,7 @@ def sites(patches: Sequence[Patch]) -> list[list[int]]:
     """Indices of patches that lie together, by their first."""
     sets = UnionFind(len(patches))
     centres = [p.points.mean(axis=0) for p in patches]
-    radii = [sqrt(float(np.square(p.points - c).sum(axis=1).max())) for p, c in zip(patches, centres, strict=True)]
+    radii = [_radius(p.points - c) for p, c in zip(patches, centres, strict=True)]
     for k in range(len(patches)):
         for n in range(k):
             if sets.find(k) == sets.find(n):
@@ -90,9 +90,14 @@ def sites(patches: Sequence[Patch]) -> list[list[int]]:
     return list(groups.values())
 
 
+def _radius(points: Array) -> float:
+    """Greatest distance of points (n, 3) from the origin."""
+    return sqrt(float(dot(points, points).max()))
+
+
 def _distance(a: Array, b: Array) -> float:
     """Least distance between points (n, 3) and (m, 3) near to the origin."""
-    square = (a**2).sum(axis=1)[:, None] + (b**2).sum(axis=1) - 2.0 * (a @ b.T)
+    square = dot(a, a)[:, None] + dot(b, b) - 2.0 * (a @ b.T)
     return sqrt(max(float(square.min()), 0.0))
 
 

@@ -44,7 +44,7 @@ def constraint_matrix(
     for k, start, end in zip(used, bounds[:-1].tolist(), bounds[1:].tolist(), strict=True):
         if k in owner:
             basis, of_patch = free[owner[k].name], relative[start:end]
-            relative[start:end] = of_patch - (of_patch @ basis) @ basis.T
+            of_patch -= (of_patch @ basis) @ basis.T
     counts = np.diff(bounds)
     ends = np.array([[column[part] for part in patches[k].parts] for k in used], dtype=np.int64).reshape(-1, 2)
     sign = np.repeat(np.where(ends[:, 0] < ends[:, 1], 1.0, -1.0), counts)[:, None]

@@ -243,11 +243,9 @@ def _sets(
     sides = _sides(links, sorted(opened), together)
     out: dict[tuple[BodyName, ...], Separation] = {}
     missing = 0
-    for start in sorted(sides):
-        if start == together.find(ground):
-            continue
-        group = _smallest(start, together.find(ground), sides)
-        ways = _ways(group, sides)
+    rest = together.find(ground)
+    groups = [_smallest(start, rest, sides) for start in sorted(sides) if start != rest]
+    for group, ways in zip(groups, _ways(groups, sides), strict=True):
         if not ways:
             missing += 1
             continue
@@ -325,23 +323,36 @@ def _in_the_way(side: _Side, direction: Array) -> bool:
     return bool(speeds.min() < -CONE_HELD if side.sign > 0.0 else speeds.max() > CONE_HELD)
 
 
-def _ways(group: set[int], sides: dict[int, list[_Side]]) -> tuple[Release, ...]:
-    """How the group, as one body, leaves what it touches."""
-    border = [side for g in sorted(group) for side in sides[g] if side.other not in group]
-    if not border:
-        return ()
-    if len(border) == 1 and len(border[0].slides):  # what it does by this contact alone is known
-        slides = border[0].slides + 0.0
-        order = np.lexsort(np.round(slides, 6).T)[::-1]
-        return tuple(
-            release_of(np.concatenate([np.zeros(3), slide]), border[0].cone.frame, extreme=border[0].extreme)
-            for slide in slides[order]
-        )
+def _ways(groups: Sequence[set[int]], sides: dict[int, list[_Side]]) -> list[tuple[Release, ...]]:
+    """How each of the groups, as one body, leaves what it touches."""
+    borders = [[side for g in sorted(group) for side in sides[g] if side.other not in group] for group in groups]
+    alone = [len(border) == 1 and len(border[0].slides) > 0 for border in borders]
+    cones = [_cone_beside(border) for border, known in zip(borders, alone, strict=True) if border and not known]
+    loose = zip(cones, certainly_held(cones), strict=True)
+    out: list[tuple[Release, ...]] = []
+    for border, known in zip(borders, alone, strict=True):
+        if known:
+            out.append(_ways_of(border[0]))
+            continue
+        cone, held = next(loose) if border else (None, True)
+        out.append(() if held or cone is None else leaving_of(cone, turns=False).releases)
+    return out
+
+
+def _ways_of(side: _Side) -> tuple[Release, ...]:
+    """How a body leaves by the one contact that it has: that is known."""
+    slides = side.slides + 0.0
+    order = np.lexsort(np.round(slides, 6).T)[::-1]
+    return tuple(
+        release_of(np.concatenate([np.zeros(3), slide]), side.cone.frame, extreme=side.extreme)
+        for slide in slides[order]
+    )
+
+
+def _cone_beside(border: Sequence[_Side]) -> Cone:
+    """The cone that all contacts of a group leave it."""
     frame = border[0].cone.frame if len(border) == 1 else _common([side.cone.frame for side in border])
     fixed = [rows_in_frame(side.cone.fixed, side.cone.frame, frame) for side in border]
     rows = [side.sign * rows_in_frame(side.cone.rows, side.cone.frame, frame) for side in border]
     held = split_directions(unit_rows(np.concatenate(fixed)))[0].T
-    cone = Cone(held, rows_beside(unit_rows(np.concatenate(rows)), held), frame)
-    if certainly_held([cone])[0]:
-        return ()
-    return leaving_of(cone, turns=False).releases
+    return Cone(held, rows_beside(unit_rows(np.concatenate(rows)), held), frame)
