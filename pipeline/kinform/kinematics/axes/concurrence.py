@@ -121,6 +121,8 @@ def _neighbours(loci: Sequence[Locus], sigmas: float) -> list[tuple[int, int]]:
     pairs: set[tuple[int, int]] = set()
     for members in around.values():
         every = np.array(members)
+        if lines.parallel(every):
+            continue
         for n, i in enumerate(members[:-1]):
             others = every[n + 1 :]
             pairs.update((i, int(j)) for j in others[lines.may_meet(i, others, sigmas)])
@@ -136,6 +138,11 @@ class _Lines:
         self.centre = np.array([locus.axis is None for locus in loci], dtype=bool)
         self.angle = np.array([locus.angle for locus in loci])
         self.position = np.array([locus.position for locus in loci])
+
+    def parallel(self, members: Ints) -> bool:
+        """Whether all of these are lines of one direction, so that no two can meet."""
+        off = np.abs(self.axes[members] - self.axes[members[0]])
+        return not self.centre[members].any() and float(off.max()) < 0.25 * LEAST_CROSSING
 
     def may_meet(self, i: int, others: Ints, sigmas: float) -> Flags:
         """Which of the others are not parallel to line i, and near enough to it."""

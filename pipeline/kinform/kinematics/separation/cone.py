@@ -42,7 +42,9 @@ def unit_rows_of(rows: Array, group: Ints) -> tuple[Array, Ints]:
     """As `unit_rows`, of rows (n, d) that each belong to a group (n,), and the groups of those that are left."""
     size = np.sqrt(np.einsum("ij,ij->i", rows, rows))
     long = size > constants.LEAST_ROW
-    rows, group = rows[long] / size[long, None], group[long]
+    if not long.all():
+        rows, size, group = rows[long], size[long], group[long]
+    rows = rows / size[:, None]
     if len(rows) < 2:
         return rows, group
     keys = np.empty((len(rows), rows.shape[1] + 1), dtype=np.int64)
@@ -139,8 +141,10 @@ def grams(rows: Array, weight: Array, counts: Ints) -> Array:
     """(pairs, 6, 6) Σ w r rᵀ of each pair's rows, one pair's after the other's and at least one of each."""
     start = np.concatenate([[0], np.cumsum(counts)[:-1]])
     columns = np.ascontiguousarray(rows.T)
-    products = (columns * weight)[:, None] * columns
-    return np.ascontiguousarray(np.moveaxis(np.add.reduceat(products, start, axis=2), 2, 0))
+    out = np.empty((len(columns), len(columns), len(counts)))
+    for sums, column in zip(out, columns * weight, strict=True):
+        np.add.reduceat(column * columns, start, axis=1, out=sums)
+    return np.ascontiguousarray(np.moveaxis(out, 2, 0))
 
 
 def opening(rows: Array) -> Opening:
