@@ -19,7 +19,7 @@ for _i in range(3):
 CROSS = _CROSS.reshape(3, 9)
 """(3, 9): a @ CROSS is the matrix of a × …, row by row. A product is much faster than components."""
 
-_UNITS = np.eye(3)
+_UNITS = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 MANY = 3000
 """Numbers in an array from which on products column by column, to the same bits, are quicker: at 10,000 vectors six
@@ -84,10 +84,13 @@ def norm(vector: Array) -> float:
 
 def perpendicular(axis: Array) -> tuple[Array, Array]:
     """Two unit vectors that make a right-handed frame (u, v, axis) with the unit axis (3,)."""
-    size = [abs(x) for x in axis.tolist()]
-    u = cross(_UNITS[size.index(min(size))], axis)
+    x, y, z = axis.tolist()
+    size = [abs(x), abs(y), abs(z)]
+    a, b, c = _UNITS[size.index(min(size))]
+    u = np.array([b * z - c * y, c * x - a * z, a * y - b * x])
     u /= norm(u)
-    return u, cross(axis, u)
+    a, b, c = u.tolist()
+    return u, np.array([y * c - z * b, z * a - x * c, x * b - y * a])
 
 
 def sine(a: Array, b: Array) -> float:
@@ -105,15 +108,19 @@ def foot(point: Array, axis: Array, place: Array) -> Array:
 
 def canonical(axis: Array) -> Array:
     """Unit vector along `axis` (3,) with the sign of `canonical_sign`."""
-    unit: Array = axis / norm(axis)
+    x, y, z = (axis / norm(axis)).tolist()
+    sign = _sign(x, y, z)
     # adding zero turns −0 into 0
-    return canonical_sign(unit) * unit + 0.0
+    return np.array([sign * x + 0.0, sign * y + 0.0, sign * z + 0.0])
 
 
 def canonical_sign(unit: Array) -> float:
     """The sign that makes the largest component of a unit vector (3,) positive; among components within 1e-3 of the
     largest the first of x, y, z decides."""
-    x, y, z = unit.tolist()
+    return _sign(*unit.tolist())
+
+
+def _sign(x: float, y: float, z: float) -> float:
     least = max(abs(x), abs(y), abs(z)) - 1e-3
     first = x if abs(x) >= least else y if abs(y) >= least else z
     return 1.0 if first >= 0.0 else -1.0

@@ -71,7 +71,7 @@ def redundancy_within(joint: Joint, patches: Sequence[Patch], tolerances: Tolera
 def sites(patches: Sequence[Patch]) -> list[list[int]]:
     """Indices of patches that lie together, by their first."""
     sets = UnionFind(len(patches))
-    centres = [p.points.mean(axis=0) for p in patches]
+    centres = [np.full(len(p.points), 1.0 / len(p.points)) @ p.points for p in patches]
     radii = [_radius(p.points - c) for p, c in zip(patches, centres, strict=True)]
     for k in range(len(patches)):
         for n in range(k):
