@@ -64,7 +64,7 @@ class PairTest:
         self._X_AW = np.asarray(np.linalg.inv(self.X_WA))
         self._meshes = (shapes.mesh(first), shapes.mesh(second))
         self._surfaces = (shapes.surfaces_of(first), shapes.surfaces_of(second))
-        near = (shapes.borders(first), shapes.borders(second))
+        near = (shapes.borders(first), shapes.borders(second)) if mates else ([], [])
         self.mates = Mates(first, mates, self._surfaces[0], near, self.size)
         self.scrape = shapes.allowed(first, second).length
         """m: less deep, parts scrape, as mates may."""

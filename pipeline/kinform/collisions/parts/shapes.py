@@ -11,7 +11,7 @@ import numpy as np
 from kinform.collisions.constants import SCRAPE, SCRAPE_ANGLES, SPHERES
 from kinform.collisions.parts.slippage import Allowed, OwnMotions, Slippage
 from kinform.foundation.algebra.vectors import cross
-from kinform.foundation.meshes.boxes import box_corners, together
+from kinform.foundation.meshes.boxes import box_corners, facet_boxes, together
 from kinform.foundation.meshes.fcl_adapter import partial_model
 from kinform.foundation.meshes.index import MeshIndex, MeshStore
 from kinform.model.arrays import Array, Flags, Ints
@@ -146,12 +146,16 @@ class Shapes:
 
 def _spheres(mesh: Mesh) -> tuple[Array, Array]:
     """About facets that lie together."""
-    corners = mesh.vertices[mesh.faces]
-    low, high = corners.min(axis=1), corners.max(axis=1)
+    low, high = facet_boxes(mesh.vertices, mesh.faces)
     order = together(low, high)
     starts = np.unique(np.linspace(0, len(order), SPHERES, endpoint=False).astype(int))
     low, high = np.minimum.reduceat(low[order], starts), np.maximum.reduceat(high[order], starts)
     middle = 0.5 * (low + high)
     rank = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(order))))
-    away = np.linalg.norm(corners[order] - middle[rank, None], axis=2).max(axis=1)
-    return middle, np.maximum.reduceat(away, starts)
+    corners = mesh.faces[order]
+    square = np.zeros(corners.shape)
+    for column, place in zip(mesh.vertices.T, middle.T, strict=True):
+        away = column[corners] - place[rank, None]
+        away *= away
+        square += away
+    return middle, np.sqrt(np.maximum.reduceat(square.ravel(), 3 * starts))

@@ -10,6 +10,7 @@ slippage analysis (Gelfand and Guibas 2004).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 
 from kinform.collisions.constants import DRIFT, EVEN
 from kinform.foundation.algebra.vectors import cross, perpendicular
+from kinform.foundation.sorting import ascending, heads
 from kinform.model.arrays import Array, Flags
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
@@ -41,10 +43,15 @@ class _Extent:
 def _extents(mesh: Mesh, surfaces: MeshSurfaces) -> _Extent:
     """Where the facets of each surface are."""
     count = len(surfaces.surfaces)
+    order = ascending(surfaces.labels, count)
+    ordered = surfaces.labels[order]
+    starts = heads(ordered).nonzero()[0]
     low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
-    corners = mesh.vertices[mesh.faces]
-    np.minimum.at(low, surfaces.labels, corners.min(axis=1))
-    np.maximum.at(high, surfaces.labels, corners.max(axis=1))
+    corners = mesh.faces[order].ravel()
+    for k, column in enumerate(np.ascontiguousarray(mesh.vertices.T)):
+        places = column[corners]
+        low[ordered[starts], k] = np.minimum.reduceat(places, 3 * starts)
+        high[ordered[starts], k] = np.maximum.reduceat(places, 3 * starts)
     return _Extent(0.5 * (low + high), 0.5 * np.linalg.norm(high - low, axis=1))
 
 
@@ -74,7 +81,7 @@ class OwnMotions:
 
     def __init__(self, mesh: Mesh, surfaces: MeshSurfaces):
         self._extent = _extents(mesh, surfaces)
-        motions = [_own_motions(surface) for surface in surfaces.surfaces]
+        motions = _own_motions(surfaces.surfaces)
         counts = np.array([len(kept) for kept in motions], dtype=np.int64)
         self._bases: list[tuple[NDArray[np.int64], Array]] = []
         for count in sorted(set(counts[counts > 0].tolist())):
@@ -106,20 +113,27 @@ class OwnMotions:
         )
 
 
-def _own_motions(surface: Surface) -> Array:
-    """(m, 6) twists that map the whole surface onto itself; of a plane of facets without area none are known."""
-    axis, point = surface.axis, surface.point
-    if surface.kind == "plane" and not axis.any():
-        return np.zeros((0, 6))
-    slide = np.concatenate([np.zeros(3), axis])
-    turn = np.concatenate([axis, cross(point, axis)])
+def _own_motions(surfaces: Sequence[Surface]) -> list[Array]:
+    """(m, 6) each, twists that map a whole surface onto itself; of a plane of facets without area none are known."""
+    if not surfaces:
+        return []
+    axes, points = (np.array([getattr(surface, name) for surface in surfaces]) for name in ("axis", "point"))
+    turns, slides = np.hstack([axes, cross(points, axes)]), np.hstack([np.zeros_like(axes), axes])
+    return [_of_kind(*each) for each in zip(surfaces, turns, slides, strict=True)]
+
+
+def _of_kind(surface: Surface, turn: Array, slide: Array) -> Array:
+    """(m, 6) such twists, by the turn and the slide along its axis."""
     if surface.kind == "plane":
-        u, v = perpendicular(axis)
-        return np.stack([turn, np.concatenate([np.zeros(3), u]), np.concatenate([np.zeros(3), v])])
+        if not surface.axis.any():
+            return np.zeros((0, 6))
+        twists = np.zeros((3, 6))
+        twists[0], twists[1:, 3:] = turn, perpendicular(surface.axis)
+        return twists
     if surface.kind == "cylinder":
         return np.stack([turn, slide])
     if surface.kind == "sphere":
-        return np.hstack([np.eye(3), cross(np.broadcast_to(point, (3, 3)), np.eye(3))])
+        return np.hstack([np.eye(3), cross(np.broadcast_to(surface.point, (3, 3)), np.eye(3))])
     if surface.kind in ("cone", "torus", "revolution"):
         return turn[None]
     if surface.kind == "extrusion":
