@@ -6,6 +6,7 @@ another does a part first meet it (`pair`)? The rooms are read in this order:
 
 1. `parts`: what is asked of one part. `slippage` says which of its surfaces a motion maps onto themselves; their facets
    are left out, so that journals, guides and threads need not be told from collisions by any depth.
+   `coarse_meshes` gives it fewer facets, for how far away it is.
 2. `pair`: a `Course` is how one part moves relative to another. `distance_bounds` goes along it in steps as long as the
    parts are apart. `advancement` then halves what is left of it with the facets that count (`prepared_pair`) until it
    has the first crossing that no mate explains (`facet_crossings`, `mate_surfaces`), or a point that came to be deep
@@ -24,5 +25,5 @@ from kinform.collisions.run_collisions import along
 
 __all__ = ["CODE_VERSION", "along", "ranges"]
 
-CODE_VERSION: int = 14
+CODE_VERSION: int = 15
 """Raised when the same input would give other ranges or collisions."""

@@ -12,8 +12,10 @@ import numpy as np
 
 # parts: what is asked of the facets of one part
 
-SPHERES = 96
-"""Spheres about the facets of a part."""
+COARSE_CELL = 0.015
+"""Side of the cells whose vertices become one, of the part itself: facets of fine details vanish, ..."""
+COARSE_WORTH = 0.5
+"""... and where more than this share of all are left, all are."""
 SCRAPE = 1e-3
 """By so much parts may overlap as they slide along each other: by rounding of their files and by what is left over
 where joints were fitted."""
@@ -28,15 +30,11 @@ EVEN = 1e-6
 
 SHORT_STEP = 0.01
 """Steps below this are short."""
-SPHERES_FAR = 0.1
-"""Spheres whose distance is more than this need no closer look."""
 STEPS_MOST = 60
 """Steps that are taken as wholes."""
 STEPS_TRIED = 8
 """Steps after which it is seen whether so many reach the end: a pair that stays near is followed with the facets that
 count, which are fewer."""
-FEW_FACETS = 0.4
-"""Share of a part's facets below which a model of them alone is worth its time."""
 CERTAIN = 1.0 - 1e-6
 """Share of a distance that is trusted."""
 WHOLES_TOUCH = 1e-6
@@ -105,6 +103,8 @@ BEHIND_DEPTH = 0.4
 """Share of the way behind a face by which its points are then inside."""
 RISE = 0.02
 """Share of what may be overlap of mates or chord errors by which the depth has to grow."""
+RISE_UNEVEN = 0.1
+"""Share of the same by which a depth that grows may have been greater before: it is measured at some points."""
 
 # pair/posed_pairs: pairs of bodies that move along given poses
 

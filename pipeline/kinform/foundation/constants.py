@@ -34,6 +34,11 @@ SIZE_OCTAVES = 20
 PLACE_BITS = 10
 """Bits of a coordinate along the Z-curve that facets are sorted along."""
 
+# meshes/depths
+
+DEPTH_FACETS = 128
+"""Facets of a group."""
+
 # meshes/index
 
 BALL_SHARE = 0.012

@@ -5,6 +5,7 @@ from __future__ import annotations
 import heapq
 import math
 from collections.abc import Generator, Iterator, Sequence
+from dataclasses import replace
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -40,19 +41,36 @@ class _Candidate:
     def course(self, sign: int, radius: float | None = None) -> Course:
         """The motion to one side, for points no further from the axis than `radius` (m), by default all that can
         meet."""
-        meets = None
-        if radius is not None and self._meetings is not None:
-            meets = self._meetings.towards(sign)
         if radius is None:
             radius = min(profile.largest for profile in self.profiles)
         along = float(abs(self._twist[:3] @ self._twist[3:]))
         speed = math.hypot(radius, along) if self._turning else 1.0
         moved = lru_cache(maxsize=64)(lambda s: displacement(sign * s * self._twist))
-        return Course(moved, lambda s: speed * s, meets=meets)
+        return Course(moved, lambda s: speed * s)
+
+    def followed(self, sign: int) -> Course:
+        """The motion to one side of the facets that can meet, and where they do, as far as that is known."""
+        assert self.test is not None
+        course, spans = self.course(sign, self.test[1]), self._meetings
+        return course if spans is None else replace(course, meets=spans.towards(sign))
 
     def wholes(self) -> Wholes:
         """The parts with all their facets."""
         return Wholes(self._shapes, *self.names)
+
+    def advance(self, wholes: Wholes, sign: int, s: float, end: float) -> tuple[float, bool]:
+        """A parameter after s up to which they are certainly apart, and whether they have to be followed from there:
+        where they come too near as wholes, it goes on with the facets that can meet."""
+        if wholes.exact:
+            assert self.test is not None
+            return wholes.step(self.course(sign, self.test[1]), s, end)
+        following, short = wholes.step(self.course(sign), s, end)
+        if not short:
+            return following, False
+        if self.test is None:
+            return math.inf, False
+        wholes.by(self.test[0])
+        return s, False
 
     @cached_property
     def test(self) -> tuple[PairTest, float] | None:
@@ -173,9 +191,9 @@ def _end(
     while entry is not None:
         candidate, free = entry
         if candidate.test is not None:
-            test, radius = candidate.test
+            test, _ = candidate.test
             fine = STOP_ANGLE if turning else STOP_LENGTH * test.size
-            course = candidate.course(sign, radius)
+            course = candidate.followed(sign)
             first = NOTHING if course.apart(free, reach) else first_crossing(test, course, reach, fine, start=free)
             if first.overlaps:
                 left_out.append(test.part_names)
@@ -210,19 +228,12 @@ def _in_order(
     waiting: list[tuple[float, int, Wholes | None]] = list(_apart(candidates, sign, start, reach))
     heapq.heapify(waiting)
     while waiting and waiting[0][0] < reach:
-        s, n, wholes = heapq.heappop(waiting)
-        candidate = candidates[n]
-        course = candidate.course(sign)
-        if wholes is None:
-            wholes = candidate.wholes()
-            if s <= start and wholes.touch(course.displacement(start)):
-                touching.append(candidate)
-                continue
-        s, short = wholes.step(course, s, reach)
-        if wholes.tried and s < reach and not short:
-            if candidate.test is None:
-                continue
-            wholes.few(candidate.test[0].facets)
+        s, n, known = heapq.heappop(waiting)
+        candidate, wholes = candidates[n], known or candidates[n].wholes()
+        if s <= start and wholes.exact and wholes.touch(candidate.course(sign).displacement(start)):
+            touching.append(candidate)
+            continue
+        s, short = candidate.advance(wholes, sign, s, reach)
         if short:
             reach = yield candidate, s
         elif s < reach:

@@ -273,13 +273,15 @@ class _Search:
     def _rise(self, right: float, fine: float, step: float) -> First:
         """Where surfaces that have crossed since the start began to go deeper into each other, up to `right`."""
         low, least = right, self._depth(right)
-        while low > self._start:
-            before = self.course.when(self.course.travel(low) - step, self._start, low)
-            depth = self._depth(before)
-            if depth >= least:
+        place, slack = right, self.state(right).crossing.slack
+        while place > self._start:
+            place = self.course.when(self.course.travel(place) - step, self._start, place)
+            depth = self._depth(place)
+            if depth >= least + constants.RISE_UNEVEN * slack:
                 break
-            low, least = before, depth
-        least += constants.RISE * self.state(right).crossing.slack
+            if depth < least:
+                low, least = place, depth
+        least += constants.RISE * slack
         return self._narrow(low, right, fine, lambda s: self._depth(s) > least)
 
     def _depth(self, s: float) -> float:

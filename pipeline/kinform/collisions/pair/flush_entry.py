@@ -35,7 +35,7 @@ class Probes:
             inside = other.contains(placed[near])
             deep, clear = near[inside], near[~inside]
             out[clear] = -other.away(placed[clear])
-            out[deep] = other.whole().depths(placed[deep])[0]
+            out[deep] = other.depths(placed[deep])
         return np.asarray(out)
 
 

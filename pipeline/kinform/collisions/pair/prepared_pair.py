@@ -138,7 +138,7 @@ class PairTest:
         """Whether points of one of two facets that count are deeper than `least` (m) inside the other part."""
         for name, points, _ in self._on(D, f, g):
             index = self._shapes.index(name)
-            deep = points[index.whole().depths(points)[0] > least]
+            deep = points[index.depths(points) > least]
             if len(deep) and index.contains(deep).any():
                 return True
         return False
@@ -254,7 +254,7 @@ class PairTest:
         for index, places, k in ((first, points, 0), (second, other, 1)):
             asked = np.flatnonzero(within[:, 1 - k] & ~within[:, k])
             if len(asked):
-                within[asked, k] = index.whole().depths(places[asked])[0] <= least
+                within[asked, k] = index.depths(places[asked]) <= least
         return np.flatnonzero(within.all(axis=1))
 
     def depth(self, D: Array, segments: Array, least: float = 0.0, finer: int = 1) -> float:
@@ -283,7 +283,7 @@ class PairTest:
             else inside
         )
         with at_work_on(*self.names):
-            total = first.whole().depths(middles[inside])[0] + second.whole().depths(other[inside])[0]
+            total = first.depths(middles[inside]) + second.depths(other[inside])
         deepest = float(total.max(initial=0.0))
         return deepest if deepest > least else 0.0
 

@@ -1,1 +1,1 @@
-"""What is asked of one part: surfaces that a motion maps onto themselves, borders, models, spheres."""
+"""What is asked of one part: surfaces that a motion maps onto themselves, borders, models."""

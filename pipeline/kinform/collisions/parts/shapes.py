@@ -1,4 +1,4 @@
-"""Parts with what collisions ask of them: surfaces that a motion maps onto themselves, borders, models, spheres."""
+"""Parts with what collisions ask of them: surfaces that a motion maps onto themselves, borders, models."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ from functools import cached_property
 import fcl
 import numpy as np
 
-from kinform.collisions.constants import SCRAPE, SCRAPE_ANGLES, SPHERES
+from kinform.collisions.constants import SCRAPE, SCRAPE_ANGLES
+from kinform.collisions.parts.coarse_meshes import coarse_mesh
 from kinform.collisions.parts.slippage import Allowed, OwnMotions, Slippage
 from kinform.foundation.algebra.vectors import cross
-from kinform.foundation.meshes.boxes import box_corners, facet_boxes, together
-from kinform.foundation.meshes.fcl_adapter import partial_model
+from kinform.foundation.meshes.boxes import box_corners
+from kinform.foundation.meshes.fcl_adapter import fcl_model, partial_model
 from kinform.foundation.meshes.index import MeshIndex, MeshStore
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Assembly, Mesh, Part
@@ -29,14 +30,12 @@ class Shapes:
     contacts: Contacts | None
     body_parts: dict[str, frozenset[str]] = field(default_factory=dict)
     """Parts of each body that have a mesh."""
-    at_rest: dict[frozenset[str], float] = field(default_factory=dict)
-    """m that pairs of parts are apart at least at the pose of the meshes, as far as it was asked."""
     _own: dict[str, OwnMotions] = field(default_factory=dict)
     _slippage: dict[tuple[str, bytes], Slippage] = field(default_factory=dict)
     _borders: dict[str, list[set[int]]] = field(default_factory=dict)
     _models: dict[tuple[str, bytes], fcl.BVHModel] = field(default_factory=dict)
     _store: MeshStore = field(default_factory=MeshStore)
-    _spheres: dict[str, tuple[Array, Array]] = field(default_factory=dict)
+    _coarse: dict[str, tuple[fcl.BVHModel, float]] = field(default_factory=dict)
     _patches: dict[tuple[str, str], list[Patch]] | None = None
     _parts: dict[str, Part] = field(default_factory=dict)
 
@@ -116,12 +115,13 @@ class Shapes:
             self._models[key] = partial_model(mesh.vertices, mesh.faces[facets])
         return self._models[key]
 
-    def spheres(self, name: str) -> tuple[Array, Array]:
-        """Middles (k, 3) and radii (k,) m of spheres that hold the facets of a part, part frame."""
+    def coarse(self, name: str) -> tuple[fcl.BVHModel, float]:
+        """FCL's model of a part by few facets, and how far (m) the part is off these at most; part frame."""
         mesh = self.mesh(name)
-        if mesh.digest not in self._spheres:
-            self._spheres[mesh.digest] = _spheres(mesh)
-        return self._spheres[mesh.digest]
+        if mesh.digest not in self._coarse:
+            few = coarse_mesh(mesh)
+            self._coarse[mesh.digest] = (self.index(name).bvh, 0.0) if few is None else (fcl_model(*few[:2]), few[2])
+        return self._coarse[mesh.digest]
 
     def moved_facets(self, first: str, second: str, twists: Array) -> tuple[Ints, Ints]:
         """Facets of two parts on surfaces that the motions `twists` (k, 6) do not map onto themselves; all without
@@ -142,20 +142,3 @@ class Shapes:
             for patch in self.contacts.patches if self.contacts is not None else ():
                 self._patches.setdefault(patch.parts, []).append(patch)
         return self._patches.get((min(first, second), max(first, second)), [])
-
-
-def _spheres(mesh: Mesh) -> tuple[Array, Array]:
-    """About facets that lie together."""
-    low, high = facet_boxes(mesh.vertices, mesh.faces)
-    order = together(low, high)
-    starts = np.unique(np.linspace(0, len(order), SPHERES, endpoint=False).astype(int))
-    low, high = np.minimum.reduceat(low[order], starts), np.maximum.reduceat(high[order], starts)
-    middle = 0.5 * (low + high)
-    rank = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(order))))
-    corners = mesh.faces[order]
-    square = np.zeros(corners.shape)
-    for column, place in zip(mesh.vertices.T, middle.T, strict=True):
-        away = column[corners] - place[rank, None]
-        away *= away
-        square += away
-    return middle, np.sqrt(np.maximum.reduceat(square.ravel(), 3 * starts))

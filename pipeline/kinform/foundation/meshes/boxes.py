@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.foundation import constants
+from kinform.foundation.sorting import ascending
 from kinform.model.arrays import Array, Ints
 
 
@@ -123,19 +124,32 @@ def _in_order(keys: Ints, most: int) -> Ints:
 
 def together(low: Array, high: Array) -> Ints:
     """An order in which neighbours are of like size and lie together: by octave of size, then along a Z-curve."""
-    count, dimensions = low.shape
-    if count == 0:
+    if not len(low):
         return np.zeros(0, np.int64)
     size = (high - low).max(axis=1)
     whole = max(float((high.max(axis=0) - low.min(axis=0)).max()), 1e-300)
     octave = np.clip(np.floor(np.log2(np.maximum(size, 1e-12 * whole) / whole)), -constants.SIZE_OCTAVES, 0).astype(
         np.int64
     )
+    return np.lexsort((_places(low, high), -octave)).astype(np.int64)
+
+
+def along_curve(low: Array, high: Array) -> Ints:
+    """An order of boxes (n, d) in which neighbours lie together, whatever their size: along a Z-curve."""
+    return (
+        ascending(_places(low, high), 1 << (low.shape[1] * constants.PLACE_BITS)) if len(low) else np.zeros(0, np.int64)
+    )
+
+
+def _places(low: Array, high: Array) -> Ints:
+    """(n,) where the middles of boxes (n, d) are along a Z-curve."""
+    dimensions = low.shape[1]
+    whole = max(float((high.max(axis=0) - low.min(axis=0)).max()), 1e-300)
     cell = np.clip(
         (0.5 * (low + high) - low.min(axis=0)) / whole * 2.0**constants.PLACE_BITS, 0, 2**constants.PLACE_BITS - 1
     ).astype(np.int64)
-    code = np.zeros(count, dtype=np.int64)
+    code = np.zeros(len(low), dtype=np.int64)
     for bit in range(constants.PLACE_BITS):
         for axis in range(dimensions):
             code |= ((cell[:, axis] >> bit) & 1) << (dimensions * bit + axis)
-    return np.lexsort((code, -octave)).astype(np.int64)
+    return code

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import fcl
 import numpy as np
 
@@ -42,6 +44,12 @@ def fcl_distance(
     """m between two such models, 0 where they touch or cross."""
     distance = fcl.distance(first, second, _DISTANCE, fcl.DistanceResult() if result is None else result)
     return max(float(distance), 0.0) / UNIT
+
+
+@cache
+def point_model() -> fcl.BVHModel:
+    """A triangle without size: FCL takes one that reaches through a facet for as far off as the facet's edges."""
+    return fcl_model(np.zeros((3, 3)), np.array([[0, 1, 2]]))
 
 
 def partial_model(vertices: Array, faces: Ints) -> fcl.BVHModel:

@@ -20,6 +20,7 @@ from kinform.foundation.constants import (
 )
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
+from kinform.foundation.meshes.depths import Depths
 from kinform.foundation.meshes.edges import SharedEdges, shared_edges
 from kinform.foundation.meshes.fcl_adapter import fcl_model, partial_model
 from kinform.foundation.meshes.near import Nearest
@@ -49,6 +50,7 @@ class MeshIndex:
         self._boxes: FacetBoxes | None = None
         self._rays: dict[int, Ray] = {}
         self._near: list[tuple[Nearest, float]] | None = None
+        self._depths: Depths | None = None
         self._table: SurfaceTable | None = None
         self._rings: tuple[Ring, ...] | None = None
         self.low: Array = mesh.vertices.min(axis=0)
@@ -191,6 +193,12 @@ class MeshIndex:
         surface, other = self.borders(surfaces).T
         np.maximum.at(rims, surface, chords[other])
         return rims
+
+    def depths(self, points: Array) -> Array:
+        """(n,) m distances of points (n, 3) of the part frame from the mesh: as of `whole`, without a model of it."""
+        if self._depths is None:
+            self._depths = Depths(self.mesh)
+        return self._depths.of(points)
 
     def away(self, points: Array) -> Array:
         """(n,) m that points (n, 3) of the part frame keep from the mesh at least: less than their distance, and

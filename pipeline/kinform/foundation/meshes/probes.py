@@ -10,7 +10,7 @@ the mesh's own frame: the BVH never has to be built again for another pose.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Protocol
 
 import fcl
@@ -20,7 +20,7 @@ from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.constants import HITS_A_PROBE, PROBED_FEW, SLIVER_WIDTH, STEEP_LEAST
 from kinform.foundation.meshes.boxes import facet_boxes
-from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, fcl_pose, partial_model
+from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, fcl_pose, partial_model, point_model
 from kinform.foundation.meshes.slivers import beside, meeting
 from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Ints
@@ -134,7 +134,7 @@ class Region:
 
     def depths(self, points: Array) -> tuple[Array, Ints]:
         """Distance (n,) m of points (n, 3) of the part frame to these facets, and the nearest of them (n,)."""
-        point = fcl.CollisionObject(_point())
+        point = fcl.CollisionObject(point_model())
         mesh = fcl.CollisionObject(self.bvh)
         distance, facet = np.zeros(len(points)), np.zeros(len(points), dtype=np.int64)
         for k, p in enumerate(UNIT * points):
@@ -160,9 +160,3 @@ class Region:
         mesh = other.index.mesh
         faces = mesh.faces if other.facets is None else mesh.faces[other.facets]
         return self.index.model_near(*facet_boxes(mesh.vertices @ X_SO[:3, :3].T + X_SO[:3, 3], faces))[0]
-
-
-@cache
-def _point() -> fcl.BVHModel:
-    """A triangle without size: FCL takes one that reaches through a facet for as far off as the facet's edges."""
-    return fcl_model(np.zeros((3, 3)), np.array([[0, 1, 2]]))
