@@ -12,10 +12,10 @@ from support.slots import lever_between_pegs
 from support.solids import assembly, box, part, random_pose, rod
 
 from kinform import collisions, contacts, kinematics, surfaces
-from kinform.collisions.driving import alone
 from kinform.collisions.driving.meeting_spans import TURN, meeting_spans
-from kinform.collisions.driving.swept_profiles import Profile
+from kinform.collisions.driving.swept_profiles import Profile, meeting
 from kinform.collisions.driving.swept_spheres import first_touch
+from kinform.collisions.pair.advancement import Search
 from kinform.collisions.pair.mate_surfaces import Kept
 from kinform.foundation.algebra.displacements import displacement
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_model, fcl_pose
@@ -72,6 +72,32 @@ def test_parts_meet_nowhere_but_where_it_is_said(kind, seed):
             assert (live[within] == meets).all()
     if size > 0.1:
         assert met
+
+
+@pytest.mark.parametrize("kind", ["turn", "slide"])
+@pytest.mark.parametrize("seed", range(6))
+def test_what_meets_in_a_piece_of_the_way_is_among_the_facets_that_can(kind, seed):
+    rng = np.random.default_rng(seed)
+    twist = twist_of(kind, random_pose(rng))
+    meshes = [shards(rng, 12, 0.35, off) for off in (0.0, [0.9, 0.2, 0.1])]
+    every = np.arange(12)
+    first, second = (Profile(*mesh, twist) for mesh in meshes)
+    found = meeting(first, second, every, every, MARGIN)
+    left_out = met = 0
+    for begin in np.linspace(-3.1, 2.8, 12):
+        facets = found.within(begin, begin + 0.3)
+        left_out += 24 - sum(map(len, facets))
+        for s in np.linspace(begin, begin + 0.3, 15):
+            D = displacement(s * twist)
+            models = [fcl.CollisionObject(fcl_model(*mesh)) for mesh in meshes]
+            models[1].setTransform(fcl_pose(D))
+            result = fcl.CollisionResult()
+            fcl.collide(*models, fcl.CollisionRequest(num_max_contacts=1000), result)
+            met += len(result.contacts)
+            assert {c.b1 for c in result.contacts} <= set(facets[0].tolist())
+            assert {c.b2 for c in result.contacts} <= set(facets[1].tolist())
+    assert met
+    assert left_out
 
 
 def test_a_fine_ring_is_met_no_further_than_its_teeth_reach():
@@ -143,16 +169,15 @@ def searched(monkeypatch, solids):
     """Pairs that are followed, with the poses that were tried of each, and the ranges."""
     tried = {}
 
-    def counted(test, course, *args, **kwargs):
-        asked = []
+    def counted(search, test, course, *args):
+        asked = set()
         whole = course.displacement
-        object.__setattr__(course, "displacement", lambda s: asked.append(s) or whole(s))
-        out = first_crossing(test, course, *args, **kwargs)
-        tried.setdefault(test.part_names, []).append(len(set(asked)))
-        return out
+        object.__setattr__(course, "displacement", lambda s: asked.add(s) or whole(s))
+        tried.setdefault(test.part_names, []).append(asked)
+        begin(search, test, course, *args)
 
-    first_crossing = alone.first_crossing
-    monkeypatch.setattr(alone, "first_crossing", counted)
+    begin = Search.__init__
+    monkeypatch.setattr(Search, "__init__", counted)
     made = assembly(*(part(name, solid, np.eye(4), 1e-3) for name, solid in solids.items()), ground=None)
     known = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
     touching = contacts.find(made, known)
@@ -171,4 +196,4 @@ def test_a_lever_is_followed_only_where_it_comes_to_its_pegs(monkeypatch):
     tried, ranges = searched(monkeypatch, lever_between_pegs())
     assert [item.status for item in ranges] == ["found"]
     assert sorted(len(times) for times in tried.values()) == [2]
-    assert max(max(times) for times in tried.values()) < 60
+    assert max(len(asked) for times in tried.values() for asked in times) < 60

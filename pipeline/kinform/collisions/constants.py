@@ -12,7 +12,7 @@ import numpy as np
 
 # parts: what is asked of the facets of one part
 
-COARSE_CELL = 0.015
+COARSE_CELL = 0.02
 """Side of the cells whose vertices become one, of the part itself: facets of fine details vanish, ..."""
 COARSE_WORTH = 0.5
 """... and where more than this share of all are left, all are."""
@@ -129,6 +129,11 @@ SCREW_TURNS = 20
 """Turns of a screw that are tried at once to each side."""
 SCREW_TURNS_MOST = 400
 """Turns of a screw that are tried in all, where its threads end."""
+WINDOW_TURN = 2.0 * math.pi / 32
+"""rad of a turn, ..."""
+WINDOW_SLIDE = 0.05
+"""... and share of the smaller part's diagonal of a slide, that parts which come near each other are followed with the
+facets that can meet there."""
 MEETING_MARGIN = 1e-6
 """Facets whose swept profiles come no nearer than this never meet."""
 

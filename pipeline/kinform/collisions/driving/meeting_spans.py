@@ -27,10 +27,8 @@ from kinform.collisions.constants import (
     TESTED_MOST,
     TESTED_TOGETHER,
 )
-from kinform.collisions.driving.swept_profiles import nearest
+from kinform.collisions.driving.swept_profiles import TURN, nearest, spanned
 from kinform.model.arrays import Array, Flags, Ints
-
-TURN = 2.0 * math.pi
 
 Along = Callable[[Ints, Ints, Array, Array], Flags]
 """Which facets of surfaces (n,) of one part and of the other, that overlap in boxes (n, 2), low and high, of what they
@@ -95,12 +93,7 @@ class Pieces:
         radius = nearest(flat)
         low = np.stack([radius, bottom], axis=1)
         high = np.stack([np.hypot(flat[..., 0], flat[..., 1]).max(axis=1), top], axis=1)
-        angle = np.arctan2(flat[..., 1], flat[..., 0])
-        apart = (angle - angle[:, :1] + math.pi) % TURN - math.pi
-        wide = margin / np.maximum(radius, 1e-300)
-        start, stop = angle[:, 0] + apart.min(axis=1) - wide, angle[:, 0] + apart.max(axis=1) + wide
-        whole = (stop - start >= math.pi) | (wide > 1.0)
-        start, stop = np.where(whole, 0.0, start % TURN), np.where(whole, TURN, start % TURN + stop - start)
+        start, stop = spanned(flat, radius, margin)
         return cls(corners, surface, low - margin, high + margin, start, stop)
 
     def some(self, chosen: Flags) -> Pieces:

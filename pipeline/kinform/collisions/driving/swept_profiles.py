@@ -7,6 +7,7 @@ shadow: facets whose boxes in these coordinates are apart never meet, over the w
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -16,6 +17,11 @@ from kinform.foundation.algebra.vectors import cross, perpendicular
 from kinform.foundation.meshes.boxes import facet_boxes
 from kinform.foundation.meshes.proximity import near_boxes
 from kinform.model.arrays import Array, Ints
+
+TURN = 2.0 * math.pi
+
+Sides = tuple[Array, Array]
+"""Lower and upper."""
 
 
 class Profile:
@@ -90,27 +96,111 @@ class Profile:
         """(n, 3, 3) m of facets' corners: across the axis and along it."""
         return np.concatenate([self._flat, self._heights[:, None]], axis=1)[self._faces[facets]]
 
+    def along(self, facets: Ints, margin: float) -> Sides:
+        """From where to where (n,) facets are along a turn (rad; from 0 to a whole turn where they may go round the
+        axis) or a slide (m), `margin` (m) more."""
+        corners = self._faces[facets]
+        if not self._turning:
+            low, high = facet_boxes(self._heights, corners)
+            return low - margin, high + margin
+        flat = self._flat[corners]
+        return spanned(flat, nearest(flat), margin)
+
     def radius(self, facets: Ints) -> float:
         """m: greatest distance of some facets from the axis of a turn."""
         return float(self._radius[self._faces[facets]].max(initial=0.0))
 
 
-def meeting(
-    first: Profile, second: Profile, facets_first: Ints, facets_second: Ints, margin: float
-) -> tuple[Ints, Ints]:
-    """Which of the facets `own` of one part and `other` of another can meet when the second moves along the twist."""
-    boxes = [first.boxes(facets_first), second.boxes(facets_second)]
-    facets = [facets_first, facets_second]
+@dataclass(frozen=True, eq=False)
+class Meeting:
+    """Facets of two parts that a motion of the second can bring together somewhere."""
+
+    facets: tuple[Ints, Ints]
+    kept: tuple[Sides, Sides]
+    """Boxes (n, 3) of what they keep."""
+    along: tuple[Sides, Sides] | None
+    """From where to where (n,) they are along the motion, rad of a turn, m of a slide; None where that is not told."""
+    turning: bool
+    unit: float
+    """m that a radian is counted as."""
+    margin: float
+    """m: nearer than this is met."""
+
+    def within(self, begin: float, end: float) -> tuple[Ints, Ints]:
+        """Those that can meet while the second moves from `begin` to `end` (rad or m).
+
+        What a facet sweeps over meanwhile is its box, drawn out along the motion; where these boxes are apart, facets
+        do not meet. Of a turn, boxes across the cut are taken to go all round.
+        """
+        if self.along is None:
+            return self.facets
+        (start, stop), (first, last) = self.along
+        places = [(start, stop), (first + begin, last + end)]
+        if self.turning:
+            places = [_cut(*side) for side in places]
+        boxes = [
+            (np.column_stack([low[:, :2], self.unit * start]), np.column_stack([high[:, :2], self.unit * stop]))
+            for (low, high), (start, stop) in zip(self.kept, places, strict=True)
+        ]
+        chosen = _near(boxes[0], boxes[1], self.margin)
+        return self.facets[0][chosen[0]], self.facets[1][chosen[1]]
+
+
+def _near(first: Sides, second: Sides, margin: float) -> tuple[Ints, Ints]:
+    """Which boxes (n, 3) of two kinds come near any of the other: none that does is missed."""
+    sides = [first, second]
+    chosen = [np.arange(len(first[0])), np.arange(len(second[0]))]
     for k in (0, 1, 0):
         # near_boxes asks about all that it is given
-        low, high = boxes[1 - k]
+        low, high = sides[1 - k]
         if not len(low):
-            return facets_first[:0], facets_second[:0]
-        near = (boxes[k][0] <= high.max(axis=0) + margin) & (boxes[k][1] >= low.min(axis=0) - margin)
-        kept = near.all(axis=1)
-        boxes[k], facets[k] = (boxes[k][0][kept], boxes[k][1][kept]), facets[k][kept]
-    near = near_boxes(*boxes[0], *boxes[1], margin)
-    return facets[0][near[0]], facets[1][near[1]]
+            return chosen[0][:0], chosen[1][:0]
+        near = np.ones(len(chosen[k]), dtype=bool)
+        for axis in range(3):
+            near &= sides[k][0][:, axis] <= high[:, axis].max() + margin
+            near &= sides[k][1][:, axis] >= low[:, axis].min() - margin
+        if not near.all():
+            sides[k], chosen[k] = (sides[k][0][near], sides[k][1][near]), chosen[k][near]
+    kept = near_boxes(*sides[0], *sides[1], margin)
+    return chosen[0][kept[0]], chosen[1][kept[1]]
+
+
+def _cut(start: Array, stop: Array) -> Sides:
+    """Where facets are on a turn (rad) that is cut open at 0."""
+    wide = stop - start
+    start = start % TURN
+    over = (wide >= TURN) | (start + wide > TURN)
+    return np.where(over, 0.0, start), np.where(over, TURN, start + wide)
+
+
+def meeting(first: Profile, second: Profile, facets_first: Ints, facets_second: Ints, margin: float) -> Meeting:
+    """The facets of some of one part and of another that can meet when the second moves along the twist."""
+    kept = [first.boxes(facets_first), second.boxes(facets_second)]
+    facets = [facets_first, facets_second]
+    chosen = _near(kept[0], kept[1], margin)
+    facets = [side[near] for side, near in zip(facets, chosen, strict=True)]
+    kept = [(low[near], high[near]) for (low, high), near in zip(kept, chosen, strict=True)]
+    turns, along = first.turns, None
+    if turns is not None:
+        along = first.along(facets[0], margin), second.along(facets[1], margin)
+        if turns and len(facets[0]):
+            # cut open opposite of the first
+            middle = 0.5 * (along[0][0] + along[0][1])
+            cut = math.atan2(-np.sin(middle).sum(), -np.cos(middle).sum())
+            along = (along[0][0] - cut, along[0][1] - cut), (along[1][0] - cut, along[1][1] - cut)
+    unit = min(first.largest, second.largest) if turns else 1.0
+    return Meeting((facets[0], facets[1]), (kept[0], kept[1]), along, bool(turns), unit, margin)
+
+
+def spanned(flat: Array, radius: Array, margin: float) -> Sides:
+    """(n,) rad from where to where flat triangles (n, 3, 2), no nearer to the origin than `radius` (n,), are about it,
+    `margin` (m) more; a whole turn where they may go round it."""
+    angle = np.arctan2(flat[..., 1], flat[..., 0])
+    apart = (angle - angle[:, :1] + math.pi) % TURN - math.pi
+    wide = margin / np.maximum(radius, 1e-300)
+    start, stop = angle[:, 0] + apart.min(axis=1) - wide, angle[:, 0] + apart.max(axis=1) + wide
+    whole = (stop - start >= math.pi) | (wide > 1.0)
+    return np.where(whole, 0.0, start % TURN), np.where(whole, TURN, start % TURN + stop - start)
 
 
 def nearest(flat: Array) -> Array:

@@ -46,56 +46,7 @@ class _Hit(First):
 
 def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, start: float = 0.0) -> First:
     """The first crossing of a pair while s goes from `start` up to `end`, to within `fine`."""
-    if test.empty:
-        return NOTHING
-    resolution = max(
-        constants.RESOLUTION * test.size, (course.travel(end) - course.travel(start)) / constants.WORK * 2.0
-    )
-    search = _Search(test, course)
-    search.begin(start)
-    left, stack = start, [end]
-    while stack:
-        right = stack[-1]
-        if course.meets is not None:
-            meets, until = course.meets(left)
-            if left < until < right:
-                stack.append(until)
-                right = until
-            if not meets:
-                entered = search.entered(left, right, end, fine, resolution) if right >= end else None
-                if entered is not None:
-                    return entered
-                left = search.skip(stack.pop())
-                continue
-        way = course.travel(right) - course.travel(left)
-        if (
-            search.state(left).distance + search.state(right).distance
-            > (1.0 + 1e-6) * way + constants.CROSSING_LEAST * test.size
-        ):
-            # nothing comes to be inside where no facets that count meet: the end is asked all the same
-            entered = search.entered(left, right, end, fine, resolution) if right >= end else None
-            if entered is not None:
-                return entered
-            left = search.pass_(left, stack.pop())
-            continue
-        if way > (constants.OVERLAPPING if search.overlaps else 1.0) * resolution and right - left > fine:
-            if search.tried > constants.WORK:
-                return First(None, None, None, search.overlaps, left)
-            stack.append(course.middle(left, right))
-            continue
-        if search.too_deep(right):
-            return search.sooner(right, fine, search.located(left, right, fine, resolution))
-        if search.through(left, right):
-            if right - left > fine:
-                stack.append(course.middle(left, right))
-                continue
-            if search.goes_in(left, end, resolution, fine):
-                return search.flat(left, right)
-        entered = search.entered(left, right, end, fine, resolution)
-        if entered is not None:
-            return entered
-        left = search.pass_(left, stack.pop())
-    return First(None, None, None, search.overlaps)
+    return NOTHING if test.empty else Search(test, course, start, end, fine).until(end, end)
 
 
 class _State:
@@ -123,27 +74,81 @@ class _State:
         return NONE if self.distance > 0.0 else self._test.crossing(self._D, self._hits)
 
 
-class _Search:
-    def __init__(self, test: PairTest, course: Course):
+class Search:
+    """The first crossing of a pair on a course from `start` up to at most `end`, looked for piece by piece, to within
+    `fine`."""
+
+    def __init__(self, test: PairTest, course: Course, start: float, end: float, fine: float):
         self.test, self.course = test, course
+        self._fine = fine
+        self._resolution = max(
+            constants.RESOLUTION * test.size, (course.travel(end) - course.travel(start)) / constants.WORK * 2.0
+        )
         self.overlaps = False
         """Overlapping since the start, by more than chord errors."""
         self.since: dict[SurfacePair, tuple[float, float] | None] = {}
         """Surfaces that cross, and the step in which they began to; None: at the start."""
         self.tried = 0
-        self._start = 0.0
         self.before = 0.0
         """m: overlap at the start."""
         self._known: dict[float, _State] = {}
         self._touching = False
         """Whether the pair touched where it was last asked."""
         self._inside: Inside | None = None
-        self._apart = 0.0
-        """Since where the parts have not overlapped."""
+        self._start = self._apart = self._left = start
+        """From where on it is looked for; since where the parts have not overlapped; up to where it was looked for."""
+        self.begin(start)
+
+    def until(self, limit: float, end: float) -> First:
+        """What is met up to `limit`, from where it was looked for last; points that come in are looked for a little
+        further, up to `end`."""
+        fine, resolution, left, stack = self._fine, self._resolution, self._left, [limit]
+        while stack:
+            right = stack[-1]
+            if self.course.meets is not None:
+                meets, until = self.course.meets(left)
+                if left < until < right:
+                    stack.append(until)
+                    right = until
+                if not meets:
+                    entered = self.entered(left, right, end, fine, resolution) if right >= end else None
+                    if entered is not None:
+                        return entered
+                    left = self.skip(stack.pop())
+                    continue
+            way = self.course.travel(right) - self.course.travel(left)
+            if (
+                self.state(left).distance + self.state(right).distance
+                > (1.0 + 1e-6) * way + constants.CROSSING_LEAST * self.test.size
+            ):
+                # nothing comes to be inside where no facets that count meet: the end is asked all the same
+                entered = self.entered(left, right, end, fine, resolution) if right >= end else None
+                if entered is not None:
+                    return entered
+                left = self.pass_(left, stack.pop())
+                continue
+            if way > (constants.OVERLAPPING if self.overlaps else 1.0) * resolution and right - left > fine:
+                if self.tried > constants.WORK:
+                    return First(None, None, None, self.overlaps, left)
+                stack.append(self.course.middle(left, right))
+                continue
+            if self.too_deep(right):
+                return self.sooner(right, fine, self.located(left, right, fine, resolution))
+            if self.through(left, right):
+                if right - left > fine:
+                    stack.append(self.course.middle(left, right))
+                    continue
+                if self.goes_in(left, end, resolution, fine):
+                    return self.flat(left, right)
+            entered = self.entered(left, right, end, fine, resolution)
+            if entered is not None:
+                return entered
+            left = self.pass_(left, stack.pop())
+        self._left = left
+        return First(None, None, None, self.overlaps)
 
     def begin(self, start: float) -> None:
         """What crosses at the start is no stop as long as it is no deeper than chord errors, and else not known."""
-        self._start = self._apart = start
         crossing = self.state(start).crossing
         self.since = dict.fromkeys(crossing.shared)
         self.overlaps = bool(crossing) and (self.test.overlapping or self.too_deep(start))

@@ -12,6 +12,9 @@ from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.model.arrays import Array, Ints
 
+Entry = tuple[float, float, Array]
+"""Parameters where a point is outside and where it is inside, and its place (3,) m in the frame of the first part."""
+
 
 class Inside:
     """The `probes` of a pair along a course, from `s` on: those that are deep inside there do not count until they are
@@ -49,7 +52,7 @@ class Inside:
         away = np.where(inside, self._test.loose - heights, np.abs(heights))
         self._due[chosen] = travelled + np.maximum(CERTAIN * away, self._stride)
 
-    def met(self, right: float, end: float, fine: float, *, every: bool = False) -> tuple[float, float, Array] | None:
+    def met(self, right: float, end: float, fine: float, *, every: bool = False) -> Entry | None:
         """Whether points are deep inside at `right`: to within `fine`, where the first of them came
         in, and its place (first part's frame). Those that just came in are looked for a little further, up to `end`.
         Only those that are due are asked for, unless `every`."""
@@ -71,8 +74,9 @@ class Inside:
         self._wait(travelled, asked, heights)
         counts = ~out & ~self._ignored[asked]
         deep = asked[counts & (heights > self._test.loose)]
-        if len(deep):
-            return self._first(deep, heights[np.isin(asked, deep)], right, fine)
+        first = self._first(deep, heights[np.isin(asked, deep)], right, fine)
+        if first is not None:
+            return first
         shallow = asked[came]
         if len(shallow):
             further = self._course.when(travelled + 2.0 * self._test.loose, right, end)
@@ -81,24 +85,39 @@ class Inside:
                 return self._first(shallow[later > self._test.loose], later[later > self._test.loose], further, fine)
         return None
 
-    def _first(self, points: Ints, heights: Array, right: float, fine: float) -> tuple[float, float, Array]:
+    def _first(self, points: Ints, heights: Array, right: float, fine: float) -> Entry | None:
         """Where the first of points came in that are inside at `right`."""
-        left, further = right, right
+        first, further = None, right
         while len(points):
-            deepest = points[[int(np.argmax(heights))]]
-            left, least = float(self._entered[deepest[0]]), float(self._least[deepest[0]])
-            while right - left > fine:
-                middle = 0.5 * (left + right)
-                if middle in (left, right):
-                    break
-                left, right = (left, middle) if self._heights(middle, deepest)[0] > least else (middle, right)
+            deepest = int(np.argmax(heights))
+            point = points[deepest : deepest + 1]
+            left, hit, height = self._entry(point, float(heights[deepest]), right, fine)
+            # of meshes that are not closed some places seem to be inside: a point that comes in is at first not deep
+            if height > self._least[point[0]] + self._course.travel(hit) - self._course.travel(left) + self._speck:
+                self._ignored[point] = True
+                points, heights = np.delete(points, deepest), np.delete(heights, deepest)
+                continue
+            first = left, hit
             # of those that came in before, the next
-            others = points[(points != deepest[0]) & (self._entered[points] < left)]
+            others = points[(points != point) & (self._entered[points] < left)]
             heights = self._heights(left, others)
             met = heights > self._least[others]
-            points, heights = others[met], heights[met]
-            right = left if len(points) else right
-        return left, right, self._middle(right, further)
+            points, heights, right = others[met], heights[met], left
+        return None if first is None else (*first, self._middle(first[1], further))
+
+    def _entry(self, point: Ints, height: float, right: float, fine: float) -> tuple[float, float, float]:
+        """Where a point (1,) that is inside at `right` came in: outside and inside, and how deep it is there (m)."""
+        left, least = float(self._entered[point[0]]), float(self._least[point[0]])
+        while right - left > fine:
+            middle = 0.5 * (left + right)
+            if middle in (left, right):
+                break
+            there = float(self._heights(middle, point)[0])
+            if there > least:
+                right, height = middle, there
+            else:
+                left = middle
+        return left, right, height
 
     def _middle(self, s: float, later: float) -> Array:
         """(3,) m, first part's frame: about where points come in at s, by those that are deeper a little later."""

@@ -28,42 +28,16 @@ from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_pose
 from kinform.model.arrays import Array
 
 
-class Wholes:
-    """Two parts as wholes by few facets, or with those of their facets that count."""
+class Apart:
+    """Two parts on their way, by how far they are certainly apart; `size` (m): diagonal of the smaller."""
 
-    def __init__(self, shapes: Shapes, first: str, second: str):
-        self._shapes, self._names = shapes, (first, second)
-        self._to_first = np.linalg.inv(shapes.part(first).X_WP)
-        self._X_WB = shapes.part(second).X_WP
-        self._size = min(shapes.mesh(first).diagonal, shapes.mesh(second).diagonal)
-        self._steps = 0
-        self._counted: PairTest | None = None
-
-    @property
-    def exact(self) -> bool:
-        """Whether it goes by the facets that count."""
-        return self._counted is not None
-
-    def by(self, test: PairTest) -> None:
-        """Go on with the facets that count."""
-        self._counted, self._steps = test, 0
-
-    @cached_property
-    def _objects(self) -> tuple[tuple[fcl.CollisionObject, fcl.CollisionObject], float]:
-        """Both by few facets, and how far (m) these are off the parts, together."""
-        with at_work_on(*self._names):
-            (first, off), (second, away) = (self._shapes.coarse(name) for name in self._names)
-        return (fcl.CollisionObject(first), fcl.CollisionObject(second)), off + away
+    def __init__(self, size: float):
+        self._size, self._steps = size, 0
 
     def distance(self, D: Array) -> float:
-        """m: no facets are nearer at a displacement (4, 4) of the second body relative to the first; 0 where that is
-        not known."""
-        if self._counted is not None:
-            return CERTAIN * self._counted.distance(D)[0]
-        objects, off = self._objects
-        objects[1].setTransform(fcl_pose(self._to_first @ D @ self._X_WB))
-        with at_work_on(*self._names):
-            return max(CERTAIN * fcl_distance(*objects) - off, 0.0)
+        """m: nothing that counts is nearer at a displacement (4, 4) of the second body relative to the first; 0 where
+        that is not known."""
+        raise NotImplementedError
 
     def touch(self, D: Array) -> bool:
         """Whether they touch, or nearly."""
@@ -86,3 +60,39 @@ class Wholes:
                 break
             s, short = self.step(course, s, end)
         return s
+
+
+class Wholes(Apart):
+    """Two parts with all their facets."""
+
+    def __init__(self, shapes: Shapes, first: str, second: str):
+        super().__init__(min(shapes.mesh(first).diagonal, shapes.mesh(second).diagonal))
+        self._shapes, self._names = shapes, (first, second)
+        self._to_first = np.linalg.inv(shapes.part(first).X_WP)
+        self._X_WB = shapes.part(second).X_WP
+
+    @cached_property
+    def _objects(self) -> tuple[tuple[fcl.CollisionObject, fcl.CollisionObject], float]:
+        """Both by few facets, and how far (m) these are off the parts, together."""
+        with at_work_on(*self._names):
+            (first, off), (second, away) = (self._shapes.coarse(name) for name in self._names)
+        return (fcl.CollisionObject(first), fcl.CollisionObject(second)), off + away
+
+    def distance(self, D: Array) -> float:
+        """By few facets of both, less what these are off."""
+        objects, off = self._objects
+        objects[1].setTransform(fcl_pose(self._to_first @ D @ self._X_WB))
+        with at_work_on(*self._names):
+            return max(CERTAIN * fcl_distance(*objects) - off, 0.0)
+
+
+class Counted(Apart):
+    """Two parts with those of their facets that count."""
+
+    def __init__(self, test: PairTest):
+        super().__init__(test.size)
+        self._test = test
+
+    def distance(self, D: Array) -> float:
+        """Of these facets."""
+        return CERTAIN * self._test.distance(D)[0]

@@ -1,0 +1,217 @@
+"""Pairs of parts that a turn, slide or screw could bring together, and how they come near each other."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+
+from kinform.collisions.constants import (
+    CROSSING_LEAST,
+    MEETING_MARGIN,
+    STOP_ANGLE,
+    STOP_LENGTH,
+    WINDOW_SLIDE,
+    WINDOW_TURN,
+)
+from kinform.collisions.driving.meeting_spans import Spans, meeting_spans
+from kinform.collisions.driving.swept_profiles import Meeting, Profile, meeting
+from kinform.collisions.pair.advancement import First, Search, first_crossing
+from kinform.collisions.pair.course import Course
+from kinform.collisions.pair.distance_bounds import Apart, Counted, Wholes
+from kinform.collisions.pair.mate_surfaces import Kept
+from kinform.collisions.pair.prepared_pair import PairTest
+from kinform.collisions.parts.shapes import Shapes
+from kinform.foundation.algebra.displacements import displacement
+from kinform.kinematics.mobility.guides import preserved
+from kinform.model.arrays import Array, Flags, Ints
+from kinform.model.contacts import Patch
+from kinform.model.names import PartName
+
+Pair = tuple[PartName, PartName]
+
+
+class Candidate:
+    """A pair of parts that the motion could bring together, the second part being the one that moves."""
+
+    def __init__(self, shapes: Shapes, names: Pair, profiles: tuple[Profile, Profile], twist: Array):
+        self.names, self._shapes, self.profiles, self._twist = names, shapes, profiles, twist
+        self.turns = profiles[0].turns
+        turning = float(twist[:3] @ twist[:3]) > 0.25
+        self._turning, self._size = turning, min(shapes.mesh(name).diagonal for name in names)
+        self.fine = STOP_ANGLE if turning else STOP_LENGTH * self._size
+        """rad or m to which a stop is found."""
+        self.window = math.inf if self.turns is None else WINDOW_TURN if turning else WINDOW_SLIDE * self._size
+        """rad or m along which parts that come near are followed with the facets that can meet there."""
+        self._modelled = 0
+        """Facets of models so far."""
+
+    @property
+    def part_names(self) -> Pair:
+        """Sorted."""
+        first, second = sorted(self.names)
+        return first, second
+
+    def course(self, sign: int, facets: tuple[Ints, Ints] | None = None) -> Course:
+        """The motion to one side, for points of some facets of both parts, by default all that can meet."""
+        radii = [
+            profile.largest if facets is None else profile.radius(facets[k]) for k, profile in enumerate(self.profiles)
+        ]
+        along = float(abs(self._twist[:3] @ self._twist[3:]))
+        speed = math.hypot(min(radii), along) if self._turning else 1.0
+        moved = lru_cache(maxsize=64)(lambda s: displacement(sign * s * self._twist))
+        return Course(moved, lambda s: speed * s)
+
+    def wholes(self) -> Wholes:
+        """The parts with all their facets."""
+        return Wholes(self._shapes, *self.names)
+
+    @cached_property
+    def _meeting(self) -> Meeting:
+        facets = self._shapes.moved_facets(*self.names, self._twist[None])
+        return meeting(*self.profiles, *facets, MEETING_MARGIN * self._size)
+
+    def between(self, sign: int, begin: float, end: float) -> PairTest | None:
+        """With the facets that can meet between two places of the motion to one side; None where none can. With all
+        that can meet, where models of those that can in some places are about to take more facets than one of all."""
+        all_facets = sum(len(side) for side in self._meeting.facets)
+        facets = self._meeting.facets
+        if self._modelled <= all_facets:
+            facets = self._meeting.within(*sorted((sign * begin, sign * end)))
+            if not (len(facets[0]) and len(facets[1])):
+                return None
+            self._modelled += len(facets[0]) + len(facets[1])
+        return self._test(facets) if self._modelled <= all_facets else self.anywhere
+
+    @cached_property
+    def anywhere(self) -> PairTest | None:
+        """With the facets that can meet; None where none can."""
+        return self._test(self._meeting.facets)
+
+    def _test(self, facets: tuple[Ints, Ints]) -> PairTest | None:
+        if not (len(facets[0]) and len(facets[1])):
+            return None
+        return PairTest(self._shapes, *self.names, facets, self.mates)
+
+    @cached_property
+    def mates(self) -> list[Patch]:
+        """The patches by which the two mate as they move."""
+        return [patch for patch in self._shapes.patches(*self.names) if preserved(patch, self._twist[None])]
+
+    def search(self, sign: int, start: float, end: float) -> Search | None:
+        """Of the first crossing up to `end`, with all facets that can meet, and where they do as far as that is known;
+        None where they do not."""
+        test = self.anywhere
+        if test is None:
+            return None
+        course = self.course(sign, test.facets)
+        if self._spans is not None:
+            course = replace(course, meets=self._spans.towards(sign))
+        return None if course.apart(start, end) else Search(test, course, start, end, self.fine)
+
+    @cached_property
+    def _spans(self) -> Spans | None:
+        """Where facets of a turn or slide can meet that count, other than along mates; None where that is not known."""
+        turns, test, first = self.turns, self.anywhere, self.profiles[0]
+        if test is None or turns is None or not test.mates:
+            return None
+
+        def along(i: Ints, j: Ints, low: Array, high: Array) -> Flags:
+            return test.mates.surely_along((i, j), Kept(low, high, turns, first.frame @ test.X_WA, first.span))
+
+        parts = [
+            (profile.corners(facets), test.counted(k))
+            for k, (profile, facets) in enumerate(zip(self.profiles, test.facets, strict=True))
+        ]
+        return meeting_spans(parts, turns, MEETING_MARGIN * test.size, along)
+
+
+@dataclass(frozen=True, eq=False)
+class _Window:
+    """A piece of the way, with the facets that can meet in it."""
+
+    test: PairTest
+    course: Course
+    apart: Apart
+    until: float
+
+
+class Approach:
+    """A pair on the way to one side: up to `s` nothing is met.
+
+    As long as its parts are far from each other as wholes it goes on in steps. From where they are not, the facets that
+    can meet in a window of the motion are looked at: where none can, or they stay apart, it goes on behind the window;
+    where they come too near to go on in steps, they are followed to its end. Parts that are in touch there, or that
+    mate, are followed all the way.
+    """
+
+    def __init__(self, candidate: Candidate, sign: int, s: float):
+        self._candidate, self._sign, self._start, self.s = candidate, sign, s, s
+        self._wholes = candidate.wholes()
+        self._window: _Window | None = None
+        self._search: Search | None = None
+
+    @property
+    def overlaps(self) -> bool:
+        """Whether the parts cross from the start, as far as they were followed."""
+        return self._search is not None and self._search.overlaps
+
+    def advance(self, reach: float) -> First | None:
+        """One step, up to `reach`; what is met, and what is not known, at its end; None: it may go on."""
+        if self._search is not None:
+            return self._followed(self._search, reach)
+        if self._window is not None:
+            return self._through(self._window, reach)
+        following, short = self._wholes.step(self._candidate.course(self._sign), self.s, reach)
+        if short:
+            self._open()
+        else:
+            self.s = following
+        return None
+
+    def _open(self) -> None:
+        """The window that begins where it is; where nothing can meet in it, it goes on behind."""
+        until = self.s + self._candidate.window
+        mating = self.s <= self._start and self._candidate.mates
+        test = self._candidate.anywhere if mating else self._candidate.between(self._sign, self.s, until)
+        if test is None:
+            self.s = until
+        else:
+            course = self._candidate.course(self._sign, test.facets)
+            self._window = _Window(test, course, Counted(test), until)
+
+    def _through(self, window: _Window, reach: float) -> First | None:
+        """A step in a window, or all of the rest of it."""
+        until = min(window.until, reach)
+        following, short = window.apart.step(window.course, self.s, until)
+        if short and self.s <= self._start and window.test.mates:
+            self._follow(self.s, reach)
+            return None
+        if not short:
+            self.s = following
+            if following >= window.until:
+                self._window = None
+            return None
+        first = first_crossing(window.test, window.course, until, self._candidate.fine, start=following)
+        if first.at is not None or first.exhausted is not None:
+            self.s = math.inf
+            return first
+        end = window.course.displacement(until)
+        if first.overlaps or window.test.distance(end)[0] <= CROSSING_LEAST * window.test.size:
+            self._follow(following, reach)
+        else:
+            self.s, self._window = until, None
+        return None
+
+    def _follow(self, start: float, reach: float) -> None:
+        """From here on with all facets that can meet."""
+        self._window, self._search = None, self._candidate.search(self._sign, start, reach)
+        self.s = math.inf if self._search is None else start
+
+    def _followed(self, search: Search, reach: float) -> First | None:
+        """A piece of the way, followed."""
+        limit = min(self.s + self._candidate.window, reach)
+        first = search.until(limit, reach)
+        over = limit >= reach or first.at is not None or first.exhausted is not None
+        self.s = math.inf if over else limit
+        return first if over else None
