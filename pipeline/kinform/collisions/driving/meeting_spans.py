@@ -28,6 +28,7 @@ from kinform.collisions.constants import (
     TESTED_TOGETHER,
 )
 from kinform.collisions.driving.swept_profiles import TURN, nearest, spanned
+from kinform.foundation.meshes.boxes import along_curve
 from kinform.model.arrays import Array, Flags, Ints
 
 Along = Callable[[Ints, Ints, Array, Array], Flags]
@@ -45,14 +46,17 @@ class Spans:
     def of(cls, low: Array, high: Array, turning: bool, step: float) -> Spans:
         """Of spans in any order, some larger: they begin and end at multiples of `step`, so that it does not matter how
         finely facets were divided or taken together."""
-        low, high = step * np.floor(low / step), step * np.ceil(high / step)
+        first = np.floor(low / step).astype(np.int64)
+        last = np.maximum(np.ceil(high / step).astype(np.int64), first + 1)
         if turning:
-            wide = np.minimum(high - low, TURN)
-            low = low % TURN
-            high = low + wide
-            over = high > TURN
-            low, high = np.append(low, np.zeros(over.sum())), np.append(np.minimum(high, TURN), high[over] - TURN)
-        return cls(*_merged(low, high), turning)
+            around = round(TURN / step)
+            wide = np.minimum(last - first, around)
+            first %= around
+            last = first + wide
+            over = last[last > around] - around
+            first, last = np.append(first, np.zeros(len(over), np.int64)), np.append(np.minimum(last, around), over)
+        begins, ends = _covered(first, last)
+        return cls(np.asarray(step * begins), np.asarray(step * ends), turning)
 
     def towards(self, sign: int) -> Callable[[float], tuple[bool, float]]:
         """Whether something can meet at s ≥ 0 of a motion to one side, and up to where that stays so."""
@@ -192,15 +196,18 @@ def _met(
 
 def _overlapping(first: _Groups, second: _Groups, margin: float, along: Along) -> Iterator[Ints]:
     """(n, 2) groups of both whose boxes overlap, other than along mates, some at a time."""
-    for begin in range(0, len(first.low), TESTED_TOGETHER):
-        low, high = (side[begin : begin + TESTED_TOGETHER] for side in (first.low, first.high))
+    # those that lie together are asked together, of few of the others
+    order = along_curve(first.low, first.high)
+    for begin in range(0, len(order), TESTED_TOGETHER):
+        chosen = order[begin : begin + TESTED_TOGETHER]
+        low, high = first.low[chosen], first.high[chosen]
         about = (second.low <= high.max(axis=0)).all(axis=1) & (second.high >= low.min(axis=0)).all(axis=1)
         near = np.flatnonzero(about)
         meets = np.ones((len(low), len(near)), dtype=bool)
         for k in range(2):
             meets &= (second.low[near, k] <= high[:, k, None]) & (second.high[near, k] >= low[:, k, None])
         i, j = np.nonzero(meets)
-        i, j = i + begin, near[j]
+        i, j = chosen[i], near[j]
         box = np.maximum(first.low[i], second.low[j]) + margin, np.minimum(first.high[i], second.high[j]) - margin
         rest = ~along(first.surface[i], second.surface[j], *box)
         yield np.stack([i[rest], j[rest]], axis=1)
@@ -219,6 +226,17 @@ def _united(first: _Groups, second: _Groups, pairs: Ints, turning: bool, step: f
     rank = np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
     a, b = at_a[i[pair]] + rank // count_b[j[pair]], at_b[j[pair]] + rank % count_b[j[pair]]
     return Spans.of(start_a[a] - stop_b[b], stop_a[a] - start_b[b], turning, step)
+
+
+def _covered(first: Ints, last: Ints) -> tuple[Ints, Ints]:
+    """Where what spans from `first` to `last` (n,) cover begins and ends, ascending; they are counted in at the one and
+    out at the other."""
+    if not len(first):
+        return first, last
+    origin, size = int(first.min()), int(last.max()) - int(first.min()) + 1
+    change = np.bincount(first - origin, minlength=size) - np.bincount(last - origin, minlength=size)
+    edges = np.diff((np.cumsum(change) > 0).astype(np.int8), prepend=0)
+    return np.flatnonzero(edges > 0) + origin, np.flatnonzero(edges < 0) + origin
 
 
 def _merged(low: Array, high: Array) -> tuple[Array, Array]:
