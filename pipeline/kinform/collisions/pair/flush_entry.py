@@ -13,7 +13,8 @@ import numpy as np
 
 from kinform.collisions.constants import POINTS_FAR, POINTS_FINE, POINTS_PART, POINTS_SURFACE
 from kinform.foundation.algebra.vectors import dot
-from kinform.foundation.meshes.index import MeshIndex, inner_weights
+from kinform.foundation.meshes.index import MeshIndex, inner_weights, longest_sides
+from kinform.foundation.sorting import ascending
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 
@@ -54,8 +55,9 @@ def _spread(corners: Array, starts: Ints, count: int) -> Array:
     """Points (n, 3) inside of triangles (m, 3, 3), in groups that begin at `starts`: of each group some (≤ count), far
     from each other."""
     group = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(corners))))
-    low, high = (f.reduceat(g(corners, axis=1), starts) for f, g in ((np.minimum, np.min), (np.maximum, np.max)))
-    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    columns = np.ascontiguousarray(corners.reshape(-1, 3).T)
+    low, high = (np.stack([f.reduceat(side, 3 * starts) for side in columns], axis=1) for f in (np.minimum, np.maximum))
+    sides = longest_sides(corners)
     size = np.maximum(np.linalg.norm(high - low, axis=1), 1e-300)[group]
     parts = np.clip(np.ceil(POINTS_FINE * sides / size), 1, POINTS_FINE).astype(np.int64)
     pieces, owner, key = [], [], []
@@ -64,7 +66,7 @@ def _spread(corners: Array, starts: Ints, count: int) -> Array:
         pieces.append((inner_weights(number) @ corners[these]).reshape(-1, 3))
         owner.append(np.repeat(group[these], number * number))
         key.append(owner[-1] * (POINTS_FINE + 1) + number)
-    order = np.argsort(np.concatenate(key), kind="stable")
+    order = ascending(np.concatenate(key), len(starts) * (POINTS_FINE + 1))
     points, group = np.concatenate(pieces)[order], np.concatenate(owner)[order]
     starts = np.flatnonzero(np.diff(group, prepend=-1))
     wide = np.diff(np.append(starts, len(points)))

@@ -247,25 +247,43 @@ def _spans(corners: Array) -> Array:
 def _balls(mesh: Mesh) -> list[tuple[Nearest, float]]:
     """Middles of balls that hold all facets, with their radius (m), by octaves of it."""
     corners = mesh.vertices[mesh.faces]
-    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    longest = longest_sides(corners)
     parts = np.clip(np.ceil(longest / max(BALL_SHARE * mesh.diagonal, 1e-300)), 1, BALL_PARTS).astype(np.int64)
     middles, radii = [], []
-    for number in np.unique(parts).tolist():
+    for number in np.flatnonzero(np.bincount(parts)).tolist():
         alike = parts == number
         middles.append((inner_weights(number) @ corners[alike]).reshape(-1, 3))
         radii.append(np.repeat(2.0 / 3.0 * longest[alike] / number, number * number))
     points, radius = np.concatenate(middles), np.concatenate(radii)
     size, low = max(mesh.diagonal, 1e-300), mesh.vertices.min(axis=0)
-    level = np.ceil(np.log2(np.maximum(radius / size, BALL_SHARE)))
+    level = np.ceil(np.log2(np.maximum(radius / size, BALL_SHARE))).astype(np.int64)
     out = []
-    for k in np.unique(level):
+    for k in range(int(level.min()), int(level.max()) + 1):
+        alike = level == k
+        if not alike.any():
+            continue
         # one for all that are in one cell of a grid
-        largest, cell = float(radius[level == k].max()), 0.5 * float(2.0**k) * size
-        place = np.round((points[level == k] - low) / cell).astype(np.int64)
-        held = np.unique((place[:, 0] << 40) + (place[:, 1] << 20) + place[:, 2])
-        centres = low + cell * np.stack([held >> 40, held >> 20 & 0xFFFFF, held & 0xFFFFF], axis=1)
+        largest, cell = float(radius[alike].max()), 0.5 * 2.0**k * size
+        places = [
+            np.round((column[alike] - least) / cell).astype(np.int64)
+            for column, least in zip(points.T, low, strict=True)
+        ]
+        x, y, z = places
+        counts = [int(place.max()) + 1 for place in places]
+        occupied = np.zeros(counts, dtype=bool)
+        occupied[x, y, z] = True
+        centres = low + cell * np.argwhere(occupied)
         out.append((Nearest(centres), largest + 0.5 * float(np.sqrt(3.0)) * cell))
     return out
+
+
+def longest_sides(corners: Array) -> Array:
+    """(n,) lengths of the longest sides of triangles (n, 3, 3)."""
+    x, y, z = np.ascontiguousarray(np.moveaxis(corners, 2, 0))
+    squares = [
+        (x[:, k] - x[:, k - 1]) ** 2 + (y[:, k] - y[:, k - 1]) ** 2 + (z[:, k] - z[:, k - 1]) ** 2 for k in range(3)
+    ]
+    return np.asarray(np.sqrt(np.maximum(np.maximum(squares[0], squares[1]), squares[2])))
 
 
 def inner_weights(number: int) -> Array:
