@@ -87,6 +87,13 @@ class Profile:
             low[:, 1], high[:, 1] = facet_boxes(self._heights, corners)
         return low, high
 
+    def between(self, facets: Ints, low: float, high: float) -> Ints:
+        """Those of some facets that may be between two heights (m) where these are kept; all, where they are not."""
+        if not self._level:
+            return facets
+        bottom, top = facet_boxes(self._heights, self._faces[facets])
+        return facets[(bottom <= high) & (top >= low)]
+
     @property
     def turns(self) -> bool | None:
         """Whether it is a turn or a slide; None: a screw, of which heights are not kept."""
@@ -118,13 +125,26 @@ class Meeting:
     facets: tuple[Ints, Ints]
     kept: tuple[Sides, Sides]
     """Boxes (n, 3) of what they keep."""
-    along: tuple[Sides, Sides] | None
-    """From where to where (n,) they are along the motion, rad of a turn, m of a slide; None where that is not told."""
+    profiles: tuple[Profile, Profile]
     turning: bool
     unit: float
     """m that a radian is counted as."""
     margin: float
     """m: nearer than this is met."""
+
+    @cached_property
+    def _along(self) -> tuple[Sides, Sides] | None:
+        """From where to where (n,) they are along the motion, rad of a turn, m of a slide; None for screws."""
+        first, second = self.profiles
+        if first.turns is None:
+            return None
+        one, other = first.along(self.facets[0], self.margin), second.along(self.facets[1], self.margin)
+        if not (self.turning and len(one[0])):
+            return one, other
+        # cut open opposite of the first
+        middle = 0.5 * (one[0] + one[1])
+        cut = math.atan2(-np.sin(middle).sum(), -np.cos(middle).sum())
+        return (one[0] - cut, one[1] - cut), (other[0] - cut, other[1] - cut)
 
     def within(self, begin: float, end: float) -> tuple[Ints, Ints]:
         """Those that can meet while the second moves from `begin` to `end` (rad or m).
@@ -132,9 +152,9 @@ class Meeting:
         What a facet sweeps over meanwhile is its box, drawn out along the motion; where these boxes are apart, facets
         do not meet. Of a turn, boxes across the cut are taken to go all round.
         """
-        if self.along is None:
+        if self._along is None:
             return self.facets
-        (start, stop), (first, last) = self.along
+        (start, stop), (first, last) = self._along
         places = [(start, stop), (first + begin, last + end)]
         if self.turning:
             places = [_cut(*side) for side in places]
@@ -175,21 +195,14 @@ def _cut(start: Array, stop: Array) -> Sides:
 
 def meeting(first: Profile, second: Profile, facets_first: Ints, facets_second: Ints, margin: float) -> Meeting:
     """The facets of some of one part and of another that can meet when the second moves along the twist."""
-    kept = [first.boxes(facets_first), second.boxes(facets_second)]
-    facets = [facets_first, facets_second]
+    spans = [(low - margin, high + margin) for low, high in (first.span, second.span)]
+    facets = [first.between(facets_first, *spans[1]), second.between(facets_second, *spans[0])]
+    kept = [first.boxes(facets[0]), second.boxes(facets[1])]
     chosen = _near(kept[0], kept[1], margin)
     facets = [side[near] for side, near in zip(facets, chosen, strict=True)]
     kept = [(low[near], high[near]) for (low, high), near in zip(kept, chosen, strict=True)]
-    turns, along = first.turns, None
-    if turns is not None:
-        along = first.along(facets[0], margin), second.along(facets[1], margin)
-        if turns and len(facets[0]):
-            # cut open opposite of the first
-            middle = 0.5 * (along[0][0] + along[0][1])
-            cut = math.atan2(-np.sin(middle).sum(), -np.cos(middle).sum())
-            along = (along[0][0] - cut, along[0][1] - cut), (along[1][0] - cut, along[1][1] - cut)
-    unit = min(first.largest, second.largest) if turns else 1.0
-    return Meeting((facets[0], facets[1]), (kept[0], kept[1]), along, bool(turns), unit, margin)
+    unit = min(first.largest, second.largest) if first.turns else 1.0
+    return Meeting((facets[0], facets[1]), (kept[0], kept[1]), (first, second), bool(first.turns), unit, margin)
 
 
 def spanned(flat: Array, radius: Array, margin: float) -> Sides:

@@ -3,6 +3,8 @@ asking all of them."""
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -148,8 +150,15 @@ def _places(low: Array, high: Array) -> Ints:
     cell = np.clip(
         (0.5 * (low + high) - low.min(axis=0)) / whole * 2.0**constants.PLACE_BITS, 0, 2**constants.PLACE_BITS - 1
     ).astype(np.int64)
-    code = np.zeros(len(low), dtype=np.int64)
-    for bit in range(constants.PLACE_BITS):
-        for axis in range(dimensions):
-            code |= ((cell[:, axis] >> bit) & 1) << (dimensions * bit + axis)
-    return code
+    spread = _spread(dimensions)
+    code = spread[cell[:, 0]]
+    for axis in range(1, dimensions):
+        code |= spread[cell[:, axis]] << axis
+    return np.asarray(code)
+
+
+@cache
+def _spread(apart: int) -> Ints:
+    """(2^PLACE_BITS,) numbers with their bits that far apart."""
+    numbers = np.arange(1 << constants.PLACE_BITS)
+    return np.asarray(sum(((numbers >> bit) & 1) << (apart * bit) for bit in range(constants.PLACE_BITS)))
