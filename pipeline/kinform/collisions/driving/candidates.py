@@ -73,7 +73,7 @@ class Candidate:
 
     def between(self, sign: int, begin: float, end: float) -> PairTest | None:
         """With the facets that can meet between two places of the motion to one side; None where none can. With all
-        that can meet, where models of those that can in some places are about to take more facets than one of all."""
+        that can meet, where models of some of them would take more facets than one of all."""
         all_facets = sum(len(side) for side in self._meeting.facets)
         facets = self._meeting.facets
         if self._modelled <= all_facets:
