@@ -220,3 +220,66 @@ def test_counts_of_replicas_that_cannot_be_are_told(tmp_path, count):
     with pytest.raises(InputError) as caught:
         form.load(write(tmp_path, said))
     assert caught.value.problems[0].line == 3
+
+
+TURNS = {"quat": ".3 .4 -.5 .6", "euler": "20 30 40", "axisangle": "1 2 3 50", "xyaxes": "1 .2 .3 0 1 -.3",
+         "zaxis": "1 2 3"}  # fmt: skip
+
+
+@pytest.mark.parametrize("over", TURNS)
+@pytest.mark.parametrize("below", TURNS)
+def test_the_orientation_that_is_stated_last_counts(tmp_path, below, over):
+    mujoco = pytest.importorskip("mujoco")
+    bar = '<geom type="box" size=".1 .2 .3"'
+    first, last = (f'{turn}="{TURNS[turn]}"' for turn in (below, over))
+    classes = f'<default><geom {first}/><default class="a"><geom {last}/></default></default>'
+    bars = f'{bar} name="x" {last}/>{bar} name="y" class="a"/>{bar} name="z" class="a" {first}/>'
+    text = f"<mujoco>{classes}<worldbody>{bars}</worldbody></mujoco>"
+    path = write(tmp_path, text)
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    assembly = form.load(path)
+    for k, name in enumerate("xyz"):
+        assert np.allclose(assembly.part(name).X_WP[:3, :3], data.geom_xmat[k].reshape(3, 3), atol=1e-12)
+
+
+SCALES = [("2 3 -4", "1 0 0 0"), ("2 -2 2", ".5 .3 .2 .1"), ("2 3 -4", "1 1 0 0"), ("-2 3 4", "1 1 1 1"),
+          ("2 3 4", "1 2 3 4")]  # fmt: skip
+
+
+@pytest.mark.parametrize(("scale", "refquat"), SCALES)
+def test_a_mesh_is_scaled_along_the_axes_of_its_reference_frame(tmp_path, scale, refquat):
+    mujoco = pytest.importorskip("mujoco")
+    mesh = f'<mesh name="ring" file="ring.obj" scale="{scale}" refpos="1 2 3" refquat="{refquat}"/>'
+    text = (f'<mujoco><compiler meshdir="meshes"/><asset>{mesh}</asset><worldbody><geom size="1"/>'
+            f'<geom type="mesh" mesh="ring" pos="4 5 6" quat="1 2 1 2"/></worldbody></mujoco>')  # fmt: skip
+    path = write(tmp_path, text)
+    assembly = form.load(path)
+    if refquat == "1 2 3 4":  # no pose and scale along the axes of the file give a sheared mesh
+        assert [str(part.name) for part in assembly.parts] == ["world sphere"]
+        assert any("not carried: mesh that its scale shears" in note for note in assembly.notes)
+        return
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    theirs = model.mesh_vert @ data.geom_xmat[1].reshape(3, 3).T + data.geom_xpos[1]
+    part = assembly.part("ring")
+    ours = part.mesh.vertices @ part.X_WP[:3, :3].T + part.X_WP[:3, 3]
+    assert ours.shape == theirs.shape
+    distances = np.linalg.norm(ours[:, None] - theirs[None], axis=2)
+    assert distances.min(axis=0).max() < 1e-4 and distances.min(axis=1).max() < 1e-4
+    assert part.mesh.health.volume > 0.0
+
+
+def test_names_with_slashes_are_found(tmp_path):
+    named = text().replace('name="turn"', 'name="r/turn"').replace('joint="turn"', 'joint="r/turn"')
+    function = form.load(write(tmp_path, named.replace('joint2="turn"', 'joint2="r/turn"'))).function
+    assert function.couplings[0].joints == ("a", "r_turn")
+    assert [r.values["limit"] for r in function.requirements] == [6.0]
+
+
+def test_all_worlds_are_seen(tmp_path):
+    worlds = '<worldbody><geom name="{}" size="1"/></worldbody>'
+    text = f"<mujoco>{worlds.format('a')}{worlds.format('b')}</mujoco>"
+    assert [str(part.name) for part in form.load(write(tmp_path, text)).parts] == ["a", "b"]

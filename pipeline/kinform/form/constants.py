@@ -173,6 +173,10 @@ XML_BYTES = 64 * 1024 * 1024
 PACKAGE_LEVELS = 4
 """Folders, from that of a description upwards, in which its package is looked for where nothing names it."""
 
+SHEAR = 1e-9
+"""Cosine of the angle between the axes of a scaled mesh up to which it is not sheared: printed quaternions have twelve
+digits."""
+
 QUARTER_TURN = 1e-11
 """Quarter turns by which an angle may miss a whole one and be taken for it: what eleven printed digits lose. The pose
 that "1.5708" states is kept as it is: it differs by more than forward kinematics is compared to."""

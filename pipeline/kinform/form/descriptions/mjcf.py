@@ -87,6 +87,11 @@ def _whole(root: Element, data: bytes, changed: bool) -> str:
     return str(etree.tostring(root, encoding="unicode"))
 
 
+def _seen(link: Link) -> tuple[Shape, ...]:
+    """The shapes that are seen only: where there are none, those that collide are seen."""
+    return () if link.visual is link.collision else link.visual
+
+
 class _Reader:
     def __init__(self, xml: Xml, meshes: MeshFiles, root: Element, path: Path, budget: Budget):
         self.xml, self.left, self.budget = xml, Count(), budget
@@ -173,7 +178,7 @@ class _Reader:
             elif tag not in _BODY:
                 self.left.add(f"<{tag}> in bodies")
         old = self.links[link]
-        seen = (*old.visual, *visual)
+        seen = (*_seen(old), *visual)
         both = (*old.collision, *collision)
         self.links[link] = Link(link, old.X_FL, old.at, seen, both, old.inertial, old.stated)
         if tag_of(element) != "frame" and not seen:
@@ -228,8 +233,7 @@ class _Reader:
             if old is None:
                 self.links[self.free_link(name)] = other
             else:  # geometry of the model's world
-                seen = () if other.visual is other.collision else other.visual
-                visual, collision = (*old.visual, *seen), (*old.collision, *other.collision)
+                visual, collision = (*_seen(old), *_seen(other)), (*old.collision, *other.collision)
                 self.links[name] = replace(old, visual=visual, collision=collision)
         for name, joint in new.joints.items():
             limits = [v for v in (joint.effort, self.efforts.get(name)) if v is not None]
@@ -327,7 +331,7 @@ class _Reader:
                 force = self.xml.numbers(element, said.get("forcerange", ""), "forcerange", None) or ()
                 gear = self.xml.numbers(element, said.get("gear", "1"), "gear", None) or (1.0,)
                 if "joint" in said and len(force) == 2 and max(map(abs, force)) > 0.0:
-                    yield said["joint"], max(map(abs, force)) * abs(gear[0])
+                    yield said["joint"].replace("/", "_"), max(map(abs, force)) * abs(gear[0])
 
     def _effort(self, element: Element, said: Mapping[str, str], name: str) -> float | None:
         own = self.xml.numbers(element, said.get("actuatorfrcrange", ""), "actuatorfrcrange", None) or ()

@@ -80,7 +80,7 @@ def _ends(
 def ratios(xml: Xml, root: Element, joints: Mapping[str, RobotJoint], left: Count) -> Iterator[Ratio]:
     """`<joint>` of `<equality>`, where it is linear in the other joint and goes through zero."""
     for element in _active(xml, root, "joint"):
-        first, second = element.get("joint1") or "", element.get("joint2") or ""
+        first, second = ((element.get(key) or "").replace("/", "_") for key in ("joint1", "joint2"))
         polynomial = (*(xml.numbers(element, element.get("polycoef", "0 1 0 0 0"), "polycoef", None) or ()), 0.0, 0.0)
         for name in (first, second):
             if name and name not in joints:

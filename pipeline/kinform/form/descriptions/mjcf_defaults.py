@@ -9,11 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from kinform.form.constants import INCLUDES
+from kinform.form.constants import INCLUDES, SHEAR
 from kinform.form.descriptions.elements import FILE, Element, Xml, parse_xml, tag_of
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.poses import about, pose, quaternion, turn
-from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.meant import in_quotes
 from kinform.model.arrays import Array
 
@@ -59,6 +58,10 @@ class Includes:
                 else:
                     self.expand(child)
         above.remove(element)
+
+
+ORIENTATIONS = ("quat", "euler", "axisangle", "xyaxes", "zaxis")
+"""Attributes that state a rotation, of which an element has one."""
 
 
 @dataclass(frozen=True)
@@ -153,7 +156,7 @@ class Defaults:
         own = {kind: dict(said) for kind, said in self._of.get(name, {}).items()} | own
         for child in self._xml.children(element):
             if tag_of(child) != "default":
-                own[tag_of(child)] = own.get(tag_of(child), {}) | dict(child.attrib)
+                own[tag_of(child)] = _over(own.get(tag_of(child), {}), child.attrib)
         self._of[name] = own
         for child in self._xml.children(element, "default"):
             self._read(child, child.get("class") or name, own)
@@ -164,16 +167,22 @@ class Defaults:
         if name not in self._of:
             self._xml.complain(element, f"there is no default class {in_quotes(name)}", "define it, or correct it")
             name = "main"
-        return self._of[name].get(tag_of(element), {}) | dict(element.attrib)
+        return _over(self._of[name].get(tag_of(element), {}), element.attrib)
+
+
+def _over(below: Mapping[str, str], said: Mapping[str, str]) -> dict[str, str]:
+    """The attributes of a class under those that are stated over it: there is one orientation, which is stated last."""
+    turned = any(key in said for key in ORIENTATIONS)
+    return {key: value for key, value in below.items() if not (turned and key in ORIENTATIONS)} | dict(said)
 
 
 @dataclass(frozen=True)
 class MeshAsset:
-    """A mesh: its file as stated, its scale, its own pose in the file."""
+    """A mesh: its file as stated, its scale, and the pose (4, 4) of what is scaled; None where no pose gives it."""
 
     file: str
     scale: tuple[float, float, float]
-    X: Array
+    X: Array | None
     element: Element
 
 
@@ -190,6 +199,19 @@ def mesh_assets(xml: Xml, root: Element, compiler: Compiler, defaults: Defaults)
             scale = (1.0, 1.0, 1.0)
         position = xml.numbers(element, said.get("refpos", "0 0 0"), "refpos", 3) or (0.0, 0.0, 0.0)
         turned = xml.numbers(element, said.get("refquat", "1 0 0 0"), "refquat", 4) or (1.0, 0.0, 0.0, 0.0)
-        X = inverse(pose(quaternion(turned), position))
-        out[name] = MeshAsset(Path(file).name if compiler.strip else file, (scale[0], scale[1], scale[2]), X, element)
+        along, X = _scale_and_pose(np.array(scale), quaternion(turned), np.array(position))
+        x, y, z = map(float, along)
+        out[name] = MeshAsset(Path(file).name if compiler.strip else file, (x, y, z), X, element)
     return out
+
+
+def _scale_and_pose(scale: Array, R: Array, p: Array) -> tuple[Array, Array | None]:
+    """MuJoCo scales along the axes of the reference frame, whose pose is R, p: its vertices are diag(s)·Rᵀ·(v − p). As
+    a scale (3,) along the axes of the mesh and a pose (4, 4) then; no pose where the mesh is sheared."""
+    M = scale[:, None] * R.T
+    along = np.linalg.norm(M, axis=0)
+    cosines = (M.T @ M) / np.outer(along, along)
+    if float(np.abs(cosines - np.eye(3)).max()) > SHEAR:
+        return scale, None
+    first = along * np.sign(scale)
+    return first, pose(M / first, -M @ p)

@@ -116,6 +116,9 @@ class Shapes:
         if not asset.file:
             self._left.add("mesh without file")
             return None
+        if asset.X is None:
+            self._left.add("mesh that its scale shears in its reference frame")
+            return None
         found = self._meshes.find(asset.file, self._meshes.folder / self._compiler.folder)
         if found.path is None:
             self._xml.complain(asset.element, f"mesh {in_quotes(stated)} {found.message}", found.remedy)
