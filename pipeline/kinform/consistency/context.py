@@ -21,6 +21,7 @@ from kinform.consistency.comparisons.plausibility import Doubt, doubts
 from kinform.consistency.constants import DAMPED_UNSEEN
 from kinform.consistency.outcome import Answer, Outcome, inconclusive, skipped, triple
 from kinform.design import Design
+from kinform.foundation.meshes.shell_faults import ShellFaults, shell_faults
 from kinform.model.assembly import Assembly, MassOverride, Mesh, Part
 from kinform.model.checks import Ignore
 from kinform.model.contacts import Contacts
@@ -113,7 +114,9 @@ class MeshUse:
     @property
     def label(self) -> str:
         """File, and body in the file: "parts/arm.obj, body 'link'"."""
-        return self.mesh.path if self.mesh.body is None else f"{self.mesh.path}, body '{self.mesh.body}'"
+        if self.mesh.body is None:
+            return self.mesh.path
+        return f"{self.mesh.path}, body '{self.mesh.body}'" if self.mesh.path else f"'{self.mesh.body}'"
 
     @property
     def solid(self) -> bool:
@@ -160,6 +163,11 @@ class Context:
     def closed_meshes(self) -> tuple[MeshUse, ...]:
         """Those that bound a volume: watertight, and wound one way."""
         return tuple(u for u in self.meshes if u.mesh.health.watertight and u.mesh.health.consistent_winding)
+
+    @cached_property
+    def shell_faults(self) -> tuple[ShellFaults, ...]:
+        """Of each of the meshes, what is wrong with its shells."""
+        return tuple(shell_faults(use.mesh) for use in self.meshes)
 
     @cached_property
     def overridden(self) -> tuple[tuple[Part, MassOverride], ...]:

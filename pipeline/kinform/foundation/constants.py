@@ -53,6 +53,15 @@ RAYS = np.array([[0.577, 0.523, 0.627], [-0.67, 0.31, 0.675], [0.21, -0.83, 0.51
 SAME_ANGLE = 1e-7
 """rad: facets about an edge within this are coincident."""
 
+# meshes/shell_faults
+
+SHELL_PROBES = 64
+"""Facets of a shell that are probed: finds what is as large as a few hundredths of it."""
+SHELL_DEPTH = 1e-3
+"""How far from a facet it is probed, in the longest side of the shell's facets: fits are shallower, walls thicker."""
+CROSSING_SHARE = 0.02
+"""Share of a shell's area that may lie in others: screws in bores that are too narrow do."""
+
 # meshes/near
 
 LINE = np.array([0.57735, 0.51763, 0.63144, 0.44317])

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from kinform.foundation.meshes.shell_faults import shell_faults
 from kinform.mass.constants import FLAT
 from kinform.mass.principal import impossible, principal
 from kinform.mass.solids import SolidIntegrals, integrate_solid, mass_bound
@@ -147,8 +148,12 @@ class _SolidShape:
         elif integrals.volume < 0.0:
             self.reason = "the mesh is inside out: its facets enclose a negative volume"
         else:
+            faults = shell_faults(mesh)
+            if faults.inverted:
+                self.reason = f"{faults.inverted} of the {mesh.health.shells} shells of the mesh are inside out"
+                return
             self.integrals = integrals
-            self.bound = mass_bound(mesh, integrals.volume, surfaces, tolerances)
+            self.bound = mass_bound(mesh, integrals.volume, surfaces, tolerances) + faults.doubtful / integrals.volume
 
 
 def _not_a_solid(health: MeshHealth) -> str:

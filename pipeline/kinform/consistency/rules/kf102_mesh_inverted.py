@@ -1,4 +1,4 @@
-"""The mesh is closed but inside out: its facets face into the material.
+"""The mesh is closed but inside out, or a shell of it is: its facets face into the material.
 
 Why it matters: outside and inside are exchanged. Bores are read as shafts and the part mates with
 nothing, and its volume and mass come out negative.
@@ -17,13 +17,24 @@ from kinform.foundation.words import volume
 
 
 def check(context: Context) -> Findings:
-    """Closed meshes of negative volume."""
-    for use in context.closed_meshes:
-        if use.mesh.health.volume < 0.0:
+    """Closed meshes of negative volume, and those with shells of negative volume that are no cavities."""
+    for use, faults in zip(context.meshes, context.shell_faults, strict=True):
+        health = use.mesh.health
+        if faults.inverted:
+            face = "faces" if faults.inverted == 1 else "face"
             yield RULE.finding(
                 use.subject,
-                f"the mesh {use.label} is inside out: its volume is {volume(use.mesh.health.volume, context.units)}",
-                found=volume(use.mesh.health.volume, context.units),
+                f"{faults.inverted} of the {health.shells} shells of the mesh {use.label} {face} the other way",
+                found=f"{faults.inverted} of {health.shells} shells inside out",
+                intended="facet normals out of the material in all shells",
+                declared=use.parts[0].source,
+                remedy="Flip the facets of the shells that are inside out and export the mesh again.",
+            )
+        elif use in context.closed_meshes and health.volume < 0.0:
+            yield RULE.finding(
+                use.subject,
+                f"the mesh {use.label} is inside out: its volume is {volume(health.volume, context.units)}",
+                found=volume(health.volume, context.units),
                 intended="a positive volume: facet normals out of the material",
                 declared=use.parts[0].source,
                 remedy="Flip the facets of the whole mesh and export it again.",
