@@ -29,6 +29,23 @@ def torus(n, tube=4.0, middle=15.0):
     return Manifold.revolve(CrossSection([np.stack([middle + tube * np.cos(a), tube * np.sin(a)], axis=1)]), n)
 
 
+def taper(n, low=5.0, high=9.0, length=30.0):
+    """A cone along z whose axis lies as high above its lowest generator as it is wide there."""
+    return Manifold.cylinder(length, low, high, n)
+
+
+def laid(cone, low=5.0, high=9.0, length=30.0):
+    """The same with a generator on the plane z = 0, along x."""
+    slope = np.degrees(np.arctan2(high - low, length))
+    return cone.rotate((0, 90, 0)).translate((0, 0, low)).rotate((0, -slope, 0))
+
+
+def seat(n, half=45.0):
+    """A block with a conical hole, whose apex is the origin and whose axis is z."""
+    wide = 20.0 * np.tan(np.radians(half))
+    return rod(wide + 5, 1, 19, n) - Manifold.cylinder(20, 0, wide, n)
+
+
 CASES = {
     "ball on a plane": (5, "point", lambda n: {"a": ball(5, n).translate((0, 0, 5)), "b": block()}),
     "roller on a plane": (
@@ -60,6 +77,20 @@ CASES = {
         "line",
         lambda n: {"a": rod(3, -15, 15, n), "b": box(-20, 20, -10, 10, -5, 5) - box(-9, 9, -3.1, 3.1, -6, 6)},
     ),
+    "tapered roller on a plane": (4, "line", lambda n: {"a": laid(taper(n)), "b": box(-20, 60, -20, 20, -5, 0)}),
+    "ball on a cone": (
+        5,
+        "point",
+        lambda n: {
+            "a": ball(5, n).translate((7 + 5 * 30 / np.hypot(30, 4), 0, 15 - 5 * 4 / np.hypot(30, 4))),
+            "b": taper(n),
+        },
+    ),
+    "ball beside the middle of a cone": (
+        5,
+        "point",
+        lambda n: {"a": ball(4, n).translate((1, 0, 1 + 4 * np.sqrt(2))), "b": seat(n)},
+    ),
     "two balls": (5, "point", lambda n: {"a": ball(5, n), "b": ball(4, n, 3.0).translate((9, 0, 0))}),
 }
 
@@ -78,12 +109,28 @@ def test_a_higher_pair_holds_what_it_touches(name, segments, swap):
     assert joint.freedoms == freedoms
 
 
+@pytest.mark.parametrize("half", [20.0, 45.0, 55.0])
+@pytest.mark.parametrize(("segments", "swap"), [(48, False), (64, True)])
+def test_a_ball_is_seated_in_a_cone_as_far_as_a_line_tells(half, segments, swap):
+    """It turns about its middle, which the cone holds from one side."""
+    X = random_pose(np.random.default_rng(segments))
+    middle = np.array([0.0, 0.0, 4.0 / np.sin(np.radians(half))])
+    solids = {"a": ball(4, segments).translate(tuple(middle)), "b": seat(segments, half)}
+    kinematics, contacts = derived(X, **({"a": solids["b"], "b": solids["a"]} if swap else solids))
+    assert [patch.kind for patch in contacts.patches] == ["line"]
+    (joint,) = kinematics.joints
+    assert (joint.type, joint.status) == ("spherical", "ambiguous")
+    assert np.allclose(joint.point, X[:3, :3] @ middle * 1e-3 + X[:3, 3], atol=1e-6)
+
+
 @pytest.mark.parametrize("apart", [0.5, 2.0])
 def test_what_does_not_touch_is_no_pair(apart):
     for a, b in (
         (ball(5, 48), ball(4, 48).translate((9 + apart, 0, 0))),
         (rod(5, -20, 20, 48), rod(3, -20, 20, 48).rotate((90, 0, 0)).translate((8 + apart, 0, 0))),
         (ball(4.5 - apart / 2, 48), tube(48)),
+        (ball(4, 48).translate((0, 0, 4 * np.sqrt(2) + apart)), seat(48)),
+        (laid(taper(48)).translate((0, 0, apart)), box(-20, 60, -20, 20, -5, 0)),
     ):
         _, contacts = derived(np.eye(4), a=a, b=b)
         assert not contacts.patches

@@ -192,6 +192,8 @@ BALL_BORE_SAMPLES = 16
 """Samples around a ball in a bore."""
 ROLLER_SAMPLES = 17
 """Samples along a roller on a plane or between two rollers."""
+ROUND_AXIS = 1e-9
+"""Share of its radius by which a ball may be off the axis of a cone and be on it; the same of a unit axis."""
 LINE_SAMPLES = 9
 """Samples along an edge, and along the line in which outlines meet."""
 EDGE_RISE = math.sin(math.radians(3.0))

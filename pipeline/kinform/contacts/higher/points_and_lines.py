@@ -24,7 +24,7 @@ from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances
 
-_ROUND = [KINDS.index("sphere"), KINDS.index("cylinder"), KINDS.index("torus")]
+_ROUND = [KINDS.index("sphere"), KINDS.index("cylinder"), KINDS.index("torus"), KINDS.index("cone")]
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +62,7 @@ def higher_pairs(
     for view, flags, first in ((pair, overlap, True), (pair.swapped, overlap.T, False)):
         ball, other = view.near
         plane, rounded = other.kinds == KINDS.index("plane"), np.isin(other.kinds, _ROUND)
-        for row in np.flatnonzero((ball.sides > 0) & (ball.radii > 0)):
+        for row in np.flatnonzero((ball.sides > 0) & ((ball.radii > 0) | (ball.kinds == KINDS.index("cone")))):
             # of two alike, each is met once
             apart = rounded if first else rounded & (other.kinds != ball.kinds[row])
             for column in [*np.flatnonzero(flags[row] & plane), *np.flatnonzero(flags[row] & apart)]:
@@ -146,7 +146,7 @@ def _probes(touch: _Touch, tolerance: float) -> Probes:
 def _patch(pair: PairView, touch: _Touch, holds: Flags) -> Patch:
     """The patch of the points that hold."""
     met, surfaces = touch.meeting, touch.surfaces
-    radius, zone = surfaces.radii[0], constants.ZONE * pair.tolerance
+    radius, zone = met.radius or surfaces.radii[0], constants.ZONE * pair.tolerance
     area = 2.0 * math.pi * radius * zone
     if touch.line:
         area = 2.0 * math.sqrt(2.0 * radius * zone) * met.spacing
@@ -157,7 +157,7 @@ def _patch(pair: PairView, touch: _Touch, holds: Flags) -> Patch:
         touch.normals()[holds],
         met.gaps[holds],
         area,
-        axis=axis if touch.line else None,
+        axis=(axis if met.along is None else met.along) if touch.line else None,
         radii=(radius, 0.0) if touch.first else (0.0, radius),
         uncertainty=(max(surfaces.turns), shift),
         chord=surfaces.chord,

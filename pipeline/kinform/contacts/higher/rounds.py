@@ -1,5 +1,5 @@
-"""Where a round surface comes closest to a plane or another: balls and rollers on each other, balls in bores and in
-grooves of rings.
+"""Where a round surface comes closest to a plane or another: balls and rollers on each other, balls in bores, in
+grooves of rings and on cones, tapered rollers on planes.
 
 Everything is analytic, so that the tessellation of neither side matters.
 """
@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.contacts.constants import BALL_BORE_SAMPLES, ROLLER_SAMPLES
+from kinform.contacts.constants import BALL_BORE_SAMPLES, ROLLER_SAMPLES, ROUND_AXIS
 from kinform.contacts.mating.charts import perpendicular
 from kinform.contacts.search.pair_view import SurfacePair
 from kinform.foundation.algebra.vectors import cross
@@ -29,6 +29,10 @@ class Meeting:
     spacing: float
     clearance: float | None = None
     """m: by how much a bore or groove is wider than the ball in it, as a radius."""
+    along: Array | None = None
+    """(3,) of a line that is along neither axis."""
+    radius: float | None = None
+    """m: by which the first surface bends across it."""
 
     def chosen(self, keep: Flags) -> Meeting:
         """Some of the points."""
@@ -41,13 +45,15 @@ def meeting(surfaces: SurfacePair, parallel: float) -> Meeting | None:
     first, second = surfaces.kinds
     convex = surfaces.sides[1] > 0
     if second == "plane":
-        return _on_plane(surfaces, parallel)
+        return _taper_on_plane(surfaces, parallel) if first == "cone" else _on_plane(surfaces, parallel)
     if (first, second) == ("sphere", "sphere") and convex:
         return _single(*surfaces.points, *surfaces.radii)
     if (first, second) == ("sphere", "cylinder"):
         return _ball(surfaces)
     if (first, second) == ("sphere", "torus"):
         return _ball_on_ring(surfaces)
+    if (first, second) == ("sphere", "cone"):
+        return _ball_on_cone(surfaces)
     if (first, second) == ("cylinder", "cylinder") and convex:
         return _rollers(surfaces, parallel)
     return None
@@ -69,6 +75,51 @@ def _on_plane(surfaces: SurfacePair, parallel: float) -> Meeting | None:
     gaps = (centres - origin) @ normal - radius
     points = centres - (radius + 0.5 * gaps)[:, None] * normal
     return Meeting(points, np.tile(normal, (len(points), 1)), gaps, kind == "cylinder", spacing)
+
+
+def _taper_on_plane(surfaces: SurfacePair, parallel: float) -> Meeting | None:
+    """A cone on a plane, along the generator that is nearest to it."""
+    (axis, normal), (apex, origin), half = surfaces.axes, surfaces.points, surfaces.both("half_angles")[0]
+    below = axis * float(axis @ normal) - normal
+    size = float(np.linalg.norm(below))
+    if size < ROUND_AXIS:
+        return None
+    generator = math.cos(half) * axis + math.sin(half) * below / size
+    if abs(float(generator @ normal)) > math.sin(parallel):
+        return None
+    low, high = surfaces.extents[0] / math.cos(half)
+    along = low + (high - low) * (np.arange(ROLLER_SAMPLES) + 0.5) / ROLLER_SAMPLES
+    on = apex + along[:, None] * generator
+    gaps = (on - origin) @ normal
+    radius = 0.5 * (low + high) * math.tan(half)
+    normals = np.tile(normal, (len(on), 1))
+    points, spacing = on - 0.5 * gaps[:, None] * normal, float(along[1] - along[0])
+    return Meeting(points, normals, gaps, True, spacing, along=generator, radius=radius)
+
+
+def _ball_on_cone(surfaces: SurfacePair) -> Meeting | None:
+    """A ball on a cone, or seated in one all round: beside the ball, a cone is its tangent planes."""
+    (centre, apex), axis, radius = surfaces.points, surfaces.axes[1], surfaces.radii[0]
+    half, (low, high) = surfaces.both("half_angles")[1], surfaces.extents[1]
+    arm = centre - apex
+    along = float(arm @ axis)
+    aside = arm - along * axis
+    far = float(np.linalg.norm(aside))
+    convex = surfaces.sides[1] > 0
+    if convex and far < ROUND_AXIS * radius:
+        return None
+    base = perpendicular(axis, aside if far > ROUND_AXIS * radius else None)
+    angle = 2 * math.pi * np.arange(1 if convex else BALL_BORE_SAMPLES) / BALL_BORE_SAMPLES
+    outward = np.cos(angle)[:, None] * base + np.sin(angle)[:, None] * cross(axis, base)
+    normals = surfaces.sides[1] * (math.cos(half) * outward - math.sin(half) * axis)
+    distances = normals @ arm
+    feet = along - distances * (normals @ axis)
+    if not low <= float(feet[0]) <= high:
+        return None
+    gaps = distances - radius
+    points = centre - (radius + 0.5 * gaps)[:, None] * normals
+    spacing = 0.0 if convex else 2 * math.pi * radius * math.cos(half) / BALL_BORE_SAMPLES
+    return Meeting(points, normals, gaps, not convex, spacing)
 
 
 def _single(first: Array, second: Array, radius: float, other: float) -> Meeting | None:
