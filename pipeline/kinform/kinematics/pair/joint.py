@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.algebra.screws import twist_at_origin
-from kinform.foundation.algebra.vectors import canonical, cross, foot, norm, perpendicular, weighted_mean
-from kinform.kinematics.constants import LEAST_MISALIGNMENT, SIGMAS
+from kinform.foundation.algebra.vectors import canonical, cross, foot, norm, perpendicular, weighted_mean, widest_gap
+from kinform.kinematics.constants import BESIDE_AXIS, LEAST_MISALIGNMENT, SIGMAS
 from kinform.kinematics.pair.decision import Decision
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.pair.hypotheses import motion_words
@@ -153,9 +153,17 @@ def misalignment(evidence: Evidence, decision: Decision) -> tuple[float, float]:
         angle = max(angle, excess if excess > LEAST_MISALIGNMENT else 0.0)
         if patch.kind in (*COAXIAL, "sphere"):
             known = SIGMAS * max(patch.uncertainty[1], patch.mismatch[1])
-            far = patch.offset - max(patch.gap, 0.0) - known - patch.chord
+            far = patch.offset - _apart_unseen(item) - known - patch.chord
             offset = max(offset, far if far > LEAST_MISALIGNMENT * evidence.frame.length else 0.0)
     return angle, offset
+
+
+def _apart_unseen(item: Item) -> float:
+    """m by which the axes of two sides may differ that lie on each other. Round the axis it is their clearance; arcs
+    that lie beside it touch from within whichever of their radii is larger, their axes by the difference apart."""
+    patch = item.patch
+    beside = patch.kind in COAXIAL and widest_gap(item.normals, patch.axis) > BESIDE_AXIS
+    return abs(patch.gap) if beside else max(patch.gap, 0.0)
 
 
 def _unevenness(item: Item) -> float:
