@@ -49,6 +49,7 @@ TWICE = {
 INVERTED = {
     "a piece": together(shell(CUBE), shell(CORE, (3.0, 0.1, 0.2), inward=True)),
     "a piece as large as the rest": together(shell(CUBE), shell(CUBE, (3.0, 0.1, 0.2), inward=True)),
+    "one with a collar about it": together(shell(block(0.2, 0.2, 3.0), inward=True), shell(CUBE)),
     "the largest": together(shell(CUBE, inward=True), shell(CORE, (3.0, 0.1, 0.2))),
 }
 

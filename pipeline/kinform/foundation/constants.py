@@ -55,8 +55,11 @@ SAME_ANGLE = 1e-7
 
 # meshes/shell_faults
 
-SHELL_PROBES = 64
-"""Facets of a shell that are probed: finds what is as large as a few hundredths of it."""
+SHELL_PROBES = 32
+"""Facets of a shell that are probed, ..."""
+PROBE_PARTS = 3
+"""... each in the middles of the triangles that it is divided into along each side: finds what is as large as a few
+hundredths of a shell."""
 SHELL_DEPTH = 1e-3
 """How far from a facet it is probed, in the longest side of the shell's facets: fits are shallower, walls thicker."""
 CROSSING_SHARE = 0.02

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
-from kinform.foundation.constants import CROSSING_SHARE, RAYS, SHELL_DEPTH, SHELL_PROBES
+from kinform.foundation.constants import CROSSING_SHARE, PROBE_PARTS, RAYS, SHELL_DEPTH, SHELL_PROBES
 from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
+from kinform.foundation.meshes.index import inner_weights
 from kinform.foundation.meshes.parity import Ray
 from kinform.foundation.meshes.shells import shells_of
 from kinform.model.arrays import Array, Flags, Ints
@@ -39,9 +40,9 @@ def shell_faults(mesh: Mesh) -> ShellFaults:
     volumes = np.bincount(shell, dot(corners[:, 0], cross(corners[:, 1], corners[:, 2]))) / 6.0
     chosen = _chosen(shell)
     chosen = chosen[(_beside_others(mesh, shell) | (volumes < 0.0))[shell[chosen]]]
-    wrong, whole = _wrong(mesh, shell[chosen], chosen, volumes)
-    inverted = whole & (volumes < 0.0)
-    overlapping = wrong & ~inverted
+    share = _wrong(mesh, shell[chosen], chosen, volumes)
+    inverted = (share > 0.5) & (volumes < 0.0)
+    overlapping, whole = (share > CROSSING_SHARE) & ~inverted, share > 1.0 - CROSSING_SHARE
     inside, crossing = (np.abs(volumes[overlapping & flags]) for flags in (whole, ~whole))
     if len(crossing) > 1:  # what the largest shares with the others is no more than they are
         crossing = np.sort(crossing)[:-1]
@@ -67,9 +68,9 @@ def _beside_others(mesh: Mesh, shell: Ints) -> Flags:
     return np.array([len(boxes.meeting(*box)) > 1 for box in zip(lows, highs, strict=True)])
 
 
-def _wrong(mesh: Mesh, shell: Ints, chosen: Ints, volumes: Array) -> tuple[Flags, Flags]:
-    """(S,) whether facets of a shell of which `chosen` were probed lie in material, or bound a cavity of none; and
-    whether all of them do."""
+def _wrong(mesh: Mesh, shell: Ints, chosen: Ints, volumes: Array) -> Array:
+    """(S,) share of the area of each shell, of which the facets `chosen` were probed, that lies in material, or bounds
+    a cavity in none."""
     corners = mesh.vertices[mesh.faces[chosen]]
     spans = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     areas = np.linalg.norm(spans, axis=1)
@@ -78,10 +79,11 @@ def _wrong(mesh: Mesh, shell: Ints, chosen: Ints, volumes: Array) -> tuple[Flags
     np.maximum.at(sizes, shell, np.linalg.norm(corners.max(axis=1) - corners.min(axis=1), axis=1))
     cavity = volumes[shell] < 0.0
     depth = np.where(cavity, SHELL_DEPTH, -SHELL_DEPTH) * sizes[shell]
-    winding = _windings(mesh, corners.mean(axis=1) + depth[:, None] * normals)
-    bad = np.where(cavity, winding < -0.5, winding > 1.5)
-    share = np.bincount(shell, areas * bad, len(volumes)) / np.maximum(np.bincount(shell, areas, len(volumes)), 1e-300)
-    return share > CROSSING_SHARE, share > 1.0 - CROSSING_SHARE
+    points = inner_weights(PROBE_PARTS) @ corners + (depth[:, None] * normals)[:, None]
+    winding = _windings(mesh, points.reshape(-1, 3)).reshape(points.shape[:2])
+    bad = np.where(cavity[:, None], winding < -0.5, winding > 1.5).mean(axis=1)
+    whole = np.maximum(np.bincount(shell, areas, len(volumes)), 1e-300)
+    return np.asarray(np.bincount(shell, areas * bad, len(volumes)) / whole)
 
 
 def _windings(mesh: Mesh, points: Array) -> Array:
