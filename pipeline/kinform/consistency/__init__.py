@@ -41,7 +41,7 @@ __all__ = [
     "with_baseline",
 ]
 
-CODE_VERSION: int = 40
+CODE_VERSION: int = 41
 
 __getattr__ = first_used(
     __name__,

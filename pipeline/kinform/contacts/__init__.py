@@ -29,5 +29,5 @@ from kinform.contacts.find import find
 
 __all__ = ["CODE_VERSION", "find"]
 
-CODE_VERSION: int = 19
+CODE_VERSION: int = 20
 """Raised when the same input would give other contacts."""

@@ -6,4 +6,4 @@ from kinform.mass.compile import compile_mass, weighed_together
 
 __all__ = ["CODE_VERSION", "compile_mass", "weighed_together"]
 
-CODE_VERSION: int = 3
+CODE_VERSION: int = 4
