@@ -1,8 +1,28 @@
-"""Memory that is free goes back to the system before much more is taken."""
+"""Memory that is free goes back to the system before much more is taken; and nothing is searched for what can be freed
+while many small things are made that stay."""
 
 from __future__ import annotations
 
 import ctypes
+import gc
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+
+@contextmanager
+def uncollected() -> Iterator[None]:
+    """Python does not search for cycles of objects that nobody holds, as a context or of a function that it decorates.
+
+    Where hundreds of thousands of small objects are made that stay, and no cycles of them, that takes a fifteenth of
+    the time, and finds nothing. What nobody holds and is in no cycle is freed all the same.
+    """
+    before = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if before:
+            gc.enable()
 
 
 def give_back() -> None:

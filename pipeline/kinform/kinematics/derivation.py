@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from kinform.foundation.memory import uncollected
 from kinform.kinematics.answers import Answers
 from kinform.kinematics.axes.bounds import move_bounds, uncertainties
 from kinform.kinematics.axes.equal_lengths import equalise_lengths
@@ -90,6 +91,7 @@ class _Mechanism:
         return [pose[body.parts[0]][:3, 3] for body in self.graph.bodies]
 
 
+@uncollected()
 def derive(
     assembly: Assembly,
     surfaces: Mapping[str, MeshSurfaces],
