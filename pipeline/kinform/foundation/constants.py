@@ -88,6 +88,8 @@ HITS_A_PROBE = 256
 PROBED_FEW = 200_000
 """Slivers times facets in their common box up to which all are asked about: a millisecond, in which FCL makes a model
 of a few hundred facets."""
+CROSSED_FEW = 100_000
+"""The same of facets that may cross: those of two parts are longer, and more of them meet by their boxes."""
 STEEP_LEAST = 1e-3
 """Least cosine between a probe and a facet's normal at which the place where they meet is known."""
 

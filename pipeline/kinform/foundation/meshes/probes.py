@@ -18,10 +18,10 @@ import numpy as np
 
 from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.algebra.vectors import cross, dot
-from kinform.foundation.constants import HITS_A_PROBE, PROBED_FEW, SLIVER_WIDTH, STEEP_LEAST
+from kinform.foundation.constants import CROSSED_FEW, HITS_A_PROBE, PROBED_FEW, SLIVER_WIDTH, STEEP_LEAST
 from kinform.foundation.meshes.boxes import facet_boxes
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, fcl_pose, partial_model, point_model
-from kinform.foundation.meshes.slivers import beside, meeting
+from kinform.foundation.meshes.slivers import beside, meeting, mutual
 from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
@@ -148,10 +148,19 @@ class Region:
         """Whether any facets of the two intersect; `X_SO` (4, 4): pose of the other part here."""
         if self.empty or other.empty:
             return False
+        if not (self.index.is_large or other.index.is_large):
+            here, there = mutual(self._corners(), other._corners() @ X_SO[:3, :3].T + X_SO[:3, 3])
+            if len(here) * len(there) <= CROSSED_FEW:
+                return bool(len(meeting(here, there)[0]))
         request = fcl.CollisionRequest(num_max_contacts=1, enable_contact=False)
         placed = fcl.CollisionObject(other._beside(self, inverse(X_SO)), fcl_pose(X_SO))
-        here = fcl.CollisionObject(self._beside(other, X_SO))
-        return bool(fcl.collide(here, placed, request, fcl.CollisionResult()))
+        base = fcl.CollisionObject(self._beside(other, X_SO))
+        return bool(fcl.collide(base, placed, request, fcl.CollisionResult()))
+
+    def _corners(self) -> Array:
+        """(n, 3, 3) m of the facets."""
+        mesh = self.index.mesh
+        return np.asarray(mesh.vertices[mesh.faces if self.facets is None else mesh.faces[self.facets]])
 
     def _beside(self, other: Region, X_SO: Array) -> fcl.BVHModel:
         """FCL's model of facets, all that those of the other region can meet among them."""

@@ -23,6 +23,29 @@ def beside(slivers: Array, vertices: Array, faces: Ints) -> Ints:
     return np.flatnonzero(((low_f <= high) & (high_f >= low)).all(axis=1))
 
 
+def mutual(first: Array, second: Array) -> tuple[Array, Array]:
+    """Those of triangles (n, 3, 3) and (m, 3, 3), in their order, that may meet some of the others by the box of all of
+    these; neither of none."""
+    low, high = _boxes(second)
+    first = _within(first, low.min(axis=0), high.max(axis=0))
+    if not len(first):
+        return first, second[:0]
+    low, high = _boxes(first)
+    return first, _within(second, low.min(axis=0), high.max(axis=0))
+
+
+def _within(triangles: Array, low: Array, high: Array) -> Array:
+    """Those of triangles (n, 3, 3) whose boxes meet that from `low` to `high` (3,)."""
+    low_t, high_t = _boxes(triangles)
+    return np.asarray(triangles[((low_t <= high) & (high_t >= low)).all(axis=1)])
+
+
+def _boxes(triangles: Array) -> tuple[Array, Array]:
+    """Lower and upper corners (n, 3) of the boxes of triangles (n, 3, 3)."""
+    one, two, three = (triangles[:, k] for k in range(3))
+    return np.minimum(np.minimum(one, two), three), np.maximum(np.maximum(one, two), three)
+
+
 def meeting(slivers: Array, corners: Array) -> tuple[Ints, Ints]:
     """(k,) each: slivers (n, 3, 3) and facets (m, 3, 3) that meet, by sliver, then by facet; one unit of length."""
     sliver, facet = _boxes_meeting(slivers, corners)
