@@ -138,7 +138,7 @@ def segments(part: PartView, sheet: Sheet, direction: Array, alignment: float, g
     inner, outer = np.concatenate([sheet.bends, sheet.bends[:, ::-1]]).T
     leaves = upright[inner] & ~upright[outer]
     inner, outer = inner[leaves], outer[leaves]
-    heights = [np.ptp(part.vertices[part.faces[side]] @ direction, axis=1) for side in (inner, outer)]
+    heights = [np.ptp(part.vertices.take(part.faces[side], axis=0) @ direction, axis=1) for side in (inner, outer)]
     upright[inner[heights[1] > STRIP_HEIGHT * heights[0]]] = False
     facets = facets[upright[facets]]
     if not len(facets):
@@ -148,7 +148,7 @@ def segments(part: PartView, sheet: Sheet, direction: Array, alignment: float, g
     lead = facets[np.unique(face, return_index=True)[1]]
     normals = part.normals(lead) @ plane.T
     along = np.stack([-normals[:, 1], normals[:, 0]], axis=1)
-    corners = part.vertices[part.faces[facets]]
+    corners = part.vertices.take(part.faces[facets], axis=0)
     flat, height = (corners @ plane.T).reshape(-1, 2), (corners @ direction).ravel()
     owner = np.repeat(face, 3)
     reach = np.einsum("ik,ik->i", flat, along[owner])

@@ -16,6 +16,7 @@ import numpy as np
 from kinform.contacts.constants import CHART_ARC, CHART_FAR, HINT_LEAST, POLE_SEEN, SEEN_FROM_AXIS
 from kinform.foundation.algebra import vectors
 from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.meshes.boxes import middles
 from kinform.model.arrays import Array, Ints
 
 
@@ -116,7 +117,7 @@ class _Axial:
         """Height, radius and azimuth (n, 3) of the corners, each azimuth within π of its centroid's."""
         along, across = self._arms(triangles)
         radius = np.linalg.norm(across, axis=-1)
-        middle = self._azimuth(self._arms(triangles.mean(axis=1))[1])[:, None]
+        middle = self._azimuth(self._arms(middles(triangles))[1])[:, None]
         turn = self._azimuth(across) - middle
         turn -= 2.0 * math.pi * np.round(turn / (2.0 * math.pi))
         turn = np.where(radius > 1e-9 * radius.max(initial=0.0), turn, 0.0)
@@ -230,7 +231,7 @@ class SphereChart:
     def flatten(self, triangles: Array) -> Array:
         rays = _unit_rows(triangles - self.point)
         rise = rays @ self.pole
-        shown = rays.mean(axis=1) @ self.pole > POLE_SEEN
+        shown = middles(rays) @ self.pole > POLE_SEEN
         rays, rise = rays[shown], rise[shown]
         stretch = self.radius * np.sqrt(2.0 / np.maximum(1.0 + rise, 1e-9))
         return np.asarray(stretch[..., None] * (rays @ plane_basis(self.pole).T))

@@ -19,6 +19,7 @@ from kinform.contacts.search.pair_view import PairView, boxes_of
 from kinform.foundation.algebra.screws import Frame, rows
 from kinform.foundation.algebra.vectors import cross, dot, foot
 from kinform.foundation.constants import SLIVER_WIDTH
+from kinform.foundation.meshes.boxes import meeting_box, middles, triangle_boxes
 from kinform.foundation.meshes.proximity import near_boxes
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
@@ -134,14 +135,14 @@ def _facing(view: PairView, unread: Flags) -> _Near | None:
     high = other.highs[columns].max(axis=0) + reach
     facets = np.concatenate([own.facets[k] for k in rows_])
     of_row = np.repeat(rows_, [len(own.facets[k]) for k in rows_])
-    corners = a.vertices[a.faces[facets]]
+    corners = a.vertices.take(a.faces[facets], axis=0)
     areas = a.index.areas(facets)
-    inside = ((corners.min(axis=1) <= high) & (corners.max(axis=1) >= low)).all(axis=1) & (areas > 0.0)
+    inside = meeting_box(*triangle_boxes(corners), low, high) & (areas > 0.0)
     facets, of_row, areas, corners = facets[inside], of_row[inside], areas[inside], corners[inside]
     if not len(facets):
         return None
     chosen, weight = _evenly(areas, constants.ENCLOSING_PROBES)
-    points, normals = corners[chosen].mean(axis=1), a.normals(facets[chosen])
+    points, normals = middles(corners[chosen]), a.normals(facets[chosen])
     able = np.flatnonzero(_can_hit(view, points, normals, reach, columns))
     if not len(able):
         return None
@@ -181,7 +182,7 @@ def _can_hit(view: PairView, points: Array, normals: Array, reach: float, column
     half = reach * (np.abs(normals) + 2.0 * SLIVER_WIDTH)
     low, high = points - half, points + half
     low_b, high_b = boxes_of(b, facets)
-    near = np.flatnonzero(((low_b <= high.max(axis=0)) & (high_b >= low.min(axis=0))).all(axis=1))
+    near = np.flatnonzero(meeting_box(low_b, high_b, low.min(axis=0), high.max(axis=0)))
     facets, low_b, high_b = facets[near], low_b[near], high_b[near]
     out = np.ones(len(points), bool)
     if len(points) * len(facets) > constants.MANY_FACING:

@@ -19,6 +19,7 @@ from kinform.contacts.mating.patches import classify_fit
 from kinform.contacts.search.narrow_phase import Probes, verify
 from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.foundation.algebra.vectors import cross, dot, widest_gap
+from kinform.foundation.meshes.boxes import meeting_box, middles
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 
@@ -58,8 +59,8 @@ def _probes(pair: PairView, surfaces: SurfacePair) -> tuple[Probes, Array]:
     low, high = middle - 0.5 * size - reach, middle + 0.5 * size + reach
     points, normals, shares = [], [], []
     for part, facets, sense in zip(pair.parts, surfaces.facets, (1.0, -1.0), strict=True):
-        centres = part.vertices[part.faces[facets]].mean(axis=1)
-        inside = ((centres >= low) & (centres <= high)).all(axis=1)
+        centres = middles(part.vertices.take(part.faces[facets], axis=0))
+        inside = meeting_box(centres, centres, low, high)
         # facets without area have no normal
         within = np.nonzero(inside & (part.index.areas(facets) > 0.0))[0]
         chosen = within[:: max(1, math.ceil(len(within) / constants.FREEFORM_PROBES))]

@@ -21,7 +21,7 @@ from kinform.contacts.mating.charts import Chart, ConeChart, CylinderChart, Plan
 from kinform.contacts.mating.mate import Mate
 from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.foundation.algebra.vectors import dot
-from kinform.foundation.meshes.boxes import facet_boxes
+from kinform.foundation.meshes.boxes import facet_boxes, meeting_box, middles
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
@@ -60,7 +60,7 @@ def _beside(view: PairView, pairs: list[tuple[int, int]]) -> Iterator[tuple[int,
         takers = [column for _, column in group]
         at = np.concatenate([np.arange(*place[column]) for column in takers])
         bounds = giver.lows[row] - view.tolerance, giver.highs[row] + view.tolerance
-        inside = at[((low[at] <= bounds[1]) & (high[at] >= bounds[0])).all(axis=1)]
+        inside = at[meeting_box(low[at], high[at], *bounds)]
         if giver.kinds[row] == _PLANE:
             outward = np.broadcast_to(giver.sides[row] * giver.axes[row], (len(inside), 3))
             inside = inside[dot(outward, normals[inside]) < FACING_OPPOSED]
@@ -137,7 +137,7 @@ def _mate(view: PairView, surfaces: SurfacePair, facets: Ints, first: bool) -> M
     resting = _resting(view, surfaces, chart, facets)
     if not len(resting):
         return None
-    giver = view.a.vertices[view.a.faces[surfaces.facets[0]]]
+    giver = view.a.vertices.take(view.a.faces[surfaces.facets[0]], axis=0)
     kind, other = surfaces.kinds
     axis = surfaces.axes[0]
     radius = surfaces.both("half_angles")[0] if kind == "cone" else surfaces.radii[0]
@@ -162,8 +162,8 @@ def _mate(view: PairView, surfaces: SurfacePair, facets: Ints, first: bool) -> M
 def _resting(view: PairView, surfaces: SurfacePair, chart: Chart, facets: Ints) -> Array:
     """Those (n, 3, 3) of facets of the taker's surface that face the giver's, cut to what is within the tolerance."""
     taker = view.b
-    corners = taker.vertices[taker.faces[facets]]
-    normals = surfaces.sides[0] * chart.normals(corners.mean(axis=1))
+    corners = taker.vertices.take(taker.faces[facets], axis=0)
+    normals = surfaces.sides[0] * chart.normals(middles(corners))
     corners = corners[dot(normals, taker.normals(facets)) < FACING_OPPOSED]
     if not len(corners):
         return np.zeros((0, 3, 3))

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from kinform.contacts import constants
 from kinform.contacts.mating.charts import Chart
+from kinform.foundation.meshes.boxes import meeting_box, middles, triangle_boxes
 from kinform.foundation.sorting import numbered
 from kinform.model.arrays import Array, Flags, Ints
 
@@ -58,7 +59,7 @@ class Cells:
     @property
     def centroids(self) -> Array:
         """(k, 2) m."""
-        return np.asarray(self.corners.mean(axis=1))
+        return middles(self.corners)
 
     def probes(self) -> Array:
         """(bins, 2) m: for each bin the centroid, of its triangles, that is nearest to its mean."""
@@ -214,7 +215,7 @@ def _overlap(chart: Chart, first: Array, second: Array, unit: float) -> CrossSec
         return None
     sides = []
     for flat in (flat_a, flat_b):
-        within = ((flat.min(axis=1) <= high) & (flat.max(axis=1) >= low)).all(axis=1)
+        within = meeting_box(*triangle_boxes(flat), low, high)
         sides.append(_region(flat[within], unit))
     region = sides[0] ^ sides[1]
     window = chart.window()
@@ -269,7 +270,7 @@ def overlay(chart: Chart, first: Array, second: Array, tolerance: float, thin: f
     corners = _split(corners, size)
     corners = corners[np.abs(_signed(corners)) > 0.0]
     # Bins are counted from the region's own corner, so that they move with it.
-    place = np.floor((corners.mean(axis=1) - corners.min(axis=(0, 1))) / size).astype(np.int64)
+    place = np.floor((middles(corners) - corners.min(axis=(0, 1))) / size).astype(np.int64)
     across, along = (place.max(axis=0) + 1).tolist()
     _, bins = numbered(place[:, 0] * along + place[:, 1], across * along)
     rim = _rim([polygon for polygons in pieces for polygon in polygons], flat)

@@ -60,7 +60,8 @@ def _rests(mate: Mate, cells: Cells, gaps: Array, tolerance: float) -> bool:
 def _cells(pair: PairView, mate: Mate) -> Cells | None:
     """Overlap of the mate's two surfaces where their gap is within its limit."""
     first, second = mate.corners or (
-        part.vertices[part.faces[facets]] for part, facets in zip(pair.parts, mate.surfaces.facets, strict=True)
+        part.vertices.take(part.faces[facets], axis=0)
+        for part, facets in zip(pair.parts, mate.surfaces.facets, strict=True)
     )
     cells = overlay(mate.chart, first, second, pair.tolerance, mate.thin)
     if cells is None:

@@ -126,7 +126,7 @@ def _turned(vectors: Array, radial: Array, axis: Array) -> Array:
 
 def _profile(part: PartView, facets: Ints, axes: Axes, advance: float) -> _Profile:
     """The facets in the coordinates of the screw about the axes."""
-    corners = part.vertices[part.faces[facets]]
+    corners = part.vertices.take(part.faces[facets], axis=0)
     base, aside = plane_basis(axes.axis)
     arm = corners - axes.point
     height, x, y = arm @ axes.axis, arm @ base, arm @ aside

@@ -16,6 +16,7 @@ from kinform.contacts import constants
 from kinform.contacts.overlap.solids import Piece, SolidStore
 from kinform.contacts.presses import beyond_press
 from kinform.contacts.search.pair_view import PairView, PartView
+from kinform.foundation.meshes.boxes import middles
 from kinform.model.arrays import Array, Flags, Ints, freeze
 from kinform.model.contacts import Interference, Patch
 
@@ -137,9 +138,9 @@ def _holds(outer: PartView, inner: PartView) -> bool:
     shells = inner.index.shells
     if len(shells) == 1 and ((inner.low < outer.low) | (inner.high > outer.high)).any():
         return False
-    middles = inner.vertices[inner.faces[shells]].mean(axis=1)
-    middles = middles[((middles > outer.low) & (middles < outer.high)).all(axis=1)]
-    return bool(len(middles)) and bool(outer.index.contains(outer.to_part(middles)).any())
+    inside = middles(inner.vertices.take(inner.faces[shells], axis=0))
+    inside = inside[((inside > outer.low) & (inside < outer.high)).all(axis=1)]
+    return bool(len(inside)) and bool(outer.index.contains(outer.to_part(inside)).any())
 
 
 def _measured(owner: PartView, other: PartView, points: Array, facets: Ints, first: bool) -> _Samples:
@@ -190,7 +191,7 @@ def _deepest(a: PartView, b: PartView, piece: Piece, samples: _Samples, deep: Fl
 
 def _points_of(piece: Piece) -> tuple[Array, Ints, Ints]:
     """Middles of the facets of a piece, and points just inside their corners; of which part and facet each is."""
-    middle = piece.corners.mean(axis=1)
+    middle = middles(piece.corners)
     part, facet = (np.concatenate([numbers, np.repeat(numbers, 3)]) for numbers in (piece.part, piece.facet))
     return _within(piece.corners, middle), part, facet
 
@@ -260,8 +261,8 @@ def _by_facets(a: PartView, b: PartView, allowance: _Allowance) -> Interference 
 
 def _inside(owner: PartView, other: PartView) -> tuple[Array, Ints]:
     """Points on the owner's facets that are inside the other part, and their facets."""
-    corners = owner.vertices[owner.faces]
-    points = _within(corners, corners.mean(axis=1))
+    corners = owner.vertices.take(owner.faces, axis=0)
+    points = _within(corners, middles(corners))
     facets = np.concatenate([np.arange(len(corners)), np.repeat(np.arange(len(corners)), 3)])
     within = np.nonzero(((points > other.low) & (points < other.high)).all(axis=1))[0]
     chosen = within[:: max(1, math.ceil(len(within) / constants.DEPTH_SAMPLES))]

@@ -14,7 +14,7 @@ import numpy as np
 
 from kinform.contacts.constants import CLEARANCE_SHARE, FEW_BESIDE, MATING_REACH, MOST_SURFACES
 from kinform.foundation.algebra.displacements import inverse
-from kinform.foundation.meshes.boxes import facet_boxes
+from kinform.foundation.meshes.boxes import facet_boxes, meeting_box
 from kinform.foundation.meshes.index import MeshIndex, MeshStore
 from kinform.foundation.meshes.probes import Region
 from kinform.foundation.meshes.proximity import near_boxes
@@ -166,7 +166,7 @@ def _near_surfaces(placed: PartView, beside: _Boxed, low: Array, high: Array) ->
     """Surfaces of the part that have facets whose boxes meet the box from `low` to `high` (3,), all among those
     `beside` it."""
     near, low_f, high_f = beside
-    meets = ((low_f <= high) & (high_f >= low)).all(axis=1)
+    meets = meeting_box(low_f, high_f, low, high)
     near, low_f, high_f = near[meets], low_f[meets], high_f[meets]
     labels = placed.surfaces.labels[near]
     order = np.argsort(labels, kind="stable")

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from kinform.foundation import constants
 from kinform.foundation.sorting import ascending
-from kinform.model.arrays import Array, Ints
+from kinform.model.arrays import Array, Flags, Ints
 
 
 def bounds(points: NDArray[np.floating]) -> tuple[Array, Array]:
@@ -36,8 +36,32 @@ def box_corners(low: Array, high: Array, X: Array) -> Array:
 def facet_boxes(points: Array, faces: Ints) -> tuple[Array, Array]:
     """Lower and upper corners (n, d) of the boxes of faces (n, 3) over points (V, d); of values (V,) least and
     greatest."""
-    first, second, third = (points[corner] for corner in faces.T)
+    first, second, third = (points.take(corner, axis=0) for corner in faces.T)
     return np.minimum(np.minimum(first, second), third), np.maximum(np.maximum(first, second), third)
+
+
+def triangle_boxes(corners: Array) -> tuple[Array, Array]:
+    """Lower and upper corners (n, d) of the boxes of triangles (n, 3, d); columns, as numpy is slow along short rows."""
+    first, second, third = (corners[:, corner] for corner in range(3))
+    return np.minimum(np.minimum(first, second), third), np.maximum(np.maximum(first, second), third)
+
+
+def middles(corners: Array) -> Array:
+    """(n, d) means of the corners of triangles (n, 3, d), to the bits of their mean along the second axis."""
+    out = corners[:, 0] + corners[:, 1]
+    out += corners[:, 2]
+    out /= 3.0
+    return np.asarray(out)
+
+
+def meeting_box(lows: Array, highs: Array, low: Array, high: Array) -> Flags:
+    """(n,) whether boxes from `lows` to `highs` (n, d) meet that from `low` to `high` (d,)."""
+    meets = lows[:, 0] <= high[0]
+    meets &= highs[:, 0] >= low[0]
+    for axis in range(1, lows.shape[1]):
+        meets &= lows[:, axis] <= high[axis]
+        meets &= highs[:, axis] >= low[axis]
+    return np.asarray(meets)
 
 
 class FacetBoxes:
@@ -52,20 +76,16 @@ class FacetBoxes:
         """Facets whose boxes meet the box from `low` to `high` (d,), ascending."""
         self._asked += 1
         if self._asked <= constants.OFTEN or len(self.low) <= constants.CHUNK:
-            meets = np.ones(len(self.low), dtype=bool)
-            for axis in range(self.low.shape[1]):
-                meets &= (self.low[:, axis] <= high[axis]) & (self.high[:, axis] >= low[axis])
-            return np.flatnonzero(meets)
+            return np.flatnonzero(meeting_box(self.low, self.high, low, high))
         if self._order is None:
             self._order = together(self.low, self.high)
             self._starts = np.arange(0, len(self.low), constants.CHUNK)
             self._chunk_low = np.minimum.reduceat(self.low[self._order], self._starts)
             self._chunk_high = np.maximum.reduceat(self.high[self._order], self._starts)
-        chunks = np.flatnonzero(((self._chunk_low <= high) & (self._chunk_high >= low)).all(axis=1))
+        chunks = np.flatnonzero(meeting_box(self._chunk_low, self._chunk_high, low, high))
         at = (self._starts[chunks, None] + np.arange(constants.CHUNK)).ravel()
         facets = np.sort(self._order[at[at < len(self._order)]])
-        meets = ((self.low[facets] <= high) & (self.high[facets] >= low)).all(axis=1)
-        return np.asarray(facets[meets])
+        return np.asarray(facets[meeting_box(self.low[facets], self.high[facets], low, high)])
 
 
 class FlatBoxes:

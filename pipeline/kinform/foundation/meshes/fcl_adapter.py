@@ -55,4 +55,4 @@ def point_model() -> fcl.BVHModel:
 def partial_model(vertices: Array, faces: Ints) -> fcl.BVHModel:
     """FCL's model of some facets, with the vertices that they use."""
     used, corners = numbered(faces.ravel(), len(vertices))
-    return fcl_model(vertices[used], corners.reshape(-1, 3))
+    return fcl_model(vertices.take(used, axis=0), corners.reshape(-1, 3))

@@ -60,8 +60,12 @@ class MeshIndex:
     def spans(self, facets: Ints) -> Array:
         """(n, 3) cross products of two edges of each facet: outward, of twice its area (m²)."""
         if self._spans is None and len(self.mesh.faces) <= KEPT_SPANS:
-            self._spans = _spans(self.mesh.vertices[self.mesh.faces])
-        return _spans(self.mesh.vertices[self.mesh.faces[facets]]) if self._spans is None else self._spans[facets]
+            self._spans = _spans(self.mesh.vertices.take(self.mesh.faces, axis=0))
+        return (
+            _spans(self.mesh.vertices.take(self.mesh.faces[facets], axis=0))
+            if self._spans is None
+            else self._spans[facets]
+        )
 
     def areas(self, facets: Ints) -> Array:
         """(n,) m²."""
@@ -246,7 +250,7 @@ def _spans(corners: Array) -> Array:
 
 def _balls(mesh: Mesh) -> list[tuple[Nearest, float]]:
     """Middles of balls that hold all facets, with their radius (m), by octaves of it."""
-    corners = mesh.vertices[mesh.faces]
+    corners = mesh.vertices.take(mesh.faces, axis=0)
     longest = longest_sides(corners)
     parts = np.clip(np.ceil(longest / max(BALL_SHARE * mesh.diagonal, 1e-300)), 1, BALL_PARTS).astype(np.int64)
     middles, radii = [], []

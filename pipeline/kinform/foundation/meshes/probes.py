@@ -19,7 +19,7 @@ import numpy as np
 from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.constants import CROSSED_FEW, HITS_A_PROBE, PROBED_FEW, SLIVER_WIDTH, STEEP_LEAST
-from kinform.foundation.meshes.boxes import facet_boxes
+from kinform.foundation.meshes.boxes import facet_boxes, triangle_boxes
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, fcl_pose, partial_model, point_model
 from kinform.foundation.meshes.slivers import beside, meeting, mutual
 from kinform.foundation.sorting import distinct
@@ -115,7 +115,7 @@ class Region:
         faces = mesh.faces if self.facets is None else mesh.faces[own]
         near = beside(slivers, mesh.vertices, faces)
         if len(slivers) * len(near) <= PROBED_FEW:
-            probe, facet = meeting(slivers, mesh.vertices[faces[near]])
+            probe, facet = meeting(slivers, mesh.vertices.take(faces[near], axis=0))
             return probe, own[near[facet]]
         probe_model = fcl_model(slivers.reshape(-1, 3), np.arange(3 * len(slivers)).reshape(-1, 3))
         # Contact points stay off: they cost, come several to a facet, and depend on FCL's own tolerance.
@@ -123,7 +123,7 @@ class Region:
         request = fcl.CollisionRequest(num_max_contacts=most, enable_contact=False)
         result = fcl.CollisionResult()
         if self.facets is None:
-            model, of_model = self.index.model_near(slivers.min(axis=1), slivers.max(axis=1))
+            model, of_model = self.index.model_near(*triangle_boxes(slivers))
         else:
             model, of_model = self.bvh, self.facets
         fcl.collide(fcl.CollisionObject(model), fcl.CollisionObject(probe_model), request, result)
@@ -160,7 +160,7 @@ class Region:
     def _corners(self) -> Array:
         """(n, 3, 3) m of the facets."""
         mesh = self.index.mesh
-        return np.asarray(mesh.vertices[mesh.faces if self.facets is None else mesh.faces[self.facets]])
+        return np.asarray(mesh.vertices.take(mesh.faces if self.facets is None else mesh.faces[self.facets], axis=0))
 
     def _beside(self, other: Region, X_SO: Array) -> fcl.BVHModel:
         """FCL's model of facets, all that those of the other region can meet among them."""

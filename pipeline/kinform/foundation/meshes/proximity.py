@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.constants import CELLS_LEAST, CELLS_MOST
+from kinform.foundation.meshes.boxes import meeting_box
 from kinform.model.arrays import Array, Flags, Ints
 
 
@@ -26,10 +27,10 @@ def near_boxes(low_a: Array, high_a: Array, low_b: Array, high_b: Array, margin:
     counts = np.maximum(np.ceil(finest * size / size.max()), 1).astype(np.int64)
     first, last = _cells(low_b - margin, high_b + margin, low, size, counts)
     keep_a = _occupied(_grid(first, last, counts), *_cells(low_a, high_a, low, size, counts))
-    keep_a &= ((low_a <= high) & (high_a >= low)).all(axis=1)
+    keep_a &= meeting_box(low_a, high_a, low, high)
     first, last = _cells(low_a[keep_a] - margin, high_a[keep_a] + margin, low, size, counts)
     keep_b = _occupied(_grid(first, last, counts), *_cells(low_b, high_b, low, size, counts))
-    keep_b &= ((low_b <= high) & (high_b >= low)).all(axis=1)
+    keep_b &= meeting_box(low_b, high_b, low, high)
     return keep_a, keep_b
 
 
