@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from manifold3d import CrossSection, FillRule, triangulate
@@ -51,12 +52,12 @@ class Cells:
     narrow: bool = False
     """Whether all of the overlap is narrower than what is thin in any case."""
 
-    @property
+    @cached_property
     def areas(self) -> Array:
         """(k,) m²."""
         return np.abs(_signed(self.corners))
 
-    @property
+    @cached_property
     def centroids(self) -> Array:
         """(k, 2) m."""
         return middles(self.corners)
@@ -171,12 +172,13 @@ def _simple_loops(points: Array, leaving: Ints, reaching: Ints) -> list[Array]:
 
 def _perimeter(polygons: list[Array]) -> float:
     """m of all outlines."""
-    return float(sum(np.linalg.norm(p - np.roll(p, 1, axis=0), axis=1).sum() for p in polygons))
+    edges = [np.concatenate([p[:1] - p[-1:], p[1:] - p[:-1]]) for p in polygons]
+    return float(sum(np.linalg.norm(along, axis=1).sum() for along in edges))
 
 
 def _resampled(polygon: Array, step: Array) -> Array:
     """The polygon (n, 2) with points added so that no edge is longer than `step` (2,) in any coordinate."""
-    ends = np.roll(polygon, -1, axis=0)
+    ends = np.concatenate([polygon[1:], polygon[:1]])
     counts = np.maximum(np.ceil((np.abs(ends - polygon) / step).max(axis=1) - 1e-9), 1).astype(np.int64)
     rows = np.repeat(np.arange(len(polygon)), counts)
     first = np.repeat(np.cumsum(counts) - counts, counts)
@@ -186,18 +188,19 @@ def _resampled(polygon: Array, step: Array) -> Array:
 
 def _split(corners: Array, size: Array) -> Array:
     """Halve triangles at their longest edge, in units of `size` (2,), until no edge is longer than it."""
+    small = []
     while True:
         edges = (corners - corners[:, _TURNS[1]]) / size
         edges *= edges
         length = np.sqrt(edges[..., 0] + edges[..., 1])
         large = (length > 1.0).any(axis=1)
-        rows = np.flatnonzero(large)
+        rows = large.nonzero()[0]
         if not len(rows):
-            return corners
+            return np.concatenate([*small, corners]) if small else corners
+        small.append(corners[~large])
         turned = corners[rows[:, None], _TURNS[length[rows].argmax(axis=1)]]
-        halves = np.stack([turned, turned])
-        halves[0, :, 1] = halves[1, :, 0] = 0.5 * (turned[:, 0] + turned[:, 1])
-        corners = np.concatenate([corners[~large], halves[0], halves[1]])
+        corners = np.concatenate([turned, turned])
+        corners[: len(rows), 1] = corners[len(rows) :, 0] = 0.5 * (turned[:, 0] + turned[:, 1])
 
 
 _TURNS = np.array([[0, 1, 2], [1, 2, 0], [2, 0, 1]])

@@ -9,6 +9,7 @@ touch there.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from itertools import accumulate
 
 import numpy as np
 
@@ -96,5 +97,6 @@ def verify(pair: PairView, sets: list[Probes], facing: float = FACING_LEAST) -> 
         low, high = np.minimum(*along) + inset, np.maximum(*along) - inset
         for hits, wanted in zip(all_hits, on_surface, strict=True):
             holds &= ~_blocked(hits, wanted, low, high)
-    ends = np.cumsum([len(p.points) for p in sets])[:-1]
-    return Verdict(np.split(holds, ends), np.split(along[0], ends), np.split(along[1], ends), np.split(cosine, ends))
+    ends = list(accumulate(len(p.points) for p in sets))
+    own = [slice(first, end) for first, end in zip([0, *ends], ends, strict=False)]
+    return Verdict(*([array[rows] for rows in own] for array in (holds, along[0], along[1], cosine)))

@@ -41,7 +41,8 @@ def facet_boxes(points: Array, faces: Ints) -> tuple[Array, Array]:
 
 
 def triangle_boxes(corners: Array) -> tuple[Array, Array]:
-    """Lower and upper corners (n, d) of the boxes of triangles (n, 3, d); columns, as numpy is slow along short rows."""
+    """Lower and upper corners (n, d) of the boxes of triangles (n, 3, d): by columns, numpy being slow along
+    short rows."""
     first, second, third = (corners[:, corner] for corner in range(3))
     return np.minimum(np.minimum(first, second), third), np.maximum(np.maximum(first, second), third)
 
