@@ -65,6 +65,16 @@ SHELL_DEPTH = 1e-3
 CROSSING_SHARE = 0.02
 """Share of a shell's area that may lie in others: screws in bores that are too narrow do."""
 
+# meshes/box_pairs
+
+BOXES_MATRIX = 60_000
+"""Boxes times boxes up to which all are compared: 0.1 ms; a grid takes 0.5 ms."""
+BOXES_MOST = 50_000
+"""Boxes of either kind up to which a grid is made of them."""
+BESIDE_MOST = 100_000
+"""Pairs in common cells up to which they are compared: a few milliseconds, in which FCL makes a tree of a thousand
+facets."""
+
 # meshes/near
 
 LINE = np.array([0.57735, 0.51763, 0.63144, 0.44317])
@@ -85,11 +95,6 @@ SLIVER_WIDTH = 1e-3
 """Width of a sliver relative to its length: zero width misses most facets."""
 HITS_A_PROBE = 256
 """Facets that one probe may hit on average."""
-PROBED_FEW = 200_000
-"""Slivers times facets in their common box up to which all are asked about: a millisecond, in which FCL makes a model
-of a few hundred facets."""
-CROSSED_FEW = 100_000
-"""The same of facets that may cross: those of two parts are longer, and more of them meet by their boxes."""
 STEEP_LEAST = 1e-3
 """Least cosine between a probe and a facet's normal at which the place where they meet is known."""
 
@@ -164,3 +169,10 @@ MOST_EXPECTED = 0.8
 """Share of its facets above which a model of all is made, which does for every other part."""
 KEPT_SPANS = 200_000
 """Facets up to which the spans of a mesh are kept: 5 MB; of more those that are asked for are computed anew."""
+
+# meshes/slivers
+
+CROSSED_FEW = 100_000
+"""Triangles times triangles up to which all are asked whether they cross; beyond, one in so many that it is this."""
+CROSSED_SOME = 8
+"""... and no more than one in this many: where nothing crosses, all are asked after them."""

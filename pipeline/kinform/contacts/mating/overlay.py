@@ -188,13 +188,13 @@ def _resampled(polygon: Array, step: Array) -> Array:
 
 def _split(corners: Array, size: Array) -> Array:
     """Halve triangles at their longest edge, in units of `size` (2,), until no edge is longer than it."""
-    small = []
+    small: list[Array] = []
     while True:
         edges = (corners - corners[:, _TURNS[1]]) / size
         edges *= edges
         length = np.sqrt(edges[..., 0] + edges[..., 1])
         large = (length > 1.0).any(axis=1)
-        rows = large.nonzero()[0]
+        rows = np.flatnonzero(large)
         if not len(rows):
             return np.concatenate([*small, corners]) if small else corners
         small.append(corners[~large])

@@ -99,4 +99,8 @@ def verify(pair: PairView, sets: list[Probes], facing: float = FACING_LEAST) -> 
             holds &= ~_blocked(hits, wanted, low, high)
     ends = list(accumulate(len(p.points) for p in sets))
     own = [slice(first, end) for first, end in zip([0, *ends], ends, strict=False)]
-    return Verdict(*([array[rows] for rows in own] for array in (holds, along[0], along[1], cosine)))
+
+    def by_set(of_all: Array) -> list[Array]:
+        return [of_all[rows] for rows in own]
+
+    return Verdict([holds[rows] for rows in own], by_set(along[0]), by_set(along[1]), by_set(cosine))

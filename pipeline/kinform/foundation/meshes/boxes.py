@@ -113,9 +113,14 @@ class FlatBoxes:
         self._facets = box[column][_in_order(key, side * side)]
         self._starts = np.concatenate([[0], np.cumsum(np.bincount(key, minlength=side * side))])
 
+    def listed_at(self, points: Array) -> int:
+        """How many facets are listed in the cells of points (n, 2), all together."""
+        key = self._keys(points)
+        return int((self._starts[key + 1] - self._starts[key]).sum())
+
     def around(self, points: Array) -> tuple[Ints, Ints]:
-        """Indices of points (n, 2), ascending, and of facets whose box they are in."""
-        key = self._cells(points[:, 0], 0) * self._side + self._cells(points[:, 1], 1)
+        """Indices of points (n, 2), ascending, and of facets whose box they are in, ascending for each."""
+        key = self._keys(points)
         start = self._starts[key]
         count = self._starts[key + 1] - start
         which = np.repeat(np.arange(len(points)), count)
@@ -124,6 +129,10 @@ class FlatBoxes:
         left, lower, right, upper = (side[facets] for side in self._sides)
         held = np.flatnonzero((left <= x) & (right >= x) & (lower <= y) & (upper >= y))
         return which[held], facets[held]
+
+    def _keys(self, points: Array) -> Ints:
+        """(n,) the cell of each point (n, 2)."""
+        return np.asarray(self._cells(points[:, 0], 0) * self._side + self._cells(points[:, 1], 1))
 
     def _cells(self, places: Array, axis: int) -> Ints:
         """(n,) the column or row of cells that places along an axis are in, or nearest to."""

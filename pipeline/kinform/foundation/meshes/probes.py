@@ -2,8 +2,8 @@
 
 A contact list of FCL between two meshes is not usable as a patch: it misses facets that touch exactly
 and facets that penetrate in parallel. A thin triangle that stands across the surface does hit, whatever
-the gap, so every question here is put as such slivers against facets: many as one BVH against that of the
-mesh, few to all facets whose boxes they meet, which is the same question (`slivers`). Slivers are given in
+the gap, so every question here is put as such slivers against facets: to all facets whose boxes they meet
+(`slivers`), or, of very many, as one BVH against that of the mesh, which is the same question. Slivers are given in
 the mesh's own frame: the BVH never has to be built again for another pose.
 """
 
@@ -18,10 +18,10 @@ import numpy as np
 
 from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.algebra.vectors import cross, dot
-from kinform.foundation.constants import CROSSED_FEW, HITS_A_PROBE, PROBED_FEW, SLIVER_WIDTH, STEEP_LEAST
+from kinform.foundation.constants import HITS_A_PROBE, SLIVER_WIDTH, STEEP_LEAST
 from kinform.foundation.meshes.boxes import facet_boxes, triangle_boxes
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, fcl_pose, partial_model, point_model
-from kinform.foundation.meshes.slivers import beside, meeting, mutual
+from kinform.foundation.meshes.slivers import beside, crossing, meeting
 from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
@@ -86,6 +86,11 @@ class Region:
         mesh = self.index.mesh
         return partial_model(mesh.vertices, mesh.faces[self.facets])
 
+    @property
+    def _has_model(self) -> bool:
+        """Whether FCL's model is made already, so that to ask it costs little."""
+        return "bvh" in vars(self)
+
     def cast(self, points: Array, directions: Array, reach: Array, width: float = SLIVER_WIDTH) -> Hits:
         """Facets within `reach` (n,) m of `points` (n, 3) along ±`directions` (n, 3), part frame.
 
@@ -114,9 +119,9 @@ class Region:
         own = np.arange(len(mesh.faces)) if self.facets is None else self.facets
         faces = mesh.faces if self.facets is None else mesh.faces[own]
         near = beside(slivers, mesh.vertices, faces)
-        if len(slivers) * len(near) <= PROBED_FEW:
-            probe, facet = meeting(slivers, mesh.vertices.take(faces[near], axis=0))
-            return probe, own[near[facet]]
+        met = meeting(slivers, mesh.vertices.take(faces[near], axis=0))
+        if met is not None:
+            return met[0], own[near[met[1]]]
         probe_model = fcl_model(slivers.reshape(-1, 3), np.arange(3 * len(slivers)).reshape(-1, 3))
         # Contact points stay off: they cost, come several to a facet, and depend on FCL's own tolerance.
         most = HITS_A_PROBE * (len(slivers) + 16)
@@ -148,10 +153,10 @@ class Region:
         """Whether any facets of the two intersect; `X_SO` (4, 4): pose of the other part here."""
         if self.empty or other.empty:
             return False
-        if not (self.index.is_large or other.index.is_large):
-            here, there = mutual(self._corners(), other._corners() @ X_SO[:3, :3].T + X_SO[:3, 3])
-            if len(here) * len(there) <= CROSSED_FEW:
-                return bool(len(meeting(here, there)[0]))
+        if not (self._has_model and other._has_model) and not (self.index.is_large or other.index.is_large):
+            told = crossing(self._corners(), other._corners() @ X_SO[:3, :3].T + X_SO[:3, 3])
+            if told is not None:
+                return told
         request = fcl.CollisionRequest(num_max_contacts=1, enable_contact=False)
         placed = fcl.CollisionObject(other._beside(self, inverse(X_SO)), fcl_pose(X_SO))
         base = fcl.CollisionObject(self._beside(other, X_SO))

@@ -11,6 +11,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.foundation.constants import CROSSED_FEW, CROSSED_SOME
+from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import facet_boxes, meeting_box, triangle_boxes
 from kinform.model.arrays import Array, Flags, Ints
 
@@ -23,7 +25,42 @@ def beside(slivers: Array, vertices: Array, faces: Ints) -> Ints:
     return np.flatnonzero(meeting_box(low_f, high_f, low, high))
 
 
-def mutual(first: Array, second: Array) -> tuple[Array, Array]:
+def meeting(slivers: Array, corners: Array) -> tuple[Ints, Ints] | None:
+    """(k,) each: slivers (n, 3, 3) and facets (m, 3, 3) that meet, by sliver, then by facet; one unit of length. None
+    where too many are near each other to ask about all."""
+    candidates = meeting_boxes(triangle_boxes(slivers), triangle_boxes(corners))
+    if candidates is None:
+        return None
+    sliver, facet = candidates
+    first, second = (
+        np.ascontiguousarray(triangles.transpose(1, 2, 0)).take(chosen, axis=2)
+        for triangles, chosen in ((slivers, sliver), (corners, facet))
+    )
+    origin = first[0].copy()
+    first -= origin
+    second -= origin
+    edges = _edges(first), _edges(second)
+    normals = [_cross(sides[0], sides[1]) for sides in edges]
+    met = np.flatnonzero(~_apart(np.stack(normals, axis=1), first, second))
+    first, second, *rest = (array.take(met, axis=-1) for array in (first, second, *edges, *normals))
+    met = met[~_apart(_across(*rest), first, second)]
+    return sliver[met], facet[met]
+
+
+def crossing(first: Array, second: Array) -> bool | None:
+    """Whether any triangles (n, 3, 3) and (m, 3, 3) meet: of many, some of the first are asked before all are, which
+    settles it where much crosses. None as above."""
+    first, second = _mutual(first, second)
+    if len(first) * len(second) > CROSSED_FEW:
+        some = first[:: max(CROSSED_SOME, -(-len(first) * len(second) // CROSSED_FEW))]
+        met = meeting(*_mutual(some, second))
+        if met is not None and len(met[0]):
+            return True
+    met = meeting(first, second)
+    return None if met is None else bool(len(met[0]))
+
+
+def _mutual(first: Array, second: Array) -> tuple[Array, Array]:
     """Those of triangles (n, 3, 3) and (m, 3, 3), in their order, that may meet some of the others by the box of all of
     these; neither of none."""
     low, high = triangle_boxes(second)
@@ -37,36 +74,6 @@ def mutual(first: Array, second: Array) -> tuple[Array, Array]:
 def _within(triangles: Array, low: Array, high: Array) -> Array:
     """Those of triangles (n, 3, 3) whose boxes meet that from `low` to `high` (3,)."""
     return np.asarray(triangles[meeting_box(*triangle_boxes(triangles), low, high)])
-
-
-def meeting(slivers: Array, corners: Array) -> tuple[Ints, Ints]:
-    """(k,) each: slivers (n, 3, 3) and facets (m, 3, 3) that meet, by sliver, then by facet; one unit of length."""
-    by_coordinate = [np.ascontiguousarray(triangles.transpose(1, 2, 0)) for triangles in (slivers, corners)]
-    sliver, facet = _boxes_meeting(*by_coordinate)
-    first, second = by_coordinate[0].take(sliver, axis=2), by_coordinate[1].take(facet, axis=2)
-    origin = first[0].copy()
-    first -= origin
-    second -= origin
-    edges = _edges(first), _edges(second)
-    normals = [_cross(sides[0], sides[1]) for sides in edges]
-    met = np.flatnonzero(~_apart(np.stack(normals, axis=1), first, second))
-    first, second, *rest = (array.take(met, axis=-1) for array in (first, second, *edges, *normals))
-    met = met[~_apart(_across(*rest), first, second)]
-    return sliver[met], facet[met]
-
-
-def _boxes_meeting(first: Array, second: Array) -> tuple[Ints, Ints]:
-    """Pairs of triangles (3, 3, n) and (3, 3, m) whose boxes meet."""
-    (low, high), (low_other, high_other) = (
-        (np.minimum(np.minimum(one, two), three), np.maximum(np.maximum(one, two), three))
-        for one, two, three in (first, second)
-    )
-    meets = low[0][:, None] <= high_other[0]
-    meets &= low_other[0] <= high[0][:, None]
-    for axis in (1, 2):
-        meets &= low[axis][:, None] <= high_other[axis]
-        meets &= low_other[axis] <= high[axis][:, None]
-    return np.divmod(np.flatnonzero(meets), np.int64(max(meets.shape[1], 1)))
 
 
 def _edges(triangles: Array) -> Array:

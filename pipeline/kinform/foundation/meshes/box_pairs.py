@@ -1,0 +1,54 @@
+"""Which boxes of one kind meet which of another, pair by pair."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinform.foundation.constants import BESIDE_MOST, BOXES_MATRIX, BOXES_MOST
+from kinform.foundation.meshes.boxes import FlatBoxes
+from kinform.model.arrays import Array, Ints
+
+Boxes = tuple[Array, Array]
+"""Lower and upper corners (n, 3)."""
+
+
+def meeting_boxes(first: Boxes, second: Boxes) -> tuple[Ints, Ints] | None:
+    """Indices (k,) of boxes (n, 3) and (m, 3) that meet, by the first, then by the second; None of so many that a tree
+    is quicker.
+
+    Few are all compared. Of more, the second are listed by the cells of a grid across the two coordinates along which
+    boxes are smallest beside the whole, grown by what the largest of the first reach from their middles.
+    """
+    count, others = len(first[0]), len(second[0])
+    if count * others <= BOXES_MATRIX:
+        return _compared(first, second)
+    if max(count, others) > BOXES_MOST:
+        return None
+    (low, high), (low_other, high_other) = first, second
+    whole = np.maximum(high.max(axis=0), high_other.max(axis=0)) - np.minimum(low.min(axis=0), low_other.min(axis=0))
+    share = whole / np.maximum((high - low).mean(axis=0) + (high_other - low_other).mean(axis=0), 1e-300)
+    axes = np.sort(np.argsort(share, kind="stable")[1:])
+    reach = 0.5 * (high - low).max(axis=0)[axes] * (1.0 + 1e-9)
+    middles = 0.5 * (low + high)
+    listed = FlatBoxes(low_other[:, axes] - reach, high_other[:, axes] + reach)
+    if listed.listed_at(middles[:, axes]) > BESIDE_MOST:
+        return None
+    one, two = listed.around(middles[:, axes])
+    for axis in range(3):
+        meets = low[:, axis].take(one) <= high_other[:, axis].take(two)
+        meets &= low_other[:, axis].take(two) <= high[:, axis].take(one)
+        one, two = one[meets], two[meets]
+    return one, two
+
+
+def _compared(first: Boxes, second: Boxes) -> tuple[Ints, Ints]:
+    """The same, of few."""
+    meets = np.ones((len(first[0]), len(second[0])), dtype=bool)
+    (low, high), (low_other, high_other) = (
+        [np.ascontiguousarray(side.T) for side in boxes] for boxes in (first, second)
+    )
+    for axis in range(3):
+        meets &= low[axis][:, None] <= high_other[axis]
+        meets &= low_other[axis] <= high[axis][:, None]
+    one, two = np.divmod(np.flatnonzero(meets), np.int64(max(meets.shape[1], 1)))
+    return one, two
