@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from support.analytic_solids import MM, box_loop, extrusion, revolution, round_loop
 
-from kinform.foundation.meshes import probes
+from kinform.foundation.meshes import box_pairs
 from kinform.foundation.meshes.index import MeshIndex
 
 
@@ -38,13 +38,17 @@ def test_few_probes_and_many_hit_the_same(width, monkeypatch):
     reach = rng.uniform(1 * MM, 9 * MM, 300)
     for region in (plate().whole(), plate().region(np.arange(0, len(plate().mesh.faces), 2))):
         found = []
-        for few in (10**9, -1):
-            monkeypatch.setattr(probes, "PROBED_FEW", few)
+        for few, most in ((10**9, 0), (-1, 10**9), (-1, -1)):
+            monkeypatch.setattr(box_pairs, "BOXES_MATRIX", few)
+            for limit in ("BOXES_MOST", "BESIDE_MOST"):
+                monkeypatch.setattr(box_pairs, limit, most)
             found.append(region.cast(points, directions, reach, width))
-        by_axes, by_fcl = found
-        assert len(by_axes.probe) > 100
+        by_comparison, by_grid, by_fcl = found
+        assert len(by_fcl.probe) > 100
         for name in ("probe", "facet", "along", "facing"):
-            assert getattr(by_axes, name).tobytes() == getattr(by_fcl, name).tobytes(), name
+            told = getattr(by_fcl, name).tobytes()
+            assert getattr(by_comparison, name).tobytes() == told, name
+            assert getattr(by_grid, name).tobytes() == told, name
 
 
 def test_slivers_do_not_hit_what_is_beyond_their_reach():

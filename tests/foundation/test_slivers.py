@@ -7,7 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kinform.foundation.meshes.fcl_adapter import fcl_model
-from kinform.foundation.meshes.slivers import beside, meeting
+from kinform.foundation.meshes import box_pairs, slivers
+from kinform.foundation.meshes.slivers import beside, crossing, meeting
 
 
 def told_by_fcl(first, second):
@@ -89,3 +90,30 @@ def test_facets_beside_are_all_whose_boxes_meet_that_of_all():
     corners = vertices[faces]
     held = [(c.min(axis=0) <= high).all() and (c.max(axis=0) >= low).all() for c in corners]
     assert beside(slivers, vertices, faces).tolist() == np.flatnonzero(held).tolist()
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 10**6), st.sampled_from([1e-6, 1.0, 1e4]), st.sampled_from([0, 30, 10**9]))
+def test_what_crosses_is_what_fcl_finds_however_few_are_asked_first(seed, size, few):
+    first, second = scene(seed, size=size)
+    apart = second + size * np.array([0.0, 0.0, 40.0])
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(slivers, "CROSSED_FEW", max(few, 1))
+        for other in (second, apart, second + 0.7 * size):
+            assert crossing(first, other) is bool(told_by_fcl(first, other))
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 10**6))
+def test_a_grid_finds_the_boxes_that_comparison_finds(seed):
+    rng = np.random.default_rng(seed)
+    kinds = []
+    for count, largest in ((60, 0.1), (80, 0.6)):
+        low = rng.uniform(-1, 1, (count, 3))
+        kinds.append((low, low + largest * rng.uniform(0, 1, (count, 3)) ** 3))
+    every = box_pairs.meeting_boxes(*kinds)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(box_pairs, "BOXES_MATRIX", 0)
+        by_grid = box_pairs.meeting_boxes(*kinds)
+    assert len(every[0])
+    assert [found.tolist() for found in by_grid] == [found.tolist() for found in every]
