@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kinform.foundation.meshes.fcl_adapter import fcl_model
 from kinform.foundation.meshes import box_pairs, slivers
+from kinform.foundation.meshes.fcl_adapter import fcl_model
 from kinform.foundation.meshes.slivers import beside, crossing, meeting
 
 
@@ -108,7 +108,7 @@ def test_what_crosses_is_what_fcl_finds_however_few_are_asked_first(seed, size, 
 def test_a_grid_finds_the_boxes_that_comparison_finds(seed):
     rng = np.random.default_rng(seed)
     kinds = []
-    for count, largest in ((60, 0.1), (80, 0.6)):
+    for count, largest in ((60, 0.3), (80, 1.5)):
         low = rng.uniform(-1, 1, (count, 3))
         kinds.append((low, low + largest * rng.uniform(0, 1, (count, 3)) ** 3))
     every = box_pairs.meeting_boxes(*kinds)
