@@ -164,6 +164,24 @@ class Batch:
             out._shared = region.take(rows), shared.take(rows), times.take(rows)
         return out
 
+    def run(self, regions: slice) -> Batch:
+        """The batch of a run of its regions alone, with what sorting has found of them."""
+
+        def cut(of: Ints) -> slice:
+            return slice(*of.searchsorted((regions.start, regions.stop)).tolist())
+
+        rows = cut(self.region)
+        out = Batch(self.patchwork, self.region[rows] - regions.start, self.polygon[rows], regions.stop - regions.start)
+        if self._edges is not None:
+            region, edge, inner = self._edges
+            rows = cut(region)
+            out._edges = region[rows] - regions.start, edge[rows], inner[rows]
+        if self._shared is not None:
+            region, shared, times = self._shared
+            rows = cut(region)
+            out._shared = region[rows] - regions.start, shared[rows], times[rows]
+        return out
+
     def compact(self) -> tuple[Batch, Ints]:
         """The batch without regions that are empty, with what sorting has found of the others, and the number that each
         had."""

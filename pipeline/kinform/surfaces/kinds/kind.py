@@ -33,36 +33,37 @@ class Probe:
 
 
 class Moving:
-    """Which meshes have regions whose least squares go on: those of one mesh end together, when none of them moves any
-    more, so that a mesh has the same fits whatever other meshes are beside it."""
+    """Which sets of regions have least squares that go on: those of one kind and mesh end together, when none of them
+    moves any more, so that they have the same fits whatever others are beside them."""
 
-    def __init__(self, batch: Batch):
-        self._batch = batch
-        self._mesh = np.ones(len(batch.patchwork.total), bool)
+    def __init__(self, of_region: Ints, count: int):
+        """Of regions that are in these sets (R,), from 0 to `count`."""
+        self._set = of_region
+        self._on = np.ones(count, bool)
 
     def only(self, region: Ints, vertex: Ints) -> tuple[Ints, Ints]:
-        """The vertices of meshes that go on; those without any do not."""
-        mesh = self._batch.mesh.take(region)
-        self._mesh &= np.bincount(mesh, minlength=len(self._mesh)) > 0
-        if self._mesh.all():
+        """The vertices of sets that go on; those without any do not."""
+        mine = self._set.take(region)
+        self._on &= np.bincount(mine, minlength=len(self._on)) > 0
+        if self._on.all():
             return region, vertex
-        rows = self._mesh.take(mesh).nonzero()[0]
+        rows = self._on.take(mine).nonzero()[0]
         return region.take(rows), vertex.take(rows)
 
     def taken(self, stepped: Params, params: Params) -> Params:
-        """The parameters after a step: as they were where a mesh has ended."""
-        if self._mesh.all():
+        """The parameters after a step: as they were where a set has ended."""
+        if self._on.all():
             return stepped
-        return np.where(self._mesh[self._batch.mesh][:, None], stepped, params)
+        return np.where(self._on.take(self._set)[:, None], stepped, params)
 
     def after(self, change: Array, still: float, region: Ints, vertex: Ints) -> tuple[Ints, Ints]:
-        """The vertices of meshes that go on after a step by `change` (R, k)."""
-        largest = np.zeros(len(self._mesh))
-        np.maximum.at(largest, self._batch.mesh, np.abs(change).max(axis=1, initial=0.0))
-        ended = self._mesh & (largest < still)
+        """The vertices of sets that go on after a step by `change` (R, k)."""
+        largest = np.zeros(len(self._on))
+        np.maximum.at(largest, self._set, np.abs(change).max(axis=1, initial=0.0))
+        ended = self._on & (largest < still)
         if not ended.any():
             return region, vertex
-        self._mesh &= ~ended
+        self._on &= ~ended
         return self.only(region, vertex)
 
 
@@ -78,6 +79,18 @@ class Kind(Protocol):
     """Whether edges within one surface may bend both ways."""
     handicap: float
     """A more complex kind must explain this many times more polygons than a simpler one."""
+
+    def of(self, numbers: Ints) -> Kind:
+        """The kind of some of the regions, in this order."""
+        return self
+
+    def each(self, count: int) -> list[tuple[Kind, slice]]:
+        """The kinds of `count` regions, each with the run of those that are of it."""
+        return [(self, slice(0, count))]
+
+    def enough(self, size: Ints) -> Flags:
+        """Which regions of so many polygons (R,) have as many as their kind needs."""
+        return size >= self.least
 
     def propose(self, batch: Batch) -> tuple[Params, Flags]:
         """Closed-form parameters of each region from its polygons, and whether there are any."""
@@ -128,7 +141,7 @@ class DoublyCurved(Kind, Protocol):
 
     def refine(self, batch: Batch, params: Params, tolerance: Array, steps: int) -> Params:
         """Gauss–Newton over the free parameters."""
-        moving = Moving(batch)
+        moving = Moving(batch.mesh, len(batch.patchwork.total))
         region, vertex = moving.only(*self.defining(batch, params, tolerance))
         for _ in range(min(steps, self.most_steps)):
             if not len(region):

@@ -38,10 +38,22 @@ class Ruled(Kind, Protocol):
     tapers: bool
     """Whether the half-angle is free."""
 
+    def moving(self, batch: Batch) -> Moving:
+        """Which of the regions go on with their least squares."""
+        return Moving(batch.mesh, len(batch.patchwork.total))
+
+    def apices(self, params: Params) -> Array:
+        """(R,) distance from the axis at which a vertex is at an apex."""
+        return constants.APEX * params[:, 6]
+
+    def change(self, matrix: Array, right: Array) -> Array:
+        """(R, 5 or 6) solutions of normal equations."""
+        return -solve_normal(matrix, right, constants.DAMPING)
+
     def refine(self, batch: Batch, params: Params, tolerance: Array, steps: int) -> Params:
         """Gauss–Newton over offset, tilt, radius and, for cones, half-angle."""
         work = batch.patchwork
-        moving = Moving(batch)
+        moving = self.moving(batch)
         for step in range(steps):
             if step in (0, 2):
                 region, vertex = moving.only(*self.defining(batch, params, tolerance))
@@ -53,13 +65,13 @@ class Ruled(Kind, Protocol):
             frame = frames(params[:, :3])
             columns, residual = self._equations(at, params, frame, region)
             if self.tapers:
-                tips = (at.rho < (constants.APEX * params[:, 6]).take(region)).nonzero()[0]
+                tips = (at.rho < self.apices(params).take(region)).nonzero()[0]
                 if len(tips):
                     mine, points = params[region[tips]], work.at(vertex[tips])
                     group, columns, residual = with_apices(mine, points, region, columns, residual, tips)
                     sums = sums_of(group, batch.count)
             matrix, right = normal_equations(sums, columns.T, residual)
-            change = -solve_normal(matrix, right, constants.DAMPING)
+            change = self.change(matrix, right)
             params = moving.taken(self.step(params, change, frame), before)
             region, vertex = moving.after(change, constants.CONVERGED, region, vertex)
         return params
@@ -225,12 +237,14 @@ def generators(batch: Batch, params: Params) -> tuple[Ints, Ints, Flags, Flags]:
 
 def _along(work: Patchwork, params: Params, region: Ints, edge: Ints) -> Flags:
     """Whether each edge runs along a generator of its region's surface."""
-    if params[:, 7].any():
-        mine = columns_of(params, region)
-        radial = cylindrical(mine, work.halfway(edge)).radial
-        direction = np.cos(mine[:, 7])[:, None] * mine[:, :3] + np.sin(mine[:, 7])[:, None] * radial
-    else:
-        direction = columns_of(params[:, :3], region)
+    direction = columns_of(params[:, :3], region)
+    cones = params[:, 7].nonzero()[0]
+    if len(cones):
+        # regions are in order, and cylinders come before cones
+        first = int(region.searchsorted(cones[0]))
+        mine = columns_of(params, region[first:])
+        radial = cylindrical(mine, work.halfway(edge[first:])).radial
+        direction[first:] = np.cos(mine[:, 7])[:, None] * mine[:, :3] + np.sin(mine[:, 7])[:, None] * radial
     length = work.length.take(edge)
     forward = np.abs(dot(work.along(edge), direction))
     aside = np.maximum(length * length - forward * forward, 0.0)
