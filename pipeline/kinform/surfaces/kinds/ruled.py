@@ -97,12 +97,22 @@ class Ruled(Kind, Protocol):
         for rows in slices(len(region), constants.ROWS):
             mine = region[rows]
             part = Cylindrical(at.t[rows], at.rho[rows], at.radial[rows])
-            radius, angle = params[:, 6].take(mine), params[:, 7].take(mine)
-            columns[rows] = self._columns(part, (columns_of(x, mine), columns_of(y, mine)), radius, angle)
-            residual[rows] = part.rho - radius
-            if self.tapers:
-                residual[rows] = residual[rows] * np.cos(angle) - part.t * np.sin(angle)
+            off = np.subtract(part.rho, params[:, 6].take(mine), out=residual[rows])
+            lean = self._lean(params, mine)
+            self._columns(part, (columns_of(x, mine), columns_of(y, mine)), off, lean, columns[rows])
+            if lean is not None:
+                cos, sin = lean
+                off *= cos
+                off -= part.t * sin
         return columns, residual
+
+    def _lean(self, params: Params, region: Ints) -> tuple[Array, Array] | None:
+        """Cosine and sine of the half-angles of these regions, (N,) each, where there are any: so many fewer regions
+        than points that they are looked up."""
+        if not self.tapers:
+            return None
+        angle = params[:, 7]
+        return np.cos(angle).take(region), np.sin(angle).take(region)
 
     def probe(self, params: Params, points: Array) -> Probe:
         """Distance, normal and radius of curvature."""
@@ -111,20 +121,29 @@ class Ruled(Kind, Protocol):
     def held(self, batch: Batch, params: Params) -> tuple[Ints, Probe]:
         """By their cylindrical coordinates."""
         group, at = batch.seen(params, cylindrical)
-        return group, self._probe(at, columns_of(params, group) if self.tapers else params, group)
+        return group, self._probe(at, params, group)
 
     def _probe(self, at: Cylindrical, params: Params, group: Ints | None = None) -> Probe:
         """Of points at these coordinates about their axes: rows of `params`, or those that `group` names."""
         t, rho, radial = at
-        radius, angle = params[:, 6], params[:, 7]
+        radius = params[:, 6] if group is None else params[:, 6].take(group)
         if not self.tapers:
-            radius = radius if group is None else radius.take(group)
             return Probe(distance=rho - radius, normal=radial, curvature_radius=radius)
-        cos, sin = np.cos(angle), np.sin(angle)
+        if group is None:
+            cos, sin, axis = np.cos(params[:, 7]), np.sin(params[:, 7]), params[:, :3]
+        else:
+            cos, sin = np.cos(params[:, 7]).take(group), np.sin(params[:, 7]).take(group)
+            axis = columns_of(params[:, :3], group)
+        rise = t * sin
+        distance = rho - radius
+        distance *= cos
+        distance -= rise
+        curvature_radius = radius * cos
+        curvature_radius += rise
         return Probe(
-            distance=(rho - radius) * cos - t * sin,
-            normal=cos[:, None] * radial - sin[:, None] * params[:, :3],
-            curvature_radius=np.maximum(radius * cos + t * sin, 0.0),
+            distance=distance,
+            normal=cos[:, None] * radial - sin[:, None] * axis,
+            curvature_radius=np.maximum(curvature_radius, 0.0, out=curvature_radius),
         )
 
     def widths(self, batch: Batch, params: Params) -> Array:
@@ -156,29 +175,37 @@ class Ruled(Kind, Protocol):
 
     def jacobian(self, params: Params, points: Array) -> Array:
         """By offset across the axis (2), tilt (2), radius and, for cones, half-angle."""
-        return self._columns(cylindrical(params, points), frames(params[:, :3]), params[:, 6], params[:, 7])
+        at, angle = cylindrical(params, points), params[:, 7]
+        out = np.empty((6 if self.tapers else 5, len(points))).T
+        lean = (np.cos(angle), np.sin(angle)) if self.tapers else None
+        self._columns(at, frames(params[:, :3]), at.rho - params[:, 6], lean, out)
+        return out
 
-    def _columns(self, at: Cylindrical, frame: tuple[Array, Array], radius: Array, angle: Array) -> Array:
-        """(N, 5 or 6) derivatives of the distance of points at these coordinates about their axes."""
+    @staticmethod
+    def _columns(
+        at: Cylindrical, frame: tuple[Array, Array], off: Array, lean: tuple[Array, Array] | None, out: Array
+    ) -> None:  # fmt: skip
+        """Writes the derivatives (N, 5 or 6) of the distance of points at these coordinates about their axes, which are
+        so far `off` the radius."""
         (t, rho, radial), (x, y) = at, frame
         rx = radial[:, 0] * x[:, 0] + radial[:, 1] * x[:, 1] + radial[:, 2] * x[:, 2]
         ry = radial[:, 0] * y[:, 0] + radial[:, 1] * y[:, 1] + radial[:, 2] * y[:, 2]
-        out = np.empty((6 if self.tapers else 5, len(t))).T
-        if self.tapers:
-            cos, sin = np.cos(angle), np.sin(angle)
-            lever = cos * t + sin * rho
-            np.multiply(-cos, rx, out=out[:, 0])
-            np.multiply(-cos, ry, out=out[:, 1])
-            out[:, 4] = -cos
-            out[:, 5] = -(rho - radius) * sin - t * cos
-        else:
-            lever = t
+        if lean is None:
+            lever = -t
             np.negative(rx, out=out[:, 0])
             np.negative(ry, out=out[:, 1])
             out[:, 4] = -1.0
-        np.multiply(-lever, rx, out=out[:, 2])
-        np.multiply(-lever, ry, out=out[:, 3])
-        return out
+        else:
+            cos, sin = lean
+            less = np.negative(cos, out=out[:, 4])
+            lever = cos * t
+            lever += sin * rho
+            np.negative(lever, out=lever)
+            np.multiply(less, rx, out=out[:, 0])
+            np.multiply(less, ry, out=out[:, 1])
+            out[:, 5] = -off * sin - t * cos
+        np.multiply(lever, rx, out=out[:, 2])
+        np.multiply(lever, ry, out=out[:, 3])
 
     def step(self, params: Params, change: Array, frame: tuple[Array, Array]) -> Params:
         """The surfaces with their free parameters changed, within bounds; as they were where that is not finite.
@@ -244,7 +271,8 @@ def _along(work: Patchwork, params: Params, region: Ints, edge: Ints) -> Flags:
         first = int(region.searchsorted(cones[0]))
         mine = columns_of(params, region[first:])
         radial = cylindrical(mine, work.halfway(edge[first:])).radial
-        direction[first:] = np.cos(mine[:, 7])[:, None] * mine[:, :3] + np.sin(mine[:, 7])[:, None] * radial
+        cos, sin = (f(params[:, 7]).take(region[first:])[:, None] for f in (np.cos, np.sin))
+        direction[first:] = cos * mine[:, :3] + sin * radial
     length = work.length.take(edge)
     forward = np.abs(dot(work.along(edge), direction))
     aside = np.maximum(length * length - forward * forward, 0.0)
