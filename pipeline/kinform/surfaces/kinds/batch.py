@@ -60,8 +60,9 @@ class Batch:
         about the surfaces (R, 8) of their regions. What was asked for last is kept: who asks for the widths of polygons
         asks next whether they conform."""
         if self._seen is None or self._seen[0] is not params or self._seen[1] != look:
-            group = np.concatenate([self.region, self.region.take(self.corners[0])])
-            points = np.concatenate([self.patchwork.middles(self.polygon).T, self.points.T], axis=1).T
+            owner, vertex = self.corners
+            group = np.concatenate([self.region, self.region.take(owner)])
+            points = self.patchwork.places(self.polygon, vertex)
             self._seen = params, look, (group, look(columns_of(params, group), points))
         return cast("tuple[Ints, Seen]", self._seen[2])
 

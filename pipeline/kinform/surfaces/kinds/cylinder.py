@@ -33,9 +33,9 @@ class Cylinder(Ruled):
         axis[number] = _axis_of_normals(vague)
         params = np.zeros((batch.count, 8))
         params[:, :3], params[:, 6] = axis, np.inf
-        region, edge, inner, smooth = generators(batch, params)
+        region, edge, inner = generators(batch, params)
         inner_count = np.bincount(region[inner], minlength=batch.count)
-        use = inner | smooth | (inner_count[region] < 3)
+        use = inner | work.smooth.take(edge) | (inner_count[region] < 3)
         surrounded, vertex = batch.inner_vertices(3)
         rows = use.nonzero()[0]
         ends = work.ends.take(edge.take(rows), axis=0).ravel()
@@ -54,7 +54,7 @@ class Cylinder(Ruled):
         """Whether the strips between ridges are two at least, and subtend the same angle, as do the turns at the
         ridges: three ridges fit a circle anyway, but not with equal steps."""
         work, count = batch.patchwork, batch.count
-        region, edge, inner, _ = generators(batch, params)
+        region, edge, inner = generators(batch, params)
         region, edge = region[inner], edge[inner]
         total = np.int64(work.count)
         key, times = occurrences(np.concatenate([region * total + work.a[edge], region * total + work.b[edge]]))

@@ -105,7 +105,8 @@ class Kind(Protocol):
         ...
 
     def held(self, batch: Batch, params: Params) -> tuple[Ints, Probe]:
-        """(region of each, probe) of the middles of the pairs' polygons, and after them of the corners."""
+        """(region of each, probe) of the middles of the pairs' polygons, and after them of the corners; normals of the
+        middles at least."""
         ...
 
     def widths(self, batch: Batch, params: Params) -> Array:

@@ -116,35 +116,42 @@ class Ruled(Kind, Protocol):
 
     def probe(self, params: Params, points: Array) -> Probe:
         """Distance, normal and radius of curvature."""
-        return self._probe(cylindrical(params, points), params)
+        (t, rho, radial), radius = cylindrical(params, points), params[:, 6]
+        if not self.tapers:
+            return Probe(distance=rho - radius, normal=radial, curvature_radius=radius)
+        cos, sin = np.cos(params[:, 7]), np.sin(params[:, 7])
+        return Probe(
+            distance=(rho - radius) * cos - t * sin,
+            normal=cos[:, None] * radial - sin[:, None] * params[:, :3],
+            curvature_radius=np.maximum(radius * cos + t * sin, 0.0),
+        )
 
     def held(self, batch: Batch, params: Params) -> tuple[Ints, Probe]:
         """By their cylindrical coordinates."""
-        group, at = batch.seen(params, cylindrical)
-        return group, self._probe(at, params, group)
-
-    def _probe(self, at: Cylindrical, params: Params, group: Ints | None = None) -> Probe:
-        """Of points at these coordinates about their axes: rows of `params`, or those that `group` names."""
-        t, rho, radial = at
-        radius = params[:, 6] if group is None else params[:, 6].take(group)
-        if not self.tapers:
-            return Probe(distance=rho - radius, normal=radial, curvature_radius=radius)
-        if group is None:
-            cos, sin, axis = np.cos(params[:, 7]), np.sin(params[:, 7]), params[:, :3]
-        else:
-            cos, sin = np.cos(params[:, 7]).take(group), np.sin(params[:, 7]).take(group)
-            axis = columns_of(params[:, :3], group)
-        rise = t * sin
+        group, (t, rho, radial) = batch.seen(params, cylindrical)
+        radius, lean, middles = params[:, 6].take(group), self._lean(params, group), len(batch.polygon)
         distance = rho - radius
+        if lean is None:
+            return group, Probe(distance, radial[:middles], radius)
+        cos, sin = lean
+        axis = columns_of(params[:, :3], batch.region)
+        normal = cos[:middles, None] * radial[:middles] - sin[:middles, None] * axis
+        rise = t * sin
         distance *= cos
         distance -= rise
-        curvature_radius = radius * cos
-        curvature_radius += rise
-        return Probe(
-            distance=distance,
-            normal=cos[:, None] * radial - sin[:, None] * axis,
-            curvature_radius=np.maximum(curvature_radius, 0.0, out=curvature_radius),
-        )
+        radius *= cos
+        radius += rise
+        return group, Probe(distance, normal, np.maximum(radius, 0.0, out=radius))
+
+    def _distances(self, params: Params, region: Ints, points: Array) -> Array:
+        """(N,) signed distances of points from the surfaces of their regions."""
+        at, lean = cylindrical(columns_of(params, region), points), self._lean(params, region)
+        distance = at.rho - params[:, 6].take(region)
+        if lean is not None:
+            cos, sin = lean
+            distance *= cos
+            distance -= at.t * sin
+        return distance
 
     def widths(self, batch: Batch, params: Params) -> Array:
         """Angle about the axis of each polygon."""
@@ -158,19 +165,19 @@ class Ruled(Kind, Protocol):
         """
         work = batch.patchwork
         total = np.int64(len(work.vertices))
-        region, edge, inner, _ = generators(batch, params)
+        region, edge, inner = generators(batch, params)
         surrounded, vertex = batch.inner_vertices(3)
         keys = [surrounded * total + vertex]
         if len(region):
             outer = (~inner).nonzero()[0]
             owner, ends = region.take(outer), work.ends.take(edge.take(outer), axis=0)
-            mine = columns_of(params, owner)
-            first, second = (np.abs(self.probe(mine, work.at(ends[:, k])).distance) for k in range(2))
+            off = np.abs(self._distances(params, owner.repeat(2), work.at(ends.ravel())))
             use = inner.copy()
-            use[outer] = np.maximum(first, second) < tolerance.take(owner)
+            use[outer] = np.maximum(off[::2], off[1::2]) < tolerance.take(owner)
             rows = use.nonzero()[0]
-            base, ends = region.take(rows) * total, work.ends.take(edge.take(rows), axis=0)
-            keys += [base + ends[:, 0], base + ends[:, 1]]
+            ends = work.ends.take(edge.take(rows), axis=0)
+            ends += (region.take(rows) * total)[:, None]
+            keys.append(ends.ravel())
         return parted(distinct(np.concatenate(keys)), int(total))
 
     def jacobian(self, params: Params, points: Array) -> Array:
@@ -250,16 +257,15 @@ class Ruled(Kind, Protocol):
         return distinct_angles(region, angle, step, count), sweep, even
 
 
-def generators(batch: Batch, params: Params) -> tuple[Ints, Ints, Flags, Flags]:
-    """(region, edge, inner, smooth) of the edges that run along a generator."""
+def generators(batch: Batch, params: Params) -> tuple[Ints, Ints, Flags]:
+    """(region, edge, inner) of the edges that run along a generator."""
     region, edge, inner = batch.edges
     work = batch.patchwork
     use = np.empty(len(edge), bool)
     for rows in slices(len(edge), constants.ROWS):
         use[rows] = _along(work, params, region[rows], edge[rows])
     at = use.nonzero()[0]
-    edge = edge.take(at)
-    return region.take(at), edge, inner.take(at), work.smooth.take(edge)
+    return region.take(at), edge.take(at), inner.take(at)
 
 
 def _along(work: Patchwork, params: Params, region: Ints, edge: Ints) -> Flags:

@@ -81,6 +81,14 @@ class Patchwork:
         """(N, 3) normals of these polygons, in memory column by column."""
         return self._normals.take(polygons, axis=1).T
 
+    def places(self, polygons: Ints, vertices: Ints) -> Array:
+        """(N, 3) centroids of these polygons, and after them these vertices, in memory column by column."""
+        return self._places.take(np.concatenate([polygons, vertices + self.count]), axis=1).T
+
+    @cached_property
+    def _places(self) -> Array:
+        return np.concatenate([self._centres, self._columns], axis=1)
+
     @cached_property
     def _halfway(self) -> Array:
         return (self._columns.take(self.ends[:, 0], axis=1) + self._columns.take(self.ends[:, 1], axis=1)) / 2
