@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
-from kinform.foundation.sorting import occurrences
+from kinform.foundation.sorting import ascending, occurrences
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.constants import EQUAL_STEPS, LARGEST, LEAST_POINTS, RIDGES_AGREE, SAGITTA
 from kinform.surfaces.groups import columns_of, group_mean, group_moments, group_range, spheres_of
@@ -86,7 +86,8 @@ def _axis_of_normals(batch: Batch) -> Array:
 def _circle(batch: Batch, axis: Array, region: Ints, vertex: Ints) -> tuple[Params, Flags]:
     """The cylinder about each axis through the vertices of its region, and whether there is one."""
     x, y = frames(axis)
-    points = batch.patchwork.at(vertex)
+    order = ascending(region, batch.count)
+    region, points = region.take(order), batch.patchwork.at(vertex.take(order))
     middle = group_mean(region, points, batch.count)
     offset = points - columns_of(middle, region)
     seen = [dot(offset, columns_of(across, region)) for across in (x, y)]

@@ -117,9 +117,12 @@ def _flatness(mesh: Facets, polygon: Ints, found: Moments) -> Array:
     several = np.flatnonzero(np.bincount(polygon, minlength=len(area)).take(polygon) > 1)
     owner = polygon.take(several)
     normal, centre = columns_of(normal, owner), columns_of(centre, owner)
-    out = np.zeros(len(area))
+    highest = np.zeros(len(several))
     for k in range(3):
-        np.maximum.at(out, owner, np.abs(dot(mesh.at(mesh.faces[:, k].take(several)) - centre, normal)))
+        height = np.abs(dot(mesh.at(mesh.faces[:, k].take(several)) - centre, normal))
+        np.maximum(highest, height, out=highest)
+    out = np.zeros(len(area))
+    np.maximum.at(out, owner, highest)
     return out
 
 
