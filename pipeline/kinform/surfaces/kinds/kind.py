@@ -138,6 +138,14 @@ class DoublyCurved(Kind, Protocol):
         """The surfaces with their free parameters changed by (R, k), within bounds."""
         ...
 
+    def equations(self, params: Params, points: Array) -> tuple[Array, Array]:
+        """Derivative (N, k) of the distance by the free parameters, and the distance (N,)."""
+        ...
+
+    def jacobian(self, params: Params, points: Array) -> Array:
+        """The derivative alone."""
+        return self.equations(params, points)[0]
+
     def refine(self, batch: Batch, params: Params, tolerance: Array, steps: int) -> Params:
         """Gauss–Newton over the free parameters."""
         moving = Moving(batch.mesh, len(batch.patchwork.total))
@@ -146,8 +154,8 @@ class DoublyCurved(Kind, Protocol):
             if not len(region):
                 break
             mine, points = columns_of(params, region), batch.patchwork.at(vertex)
-            columns, distance = self.jacobian(mine, points).T, self.probe(mine, points).distance
-            matrix, right = normal_equations(sums_of(region, batch.count), columns, distance)
+            columns, distance = self.equations(mine, points)
+            matrix, right = normal_equations(sums_of(region, batch.count), columns.T, distance)
             change = -solve_normal(matrix, right, DAMPING)
             stepped = self.step(params, change)
             finite = np.isfinite(stepped).all(axis=1, keepdims=True)

@@ -70,9 +70,9 @@ class Mixed(Ruled):
     def change(self, matrix: Array, right: Array) -> Array:
         """Of cylinders without the half-angle."""
         out = np.zeros(right.shape)
-        first = self._first
-        out[:first, :5] = -solve_normal(matrix[:first, :5, :5], right[:first, :5], constants.DAMPING)
-        out[first:] = -solve_normal(matrix[first:], right[first:], constants.DAMPING)
+        for kind, run in self.each(len(right)):
+            free = slice(None) if kind is self._cone else slice(0, 5)
+            out[run, free] = -solve_normal(matrix[run, free, free], right[run, free], constants.DAMPING)
         return out
 
     def credible(self, batch: Batch, params: Params, scale: Scales) -> Flags:

@@ -218,21 +218,22 @@ class Ruled(Kind, Protocol):
         """The surfaces with their free parameters changed, within bounds; as they were where that is not finite.
         `frame` is that of their axes."""
         (x, y), radius = frame, params[:, 6]
-        most = np.empty(change.shape)
-        most[:, [0, 1, 4]] = (np.abs(radius) + constants.SHIFT_LIMIT)[:, None]
-        most[:, [2, 3, *range(5, change.shape[1])]] = constants.TILT_LIMIT
+        most = np.full(change.shape, constants.TILT_LIMIT)
+        most[:, 4] = np.abs(radius) + constants.SHIFT_LIMIT
+        most[:, :2] = most[:, 4:5]
         least = -most
         least[:, 4] /= 2
         change = np.minimum(np.maximum(change, least), most)
         out = params.copy()
         out[:, 3:6] += change[:, :1] * x + change[:, 1:2] * y
         axis = params[:, :3] + change[:, 2:3] * x + change[:, 3:4] * y
-        length = np.sqrt(axis[:, 0] ** 2 + axis[:, 1] ** 2 + axis[:, 2] ** 2)
+        square = axis * axis
+        length = np.sqrt(square[:, 0] + square[:, 1] + square[:, 2])
         out[:, :3] = axis / np.maximum(length, 1e-300)[:, None]
         out[:, 6] = np.maximum(radius + change[:, 4], constants.LEAST_RADIUS)
         if self.tapers:
             taper = params[:, 7] + change[:, 5]
-            out[:, 7] = np.clip(taper, -constants.STEEPEST_CONE, constants.STEEPEST_CONE)
+            out[:, 7] = np.minimum(np.maximum(taper, -constants.STEEPEST_CONE), constants.STEEPEST_CONE)
         finite = np.isfinite(out)
         return out if finite.all() else np.where(finite.all(axis=1, keepdims=True), out, params)
 
