@@ -30,7 +30,8 @@ The steps, in the order of `recovery.recover`, which calls them:
    some cylinder too. What conforms beside a piece is absorbed.
 7. Seeds (`regions.growth.pursue`): where tangent surfaces run together no piece is one surface. Single edges then
    suggest surfaces, whose regions grow layer by layer over smooth edges (`regions.territory`). Fits alternate with
-   growth, so that a fit over few polygons only has to predict twice as many. The largest regions win.
+   growth, so that a fit over few polygons only has to predict twice as many. Cylinders and cones grow in the same
+   rounds (`kinds.mixed`). The largest regions win.
 8. Which vertices define a surface: those where three of its polygons meet, and ends of ridges along its generators. A
    vertex between two of its polygons and a foreign one may be a cut through a chord (a keyway in a shaft), and counts
    only where it lies on the surface.

@@ -150,8 +150,9 @@ TURNED_ALONG = 0.03
 
 # ---- kinds.kind
 
-RUN_OF_PAIRS = 1 << 15
-"""Pairs of region and polygon that are worked on at a time, to keep memory small."""
+RUN_OF_PAIRS = 1 << 13
+"""Pairs of region and polygon that are worked on at a time, so that what is computed of their corners stays in the
+processor's cache."""
 
 CONVERGED = 1e-13
 """Change of the parameters (rad, diagonals) at which a fit stands still."""
@@ -182,8 +183,8 @@ BOW = 1e-5
 """Depth (diagonals) to which a generator that leans may dip below the surface: the ends of slanted ridges lie on it,
 but a cut between them does not."""
 
-ROWS = 2**18
-"""Rows that are computed at a time where each is for itself: 16 MB of eight columns. It bounds memory and changes no
+ROWS = 2**15
+"""Rows that are computed at a time where each is for itself: 2 MB of eight columns. It bounds memory and changes no
 bit."""
 
 APEX = 0.05

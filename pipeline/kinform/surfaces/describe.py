@@ -139,16 +139,18 @@ def curved(surfaces: Candidates, batch: Batch, scale: Scales) -> list[Descriptio
     chords = _chords(kind, batch, params)
     width = angular_widths(batch, placed) if kind.name == "torus" else kind.widths(batch, params)
     sweeps = angles_covered(placed, batch, width) if has_axis else np.zeros(count)
+    numbers = (surfaces.side, low, high, sweeps, deepest, angular, linear, chords, squares, samples)
     out = []
-    for k, polygons in enumerate(members(batch.region)):
-        axis, point, radius, half_angle, extent = _in_senses(kind.name, placed[k], params[k], low[k], high[k])
+    for k, (polygons, side, start, end, sweep, deep, turn, shift, chord, square, many) in enumerate(
+        zip(members(batch.region), *(values.tolist() for values in numbers), strict=True)
+    ):
+        axis, point, radius, half_angle, extent = _in_senses(kind.name, placed[k], params[k], start, end)
         out.append(
             Description(
                 kind.name, batch.polygon[polygons], axis, point, radius=radius, half_angle=half_angle,
-                minor_radius=float(params[k, 7]) if kind.name == "torus" else 0.0, side=int(surfaces.side[k]),
-                extent=extent, sweep=float(sweeps[k]), residual=float(deepest[k]),
-                axis_uncertainty=float(angular[k]), point_uncertainty=float(linear[k]), chord=float(chords[k]),
-                squares=float(squares[k]), samples=int(samples[k]),
+                minor_radius=float(params[k, 7]) if kind.name == "torus" else 0.0, side=side, extent=extent,
+                sweep=sweep, residual=deep, axis_uncertainty=turn, point_uncertainty=shift, chord=chord,
+                squares=square, samples=many,
             )
         )  # fmt: skip
     return out

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import box
 from kinform.foundation.sorting import ascending, coarse
 from kinform.model.arrays import Array, Ints, freeze
 from kinform.model.assembly import Mesh
@@ -90,7 +91,8 @@ class _Start:
     def of(cls, mesh: Mesh, tolerances: Tolerances) -> _Start:
         """That of a mesh with extent."""
         rounding = max(EPS32 * float(np.abs(mesh.vertices).max()), mesh.resolution)
-        centre = (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2
+        low, high = box(mesh.vertices)
+        centre = (low + high) / 2
         vertices, faces, order = _canonical_order((mesh.vertices - centre) / mesh.diagonal, mesh.faces)
         facets = Facets.of(vertices, faces)
         scale = Scale.of(facets, rounding / mesh.diagonal, tolerances)

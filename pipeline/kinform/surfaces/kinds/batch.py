@@ -44,6 +44,8 @@ class Batch:
         self._mesh: Ints | None = None
         self._parts: list[Batch] | None = None
         self._seen: tuple[Params, Look, Any] | None = None
+        # the batch that this is a selection of, and the pairs of it, until `seen` is asked for
+        self._source: tuple[Batch, Ints] | None = None
         self._widths: tuple[Params, Widths, Array] | None = None
 
     def parts(self) -> list[Batch]:
@@ -57,13 +59,38 @@ class Batch:
 
     def seen(self, params: Params, look: Callable[[Params, Array], Seen]) -> tuple[Ints, Seen]:
         """(region of each, what they are there) of the middles of the pairs' polygons, and after them of the corners,
-        about the surfaces (R, 8) of their regions. What was asked for last is kept: who asks for the widths of polygons
-        asks next whether they conform."""
-        if self._seen is None or self._seen[0] is not params or self._seen[1] != look:
-            group = np.concatenate([self.region, self.region.take(self.corners[0])])
-            points = np.concatenate([self.patchwork.middles(self.polygon).T, self.points.T], axis=1).T
+        about the surfaces (R, 8) of their regions. What was asked for last is kept, also for the pairs that are
+        selected: who asks for the widths of polygons asks next whether they conform, and then for those that do."""
+        if self._source is not None:
+            source, rows = self._source
+            self._source = None
+            if source.has_seen(params, look):
+                self._corners, self._seen = source._seen_of(rows)
+        if not self.has_seen(params, look):
+            owner, vertex = self.corners
+            group = np.concatenate([self.region, self.region.take(owner)])
+            points = self.patchwork.places(self.polygon, vertex)
             self._seen = params, look, (group, look(columns_of(params, group), points))
+        assert self._seen is not None
         return cast("tuple[Ints, Seen]", self._seen[2])
+
+    def has_seen(self, params: Params, look: Look) -> bool:
+        """Whether that is what `seen` was asked for last."""
+        return self._seen is not None and self._seen[0] is params and self._seen[1] == look
+
+    def _seen_of(self, rows: Ints) -> tuple[tuple[Ints, Ints], tuple[Params, Look, Any]]:
+        """The corners of some of the pairs, and what was seen last of them."""
+        assert self._seen is not None
+        params, look, (group, found) = self._seen
+        owner, vertex = self.corners
+        count = len(self.region)
+        number = np.full(count, -1)
+        number[rows] = np.arange(len(rows))
+        mine = number.take(owner)
+        corners = (mine >= 0).nonzero()[0]
+        at = np.concatenate([rows, corners + count])
+        kept = type(found)(*(values.T.take(at, axis=-1).T for values in found))
+        return (mine.take(corners), vertex.take(corners)), (params, look, (group.take(at), kept))
 
     def widths(self, params: Params, find: Widths) -> Array:
         """(pairs,) angles that `find` says polygons subtend on the surfaces (R, 8) of their regions. They are each for
@@ -146,6 +173,10 @@ class Batch:
         if len(rows) == len(keep):
             return self
         out = Batch(self.patchwork, self.region.take(rows), self.polygon.take(rows), self.count)
+        if self._seen is not None:
+            out._source = self, rows
+        elif self._source is not None:
+            out._source = self._source[0], self._source[1].take(rows)
         if self._widths is not None:
             params, find, widths = self._widths
             out._widths = params, find, widths.take(rows)
@@ -162,6 +193,24 @@ class Batch:
             rows = regions.take(self._shared[0]).nonzero()[0]
             region, shared, times = self._shared
             out._shared = region.take(rows), shared.take(rows), times.take(rows)
+        return out
+
+    def run(self, regions: slice) -> Batch:
+        """The batch of a run of its regions alone, with what sorting has found of them."""
+
+        def cut(of: Ints) -> slice:
+            return slice(*of.searchsorted((regions.start, regions.stop)).tolist())
+
+        rows = cut(self.region)
+        out = Batch(self.patchwork, self.region[rows] - regions.start, self.polygon[rows], regions.stop - regions.start)
+        if self._edges is not None:
+            region, edge, inner = self._edges
+            rows = cut(region)
+            out._edges = region[rows] - regions.start, edge[rows], inner[rows]
+        if self._shared is not None:
+            region, shared, times = self._shared
+            rows = cut(region)
+            out._shared = region[rows] - regions.start, shared[rows], times[rows]
         return out
 
     def compact(self) -> tuple[Batch, Ints]:

@@ -79,8 +79,8 @@ def _taper(batch: Batch, axis: Array, region: Ints, edge: Ints) -> tuple[Params,
     del vertex
     centre, _ = spheres_of(group, (u, v), count, t, t * t)
     # two rings leave the size of the ring open above, but not its middle; the rest is a line
-    u -= centre[group, 0]
-    v -= centre[group, 1]
+    u -= centre[:, 0].take(group)
+    v -= centre[:, 1].take(group)
     rho = np.hypot(u, v, out=u)
     del v
     line = solve_normal(*normal_equations(sums_of(group, count), np.array([np.ones_like(t), t]), rho))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
-from kinform.foundation.sorting import occurrences
+from kinform.foundation.sorting import ascending, occurrences
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.constants import EQUAL_STEPS, LARGEST, LEAST_POINTS, RIDGES_AGREE, SAGITTA
 from kinform.surfaces.groups import columns_of, group_mean, group_moments, group_range, spheres_of
@@ -33,9 +33,9 @@ class Cylinder(Ruled):
         axis[number] = _axis_of_normals(vague)
         params = np.zeros((batch.count, 8))
         params[:, :3], params[:, 6] = axis, np.inf
-        region, edge, inner, smooth = generators(batch, params)
+        region, edge, inner = generators(batch, params)
         inner_count = np.bincount(region[inner], minlength=batch.count)
-        use = inner | smooth | (inner_count[region] < 3)
+        use = inner | work.smooth.take(edge) | (inner_count[region] < 3)
         surrounded, vertex = batch.inner_vertices(3)
         rows = use.nonzero()[0]
         ends = work.ends.take(edge.take(rows), axis=0).ravel()
@@ -54,7 +54,7 @@ class Cylinder(Ruled):
         """Whether the strips between ridges are two at least, and subtend the same angle, as do the turns at the
         ridges: three ridges fit a circle anyway, but not with equal steps."""
         work, count = batch.patchwork, batch.count
-        region, edge, inner, _ = generators(batch, params)
+        region, edge, inner = generators(batch, params)
         region, edge = region[inner], edge[inner]
         total = np.int64(work.count)
         key, times = occurrences(np.concatenate([region * total + work.a[edge], region * total + work.b[edge]]))
@@ -86,7 +86,8 @@ def _axis_of_normals(batch: Batch) -> Array:
 def _circle(batch: Batch, axis: Array, region: Ints, vertex: Ints) -> tuple[Params, Flags]:
     """The cylinder about each axis through the vertices of its region, and whether there is one."""
     x, y = frames(axis)
-    points = batch.patchwork.at(vertex)
+    order = ascending(region, batch.count)
+    region, points = region.take(order), batch.patchwork.at(vertex.take(order))
     middle = group_mean(region, points, batch.count)
     offset = points - columns_of(middle, region)
     seen = [dot(offset, columns_of(across, region)) for across in (x, y)]

@@ -6,8 +6,7 @@ positive outside the chord side: the vertices of a tessellation lie at 0, points
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -20,8 +19,7 @@ from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.polygons.noise import Scales
 
 
-@dataclass(frozen=True, eq=False)
-class Probe:
+class Probe(NamedTuple):
     """Points held against their surfaces."""
 
     distance: Array
@@ -33,36 +31,37 @@ class Probe:
 
 
 class Moving:
-    """Which meshes have regions whose least squares go on: those of one mesh end together, when none of them moves any
-    more, so that a mesh has the same fits whatever other meshes are beside it."""
+    """Which sets of regions have least squares that go on: those of one kind and mesh end together, when none of them
+    moves any more, so that they have the same fits whatever others are beside them."""
 
-    def __init__(self, batch: Batch):
-        self._batch = batch
-        self._mesh = np.ones(len(batch.patchwork.total), bool)
+    def __init__(self, of_region: Ints, count: int):
+        """Of regions that are in these sets (R,), from 0 to `count`."""
+        self._set = of_region
+        self._on = np.ones(count, bool)
 
     def only(self, region: Ints, vertex: Ints) -> tuple[Ints, Ints]:
-        """The vertices of meshes that go on; those without any do not."""
-        mesh = self._batch.mesh.take(region)
-        self._mesh &= np.bincount(mesh, minlength=len(self._mesh)) > 0
-        if self._mesh.all():
+        """The vertices of sets that go on; those without any do not."""
+        mine = self._set.take(region)
+        self._on &= np.bincount(mine, minlength=len(self._on)) > 0
+        if self._on.all():
             return region, vertex
-        rows = self._mesh.take(mesh).nonzero()[0]
+        rows = self._on.take(mine).nonzero()[0]
         return region.take(rows), vertex.take(rows)
 
     def taken(self, stepped: Params, params: Params) -> Params:
-        """The parameters after a step: as they were where a mesh has ended."""
-        if self._mesh.all():
+        """The parameters after a step: as they were where a set has ended."""
+        if self._on.all():
             return stepped
-        return np.where(self._mesh[self._batch.mesh][:, None], stepped, params)
+        return np.where(self._on.take(self._set)[:, None], stepped, params)
 
     def after(self, change: Array, still: float, region: Ints, vertex: Ints) -> tuple[Ints, Ints]:
-        """The vertices of meshes that go on after a step by `change` (R, k)."""
-        largest = np.zeros(len(self._mesh))
-        np.maximum.at(largest, self._batch.mesh, np.abs(change).max(axis=1, initial=0.0))
-        ended = self._mesh & (largest < still)
+        """The vertices of sets that go on after a step by `change` (R, k)."""
+        largest = np.zeros(len(self._on))
+        np.maximum.at(largest, self._set, np.abs(change).max(axis=1, initial=0.0))
+        ended = self._on & (largest < still)
         if not ended.any():
             return region, vertex
-        self._mesh &= ~ended
+        self._on &= ~ended
         return self.only(region, vertex)
 
 
@@ -79,6 +78,18 @@ class Kind(Protocol):
     handicap: float
     """A more complex kind must explain this many times more polygons than a simpler one."""
 
+    def of(self, numbers: Ints) -> Kind:
+        """The kind of some of the regions, in this order."""
+        return self
+
+    def each(self, count: int) -> list[tuple[Kind, slice]]:
+        """The kinds of `count` regions, each with the run of those that are of it."""
+        return [(self, slice(0, count))]
+
+    def enough(self, size: Ints) -> Flags:
+        """Which regions of so many polygons (R,) have as many as their kind needs."""
+        return size >= self.least
+
     def propose(self, batch: Batch) -> tuple[Params, Flags]:
         """Closed-form parameters of each region from its polygons, and whether there are any."""
         ...
@@ -92,7 +103,8 @@ class Kind(Protocol):
         ...
 
     def held(self, batch: Batch, params: Params) -> tuple[Ints, Probe]:
-        """(region of each, probe) of the middles of the pairs' polygons, and after them of the corners."""
+        """(region of each, probe) of the middles of the pairs' polygons, and after them of the corners; normals of the
+        middles at least."""
         ...
 
     def widths(self, batch: Batch, params: Params) -> Array:
@@ -126,16 +138,24 @@ class DoublyCurved(Kind, Protocol):
         """The surfaces with their free parameters changed by (R, k), within bounds."""
         ...
 
+    def equations(self, params: Params, points: Array) -> tuple[Array, Array]:
+        """Derivative (N, k) of the distance by the free parameters, and the distance (N,)."""
+        ...
+
+    def jacobian(self, params: Params, points: Array) -> Array:
+        """The derivative alone."""
+        return self.equations(params, points)[0]
+
     def refine(self, batch: Batch, params: Params, tolerance: Array, steps: int) -> Params:
         """Gauss–Newton over the free parameters."""
-        moving = Moving(batch)
+        moving = Moving(batch.mesh, len(batch.patchwork.total))
         region, vertex = moving.only(*self.defining(batch, params, tolerance))
         for _ in range(min(steps, self.most_steps)):
             if not len(region):
                 break
             mine, points = columns_of(params, region), batch.patchwork.at(vertex)
-            columns, distance = self.jacobian(mine, points).T, self.probe(mine, points).distance
-            matrix, right = normal_equations(sums_of(region, batch.count), columns, distance)
+            columns, distance = self.equations(mine, points)
+            matrix, right = normal_equations(sums_of(region, batch.count), columns.T, distance)
             change = -solve_normal(matrix, right, DAMPING)
             stepped = self.step(params, change)
             finite = np.isfinite(stepped).all(axis=1, keepdims=True)

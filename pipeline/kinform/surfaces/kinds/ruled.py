@@ -38,10 +38,22 @@ class Ruled(Kind, Protocol):
     tapers: bool
     """Whether the half-angle is free."""
 
+    def moving(self, batch: Batch) -> Moving:
+        """Which of the regions go on with their least squares."""
+        return Moving(batch.mesh, len(batch.patchwork.total))
+
+    def apices(self, params: Params) -> Array:
+        """(R,) distance from the axis at which a vertex is at an apex."""
+        return constants.APEX * params[:, 6]
+
+    def change(self, matrix: Array, right: Array) -> Array:
+        """(R, 5 or 6) solutions of normal equations."""
+        return -solve_normal(matrix, right, constants.DAMPING)
+
     def refine(self, batch: Batch, params: Params, tolerance: Array, steps: int) -> Params:
         """Gauss–Newton over offset, tilt, radius and, for cones, half-angle."""
         work = batch.patchwork
-        moving = Moving(batch)
+        moving = self.moving(batch)
         for step in range(steps):
             if step in (0, 2):
                 region, vertex = moving.only(*self.defining(batch, params, tolerance))
@@ -53,13 +65,13 @@ class Ruled(Kind, Protocol):
             frame = frames(params[:, :3])
             columns, residual = self._equations(at, params, frame, region)
             if self.tapers:
-                tips = (at.rho < (constants.APEX * params[:, 6]).take(region)).nonzero()[0]
+                tips = (at.rho < self.apices(params).take(region)).nonzero()[0]
                 if len(tips):
                     mine, points = params[region[tips]], work.at(vertex[tips])
                     group, columns, residual = with_apices(mine, points, region, columns, residual, tips)
                     sums = sums_of(group, batch.count)
             matrix, right = normal_equations(sums, columns.T, residual)
-            change = -solve_normal(matrix, right, constants.DAMPING)
+            change = self.change(matrix, right)
             params = moving.taken(self.step(params, change, frame), before)
             region, vertex = moving.after(change, constants.CONVERGED, region, vertex)
         return params
@@ -85,35 +97,61 @@ class Ruled(Kind, Protocol):
         for rows in slices(len(region), constants.ROWS):
             mine = region[rows]
             part = Cylindrical(at.t[rows], at.rho[rows], at.radial[rows])
-            radius, angle = params[:, 6].take(mine), params[:, 7].take(mine)
-            columns[rows] = self._columns(part, (columns_of(x, mine), columns_of(y, mine)), radius, angle)
-            residual[rows] = part.rho - radius
-            if self.tapers:
-                residual[rows] = residual[rows] * np.cos(angle) - part.t * np.sin(angle)
+            off = np.subtract(part.rho, params[:, 6].take(mine), out=residual[rows])
+            lean = self._lean(params, mine)
+            self._columns(part, (columns_of(x, mine), columns_of(y, mine)), off, lean, columns[rows])
+            if lean is not None:
+                cos, sin = lean
+                off *= cos
+                off -= part.t * sin
         return columns, residual
+
+    def _lean(self, params: Params, region: Ints) -> tuple[Array, Array] | None:
+        """Cosine and sine of the half-angles of these regions, (N,) each, where there are any: so many fewer regions
+        than points that they are looked up."""
+        if not self.tapers:
+            return None
+        angle = params[:, 7]
+        return np.cos(angle).take(region), np.sin(angle).take(region)
 
     def probe(self, params: Params, points: Array) -> Probe:
         """Distance, normal and radius of curvature."""
-        return self._probe(cylindrical(params, points), params)
-
-    def held(self, batch: Batch, params: Params) -> tuple[Ints, Probe]:
-        """By their cylindrical coordinates."""
-        group, at = batch.seen(params, cylindrical)
-        return group, self._probe(at, columns_of(params, group) if self.tapers else params, group)
-
-    def _probe(self, at: Cylindrical, params: Params, group: Ints | None = None) -> Probe:
-        """Of points at these coordinates about their axes: rows of `params`, or those that `group` names."""
-        t, rho, radial = at
-        radius, angle = params[:, 6], params[:, 7]
+        (t, rho, radial), radius = cylindrical(params, points), params[:, 6]
         if not self.tapers:
-            radius = radius if group is None else radius.take(group)
             return Probe(distance=rho - radius, normal=radial, curvature_radius=radius)
-        cos, sin = np.cos(angle), np.sin(angle)
+        cos, sin = np.cos(params[:, 7]), np.sin(params[:, 7])
         return Probe(
             distance=(rho - radius) * cos - t * sin,
             normal=cos[:, None] * radial - sin[:, None] * params[:, :3],
             curvature_radius=np.maximum(radius * cos + t * sin, 0.0),
         )
+
+    def held(self, batch: Batch, params: Params) -> tuple[Ints, Probe]:
+        """By their cylindrical coordinates."""
+        group, (t, rho, radial) = batch.seen(params, cylindrical)
+        radius, lean, middles = params[:, 6].take(group), self._lean(params, group), len(batch.polygon)
+        distance = rho - radius
+        if lean is None:
+            return group, Probe(distance, radial[:middles], radius)
+        cos, sin = lean
+        axis = columns_of(params[:, :3], batch.region)
+        normal = cos[:middles, None] * radial[:middles] - sin[:middles, None] * axis
+        rise = t * sin
+        distance *= cos
+        distance -= rise
+        radius *= cos
+        radius += rise
+        return group, Probe(distance, normal, np.maximum(radius, 0.0, out=radius))
+
+    def _distances(self, params: Params, region: Ints, points: Array) -> Array:
+        """(N,) signed distances of points from the surfaces of their regions."""
+        at, lean = cylindrical(columns_of(params, region), points), self._lean(params, region)
+        distance = at.rho - params[:, 6].take(region)
+        if lean is not None:
+            cos, sin = lean
+            distance *= cos
+            distance -= at.t * sin
+        return distance
 
     def widths(self, batch: Batch, params: Params) -> Array:
         """Angle about the axis of each polygon."""
@@ -127,66 +165,75 @@ class Ruled(Kind, Protocol):
         """
         work = batch.patchwork
         total = np.int64(len(work.vertices))
-        region, edge, inner, _ = generators(batch, params)
+        region, edge, inner = generators(batch, params)
         surrounded, vertex = batch.inner_vertices(3)
         keys = [surrounded * total + vertex]
         if len(region):
             outer = (~inner).nonzero()[0]
             owner, ends = region.take(outer), work.ends.take(edge.take(outer), axis=0)
-            mine = columns_of(params, owner)
-            first, second = (np.abs(self.probe(mine, work.at(ends[:, k])).distance) for k in range(2))
+            off = np.abs(self._distances(params, owner.repeat(2), work.at(ends.ravel())))
             use = inner.copy()
-            use[outer] = np.maximum(first, second) < tolerance.take(owner)
+            use[outer] = np.maximum(off[::2], off[1::2]) < tolerance.take(owner)
             rows = use.nonzero()[0]
-            base, ends = region.take(rows) * total, work.ends.take(edge.take(rows), axis=0)
-            keys += [base + ends[:, 0], base + ends[:, 1]]
+            ends = work.ends.take(edge.take(rows), axis=0)
+            ends += (region.take(rows) * total)[:, None]
+            keys.append(ends.ravel())
         return parted(distinct(np.concatenate(keys)), int(total))
 
     def jacobian(self, params: Params, points: Array) -> Array:
         """By offset across the axis (2), tilt (2), radius and, for cones, half-angle."""
-        return self._columns(cylindrical(params, points), frames(params[:, :3]), params[:, 6], params[:, 7])
+        at, angle = cylindrical(params, points), params[:, 7]
+        out = np.empty((6 if self.tapers else 5, len(points))).T
+        lean = (np.cos(angle), np.sin(angle)) if self.tapers else None
+        self._columns(at, frames(params[:, :3]), at.rho - params[:, 6], lean, out)
+        return out
 
-    def _columns(self, at: Cylindrical, frame: tuple[Array, Array], radius: Array, angle: Array) -> Array:
-        """(N, 5 or 6) derivatives of the distance of points at these coordinates about their axes."""
+    @staticmethod
+    def _columns(
+        at: Cylindrical, frame: tuple[Array, Array], off: Array, lean: tuple[Array, Array] | None, out: Array
+    ) -> None:  # fmt: skip
+        """Writes the derivatives (N, 5 or 6) of the distance of points at these coordinates about their axes, which are
+        so far `off` the radius."""
         (t, rho, radial), (x, y) = at, frame
         rx = radial[:, 0] * x[:, 0] + radial[:, 1] * x[:, 1] + radial[:, 2] * x[:, 2]
         ry = radial[:, 0] * y[:, 0] + radial[:, 1] * y[:, 1] + radial[:, 2] * y[:, 2]
-        out = np.empty((6 if self.tapers else 5, len(t))).T
-        if self.tapers:
-            cos, sin = np.cos(angle), np.sin(angle)
-            lever = cos * t + sin * rho
-            np.multiply(-cos, rx, out=out[:, 0])
-            np.multiply(-cos, ry, out=out[:, 1])
-            out[:, 4] = -cos
-            out[:, 5] = -(rho - radius) * sin - t * cos
-        else:
-            lever = t
+        if lean is None:
+            lever = -t
             np.negative(rx, out=out[:, 0])
             np.negative(ry, out=out[:, 1])
             out[:, 4] = -1.0
-        np.multiply(-lever, rx, out=out[:, 2])
-        np.multiply(-lever, ry, out=out[:, 3])
-        return out
+        else:
+            cos, sin = lean
+            less = np.negative(cos, out=out[:, 4])
+            lever = cos * t
+            lever += sin * rho
+            np.negative(lever, out=lever)
+            np.multiply(less, rx, out=out[:, 0])
+            np.multiply(less, ry, out=out[:, 1])
+            out[:, 5] = -off * sin - t * cos
+        np.multiply(lever, rx, out=out[:, 2])
+        np.multiply(lever, ry, out=out[:, 3])
 
     def step(self, params: Params, change: Array, frame: tuple[Array, Array]) -> Params:
         """The surfaces with their free parameters changed, within bounds; as they were where that is not finite.
         `frame` is that of their axes."""
         (x, y), radius = frame, params[:, 6]
-        most = np.empty(change.shape)
-        most[:, [0, 1, 4]] = (np.abs(radius) + constants.SHIFT_LIMIT)[:, None]
-        most[:, [2, 3, *range(5, change.shape[1])]] = constants.TILT_LIMIT
+        most = np.full(change.shape, constants.TILT_LIMIT)
+        most[:, 4] = np.abs(radius) + constants.SHIFT_LIMIT
+        most[:, :2] = most[:, 4:5]
         least = -most
         least[:, 4] /= 2
         change = np.minimum(np.maximum(change, least), most)
         out = params.copy()
         out[:, 3:6] += change[:, :1] * x + change[:, 1:2] * y
         axis = params[:, :3] + change[:, 2:3] * x + change[:, 3:4] * y
-        length = np.sqrt(axis[:, 0] ** 2 + axis[:, 1] ** 2 + axis[:, 2] ** 2)
+        square = axis * axis
+        length = np.sqrt(square[:, 0] + square[:, 1] + square[:, 2])
         out[:, :3] = axis / np.maximum(length, 1e-300)[:, None]
         out[:, 6] = np.maximum(radius + change[:, 4], constants.LEAST_RADIUS)
         if self.tapers:
             taper = params[:, 7] + change[:, 5]
-            out[:, 7] = np.clip(taper, -constants.STEEPEST_CONE, constants.STEEPEST_CONE)
+            out[:, 7] = np.minimum(np.maximum(taper, -constants.STEEPEST_CONE), constants.STEEPEST_CONE)
         finite = np.isfinite(out)
         return out if finite.all() else np.where(finite.all(axis=1, keepdims=True), out, params)
 
@@ -211,26 +258,28 @@ class Ruled(Kind, Protocol):
         return distinct_angles(region, angle, step, count), sweep, even
 
 
-def generators(batch: Batch, params: Params) -> tuple[Ints, Ints, Flags, Flags]:
-    """(region, edge, inner, smooth) of the edges that run along a generator."""
+def generators(batch: Batch, params: Params) -> tuple[Ints, Ints, Flags]:
+    """(region, edge, inner) of the edges that run along a generator."""
     region, edge, inner = batch.edges
     work = batch.patchwork
     use = np.empty(len(edge), bool)
     for rows in slices(len(edge), constants.ROWS):
         use[rows] = _along(work, params, region[rows], edge[rows])
     at = use.nonzero()[0]
-    edge = edge.take(at)
-    return region.take(at), edge, inner.take(at), work.smooth.take(edge)
+    return region.take(at), edge.take(at), inner.take(at)
 
 
 def _along(work: Patchwork, params: Params, region: Ints, edge: Ints) -> Flags:
     """Whether each edge runs along a generator of its region's surface."""
-    if params[:, 7].any():
-        mine = columns_of(params, region)
-        radial = cylindrical(mine, work.halfway(edge)).radial
-        direction = np.cos(mine[:, 7])[:, None] * mine[:, :3] + np.sin(mine[:, 7])[:, None] * radial
-    else:
-        direction = columns_of(params[:, :3], region)
+    direction = columns_of(params[:, :3], region)
+    cones = params[:, 7].nonzero()[0]
+    if len(cones):
+        # regions are in order, and cylinders come before cones
+        first = int(region.searchsorted(cones[0]))
+        mine = columns_of(params, region[first:])
+        radial = cylindrical(mine, work.halfway(edge[first:])).radial
+        cos, sin = (f(params[:, 7]).take(region[first:])[:, None] for f in (np.cos, np.sin))
+        direction[first:] = cos * mine[:, :3] + sin * radial
     length = work.length.take(edge)
     forward = np.abs(dot(work.along(edge), direction))
     aside = np.maximum(length * length - forward * forward, 0.0)

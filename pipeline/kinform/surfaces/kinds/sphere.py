@@ -56,10 +56,10 @@ class Sphere(DoublyCurved):
         rho = np.sqrt(dot(offset, offset))
         return Probe(rho - params[:, 6], offset / np.maximum(rho, 1e-300)[:, None], params[:, 6])
 
-    def jacobian(self, params: Params, points: Array) -> Array:
+    def equations(self, params: Params, points: Array) -> tuple[Array, Array]:
         """By centre (3) and radius."""
-        normal = self.probe(params, points).normal
-        return np.concatenate([-normal, -np.ones((len(points), 1))], axis=1)
+        distance, normal, _ = self.probe(params, points)
+        return np.concatenate([-normal, -np.ones((len(points), 1))], axis=1), distance
 
     def credible(self, batch: Batch, params: Params, scale: Scales) -> Flags:
         """Several vertices surrounded by the surface, and curvature in both directions above the tolerance."""

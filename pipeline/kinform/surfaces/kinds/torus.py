@@ -71,16 +71,18 @@ class Torus(DoublyCurved):
         normal = (across * scale)[:, None] * radial + (t * scale)[:, None] * params[:, :3]
         return Probe(q - params[:, 7], normal, params[:, 6] + params[:, 7])
 
-    def jacobian(self, params: Params, points: Array) -> Array:
+    def equations(self, params: Params, points: Array) -> tuple[Array, Array]:
         """By offset across the axis (2), tilt (2), offset along the axis, major and minor radius."""
         t, rho, radial = cylindrical(params, points)
         across = rho - params[:, 6]
-        scale = 1.0 / np.maximum(np.sqrt(across * across + t * t), 1e-300)
+        q = np.sqrt(across * across + t * t)
+        scale = 1.0 / np.maximum(q, 1e-300)
         x, y = frames(params[:, :3])
         rx, ry = dot(radial, x), dot(radial, y)
         out, up = across * scale, t * scale
         lever = params[:, 6] * up
-        return np.stack([-out * rx, -out * ry, lever * rx, lever * ry, -up, -out, -np.ones_like(t)], axis=1)
+        columns = [-out * rx, -out * ry, lever * rx, lever * ry, -up, -out, -np.ones_like(t)]
+        return np.array(columns).T, q - params[:, 7]
 
     def credible(self, batch: Batch, params: Params, scale: Scales) -> Flags:
         """Rings enough in the profile, places enough around the axis, and curved both ways: with neither a

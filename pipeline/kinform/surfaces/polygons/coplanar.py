@@ -15,7 +15,7 @@ from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import constants
-from kinform.surfaces.groups import columns_of, group_mean, group_sum
+from kinform.surfaces.groups import columns_of, group_mean, group_sum, sums_of
 from kinform.surfaces.polygons.facets import Facets, angles
 from kinform.surfaces.polygons.noise import Scale, departures
 
@@ -117,9 +117,12 @@ def _flatness(mesh: Facets, polygon: Ints, found: Moments) -> Array:
     several = np.flatnonzero(np.bincount(polygon, minlength=len(area)).take(polygon) > 1)
     owner = polygon.take(several)
     normal, centre = columns_of(normal, owner), columns_of(centre, owner)
-    out = np.zeros(len(area))
+    highest = np.zeros(len(several))
     for k in range(3):
-        np.maximum.at(out, owner, np.abs(dot(mesh.at(mesh.faces[:, k].take(several)) - centre, normal)))
+        height = np.abs(dot(mesh.at(mesh.faces[:, k].take(several)) - centre, normal))
+        np.maximum(highest, height, out=highest)
+    out = np.zeros(len(area))
+    np.maximum.at(out, owner, highest)
     return out
 
 
@@ -127,9 +130,11 @@ def moments(mesh: Facets, polygon: Ints) -> Moments:
     """Area, unit normal and centroid of each polygon, of the polygons (F,) that facets belong to."""
     count = int(polygon.max()) + 1 if len(polygon) else 0
     total: Array = np.bincount(polygon, mesh.area, count).astype(float)
-    mean = group_sum(polygon, mesh.normal * mesh.area[:, None], count)
+    sums = sums_of(polygon, count)
+    mean = np.ascontiguousarray(sums(mesh.normal.T * mesh.area).T)
     weight = np.where((total <= 0)[polygon], 1.0, mesh.area)
-    return total, normalised(mean), group_mean(polygon, mesh.middle, count, weight)
+    centre = sums(mesh.middle.T * weight) / np.maximum(sums(weight), 1e-300)
+    return total, normalised(mean), np.ascontiguousarray(centre.T)
 
 
 def _peel(mesh: Facets, label: Ints, f0: Ints, f1: Ints, scale: Scale) -> Ints:

@@ -67,7 +67,7 @@ class Scales:
         rounding, noise, fit = np.array([(s.rounding, s.noise, s.fit) for s in scales]).reshape(-1, 3).T
         return cls(rounding, noise, fit)
 
-    def at(self, numbers: Ints) -> Scales:
+    def at(self, numbers: Ints | slice) -> Scales:
         """Those of the meshes of these numbers, in this order."""
         return Scales(self.rounding[numbers], self.noise[numbers], self.fit[numbers])
 

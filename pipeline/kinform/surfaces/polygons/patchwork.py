@@ -63,7 +63,7 @@ class Patchwork:
 
     def at(self, vertices: Ints) -> Array:
         """(N, 3) coordinates of these vertices, in memory column by column."""
-        return self._columns.take(vertices, axis=1).T
+        return self.columns.take(vertices, axis=1).T
 
     def along(self, edges: Ints) -> Array:
         """(N, 3) from the first to the second end of these edges, in memory column by column."""
@@ -81,13 +81,21 @@ class Patchwork:
         """(N, 3) normals of these polygons, in memory column by column."""
         return self._normals.take(polygons, axis=1).T
 
+    def places(self, polygons: Ints, vertices: Ints) -> Array:
+        """(N, 3) centroids of these polygons, and after them these vertices, in memory column by column."""
+        return self._places.take(np.concatenate([polygons, vertices + self.count]), axis=1).T
+
+    @cached_property
+    def _places(self) -> Array:
+        return np.concatenate([self._centres, self.columns], axis=1)
+
     @cached_property
     def _halfway(self) -> Array:
-        return (self._columns.take(self.ends[:, 0], axis=1) + self._columns.take(self.ends[:, 1], axis=1)) / 2
+        return (self.columns.take(self.ends[:, 0], axis=1) + self.columns.take(self.ends[:, 1], axis=1)) / 2
 
     @cached_property
     def _along(self) -> Array:
-        return self._columns.take(self.ends[:, 1], axis=1) - self._columns.take(self.ends[:, 0], axis=1)
+        return self.columns.take(self.ends[:, 1], axis=1) - self.columns.take(self.ends[:, 0], axis=1)
 
     @cached_property
     def _normals(self) -> Array:
@@ -98,7 +106,8 @@ class Patchwork:
         return np.ascontiguousarray(self.centre.T)
 
     @cached_property
-    def _columns(self) -> Array:
+    def columns(self) -> Array:
+        """(3, V) coordinates of the vertices."""
         return np.ascontiguousarray(self.vertices.T)
 
     def other(self, edges: Ints, polygons: Ints) -> Ints:

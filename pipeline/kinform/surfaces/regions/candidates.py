@@ -28,7 +28,11 @@ class Candidates:
 
     def of(self, numbers: Ints) -> Candidates:
         """Some of them, in this order."""
-        return Candidates(self.kind, self.params[numbers], self.side[numbers], self.tolerance[numbers])
+        return Candidates(self.kind.of(numbers), self.params[numbers], self.side[numbers], self.tolerance[numbers])
+
+    def run(self, kind: Kind, regions: slice) -> Candidates:
+        """A run of them, which are of this kind."""
+        return Candidates(kind, self.params[regions], self.side[regions], self.tolerance[regions])
 
     def within(self, tolerance: Array) -> Candidates:
         """The same surfaces, held to another tolerance."""

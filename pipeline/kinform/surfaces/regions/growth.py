@@ -30,6 +30,11 @@ class Growth:
     origin: Ints
     """(R,) number of the piece, or the seed, that each comes of."""
 
+    def each(self) -> list[Growth]:
+        """The regions of each kind by themselves."""
+        every = self.surfaces.kind.each(self.batch.count)
+        return [Growth(self.surfaces.run(kind, run), self.batch.run(run), self.origin[run]) for kind, run in every]
+
 
 def whole(
     territory: Territory, kind: Kind, batch: Batch, side: Ints, proposal: tuple[Params, Flags] | None = None
@@ -89,7 +94,7 @@ def pursue(territory: Territory, kind: Kind, batch: Batch, side: Ints) -> Growth
     params, usable = kind.propose(batch)
     batch, origin = batch.where(usable).compact()
     fit = territory.scales_of(batch).fit
-    surfaces = Candidates(kind, params[origin], side[origin], constants.LOOSE * fit).refine(batch, 2)
+    surfaces = Candidates(kind.of(origin), params[origin], side[origin], constants.LOOSE * fit).refine(batch, 2)
     batch, surfaces = _grow(territory, surfaces, _settle(territory, surfaces, batch))
     batch, number = batch.compact()
     kept = surfaces.of(number).refine(batch, 2)
@@ -111,7 +116,7 @@ def _grow(territory: Territory, surfaces: Candidates, batch: Batch) -> tuple[Bat
             break
         before = batch.size
         growing = growing.refine(batch, 2).within(fit[number])
-        batch = _drop_shared(_settle(territory, growing, batch))
+        batch = _drop_shared(growing.kind, _settle(territory, growing, batch))
         batch = territory.spread(
             growing, batch, growing.reach(batch), min(constants.FIRST_LAYERS << stage, constants.MOST_LAYERS)
         )
@@ -146,12 +151,16 @@ def _keys(batch: Batch, number: Ints) -> Ints:
     return number[batch.region] * np.int64(batch.patchwork.count) + batch.polygon
 
 
-def _drop_shared(batch: Batch) -> Batch:
-    """The batch with regions emptied most of whose polygons belong to a larger region as well."""
+def _drop_shared(kind: Kind, batch: Batch) -> Batch:
+    """The batch with regions emptied most of whose polygons belong to a larger region of their kind as well."""
     if not len(batch.region):
         return batch
-    order = np.lexsort((batch.region, (-batch.size).take(batch.region), batch.polygon))
-    polygon = batch.polygon.take(order)
+    polygon = batch.polygon
+    for number, (_, regions) in enumerate(kind.each(batch.count)):
+        if number:
+            polygon = np.where(batch.region < regions.start, polygon, polygon + number * batch.patchwork.count)
+    order = np.lexsort((batch.region, (-batch.size).take(batch.region), polygon))
+    polygon = polygon.take(order)
     first = order.take(heads(polygon).nonzero()[0])
     unshared = np.bincount(batch.region.take(first), minlength=batch.count)
     return batch.where(unshared > constants.UNSHARED * batch.size)
@@ -166,7 +175,7 @@ def _connected(territory: Territory, batch: Batch) -> Batch:
 
 
 def _large(kind: Kind, batch: Batch) -> Batch:
-    return batch.where(batch.size >= kind.least)
+    return batch.where(kind.enough(batch.size))
 
 
 def _settle(territory: Territory, surfaces: Candidates, batch: Batch) -> Batch:

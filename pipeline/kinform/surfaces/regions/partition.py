@@ -20,6 +20,7 @@ from kinform.surfaces.kinds.batch import Batch
 from kinform.surfaces.kinds.cone import Cone
 from kinform.surfaces.kinds.cylinder import Cylinder
 from kinform.surfaces.kinds.kind import Kind
+from kinform.surfaces.kinds.mixed import Mixed
 from kinform.surfaces.kinds.sphere import Sphere
 from kinform.surfaces.kinds.torus import Torus
 from kinform.surfaces.polygons.curvature import Curvature, Links, continues, curvature, links
@@ -29,9 +30,9 @@ from kinform.surfaces.regions.chords import Rounds, decimated
 from kinform.surfaces.regions.growth import Growth, absorb, pursue, whole
 from kinform.surfaces.regions.territory import Territory
 
-CYLINDER = Cylinder()
+CYLINDER, CONE = Cylinder(), Cone()
 
-CURVED: tuple[Kind, ...] = (CYLINDER, Cone(), Sphere(), Torus())
+CURVED: tuple[Kind, ...] = (CYLINDER, CONE, Sphere(), Torus())
 """The curved kinds, simplest first. A new kind is one more entry."""
 
 SIMPLE = tuple(kind for kind in CURVED if not kind.saddle)
@@ -187,15 +188,27 @@ def _search(territory: Territory, tried: Flags, bent: Curvature) -> list[Growth]
     tried[seeds] = True
     first, second = bent.ratio[work.a[seeds]], bent.ratio[work.b[seeds]]
     least, most = np.minimum(first, second), np.maximum(first, second)
+    starts: list[tuple[Kind, Batch, Ints]] = []
     for kind in SIMPLE:
         suits = np.flatnonzero(
             (least <= kind.bends[1] + constants.BEND_SLACK) & (most >= kind.bends[0] - constants.BEND_SLACK)
         )
         batch = _around(territory, seeds[suits], side[suits], constants.STRAIGHT[kind.name])
-        batch, number = batch.where(batch.size >= kind.least).compact()
+        batch, number = batch.where(kind.enough(batch.size)).compact()
+        starts.append((kind, batch, side[suits[number]]))
+    for kind, batch, facing in _ruled_together(starts):
         if len(batch.region):
-            growths.append(pursue(territory, kind, batch, side[suits[number]]))
+            growths += pursue(territory, kind, batch, facing).each()
     return growths
+
+
+def _ruled_together(starts: list[tuple[Kind, Batch, Ints]]) -> list[tuple[Kind, Batch, Ints]]:
+    """The kinds with their regions and sides, cylinders and cones as one."""
+    (_, cylinders, of_cylinders), (_, cones, of_cones), *others = starts
+    work, first = cylinders.patchwork, cylinders.count
+    keys = np.concatenate([cylinders.keys, cones.keys + first * np.int64(work.count)])
+    batch = Batch.of_keys(work, keys, first + cones.count)
+    return [(Mixed(CYLINDER, CONE, first), batch, np.concatenate([of_cylinders, of_cones])), *others]
 
 
 def _seeds(work: Patchwork, edges: Ints, tried: Flags, side: int) -> Ints:

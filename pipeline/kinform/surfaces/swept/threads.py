@@ -90,12 +90,13 @@ def _lines(work: Patchwork, free: Flags, others: Sequence[Description]) -> list[
     """Axes and points on them: of cylinders, the largest first, and those about which pieces of what is free turn."""
     cylinders = [(float(work.area[item.polygons].sum()), k) for k, item in enumerate(others) if item.kind == "cylinder"]
     largest = sorted(cylinders, key=lambda c: (-c[0], c[1]))[: 4 * constants.MOST_LINES]
-    lines = _distinct([(others[k].axis, others[k].point) for _, k in largest])[: constants.MOST_LINES]
-    return _distinct([*lines, *_turning(work, free)])
+    lines = _distinct([(others[k].axis, others[k].point) for _, k in largest], constants.MOST_LINES)
+    turning = _turning(work, free)
+    return _distinct([*lines, *turning], len(lines) + len(turning))
 
 
-def _distinct(candidates: Sequence[tuple[Array, Array]]) -> list[tuple[Array, Array]]:
-    """The lines without those that nearly are an earlier one."""
+def _distinct(candidates: Sequence[tuple[Array, Array]], most: int) -> list[tuple[Array, Array]]:
+    """The first lines, `most` of them, without those that nearly are an earlier one."""
     kept: list[int] = []
     axes, points = ([pair[k].tolist() for pair in candidates] for k in range(2))
     for k, (axis, point) in enumerate(zip(axes, points, strict=True)):
@@ -105,6 +106,8 @@ def _distinct(candidates: Sequence[tuple[Array, Array]]) -> list[tuple[Array, Ar
             for j in kept
         ):
             kept.append(k)
+            if len(kept) == most:
+                break
     return [candidates[k] for k in kept]
 
 
@@ -170,7 +173,7 @@ def _level(work: Patchwork, edges: Ints, screw: _Screw, wide: float, scale: Scal
     """(m,) edges whose ends are as far from the axis as those of a helix may be, judged by their lengths: that needs no
     angles, and leaves few. An arc is no longer than HELIX_STEP / 2 over its sine in chords."""
     u, v = screw.frame
-    arms = [work.vertices[:, k] - screw.point[k] for k in range(3)]
+    arms = work.columns - screw.point[:, None]
     x, y = (arms[0] * across[0] + arms[1] * across[1] + arms[2] * across[2] for across in (u, v))
     distance = np.sqrt(x * x + y * y)
     widening = np.abs(distance.take(work.ends[:, 1].take(edges)) - distance.take(work.ends[:, 0].take(edges)))
@@ -184,8 +187,8 @@ def _slopes(
     """Advance, its uncertainty and angle (m,) of edges, and which of them may run along a helix of an axis that is
     known `wide` times less well than in the end."""
     height, distance, azimuth = screw.polar(work.vertices[ends.ravel()])
-    rise, widening, turn = (np.diff(x.reshape(-1, 2), axis=1)[:, 0] for x in (height, distance, azimuth))
-    mean = distance.reshape(-1, 2).mean(axis=1)
+    rise, widening, turn = (x[1::2] - x[::2] for x in (height, distance, azimuth))
+    mean = (distance[::2] + distance[1::2]) / 2
     turn -= 2 * np.pi * np.round(turn / (2 * np.pi))
     length = np.hypot(rise, mean * turn)
     level = np.abs(widening) <= wide * constants.LEVEL * length + constants.LEVEL_NOISES * scale.noise
