@@ -162,3 +162,8 @@ MOST_EXPECTED = 0.8
 """Share of its facets above which a model of all is made, which does for every other part."""
 KEPT_SPANS = 200_000
 """Facets up to which the spans of a mesh are kept: 5 MB; of more those that are asked for are computed anew."""
+
+# --- alike ------------------------------------------------------------------------------------------------------------
+
+HASHES = 12
+"""Hashes of rows before what is left, one row in eight after each, is sorted."""
