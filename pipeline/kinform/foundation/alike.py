@@ -63,7 +63,7 @@ def _slots(words: _Words, turn: int) -> Ints:
 
 def _first_in_slot(slots: Ints) -> Ints:
     """(n,) the first place that has the same slot as each: of numbers put into one slot the last stays."""
-    table = np.empty(int(slots.max(initial=0)) + 1, np.int64)
+    table = np.empty(1 << len(slots).bit_length(), np.int64)
     table[slots[::-1]] = np.arange(len(slots) - 1, -1, -1)
     return table.take(slots)
 

@@ -75,15 +75,20 @@ def _crowded(vertices: Array, distance: float) -> Ints:
 
     Most vertices of a mesh are alone on a line in no direction of the design, which takes a sort to see.
     """
-    crowded = np.arange(len(vertices))
-    for line in _LINES:
-        place = vertices[crowded] @ line
-        order = np.argsort(place)
-        near = np.diff(place[order]) <= distance * (1 + 1e-9)
-        kept = np.zeros(len(crowded), bool)
-        kept[order[1:][near]] = kept[order[:-1][near]] = True
-        crowded = crowded[kept]
+    crowded = _beside_another(vertices @ _LINES[0], distance)
+    for line in _LINES[1:]:
+        crowded = crowded.take(_beside_another(vertices.take(crowded, axis=0) @ line, distance))
     return crowded
+
+
+def _beside_another(place: Array, distance: float) -> Ints:
+    """Which of these places (n,) along a line have another within the distance."""
+    order = place.argsort()
+    ordered = place.take(order)
+    near = np.flatnonzero(ordered[1:] - ordered[:-1] <= distance * (1 + 1e-9))
+    kept = np.zeros(len(place), bool)
+    kept[order.take(near)] = kept[order.take(near + 1)] = True
+    return np.flatnonzero(kept)
 
 
 def _leaders(count: int, pairs: Ints) -> Ints:
