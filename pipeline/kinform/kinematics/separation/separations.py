@@ -241,7 +241,7 @@ def rows_in_frame(rows: Array, source: Frame, frame: Frame) -> Array:
     """Rows (n, 6) against twists scaled in `source` as rows against twists scaled in `frame`."""
     normals = rows[:, 3:]
     moments = rows[:, :3] * source.length + cross(source.centre - frame.centre, normals)
-    return np.hstack([moments / frame.length, normals])
+    return np.concatenate([moments / frame.length, normals], axis=1)
 
 
 def _sets(
