@@ -72,12 +72,14 @@ def remainder(rng, count, known):
 def test_what_is_known_to_be_free_remains_and_few_rows_leave_the_rest():
     rng = np.random.default_rng(0)
     asked = [remainder(rng, count, known) for count in (1, 4, 6, 30) for known in (0, 1, 2, 5)]
-    for question, (basis, values) in zip(asked, remains(asked), strict=True):
+    for question, (basis, values, (turns, right)) in zip(asked, remains(asked), strict=True):
         held = question.rows - question.rows @ question.basis @ question.basis.T
         assert basis.shape[1] == 6 - np.linalg.matrix_rank(held)
         assert np.abs(held @ basis).max(initial=0.0) < 1e-12
         assert np.allclose(basis @ (basis.T @ question.basis), question.basis)
         assert (np.diff(values) >= 0.0).all()
+        assert np.allclose(right.T @ right, np.eye(basis.shape[1]))
+        assert np.allclose(np.linalg.norm(basis[:3] @ right.T, axis=0)[: len(turns)], turns)
 
 
 def test_ways_of_different_lengths_each_get_their_own_answers():
@@ -87,7 +89,7 @@ def test_ways_of_different_lengths_each_get_their_own_answers():
         asked = [remainder(rng, 8, k % 3) for k in range(length)]
         got = []
         for question in asked:
-            basis, _ = yield question
+            basis, *_ = yield question
             got.append(basis.shape[1])
         return [question.basis.shape[1] for question in asked], got
 

@@ -94,11 +94,6 @@ EPS32 = 2.0**-23
 WELD_SHARE = 1e-6
 """Welding distance in diagonals of the mesh, where none is stated: ten roundings of single precision."""
 
-MANY = 1 << 20
-"""Vertices up to which their hashes lend their last bits to their places: that leaves 43 bits, and so 170,000 distinct
-vertices, of which each is named six times, are apart in all meshes but one in a thousand. That one is sorted by its
-coordinates."""
-
 SAMPLED_CROWDS = 500
 """Vertices whose surroundings are counted before they are welded."""
 

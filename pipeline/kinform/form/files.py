@@ -146,12 +146,15 @@ class DesignFiles:
         self._raw: dict[Path, RawMesh | MeshError] = {}
         self._bodies: dict[Path, dict[str, RawMesh]] = {}
         self._real: dict[Path, str] = {}
+        self._shown: dict[Path, str] = {}
         self._meshes: dict[tuple[Path, MeshUse], Mesh | None] = {}
         self._same: dict[tuple[str, str, str | None], Mesh] = {}
 
     def shown(self, path: Path) -> str:
         """The path as results and messages show it: relative to the top manifest's folder."""
-        return Path(os.path.relpath(path, self.top)).as_posix()
+        if path not in self._shown:
+            self._shown[path] = Path(os.path.relpath(path, self.top)).as_posix()
+        return self._shown[path]
 
     def find(self, stated: str, folder: Path, file: str, line: int, what: str) -> Path | None:
         """The file that a manifest states, relative to its folder; None after noting what is wrong."""
@@ -184,9 +187,15 @@ class DesignFiles:
 
     def _inside(self, path: Path, root: Path) -> bool:
         """Whether the file, wherever links lead, lies in the folder."""
-        if root not in self._real:
-            self._real[root] = os.path.join(os.path.realpath(root), "")
-        return os.path.realpath(path).startswith(self._real[root])
+        if path.name == ".." or os.path.islink(path):
+            return os.path.realpath(path).startswith(self._real_folder(root))
+        return (self._real_folder(path.parent) + path.name).startswith(self._real_folder(root))
+
+    def _real_folder(self, folder: Path) -> str:
+        """Where links lead, with a separator at its end."""
+        if folder not in self._real:
+            self._real[folder] = os.path.join(os.path.realpath(folder), "")
+        return self._real[folder]
 
     def note(self, path: Path) -> None:
         """Note a file that is read; unless it is a mesh, with its content before it is read."""
@@ -300,6 +309,8 @@ class DesignFiles:
                 self._raw[path] = error
             except OSError as error:
                 self._raw[path] = _unreadable(error)
+            if not is_scene(path):  # whose bodies are asked for one by one
+                self._data.pop(path, None)
         raw = self._raw[path]
         if isinstance(raw, MeshError):
             raise raw

@@ -176,3 +176,8 @@ CROSSED_FEW = 100_000
 """Triangles times triangles up to which all are asked whether they cross; beyond, one in so many that it is this."""
 CROSSED_SOME = 8
 """... and no more than one in this many: where nothing crosses, all are asked after them."""
+
+# --- alike ------------------------------------------------------------------------------------------------------------
+
+HASHES = 12
+"""Hashes of rows before what is left, one row in eight after each, is sorted."""

@@ -550,6 +550,8 @@ MOST_TOGETHER = 8
 """Bodies up to which those are told that leave together."""
 LARGEST_TWIST = 1.0 / CONE_HELD
 """Bound of twist components where a pair opens by 1: what opens slower does not open for certain."""
+STILL_LIFTED = 1e-10
+"""Speed of a row, of a slide of 1, that is none: LARGEST_TWIST times it is less than HiGHS admits."""
 
 # --- questions ------------------------------------------------------------------------------------------------------
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +12,9 @@ from numpy.typing import NDArray
 from kinform.form.constants import EPS32, FAR, FLAT, SLIVER, SMALLEST_MESH, WELD_SHARE, WELD_STEPS
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh
 from kinform.form.meshes.weld import merge_close, merge_exact, used_only
-from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.algebra.vectors import box, dot
 from kinform.foundation.meshes.boxes import bounds
-from kinform.foundation.meshes.edges import EdgeTable, edge_table
+from kinform.foundation.meshes.edges import EdgeTable, unsorted_edge_table
 from kinform.foundation.meshes.shells import shells_of
 from kinform.foundation.processes import Crash, in_own_process
 from kinform.foundation.words import counted
@@ -30,9 +31,8 @@ def build_mesh(raw: RawMesh, metres: float, weld: float | None, *, path: str, bo
     """
     if not len(raw.faces):
         raise MeshError([Fault("is empty: it has no facet", "export the mesh again, or leave the body out")])
-    origin = far_origin(raw.vertices)
     resolution = raw.resolution * metres
-    vertices, faces, distance = _welded(raw, origin, metres, weld)
+    vertices, faces, origin, distance = _welded(raw, metres, weld, resolution)
     collapsed = _collapsed(faces)
     kept = faces[~collapsed] if collapsed.any() else faces
     if not len(kept):
@@ -42,13 +42,14 @@ def build_mesh(raw: RawMesh, metres: float, weld: float | None, *, path: str, bo
     diagonal = _diagonal(shape)
     if diagonal < SMALLEST_MESH:
         raise MeshError([Fault(f"is {diagonal:.2g} m across, less than an atom", "correct its units or its scale")])
-    if solid and _thickness(shape) <= max(FLAT * diagonal, 0.0):
+    centred = _centred(shape)
+    if solid and _thickness(centred) <= max(FLAT * diagonal, 0.0):
         raise MeshError([Fault(
             "has zero thickness: all its vertices lie in one plane",
             "export a closed solid, or state solid = false for a part that is surfaces only",
         )])  # fmt: skip
-    edges = edge_table(kept, len(shape))
-    health = _health(shape, kept, edges, raw, distance)
+    edges = unsorted_edge_table(kept, len(shape))
+    health = _health(shape, centred, kept, edges, raw, distance)
     if health.watertight and health.consistent_winding and health.volume < 0.0:
         kept = np.ascontiguousarray(kept[:, ::-1])
     usual = EPS32 * float(np.abs(shape).max())
@@ -79,26 +80,27 @@ def far_origin(vertices: NDArray[np.floating]) -> Array:
     return np.asarray(np.where(np.abs(middle) > FAR * diagonal, np.round(middle / step) * step, 0.0))
 
 
-def _welded(raw: RawMesh, origin: Array, metres: float, weld: float | None) -> tuple[Array, Ints, float]:
-    """Vertices (m) from `origin` (3,) of the file, faces, and the distance (m) up to which vertices were one."""
+def _welded(raw: RawMesh, metres: float, weld: float | None, resolution: float) -> tuple[Array, Ints, Array, float]:
+    """Vertices (m) from an origin of the file, faces, that origin (3,) in file units, and the distance (m) up to which
+    vertices were one; the resolution in m."""
     first, place = merge_exact(raw.vertices)
-    vertices = raw.vertices.take(first, axis=0).astype(np.float64)
+    distinct = raw.vertices.take(first, axis=0)
+    origin = far_origin(distinct)
+    vertices = distinct.astype(np.float64)
     vertices -= origin
     vertices *= metres
     faces = place.take(raw.faces)
-    distance = weld
-    if distance is None:
-        distance = max(WELD_SHARE * _diagonal(vertices), WELD_STEPS * raw.resolution * metres)
+    distance = max(WELD_SHARE * _diagonal(vertices), WELD_STEPS * resolution) if weld is None else weld
     leaders, close = merge_close(vertices, distance)
     if len(leaders) == len(vertices):
-        return vertices, faces, distance
+        return vertices, faces, origin, distance
     welded: Array = vertices[leaders]
-    return welded, close.take(faces), distance
+    return welded, close.take(faces), origin, distance
 
 
 def _diagonal(vertices: Array) -> float:
     """Of the box of the vertices (n, 3)."""
-    low, high = bounds(vertices)
+    low, high = box(vertices)
     return float(np.linalg.norm(high - low))
 
 
@@ -109,31 +111,35 @@ def _collapsed(faces: Ints) -> NDArray[np.bool_]:
     return same
 
 
-def _thickness(vertices: Array) -> float:
-    """Extent (m) in the direction in which the vertices spread least."""
-    centred = vertices - vertices.mean(axis=0)
-    _, axes = np.linalg.eigh(centred.T @ centred)
-    return float(np.ptp(centred @ axes[:, 0]))
+def _centred(vertices: Array) -> Array:
+    """(3, n) coordinates of vertices (n, 3) from their mean, as columns."""
+    columns = np.ascontiguousarray(vertices.T)
+    columns -= columns.cumsum(axis=1)[:, -1:] / len(vertices)
+    return columns
 
 
-def _health(vertices: Array, faces: Ints, edges: EdgeTable, raw: RawMesh, distance: float) -> MeshHealth:
-    """The facts about a mesh of these vertices and faces, which were welded within the distance (m)."""
-    columns = np.ascontiguousarray((vertices - vertices.mean(axis=0)).T)
-    corners = [columns.take(faces[:, k], axis=1).T for k in range(3)]
-    sides = [corners[k] - corners[k - 1] for k in range(3)]
-    doubled = cross(sides[1], sides[2])
-    longest = np.maximum(np.maximum(*(dot(side, side) for side in sides[:2])), dot(sides[2], sides[2]))
-    slivers = int(np.count_nonzero(dot(doubled, doubled) <= SLIVER * longest**2))
+def _thickness(centred: Array) -> float:
+    """Extent (m) in the direction in which the vertices, as columns (3, n), spread least."""
+    _, axes = np.linalg.eigh(centred @ centred.T)
+    return float(np.ptp(axes[:, 0] @ centred))
+
+
+def _health(
+    vertices: Array, centred: Array, faces: Ints, edges: EdgeTable, raw: RawMesh, distance: float
+) -> MeshHealth:
+    """The facts about a mesh of these vertices, as rows and as columns from their mean, and faces, which were welded
+    within the distance (m)."""
+    corners = [centred.take(faces[:, k], axis=1) for k in range(3)]
     duplicates = _duplicates(faces[_doubled(edges)], len(vertices))
     watertight = edges.open == 0 and edges.overused == 0
     return MeshHealth(
         facets=len(raw.faces),
         vertices=len(vertices),
         watertight=watertight,
-        consistent_winding=bool(np.all(edges.balance[edges.counts % 2 == 0] == 0)),
+        consistent_winding=not ((edges.balance != 0) & (edges.counts & 1 == 0)).any(),
         manifold_status=_manifold_status(vertices, faces, edges, duplicates),
-        volume=float(np.cumsum(dot(corners[0], cross(corners[1], corners[2])))[-1] / 6.0),
-        degenerate_facets=len(raw.faces) - len(faces) + slivers,
+        volume=float(np.cumsum(_dots(corners[0], _crossed(corners[1], corners[2])))[-1] / 6.0),
+        degenerate_facets=len(raw.faces) - len(faces) + _slivers(corners),
         duplicate_facets=duplicates,
         open_edges=edges.open,
         overused_edges=edges.overused,
@@ -142,16 +148,39 @@ def _health(vertices: Array, faces: Ints, edges: EdgeTable, raw: RawMesh, distan
     )
 
 
+def _slivers(corners: Sequence[Array]) -> int:
+    """Facets of next to no area; three times the columns (3, F) of their corners."""
+    sides = [corners[k] - corners[k - 1] for k in range(3)]
+    doubled = _crossed(sides[1], sides[2])
+    first, second, third = (_dots(side, side) for side in sides)
+    longest = np.maximum(np.maximum(first, second), third)
+    return int(np.count_nonzero(_dots(doubled, doubled) <= SLIVER * longest**2))
+
+
+def _crossed(a: Array, b: Array) -> Array:
+    """(3, n) a × b of columns (3, n)."""
+    out = np.empty(a.shape)
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        np.multiply(a[j], b[k], out=out[i])
+        out[i] -= a[k] * b[j]
+    return out
+
+
+def _dots(a: Array, b: Array) -> Array:
+    """(n,) inner products of columns (3, n)."""
+    return dot(a.T, b.T)
+
+
 def _doubled(edges: EdgeTable) -> NDArray[np.bool_]:
     """(F,) facets that may have the vertices of another: it meets them, and perhaps more, at all three edges."""
     beside = np.full(len(edges.half_edges), -1)
-    two = edges.starts[edges.counts == 2]
-    first, second = edges.half_edges[two], edges.half_edges[two + 1]
+    first, second = edges.pairs
     beside[first], beside[second] = second // 3, first // 3
-    beside[edges.half_edges[np.repeat(edges.counts > 2, edges.counts)]] = -2
-    rows = beside.reshape(-1, 3)
-    alike: NDArray[np.bool_] = (rows[:, 0] == rows[:, 1]) & (rows[:, 1] == rows[:, 2]) & (rows[:, 0] != -1)
-    return np.asarray(alike | (rows == -2).any(axis=1))
+    if edges.overused:
+        beside[edges.half_edges[np.repeat(edges.counts > 2, edges.counts)]] = -2
+    a, b, c = np.ascontiguousarray(beside.reshape(-1, 3).T)
+    alike: NDArray[np.bool_] = (a == b) & (b == c) & (a != -1)
+    return alike | (a == -2) | (b == -2) | (c == -2) if edges.overused else alike
 
 
 def _duplicates(faces: Ints, count: int) -> int:

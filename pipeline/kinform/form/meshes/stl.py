@@ -74,9 +74,8 @@ def parse_binary(data: bytes) -> RawMesh:
     if count == 0:
         raise MeshError([Fault("is empty: its header claims 0 facets", REEXPORT)])
     corners = np.frombuffer(data, _RECORD, count, _HEADER)["corners"].astype(np.float32)
-    finite = is_coordinate(corners).all(axis=(1, 2))
-    if not finite.all():
-        bad = np.flatnonzero(~finite)
+    if not is_coordinate(corners.max()) or not is_coordinate(corners.min()):
+        bad = np.flatnonzero(~is_coordinate(corners).all(axis=(1, 2)))
         raise MeshError([Fault(
             f"has a vertex that is not a finite number up to {LARGEST_NUMBER:g} in {counted(len(bad), 'facet')}, "
             f"the first is facet {bad[0] + 1} of {count}", REEXPORT,

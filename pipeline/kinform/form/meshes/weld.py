@@ -1,6 +1,6 @@
 """Welding: vertices that are one become one.
 
-Exact copies first (hash and sort), then vertices within the welding distance of each other.
+Exact copies first (by their hashes), then vertices within the welding distance of each other.
 A cluster gathers about its first vertex and reaches no further than the distance from it, so that a chain of
 close vertices never draws a small feature together.
 """
@@ -10,16 +10,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.form.constants import CROWD, MANY, SAMPLED_CROWDS
+from kinform.form.constants import CROWD, SAMPLED_CROWDS
 from kinform.form.meshes.raw import Fault, MeshError
+from kinform.foundation.alike import numbered_alike
 from kinform.foundation.meshes.near import Near
 from kinform.model.arrays import Array, Ints
 
 _LINES = np.array([[0.57735, 0.51763, 0.63144], [-0.70143, 0.37291, 0.60741]])
 _LINES /= np.linalg.norm(_LINES, axis=1)[:, None]
 """Directions along which no designer lays an edge."""
-
-_MIX = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], dtype=np.uint64)
 
 
 def used_only(vertices: NDArray[np.floating], faces: Ints) -> tuple[NDArray[np.floating], Ints]:
@@ -36,63 +35,9 @@ def merge_exact(vertices: NDArray[np.floating]) -> tuple[Ints, Ints]:
 
     vertices: (n, 3) float32 or float64, finite. −0 equals 0.
     """
-    clean = np.ascontiguousarray(vertices) + vertices.dtype.type(0)
-    word = np.uint32 if clean.dtype == np.float32 else np.uint64
-    first, place = _groups(*_sorted(_hash(clean.view(word))))
-    if not np.array_equal(clean.take(first.take(place), axis=0), clean):
-        # two different vertices share a hash: sort by coordinates instead
-        order = np.lexsort(clean.T)
-        _, rank = np.unique(clean[order], axis=0, return_inverse=True)
-        key = np.empty(len(clean), dtype=np.uint64)
-        key[order] = rank.ravel().astype(np.uint64)
-        first, place = _groups(*_sorted(key, exact=True))
-    return first, place
-
-
-def _hash(words: NDArray[np.unsignedinteger]) -> NDArray[np.uint64]:
-    columns = [words[:, k].astype(np.uint64) for k in range(3)]
-    mixed: NDArray[np.uint64] = columns[0] * _MIX[0]
-    for column in (1, 2):
-        mixed ^= mixed >> np.uint64(29)
-        mixed *= _MIX[column]
-        columns[column] *= _MIX[0]
-        mixed += columns[column]
-    mixed ^= mixed >> np.uint64(32)
-    return mixed
-
-
-def _sorted(key: NDArray[np.uint64], exact: bool = False) -> tuple[Ints, NDArray[np.bool_]]:
-    """The order that brings equal keys together, in the order of their places, and which are the first of their value.
-
-    Numbers sort faster than their order is found: up to MANY, the last bits of a key, a hash unless it is `exact`, give
-    way to its place. More would leave too few to tell that many vertices apart.
-    """
-    count = len(key)
-    if exact or count > MANY:
-        order = np.argsort(key, kind="stable")
-        ordered = key.take(order)
-    else:
-        mask = np.uint64((1 << count.bit_length()) - 1)
-        placed = key & ~mask
-        placed |= np.arange(count, dtype=np.uint64)
-        placed.sort()
-        order = (placed & mask).astype(np.int64)
-        ordered = placed & ~mask
-    new = np.empty(count, dtype=bool)
-    new[:1] = True
-    np.not_equal(ordered[1:], ordered[:-1], out=new[1:])
-    return order, new
-
-
-def _groups(order: Ints, new: NDArray[np.bool_]) -> tuple[Ints, Ints]:
-    """First members, ascending, of groups that follow each other in this order, each beginning where it is new; and for
-    every member the number of its group among them."""
-    lead = order.take(np.flatnonzero(new))
-    leads = np.zeros(len(order), dtype=bool)
-    leads[lead] = True
-    place = np.empty(len(order), dtype=np.int64)
-    place[order] = (np.cumsum(leads) - 1).take(lead).take(np.cumsum(new) - 1)
-    return np.flatnonzero(leads), place
+    zero = vertices.dtype.type(0)
+    word = np.uint32 if vertices.dtype == np.float32 else np.uint64
+    return numbered_alike([(vertices[:, k] + zero).view(word) for k in range(3)])
 
 
 def merge_close(vertices: Array, distance: float) -> tuple[Ints, Ints]:
@@ -130,15 +75,20 @@ def _crowded(vertices: Array, distance: float) -> Ints:
 
     Most vertices of a mesh are alone on a line in no direction of the design, which takes a sort to see.
     """
-    crowded = np.arange(len(vertices))
-    for line in _LINES:
-        place = vertices[crowded] @ line
-        order = np.argsort(place)
-        near = np.diff(place[order]) <= distance * (1 + 1e-9)
-        kept = np.zeros(len(crowded), bool)
-        kept[order[1:][near]] = kept[order[:-1][near]] = True
-        crowded = crowded[kept]
+    crowded = _beside_another(vertices @ _LINES[0], distance)
+    for line in _LINES[1:]:
+        crowded = crowded.take(_beside_another(vertices.take(crowded, axis=0) @ line, distance))
     return crowded
+
+
+def _beside_another(place: Array, distance: float) -> Ints:
+    """Which of these places (n,) along a line have another within the distance."""
+    order = place.argsort()
+    ordered = place.take(order)
+    near = np.flatnonzero(ordered[1:] - ordered[:-1] <= distance * (1 + 1e-9))
+    kept = np.zeros(len(place), bool)
+    kept[order.take(near)] = kept[order.take(near + 1)] = True
+    return np.flatnonzero(kept)
 
 
 def _leaders(count: int, pairs: Ints) -> Ints:

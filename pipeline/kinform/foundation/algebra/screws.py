@@ -63,7 +63,7 @@ def scaled(twists: Array, frame: Frame) -> Array:
     """Scaled twists (6, k) of twists (ω; v at the world's origin), columns (6, k)."""
     omega = twists[:3]
     at_centre = twists[3:] + cross(omega.T, frame.centre).T
-    return np.vstack([omega * frame.length, at_centre])
+    return np.concatenate([omega * frame.length, at_centre])
 
 
 def span(vectors: Array, tolerance: float = 1e-6) -> Array:

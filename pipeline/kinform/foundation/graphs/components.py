@@ -18,13 +18,13 @@ def components(a: Ints, b: Ints, count: int) -> Ints:
     every = np.arange(count)
     root = every.copy()
     while True:
-        a, b = root[a], root[b]
-        apart = a != b
-        if not apart.any():
+        a, b = root.take(a), root.take(b)
+        apart = np.flatnonzero(a != b)
+        if not len(apart):
             break
-        a, b = a[apart], b[apart]
+        a, b = a.take(apart), b.take(apart)
         np.minimum.at(root, np.maximum(a, b), np.minimum(a, b))
-        higher = root[root]
-        while not (higher == root).all():
-            root, higher = higher, higher[higher]
-    return np.asarray((np.cumsum(root == every) - 1)[root])
+        higher = root.take(root)
+        while not np.array_equal(higher, root):
+            root, higher = higher, higher.take(higher)
+    return np.asarray((np.cumsum(root == every) - 1).take(root))

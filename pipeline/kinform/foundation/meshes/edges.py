@@ -14,7 +14,8 @@ from functools import cached_property
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
-from kinform.foundation.sorting import ascending
+from kinform.foundation.alike import numbered_alike
+from kinform.foundation.sorting import ascending, heads
 from kinform.model.arrays import Array, Flags, Ints
 
 _FOLLOWING = np.array([1, 2, 0])
@@ -58,16 +59,25 @@ class SharedEdges:
 class EdgeTable:
     """Half-edges by undirected edge."""
 
+    faces: Ints
+    """(F, 3) vertices."""
     half_edges: Ints
     """(3F,) half-edge numbers, grouped by edge."""
     starts: Ints
     """(E,) where each edge begins in `half_edges`."""
     counts: Ints
     """(E,) facets at each edge."""
-    ends: Ints
-    """(3F, 2) vertices of each half-edge, the lower first, by half-edge number."""
-    forward: Flags
-    """(3F,) by half-edge number: runs from the lower to the higher vertex."""
+
+    @cached_property
+    def ends(self) -> Ints:
+        """(3F, 2) vertices of each half-edge, the lower first, by half-edge number."""
+        return edge_ends(self.faces)
+
+    @cached_property
+    def forward(self) -> Flags:
+        """(3F,) by half-edge number: runs from the lower to the higher vertex."""
+        start, end = _starts_and_ends(self.faces)
+        return start < end
 
     @property
     def open(self) -> int:
@@ -82,8 +92,16 @@ class EdgeTable:
     @cached_property
     def balance(self) -> Ints:
         """(E,) runs forward less runs backward; 0 on a shared edge whose facets agree."""
-        direction = np.where(self.forward[self.half_edges], 1, -1)
-        return np.add.reduceat(direction, self.starts) if len(self.starts) else np.zeros(0, dtype=np.int64)
+        before = np.zeros(len(self.half_edges) + 1, np.int64)
+        np.cumsum(self.forward.take(self.half_edges), out=before[1:])
+        forward = before.take(self.starts + self.counts) - before.take(self.starts)
+        return np.asarray(2 * forward - self.counts)
+
+    @cached_property
+    def pairs(self) -> Ints:
+        """(2, k) the two half-edges of each edge that has two."""
+        first = self.starts[self.counts == 2]
+        return np.stack([self.half_edges.take(first), self.half_edges.take(first + 1)])
 
     @property
     def shared(self) -> SharedEdges:
@@ -98,22 +116,48 @@ class EdgeTable:
 
 def edge_ends(faces: Ints) -> Ints:
     """(3F, 2) vertices of the half-edges of faces (F, 3), the lower first."""
-    start, end = faces.ravel(), faces.take(_FOLLOWING, axis=1).ravel()
+    start, end = _starts_and_ends(faces)
     return np.stack([np.minimum(start, end), np.maximum(start, end)], axis=1)
 
 
 def edge_table(faces: Ints, vertices: int, by_corner: bool = False) -> EdgeTable:
     """Edges of faces (F, 3), none of which uses a vertex twice, over that many vertices."""
-    ends = edge_ends(faces)
-    key = ends[:, 0] * np.int64(vertices) + ends[:, 1]
+    key = _keys(faces, vertices)
     if by_corner:
         corners = np.arange(len(key)).reshape(-1, 3).T.ravel()
         order = corners.take(ascending(key.take(corners), vertices * vertices))
     else:
         order = ascending(key, vertices * vertices)
-    ordered = key.take(order)
-    starts = np.flatnonzero(np.concatenate([[True], ordered[1:] != ordered[:-1]])) if len(key) else key
-    return EdgeTable(order, starts, np.diff(np.append(starts, len(key))), ends, ends[:, 0] == faces.ravel())
+    starts = np.flatnonzero(heads(key.take(order)))
+    return EdgeTable(faces, order, starts, np.diff(starts, append=len(key)))
+
+
+def unsorted_edge_table(faces: Ints, vertices: int) -> EdgeTable:
+    """As `edge_table`, but edges as they first occur, which takes no sort where none has more than two facets."""
+    first, edge = numbered_alike([_keys(faces, vertices).view(np.uint64)])
+    counts = np.bincount(edge, minlength=len(first))
+    starts = np.cumsum(counts) - counts
+    if counts.max(initial=0) > 2:
+        return EdgeTable(faces, ascending(edge, len(first)), starts, counts)
+    place = starts.take(edge) + 1
+    place[first] -= 1
+    half_edges = np.empty(len(edge), np.int64)
+    half_edges[place] = np.arange(len(edge))
+    return EdgeTable(faces, half_edges, starts, counts)
+
+
+def _keys(faces: Ints, vertices: int) -> Ints:
+    """(3F,) number of the edge of each half-edge: that of its lower vertex, then that of its higher one."""
+    start, end = _starts_and_ends(faces)
+    key = np.minimum(start, end).astype(np.int64, copy=False)
+    key *= vertices
+    key += np.maximum(start, end)
+    return key
+
+
+def _starts_and_ends(faces: Ints) -> tuple[Ints, Ints]:
+    """(3F,) vertices that the half-edges run from and to."""
+    return faces.ravel(), faces.take(_FOLLOWING, axis=1).ravel()
 
 
 def shared_edges(faces: Ints, vertices: int, by_corner: bool = False) -> SharedEdges:

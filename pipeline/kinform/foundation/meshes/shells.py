@@ -12,7 +12,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.constants import SAME_ANGLE
 from kinform.foundation.graphs.components import components
-from kinform.foundation.meshes.edges import EdgeTable, edge_table
+from kinform.foundation.meshes.edges import EdgeTable, unsorted_edge_table
 from kinform.model.arrays import Array, Flags, Ints
 
 
@@ -20,13 +20,12 @@ def shells_of(vertices: Array, faces: Ints, edges: EdgeTable | None = None) -> I
     """(F,) number of the shell of each facet; shells are numbered by their first facet."""
     if not len(faces):
         return np.zeros(0, dtype=np.int64)
-    edges = edges or edge_table(faces, len(vertices))
-    two = edges.starts[edges.counts == 2]
-    links = [np.stack([edges.half_edges[two], edges.half_edges[two + 1]], axis=1) // 3]
+    edges = edges or unsorted_edge_table(faces, len(vertices))
+    links = edges.pairs
     if edges.overused:
-        links.append(_radial_links(vertices, faces, edges) // 3)
-    link = np.concatenate(links)
-    return components(link[:, 0], link[:, 1], len(faces))
+        links = np.concatenate([links, _radial_links(vertices, faces, edges).T], axis=1)
+    first, second = links // 3
+    return components(first, second, len(faces))
 
 
 def _radial_links(vertices: Array, faces: Ints, edges: EdgeTable) -> Ints:

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical, cross, norm, perpendicular, sine
+from kinform.foundation.records import altered
 from kinform.kinematics.axes.bounds import MoveBounds
 from kinform.kinematics.axes.concurrence import Locus, meeting_shifts
 from kinform.kinematics.constants import DIRECTION_DECIMALS, MET, RCOND, SIGMAS
@@ -307,4 +308,4 @@ def _on_line(joint: Joint, member: _Axis, line: _Line) -> Joint:
     """The joint on its snapped line."""
     point = joint.point if line.foot is None else line.at(member)
     twists = twists_of(joint.type, line.direction, point, joint.pitch, joint.axis2)
-    return replace(joint, axis=line.direction, point=point, twists=twists)
+    return altered(joint, axis=line.direction, point=point, twists=twists)

@@ -58,6 +58,16 @@ class Item:
 
 
 @dataclass(frozen=True, eq=False)
+class Line:
+    """An axis with the items that support it."""
+
+    axis: Array
+    point: Array
+    weight: float
+    items: tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False)
 class Evidence:
     """All patches between two bodies. Rows: relative twist of the second body, scaled in `frame`."""
 
@@ -80,17 +90,19 @@ class Evidence:
     size: float = 0.0
     """m: diagonal of the smaller body; 0: not known."""
     _forms: dict[int, tuple[Array, JointForm]] = field(default_factory=dict, repr=False)
+    lines: dict[float, list[Line]] = field(default_factory=dict, init=False, repr=False)
+    """The lines that were asked for (`hypotheses.coaxial_lines`), by the alignment (rad) within which axes are one."""
 
     @cached_property
     def areas(self) -> Array:
         """(items,) m²."""
         return np.array([item.area for item in self.items])
 
-    def form(self, basis: Array) -> JointForm:
-        """The joint whose freedoms are the columns of `basis` (6, k); of an array that was asked about before it is
-        known."""
+    def form(self, basis: Array, turns: tuple[Array, Array] | None = None) -> JointForm:
+        """The joint whose freedoms are the columns of `basis` (6, k), whose turns may be known (`name_space`); of an
+        array that was asked about before it is known."""
         if id(basis) not in self._forms:
-            self._forms[id(basis)] = basis, name_space(basis, self.frame)
+            self._forms[id(basis)] = basis, name_space(basis, self.frame, turns)
         return self._forms[id(basis)][1]
 
     def rows_of(self, chosen: Flags) -> tuple[Array, Array]:
@@ -150,9 +162,10 @@ def _stray(item: Item, total: float, contact: float) -> bool:
 
 def _item(index: int, patch: Patch, turned: bool, tolerances: Tolerances, contact: float) -> Item:
     """A patch with its weights, and with how far off it may be: by its fit, and by the clearance of what runs in it."""
-    relative = np.abs(patch.gaps) / max(patch.tolerance, contact)
+    apart, touching = np.abs(patch.gaps), max(patch.tolerance, contact)
     weights = np.maximum(patch.weights, 1e-30)
-    if relative.max() > TOUCHING_GAP:
+    if apart.max() / touching > TOUCHING_GAP:
+        relative = apart / touching
         band = np.empty(len(patch.points))
         for limit, weight in reversed(GAP_BANDS):
             band[relative <= limit] = weight

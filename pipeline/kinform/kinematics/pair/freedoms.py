@@ -12,7 +12,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import norm
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import Evidence
-from kinform.kinematics.pair.in_step import Remainder, Remains, Steps
+from kinform.kinematics.pair.in_step import Remainder, Steps
 from kinform.kinematics.pair.lower_pairs import nearest_pair
 from kinform.kinematics.pair.preserved import preserved_motions
 from kinform.model.arrays import Array, Flags
@@ -21,7 +21,7 @@ from kinform.model.tolerances import Tolerances
 
 def freedoms(
     evidence: Evidence, twists: Array, preserved: Flags, keep: Flags, tolerances: Tolerances
-) -> Steps[Remains]:
+) -> Steps[tuple[Array, Array]]:
     """Basis (6, k) of what the kept patches leave free, and the singular values (6,) that say so.
 
     `preserved` (items, motions) is what `preserved_motions` says of the candidate `twists` (6, motions); `keep`
@@ -29,11 +29,11 @@ def freedoms(
     """
     rows, share = evidence.rows_of(keep)
     known = _independent(evidence, twists[:, preserved[keep].all(axis=0)], keep)
-    basis, values = yield Remainder(rows, share, known, tolerances.free)
-    if evidence.form(basis).type == "general":
+    basis, values, turns = yield Remainder(rows, share, known, tolerances.free)
+    if evidence.form(basis, turns).type == "general":
         rounded = nearest_pair(basis, evidence.frame)
         if rounded is not None and _all_preserve(evidence, rounded, keep):
-            return (yield Remainder(rows, share, rounded, tolerances.free))
+            basis, values, _ = yield Remainder(rows, share, rounded, tolerances.free)
     return basis, values
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import rotation, translation
 from kinform.foundation.algebra.vectors import canonical, cross, foot, norm, perpendicular, sine, weighted_mean
 from kinform.kinematics import constants
-from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
+from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item, Line
 from kinform.kinematics.wording import components
 from kinform.model.arrays import Array
 
@@ -24,16 +24,6 @@ Value = TypeVar("Value")
 Merge = Callable[[Value, Value], Value]
 Direction = tuple[Array, float]
 """A unit direction and its weight (m²)."""
-
-
-@dataclass(frozen=True, eq=False)
-class Line:
-    """An axis with the items that support it."""
-
-    axis: Array
-    point: Array
-    weight: float
-    items: tuple[int, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +92,14 @@ def _pitches(evidence: Evidence, line: Line) -> list[float]:
 
 
 def coaxial_lines(evidence: Evidence, alignment: float) -> list[Line]:
-    """Clusters of coaxial patches, each with the line fitted to its members, the best supported first."""
+    """Clusters of coaxial patches, each with the line fitted to its members, the best supported first; of evidence that
+    was asked for them before they are known."""
+    if alignment not in evidence.lines:
+        evidence.lines[alignment] = _coaxial_lines(evidence, alignment)
+    return evidence.lines[alignment]
+
+
+def _coaxial_lines(evidence: Evidence, alignment: float) -> list[Line]:
     items = evidence.items
     coaxial = sorted((k for k, i in enumerate(items) if i.patch.kind in COAXIAL), key=lambda k: (-items[k].area, k))
     clusters = _merge(

@@ -19,8 +19,11 @@ from kinform.model.arrays import Array
 
 Result = TypeVar("Result")
 
-Remains = tuple[Array, Array]
-"""Orthonormal basis (6, k) of what rows leave free, and their singular values (6,) ascending."""
+Turns = tuple[Array, Array]
+"""Singular values and right singular vectors (k, k) of the turns of a basis (6, k), which are its first three rows."""
+
+Remains = tuple[Array, Array, Turns]
+"""Orthonormal basis (6, k) of what rows leave free, their singular values (6,) ascending, the turns of the basis."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,4 +88,15 @@ def _remains(questions: Sequence[Remainder]) -> list[Remains]:
     values, right = values[:, 5::-1], right[:, 5::-1]
     free = np.array([question.free for question in questions])
     null = [vectors[of] for vectors, of in zip(right, values < free[:, None], strict=True)]
-    return list(zip(spans([vectors.T for vectors in null]), values, strict=True))
+    bases = spans([vectors.T for vectors in null])
+    return list(zip(bases, values, _turns(bases), strict=True))
+
+
+def _turns(bases: Sequence[Array]) -> list[Turns]:
+    """Of each basis (6, k)."""
+    out: dict[int, Turns] = {}
+    for count in {basis.shape[1] for basis in bases}:
+        members = [k for k, basis in enumerate(bases) if basis.shape[1] == count]
+        _, values, right = np.linalg.svd(np.array([bases[k][:3] for k in members]), full_matrices=True)
+        out |= zip(members, zip(values, right, strict=True), strict=True)
+    return [out[k] for k in range(len(bases))]

@@ -30,14 +30,15 @@ class JointForm:
     """Of a universal joint: its axis in the second body."""
 
 
-def name_space(basis: Array, frame: Frame) -> JointForm:
-    """The joint whose freedoms are the columns of `basis` (6, k), scaled twists in `frame`."""
+def name_space(basis: Array, frame: Frame, turns_of_basis: tuple[Array, Array] | None = None) -> JointForm:
+    """The joint whose freedoms are the columns of `basis` (6, k), scaled twists in `frame`; with singular values and
+    right singular vectors of its turns (3, k), where these are known."""
     freedoms = basis.shape[1]
     if freedoms == 0:
         return JointForm("fixed")
     if freedoms == 1:
         return _one_freedom(basis[:, 0], frame)
-    _, values, right = np.linalg.svd(basis[:3], full_matrices=True)
+    values, right = turns_of_basis or np.linalg.svd(basis[:3], full_matrices=True)[1:]
     turns = int(np.count_nonzero(values > EXACT_PAIR))
     mixed = basis @ right.T
     if turns == 1:

@@ -7,10 +7,11 @@ A `Question` does not hold which surfaces of a mesh touch, nor the names of the 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import islice
 
 from kinform.foundation.algebra.screws import twist_at_origin
+from kinform.foundation.records import altered
 from kinform.kinematics.constants import MOST_IN_STEP
 from kinform.kinematics.pair.decision import Decision, decide_each
 from kinform.kinematics.pair.evidence import Evidence, gather
@@ -56,7 +57,7 @@ class Answer:
 
 def bare_patches(patches: Sequence[Patch]) -> tuple[Patch, ...]:
     """The patches without the numbers of their surfaces, which stand for nothing but themselves."""
-    return tuple(replace(patch, surfaces=(-1, -1)) for patch in patches)
+    return tuple(altered(patch, surfaces=(-1, -1)) for patch in patches)
 
 
 def answer_each(questions: Sequence[Question]) -> list[Answer]:
@@ -93,10 +94,10 @@ def _answer(extremes: tuple[Ints, ...], evidence: Evidence, decision: Decision) 
 
 def joint_between(joint: Joint, pair: tuple[BodyName, BodyName], indices: Sequence[int]) -> Joint:
     """The joint of an answer as that of these two bodies, whose patches have these indices into Contacts.patches."""
-    return replace(
+    return altered(
         joint,
         name=JointName(f"{pair[0]}~{pair[1]}"),
         bodies=pair,
         patches=tuple(indices[k] for k in joint.patches),
-        blockers=tuple(replace(blocker, patch=indices[blocker.patch]) for blocker in joint.blockers),
+        blockers=tuple(altered(blocker, patch=indices[blocker.patch]) for blocker in joint.blockers),
     )

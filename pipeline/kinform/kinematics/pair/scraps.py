@@ -14,8 +14,8 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import widest_gap
 from kinform.kinematics import constants
-from kinform.kinematics.pair.evidence import Evidence, Item
-from kinform.kinematics.pair.hypotheses import Line, coaxial_lines
+from kinform.kinematics.pair.evidence import Evidence, Item, Line
+from kinform.kinematics.pair.hypotheses import coaxial_lines
 from kinform.model.arrays import Flags
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, twist_at_origin
 from kinform.foundation.algebra.vectors import cross, norm
+from kinform.foundation.records import altered
 from kinform.kinematics import constants
 from kinform.kinematics.separation.cone import extreme_rays, held_for_certain, opening, unit_rows
 from kinform.kinematics.separation.contact_rows import Cone
@@ -33,11 +34,11 @@ def with_releases(joints: Sequence[Joint], cones: Sequence[Cone | None]) -> tupl
     out = []
     for joint, cone in zip(joints, cones, strict=True):
         if cone is None:
-            out.append(replace(joint, held_reason="contact does not decide this joint"))
+            out.append(altered(joint, held_reason="contact does not decide this joint"))
         elif next(certain):
-            out.append(replace(joint, held=True))
+            out.append(altered(joint, held=True))
         else:
-            out.append(replace(joint, **vars(leaving_of(cone))))
+            out.append(altered(joint, **vars(leaving_of(cone))))
     return tuple(out)
 
 

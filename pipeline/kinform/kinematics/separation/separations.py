@@ -2,7 +2,8 @@
 
 In a block each pair that contact holds is bilateral; each other pair j may open, by JV ≥ 0, and opens by s_j.
 Maximising Σ s_j with s_j ≤ 1 over a cone opens every pair that can open at once: what opens is known from a
-single solution, for a sum of motions in the cone is in the cone. Bodies that stay together after all that
+single solution, for a sum of motions in the cone is in the cone. Where all open along one direction (`lifting`), or
+none does for certain (`nothing_opens`), no program is needed. Bodies that stay together after all that
 opens are gone make a set; it leaves alone where its own contacts with the rest have a cone, else together with
 its neighbours. Blocks know nothing of each other, as in the closure of loops.
 
@@ -12,7 +13,7 @@ Contact that fuses bodies is looked at too: a block in a corner has no freedom, 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
@@ -33,6 +34,7 @@ from kinform.kinematics.constants import (
 )
 from kinform.kinematics.separation.cone import nothing_opens, rows_beside, split_directions, unit_rows
 from kinform.kinematics.separation.contact_rows import Cone, ContactRows, is_stated
+from kinform.kinematics.separation.lifting import lifts_apart
 from kinform.kinematics.separation.releases import certainly_held, leaving_of, release_of
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
@@ -132,10 +134,12 @@ def _links_that_open(links: Sequence[Link]) -> tuple[int, ...] | None:
     nodes = {n: k for k, n in enumerate(sorted({n for link in links for n in link.ends}))}
     loose = [k for k, link in enumerate(links) if link.cone is not None]
     frame = _common([link.cone.frame for link in links if link.cone is not None])
-    turned = [_in_frame(link, frame) for link in links]
-    if sum(map(len, turned)) > MOST_OPENING_ROWS:
+    if sum(6 - len(link.twists) if link.cone is None else len(link.cone.rows) for link in links) > MOST_OPENING_ROWS:
         return None
     width = 6 * (len(nodes) - 1)
+    if width > MOST_CERTIFIED and _lift_apart(links, nodes):
+        return tuple(loose)
+    turned = [_in_frame(link, frame) for link in links]
     less: list[tuple[Array, int, int, int]] = []
     equal: list[tuple[Array, int, int, int]] = []
     for k, link in enumerate(links):
@@ -150,6 +154,8 @@ def _links_that_open(links: Sequence[Link]) -> tuple[int, ...] | None:
         -_dense([item for item in less if item[3] < 0], width), _dense(equal, width)
     ):
         return ()
+    if width <= MOST_CERTIFIED and _lift_apart(links, nodes):
+        return tuple(loose)
     from scipy.optimize import linprog
 
     columns = width + len(loose)
@@ -165,6 +171,15 @@ def _links_that_open(links: Sequence[Link]) -> tuple[int, ...] | None:
     if solved.status != 0:
         return None
     return tuple(loose[k] for k in np.flatnonzero(solved.x[width:] > 0.5))
+
+
+def _lift_apart(links: Sequence[Link], nodes: Mapping[int, int]) -> bool:
+    """Whether all links open along a direction in which the one with the fewest directions opens."""
+    ends = [(nodes[a], nodes[b]) for a, b in (link.ends for link in links)]
+    held = [of for of, link in zip(ends, links, strict=True) if link.cone is None]
+    loose = [(of, link.cone) for of, link in zip(ends, links, strict=True) if link.cone is not None]
+    ways = [link.slides or () for link in links if link.cone is not None]
+    return lifts_apart(len(nodes), held, loose, [way.direction for way in min(ways, key=len)])
 
 
 def _dense(items: list[tuple[Array, int, int, int]], columns: int) -> Array:
@@ -226,7 +241,7 @@ def rows_in_frame(rows: Array, source: Frame, frame: Frame) -> Array:
     """Rows (n, 6) against twists scaled in `source` as rows against twists scaled in `frame`."""
     normals = rows[:, 3:]
     moments = rows[:, :3] * source.length + cross(source.centre - frame.centre, normals)
-    return np.hstack([moments / frame.length, normals])
+    return np.concatenate([moments / frame.length, normals], axis=1)
 
 
 def _sets(
