@@ -69,11 +69,17 @@ class FacetBoxes:
 
 
 class FlatBoxes:
-    """Boxes (F, 2) of facets in a plane, listed by the cells of a grid: which of many points are in which of them."""
+    """Boxes (F, 2) of facets in a plane, listed by the cells of a grid once many points are asked: which points are in
+    which of them."""
 
     def __init__(self, low: Array, high: Array):
         self.low, self.high = low, high
         self._sides = [np.ascontiguousarray(side) for side in (*low.T, *high.T)]
+        self._left = constants.UNLISTED * len(low)
+        """Comparisons that cost less than the list does."""
+
+    def _list(self) -> None:
+        low, high = self.low, self.high
         self._origin = low.min(axis=0, initial=np.inf)
         whole = np.maximum(high.max(axis=0, initial=-np.inf) - self._origin, 1e-300)
         side = int(np.clip(2.0 * np.sqrt(len(low)), 1, constants.GRID_FINEST))
@@ -93,7 +99,12 @@ class FlatBoxes:
         self._starts = np.concatenate([[0], np.cumsum(np.bincount(key, minlength=side * side))])
 
     def around(self, points: Array) -> tuple[Ints, Ints]:
-        """Indices of points (n, 2), ascending, and of facets whose box they are in."""
+        """Indices of points (n, 2), ascending, and of facets whose box they are in, ascending for each."""
+        if self._left > 0:
+            few = self._among(points)
+            if few is not None:
+                return few
+            self._list()
         key = self._cells(points[:, 0], 0) * self._side + self._cells(points[:, 1], 1)
         start = self._starts[key]
         count = self._starts[key + 1] - start
@@ -103,6 +114,19 @@ class FlatBoxes:
         left, lower, right, upper = (side[facets] for side in self._sides)
         held = np.flatnonzero((left <= x) & (right >= x) & (lower <= y) & (upper >= y))
         return which[held], facets[held]
+
+    def _among(self, points: Array) -> tuple[Ints, Ints] | None:
+        """As above by comparison with all boxes about the points; None where that has come to cost more than a list."""
+        left, lower, right, upper = self._sides
+        (least_x, least_y), (most_x, most_y) = points.min(axis=0, initial=np.inf), points.max(axis=0, initial=-np.inf)
+        near = np.flatnonzero((left <= most_x) & (right >= least_x) & (lower <= most_y) & (upper >= least_y))
+        self._left -= len(left) + len(points) * len(near)
+        if self._left <= 0:
+            return None
+        x, y = points[:, :1], points[:, 1:]
+        held = (left[near] <= x) & (right[near] >= x) & (lower[near] <= y) & (upper[near] >= y)
+        which, facets = np.nonzero(held)
+        return which, near[facets]
 
     def _cells(self, places: Array, axis: int) -> Ints:
         """(n,) the column or row of cells that places along an axis are in, or nearest to."""
