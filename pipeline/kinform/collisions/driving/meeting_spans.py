@@ -28,7 +28,7 @@ from kinform.collisions.constants import (
     TESTED_TOGETHER,
 )
 from kinform.collisions.driving.swept_profiles import TURN, nearest, spanned
-from kinform.foundation.meshes.boxes import along_curve
+from kinform.foundation.meshes.boxes import along_curve, least_and_most
 from kinform.model.arrays import Array, Flags, Ints
 
 Along = Callable[[Ints, Ints, Array, Array], Flags]
@@ -90,13 +90,13 @@ class Pieces:
     def of(cls, corners: Array, surface: Ints, turning: bool, margin: float) -> Pieces:
         """Of corners (n, 3, 3)."""
         flat, height = corners[..., :2], corners[..., 2]
-        bottom, top = height.min(axis=1), height.max(axis=1)
+        bottom, top = least_and_most(height)
         if not turning:
-            low, high = flat.min(axis=1), flat.max(axis=1)
+            low, high = least_and_most(flat)
             return cls(corners, surface, low - margin, high + margin, bottom - margin, top + margin)
         radius = nearest(flat)
         low = np.stack([radius, bottom], axis=1)
-        high = np.stack([np.hypot(flat[..., 0], flat[..., 1]).max(axis=1), top], axis=1)
+        high = np.stack([least_and_most(np.hypot(flat[..., 0], flat[..., 1]))[1], top], axis=1)
         start, stop = spanned(flat, radius, margin)
         return cls(corners, surface, low - margin, high + margin, start, stop)
 

@@ -40,6 +40,12 @@ def facet_boxes(points: Array, faces: Ints) -> tuple[Array, Array]:
     return np.minimum(np.minimum(first, second), third), np.maximum(np.maximum(first, second), third)
 
 
+def least_and_most(corners: Array) -> tuple[Array, Array]:
+    """(n, …) least and greatest of three values (n, 3, …)."""
+    first, second, third = (corners[:, k] for k in range(3))
+    return np.minimum(np.minimum(first, second), third), np.maximum(np.maximum(first, second), third)
+
+
 class FacetBoxes:
     """Boxes (F, d) of facets, d 2 or 3, in an order of chunks by size and place once they are asked for often."""
 
@@ -153,7 +159,7 @@ def together(low: Array, high: Array) -> Ints:
     if not len(low):
         return np.zeros(0, np.int64)
     size = (high - low).max(axis=1)
-    whole = max(float((high.max(axis=0) - low.min(axis=0)).max()), 1e-300)
+    whole = max(float((bounds(high)[1] - bounds(low)[0]).max()), 1e-300)
     octave = np.clip(np.floor(np.log2(np.maximum(size, 1e-12 * whole) / whole)), -constants.SIZE_OCTAVES, 0).astype(
         np.int64
     )
@@ -169,16 +175,13 @@ def along_curve(low: Array, high: Array) -> Ints:
 
 def _places(low: Array, high: Array) -> Ints:
     """(n,) where the middles of boxes (n, d) are along a Z-curve."""
-    dimensions = low.shape[1]
-    whole = max(float((high.max(axis=0) - low.min(axis=0)).max()), 1e-300)
-    cell = np.clip(
-        (0.5 * (low + high) - low.min(axis=0)) / whole * 2.0**constants.PLACE_BITS, 0, 2**constants.PLACE_BITS - 1
-    ).astype(np.int64)
-    spread = _spread(dimensions)
-    code = spread[cell[:, 0]]
-    for axis in range(1, dimensions):
-        code |= spread[cell[:, axis]] << axis
-    return np.asarray(code)
+    dimensions, least = low.shape[1], bounds(low)[0]
+    whole = max(float((bounds(high)[1] - least).max()), 1e-300)
+    spread, code = _spread(dimensions), np.zeros(len(low), np.int64)
+    for axis in range(dimensions):
+        place = (0.5 * (low[:, axis] + high[:, axis]) - least[axis]) / whole * 2.0**constants.PLACE_BITS
+        code |= spread[np.clip(place, 0, 2**constants.PLACE_BITS - 1).astype(np.int64)] << axis
+    return code
 
 
 @cache

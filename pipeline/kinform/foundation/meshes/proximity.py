@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.constants import CELLS_LEAST, CELLS_MOST
+from kinform.foundation.meshes.boxes import bounds
 from kinform.model.arrays import Array, Flags, Ints
 
 
@@ -19,18 +20,26 @@ def near_boxes(low_a: Array, high_a: Array, low_b: Array, high_b: Array, margin:
     """
     if not len(low_a) or not len(low_b):
         return np.zeros(len(low_a), bool), np.zeros(len(low_b), bool)
-    low = np.maximum(low_a.min(axis=0), low_b.min(axis=0)) - margin
-    high = np.minimum(high_a.max(axis=0), high_b.max(axis=0)) + margin
+    low = np.maximum(bounds(low_a)[0], bounds(low_b)[0]) - margin
+    high = np.minimum(bounds(high_a)[1], bounds(high_b)[1]) + margin
     size = np.maximum(high - low, 1e-300)
     finest = min(CELLS_MOST, CELLS_LEAST + int(np.sqrt(len(low_a) + len(low_b)) / 4))
     counts = np.maximum(np.ceil(finest * size / size.max()), 1).astype(np.int64)
     first, last = _cells(low_b - margin, high_b + margin, low, size, counts)
     keep_a = _occupied(_grid(first, last, counts), *_cells(low_a, high_a, low, size, counts))
-    keep_a &= ((low_a <= high) & (high_a >= low)).all(axis=1)
+    keep_a &= _meeting(low_a, high_a, low, high)
     first, last = _cells(low_a[keep_a] - margin, high_a[keep_a] + margin, low, size, counts)
     keep_b = _occupied(_grid(first, last, counts), *_cells(low_b, high_b, low, size, counts))
-    keep_b &= ((low_b <= high) & (high_b >= low)).all(axis=1)
+    keep_b &= _meeting(low_b, high_b, low, high)
     return keep_a, keep_b
+
+
+def _meeting(low: Array, high: Array, from_: Array, to: Array) -> Flags:
+    """Which boxes (n, 3) meet the box from `from_` to `to` (3,)."""
+    meets = np.ones(len(low), dtype=bool)
+    for axis in range(low.shape[1]):
+        meets &= (low[:, axis] <= to[axis]) & (high[:, axis] >= from_[axis])
+    return meets
 
 
 def _cells(low: Array, high: Array, origin: Array, size: Array, counts: Ints) -> tuple[Ints, Ints]:
