@@ -232,14 +232,14 @@ class PairTest:
             return NONE
         first_labels, second_labels = self._surfaces[0].labels[f[cross]], self._surfaces[1].labels[g[cross]]
         segments = segments[cross]
+        if self.mates:
+            apart = ~self.mates.along((first_labels, second_labels), segments)
+            first_labels, second_labels, segments = first_labels[apart], second_labels[apart], segments[apart]
         out: dict[SurfacePair, Array] = {}
         slack = self.scrape
         for pair in sorted(set(zip(first_labels.tolist(), second_labels.tolist(), strict=True))):
-            shared = segments[(first_labels == pair[0]) & (second_labels == pair[1])]
-            shared = shared[~self.mates.along(pair, shared)]
-            if len(shared):
-                out[pair] = shared
-                slack = max(slack, sum(self._surfaces[k].surfaces[pair[k]].chord for k in (0, 1)))
+            out[pair] = segments[(first_labels == pair[0]) & (second_labels == pair[1])]
+            slack = max(slack, sum(self._surfaces[k].surfaces[pair[k]].chord for k in (0, 1)))
         return Crossing(out, slack) if out else NONE
 
     def counted(self, side: int) -> Ints:
