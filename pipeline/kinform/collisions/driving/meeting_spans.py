@@ -198,14 +198,15 @@ def _overlapping(first: _Groups, second: _Groups, margin: float, along: Along) -
     """(n, 2) groups of both whose boxes overlap, other than along mates, some at a time."""
     # those that lie together are asked together, of few of the others
     order = along_curve(first.low, first.high)
+    left, bottom, right, top = (np.ascontiguousarray(side) for side in (*second.low.T, *second.high.T))
     for begin in range(0, len(order), TESTED_TOGETHER):
         chosen = order[begin : begin + TESTED_TOGETHER]
         low, high = first.low[chosen], first.high[chosen]
-        about = (second.low <= high.max(axis=0)).all(axis=1) & (second.high >= low.min(axis=0)).all(axis=1)
-        near = np.flatnonzero(about)
-        meets = np.ones((len(low), len(near)), dtype=bool)
-        for k in range(2):
-            meets &= (second.low[near, k] <= high[:, k, None]) & (second.high[near, k] >= low[:, k, None])
+        least, most = low.min(axis=0), high.max(axis=0)
+        near = np.flatnonzero((left <= most[0]) & (right >= least[0]) & (bottom <= most[1]) & (top >= least[1]))
+        meets = (left[near] <= high[:, :1]) & (right[near] >= low[:, :1])
+        meets &= bottom[near] <= high[:, 1:]
+        meets &= top[near] >= low[:, 1:]
         i, j = np.nonzero(meets)
         i, j = chosen[i], near[j]
         box = np.maximum(first.low[i], second.low[j]) + margin, np.minimum(first.high[i], second.high[j]) - margin
