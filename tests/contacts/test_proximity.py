@@ -45,3 +45,18 @@ def test_boxes_on_grids_are_those_that_points_are_in():
         zip(*map(list, np.nonzero(inside)), strict=True)
     )
     assert (np.diff(which) >= 0).all()
+
+
+def test_few_points_are_in_the_same_boxes_as_among_many():
+    rng = np.random.default_rng(8)
+    low = rng.uniform(-1.0, 1.0, (500, 2))
+    boxes = FlatBoxes(low, low + 10.0 ** rng.uniform(-3, 0.0, (500, 2)))
+    points = np.concatenate([rng.uniform(-2.0, 3.0, (300, 2)), low[:40]])
+    few = [boxes.around(points[n : n + 1]) for n in range(0, len(points), 40)]
+    for count in (0, 3, len(points), 3, 0):
+        which, found = boxes.around(points[:count])
+        assert len(which) == len(found)
+        assert (which < count).all()
+    which, found = boxes.around(points)
+    for n, (_, those) in zip(range(0, len(points), 40), few, strict=True):
+        assert those.tolist() == found[which == n].tolist()

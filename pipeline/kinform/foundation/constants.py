@@ -29,6 +29,8 @@ GRID_LISTED = 12
 """Cells of a grid that a facet is listed in on average, at most, ..."""
 GRID_LISTED_LEAST = 4096
 """... and these in all, which cost nothing."""
+UNLISTED = 32
+"""Comparisons of points with boxes, a facet, that cost less than a grid."""
 SIZE_OCTAVES = 20
 """Octaves of size that facets are sorted by."""
 PLACE_BITS = 10

@@ -28,7 +28,7 @@ from kinform.collisions.constants import (
     TESTED_TOGETHER,
 )
 from kinform.collisions.driving.swept_profiles import TURN, nearest, spanned
-from kinform.foundation.meshes.boxes import along_curve
+from kinform.foundation.meshes.boxes import along_curve, triangle_boxes
 from kinform.model.arrays import Array, Flags, Ints
 
 Along = Callable[[Ints, Ints, Array, Array], Flags]
@@ -90,13 +90,13 @@ class Pieces:
     def of(cls, corners: Array, surface: Ints, turning: bool, margin: float) -> Pieces:
         """Of corners (n, 3, 3)."""
         flat, height = corners[..., :2], corners[..., 2]
-        bottom, top = height.min(axis=1), height.max(axis=1)
+        bottom, top = triangle_boxes(height)
         if not turning:
-            low, high = flat.min(axis=1), flat.max(axis=1)
+            low, high = triangle_boxes(flat)
             return cls(corners, surface, low - margin, high + margin, bottom - margin, top + margin)
         radius = nearest(flat)
         low = np.stack([radius, bottom], axis=1)
-        high = np.stack([np.hypot(flat[..., 0], flat[..., 1]).max(axis=1), top], axis=1)
+        high = np.stack([triangle_boxes(np.hypot(flat[..., 0], flat[..., 1]))[1], top], axis=1)
         start, stop = spanned(flat, radius, margin)
         return cls(corners, surface, low - margin, high + margin, start, stop)
 
@@ -198,14 +198,15 @@ def _overlapping(first: _Groups, second: _Groups, margin: float, along: Along) -
     """(n, 2) groups of both whose boxes overlap, other than along mates, some at a time."""
     # those that lie together are asked together, of few of the others
     order = along_curve(first.low, first.high)
+    left, bottom, right, top = (np.ascontiguousarray(side) for side in (*second.low.T, *second.high.T))
     for begin in range(0, len(order), TESTED_TOGETHER):
         chosen = order[begin : begin + TESTED_TOGETHER]
         low, high = first.low[chosen], first.high[chosen]
-        about = (second.low <= high.max(axis=0)).all(axis=1) & (second.high >= low.min(axis=0)).all(axis=1)
-        near = np.flatnonzero(about)
-        meets = np.ones((len(low), len(near)), dtype=bool)
-        for k in range(2):
-            meets &= (second.low[near, k] <= high[:, k, None]) & (second.high[near, k] >= low[:, k, None])
+        least, most = low.min(axis=0), high.max(axis=0)
+        near = np.flatnonzero((left <= most[0]) & (right >= least[0]) & (bottom <= most[1]) & (top >= least[1]))
+        meets = (left[near] <= high[:, :1]) & (right[near] >= low[:, :1])
+        meets &= bottom[near] <= high[:, 1:]
+        meets &= top[near] >= low[:, 1:]
         i, j = np.nonzero(meets)
         i, j = chosen[i], near[j]
         box = np.maximum(first.low[i], second.low[j]) + margin, np.minimum(first.high[i], second.high[j]) - margin

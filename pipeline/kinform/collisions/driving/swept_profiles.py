@@ -14,7 +14,7 @@ import numpy as np
 
 from kinform.collisions.constants import LEVEL
 from kinform.foundation.algebra.vectors import cross, perpendicular
-from kinform.foundation.meshes.boxes import facet_boxes
+from kinform.foundation.meshes.boxes import bounds, facet_boxes
 from kinform.foundation.meshes.proximity import near_boxes
 from kinform.model.arrays import Array, Ints
 
@@ -50,13 +50,14 @@ class Profile:
     @cached_property
     def sphere(self) -> Array:
         """(4,) a sphere about it: where its middle is, across the axis and along it, and its radius (m)."""
-        low, high = self._flat.min(axis=0), self._flat.max(axis=0)
+        (x, y), height = self._flat.T, self._heights
+        low, high = bounds(self._flat)
         bottom, top = self.span
         middle = 0.5 * (low + high), 0.5 * (bottom + top)
-        away = ((self._flat - middle[0]) ** 2).sum(axis=1) + (self._heights - middle[1]) ** 2
+        away = (x - middle[0][0]) ** 2 + (y - middle[0][1]) ** 2 + (height - middle[1]) ** 2
         return np.array([*middle[0], middle[1], (1.0 + LEVEL) * math.sqrt(float(away.max()))])
 
-    @property
+    @cached_property
     def span(self) -> tuple[float, float]:
         """Lowest and highest place (m) along the axis."""
         return float(self._heights.min()), float(self._heights.max())
@@ -66,7 +67,7 @@ class Profile:
         """(3,) box of all `boxes`; some larger."""
         low, high = np.zeros(3), np.zeros(3)
         if not self._turning:
-            low[:2], high[:2] = self._flat.min(axis=0), self._flat.max(axis=0)
+            low[:2], high[:2] = bounds(self._flat)
         else:
             high[0] = self.largest
         if self._level:
@@ -208,20 +209,29 @@ def meeting(first: Profile, second: Profile, facets_first: Ints, facets_second: 
 def spanned(flat: Array, radius: Array, margin: float) -> Sides:
     """(n,) rad from where to where flat triangles (n, 3, 2), no nearer to the origin than `radius` (n,), are about it,
     `margin` (m) more; a whole turn where they may go round it."""
-    angle = np.arctan2(flat[..., 1], flat[..., 0])
-    apart = (angle - angle[:, :1] + math.pi) % TURN - math.pi
+    first, *others = (np.arctan2(flat[:, corner, 1], flat[:, corner, 0]) for corner in range(3))
+    low, high = np.zeros(len(flat)), np.zeros(len(flat))
+    for angle in others:
+        apart = (angle - first + math.pi) % TURN - math.pi
+        low, high = np.minimum(low, apart), np.maximum(high, apart)
     wide = margin / np.maximum(radius, 1e-300)
-    start, stop = angle[:, 0] + apart.min(axis=1) - wide, angle[:, 0] + apart.max(axis=1) + wide
+    start, stop = first + low - wide, first + high + wide
     whole = (stop - start >= math.pi) | (wide > 1.0)
     return np.where(whole, 0.0, start % TURN), np.where(whole, TURN, start % TURN + stop - start)
 
 
 def nearest(flat: Array) -> Array:
     """(n,) distance of flat triangles (n, 3, 2) from the origin; 0 where it is inside."""
-    x, y = flat[..., 0], flat[..., 1]
-    u, v = np.roll(x, -1, axis=1) - x, np.roll(y, -1, axis=1) - y
-    share = np.clip(-(u * x + v * y) / np.maximum(u * u + v * v, 1e-300), 0.0, 1.0)
-    away = np.sqrt(((x + share * u) ** 2 + (y + share * v) ** 2).min(axis=1))
-    turn = x * v - y * u
-    inside = (turn > 0.0).all(axis=1) | (turn < 0.0).all(axis=1)
-    return np.where(inside, 0.0, away)
+    corners = [
+        (np.ascontiguousarray(flat[:, corner, 0]), np.ascontiguousarray(flat[:, corner, 1])) for corner in range(3)
+    ]
+    square = np.full(len(flat), np.inf)
+    left, right = np.ones(len(flat), dtype=bool), np.ones(len(flat), dtype=bool)
+    for (x, y), (next_x, next_y) in zip(corners, corners[1:] + corners[:1], strict=True):
+        u, v = next_x - x, next_y - y
+        share = np.clip(-(u * x + v * y) / np.maximum(u * u + v * v, 1e-300), 0.0, 1.0)
+        square = np.minimum(square, (x + share * u) ** 2 + (y + share * v) ** 2)
+        turn = x * v - y * u
+        left &= turn > 0.0
+        right &= turn < 0.0
+    return np.where(left | right, 0.0, np.sqrt(square))

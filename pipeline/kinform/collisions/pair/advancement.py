@@ -259,8 +259,8 @@ class Search:
         return self.test.depth(self.course.displacement(s), segments, crossing.slack) > crossing.slack
 
     def located(self, left: float, right: float, fine: float, resolution: float) -> First:
-        """Where what is too deep at `right` began: with the surfaces that came to cross last, as far as these alone are
-        too deep. Facets of mates may have crossed by chord errors long before."""
+        """Where what all together is too deep at `right` began: with the surfaces that came to cross last, as far as
+        these alone are too deep. Facets of mates may have crossed by chord errors long before."""
         crossing = self.state(right).crossing
         for pair in crossing.shared:
             self.since.setdefault(pair, (left, right))
@@ -271,7 +271,7 @@ class Search:
             if before is not None and self.course.travel(earliest[0]) - self.course.travel(before[1]) <= near:
                 continue
             newest = frozenset(pair for pair, step in since.items() if step is not None and step >= earliest)
-            if self._deep(right, newest):
+            if newest == since.keys() or self._deep(right, newest):
                 return self._narrow(*earliest, fine, partial(self._crosses, newest))
         return self._rise(right, fine, resolution)
 

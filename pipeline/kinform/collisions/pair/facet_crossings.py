@@ -31,8 +31,8 @@ def crossings(first: Array, second: Array, normals: tuple[Array, Array], least: 
     along = cross(n1[keep], n2[keep])
     length = np.linalg.norm(along, axis=1)
     along /= np.where(length > 0.0, length, 1.0)[:, None]
-    low1, high1, p1, q1 = _span(first, d1, along)
-    low2, high2, p2, q2 = _span(second, d2, along)
+    spans = _span(np.concatenate([first, second]), np.concatenate([d1, d2]), np.concatenate([along, along]))
+    (low1, low2), (high1, high2), (p1, p2), (q1, q2) = ((side[: len(rows)], side[len(rows) :]) for side in spans)
     crossing[rows] = (length > 1e-9) & (np.minimum(high1, high2) - np.maximum(low1, low2) > least)
     segments[rows, 0] = np.where((low1 >= low2)[:, None], p1, p2)
     segments[rows, 1] = np.where((high1 <= high2)[:, None], q1, q2)

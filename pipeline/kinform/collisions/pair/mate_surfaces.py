@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence, Set
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -44,29 +45,37 @@ class Mates:
     def __bool__(self) -> bool:
         return bool(self._pairs)
 
-    def along(self, pair: SurfacePair, segments: Array) -> Flags:
-        """(n,) which segments (n, 2, 3) m lie on a mate that both surfaces belong to or border."""
+    def along(self, pairs: tuple[Ints, Ints], segments: Array) -> Flags:
+        """(n,) which segments (n, 2, 3) m, each of facets of surfaces `pairs` (n,) of either part, lie on a mate that
+        both surfaces belong to or border."""
         out = np.zeros(len(segments), dtype=bool)
-        for mate, slack in zip(self._pairs, self.slacks, strict=True):
-            if pair[0] not in self._near[0][mate[0]] or pair[1] not in self._near[1][mate[1]]:
-                continue
-            if mate in self._bare and pair == mate:
-                return np.ones(len(segments), dtype=bool)
-            away = _distance(self._surfaces.surfaces[mate[0]], segments.reshape(-1, 3))
-            if away is not None:
-                out |= (away.reshape(-1, 2) <= slack).all(axis=1)
+        for mate, slack, border in zip(self._pairs, self.slacks, self._borders, strict=True):
+            if mate in self._bare:
+                out |= (pairs[0] == mate[0]) & (pairs[1] == mate[1])
+            rows = np.flatnonzero(border[0][pairs[0]] & border[1][pairs[1]] & ~out)
+            if len(rows):
+                away = _distance(self._surfaces.surfaces[mate[0]], segments[rows].reshape(-1, 3))
+                out[rows] = (away.reshape(-1, 2) <= slack).all(axis=1) if away is not None else False
+        return out
+
+    @cached_property
+    def _borders(self) -> list[tuple[Flags, Flags]]:
+        """Of each mate, which surfaces of either part are its own or border it."""
+        out = []
+        for mate in self._pairs:
+            flags = [np.zeros(len(near), dtype=bool) for near in self._near]
+            for some, near, surface in zip(flags, self._near, mate, strict=True):
+                some[list(near[surface])] = True
+            out.append((flags[0], flags[1]))
         return out
 
     def surely_along(self, pairs: tuple[Ints, Ints], kept: Kept) -> Flags:
         """(n,) which facets of surfaces `pairs` (n,) each lie along a mate wherever they cross as they turn or slide
         by what their points keep."""
         out = np.zeros(len(pairs[0]), dtype=bool)
-        for mate, slack in zip(self._pairs, self.slacks, strict=True):
+        for mate, slack, border in zip(self._pairs, self.slacks, self._borders, strict=True):
             if mate in self._bare:
                 out |= (pairs[0] == mate[0]) & (pairs[1] == mate[1])
-            border = [np.zeros(len(near), dtype=bool) for near in self._near]
-            for flags, near, surface in zip(border, self._near, mate, strict=True):
-                flags[list(near[surface])] = True
             rows = np.flatnonzero(border[0][pairs[0]] & border[1][pairs[1]] & ~out)
             if len(rows):
                 away = kept.furthest(self._surfaces.surfaces[mate[0]], rows)

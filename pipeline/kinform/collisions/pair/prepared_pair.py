@@ -232,14 +232,14 @@ class PairTest:
             return NONE
         first_labels, second_labels = self._surfaces[0].labels[f[cross]], self._surfaces[1].labels[g[cross]]
         segments = segments[cross]
+        if self.mates:
+            apart = ~self.mates.along((first_labels, second_labels), segments)
+            first_labels, second_labels, segments = first_labels[apart], second_labels[apart], segments[apart]
         out: dict[SurfacePair, Array] = {}
         slack = self.scrape
         for pair in sorted(set(zip(first_labels.tolist(), second_labels.tolist(), strict=True))):
-            shared = segments[(first_labels == pair[0]) & (second_labels == pair[1])]
-            shared = shared[~self.mates.along(pair, shared)]
-            if len(shared):
-                out[pair] = shared
-                slack = max(slack, sum(self._surfaces[k].surfaces[pair[k]].chord for k in (0, 1)))
+            out[pair] = segments[(first_labels == pair[0]) & (second_labels == pair[1])]
+            slack = max(slack, sum(self._surfaces[k].surfaces[pair[k]].chord for k in (0, 1)))
         return Crossing(out, slack) if out else NONE
 
     def counted(self, side: int) -> Ints:
@@ -257,9 +257,22 @@ class PairTest:
                 within[asked, k] = index.depths(places[asked]) <= least
         return np.flatnonzero(within.all(axis=1))
 
+    def _deeper(self, middles: Array, other: Array, ends: Array, least: float) -> bool:
+        """Whether any of `middles` (n, 3), in the frame of either part, is inside both and deeper than `least` (m):
+        none that is near some of `ends` (m, 3), which are on both, nor any that is near enough to the facets."""
+        apart = middles[:, None] - ends
+        near = 2.0 * np.sqrt((apart * apart).sum(axis=2).min(axis=1, initial=np.inf))
+        asked = np.flatnonzero(near > constants.CERTAIN * least)
+        first, second = self._shapes.index(self.names[0]), self._shapes.index(self.names[1])
+        with at_work_on(*self.names):
+            total = first.depths(middles[asked]) + second.depths(other[asked])
+            asked = asked[total > least]
+            return bool(len(asked)) and len(self._in_both(first, second, middles[asked], other[asked])) > 0
+
     def depth(self, D: Array, segments: Array, least: float = 0.0, finer: int = 1) -> float:
         """m: how deep the parts go into each other between `segments` (n, 2, 3) where they cross, or points (n, 3)
-        inside either; 0 where it is not above `least`. Asked at `finer` times as many places."""
+        inside either; 0 where it is not above `least`, which is asked of segments only. Asked at `finer` times as many
+        places."""
         points = segments.reshape(-1, 3)
         points = points[np.unique(np.linspace(0, len(points) - 1, finer * constants.DEPTH_ENDS).astype(int))]
         a, b = np.triu_indices(len(points), 1)
@@ -275,6 +288,8 @@ class PairTest:
         X = self.pose(D)
         other = (middles - X[:3, 3]) @ X[:3, :3]
         first, second = self._shapes.index(self.names[0]), self._shapes.index(self.names[1])
+        if least > 0.0 and not self._deeper(middles, other, points, least):
+            return 0.0
         with at_work_on(*self.names):
             inside = self._in_both(first, second, middles, other)
         inside = (

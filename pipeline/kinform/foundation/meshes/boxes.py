@@ -41,8 +41,8 @@ def facet_boxes(points: Array, faces: Ints) -> tuple[Array, Array]:
 
 
 def triangle_boxes(corners: Array) -> tuple[Array, Array]:
-    """Lower and upper corners (n, d) of the boxes of triangles (n, 3, d): by columns, numpy being slow along
-    short rows."""
+    """Lower and upper corners (n, …) of the boxes of triangles (n, 3, …), least and greatest of three values: by columns,
+    numpy being slow along short rows."""
     first, second, third = (corners[:, corner] for corner in range(3))
     return np.minimum(np.minimum(first, second), third), np.maximum(np.maximum(first, second), third)
 
@@ -90,11 +90,17 @@ class FacetBoxes:
 
 
 class FlatBoxes:
-    """Boxes (F, 2) of facets in a plane, listed by the cells of a grid: which of many points are in which of them."""
+    """Boxes (F, 2) of facets in a plane, listed by the cells of a grid once many points are asked: which points are in
+    which of them."""
 
     def __init__(self, low: Array, high: Array):
         self.low, self.high = low, high
         self._sides = [np.ascontiguousarray(side) for side in (*low.T, *high.T)]
+        self._left = constants.UNLISTED * len(low)
+        """Comparisons that cost less than the list does."""
+
+    def _list(self) -> None:
+        low, high = self.low, self.high
         self._origin = low.min(axis=0, initial=np.inf)
         whole = np.maximum(high.max(axis=0, initial=-np.inf) - self._origin, 1e-300)
         side = int(np.clip(2.0 * np.sqrt(len(low)), 1, constants.GRID_FINEST))
@@ -115,11 +121,19 @@ class FlatBoxes:
 
     def listed_at(self, points: Array) -> int:
         """How many facets are listed in the cells of points (n, 2), all together."""
+        if self._left > 0:
+            self._list()
+            self._left = 0
         key = self._keys(points)
         return int((self._starts[key + 1] - self._starts[key]).sum())
 
     def around(self, points: Array) -> tuple[Ints, Ints]:
         """Indices of points (n, 2), ascending, and of facets whose box they are in, ascending for each."""
+        if self._left > 0:
+            few = self._among(points)
+            if few is not None:
+                return few
+            self._list()
         key = self._keys(points)
         start = self._starts[key]
         count = self._starts[key + 1] - start
@@ -133,6 +147,19 @@ class FlatBoxes:
     def _keys(self, points: Array) -> Ints:
         """(n,) the cell of each point (n, 2)."""
         return np.asarray(self._cells(points[:, 0], 0) * self._side + self._cells(points[:, 1], 1))
+
+    def _among(self, points: Array) -> tuple[Ints, Ints] | None:
+        """As above by comparison with all boxes about the points; None where that has come to cost more than a list."""
+        left, lower, right, upper = self._sides
+        (least_x, least_y), (most_x, most_y) = points.min(axis=0, initial=np.inf), points.max(axis=0, initial=-np.inf)
+        near = np.flatnonzero((left <= most_x) & (right >= least_x) & (lower <= most_y) & (upper >= least_y))
+        self._left -= len(left) + len(points) * len(near)
+        if self._left <= 0:
+            return None
+        x, y = points[:, :1], points[:, 1:]
+        held = (left[near] <= x) & (right[near] >= x) & (lower[near] <= y) & (upper[near] >= y)
+        which, facets = np.nonzero(held)
+        return which, near[facets]
 
     def _cells(self, places: Array, axis: int) -> Ints:
         """(n,) the column or row of cells that places along an axis are in, or nearest to."""
@@ -159,7 +186,7 @@ def together(low: Array, high: Array) -> Ints:
     if not len(low):
         return np.zeros(0, np.int64)
     size = (high - low).max(axis=1)
-    whole = max(float((high.max(axis=0) - low.min(axis=0)).max()), 1e-300)
+    whole = max(float((bounds(high)[1] - bounds(low)[0]).max()), 1e-300)
     octave = np.clip(np.floor(np.log2(np.maximum(size, 1e-12 * whole) / whole)), -constants.SIZE_OCTAVES, 0).astype(
         np.int64
     )
@@ -175,16 +202,13 @@ def along_curve(low: Array, high: Array) -> Ints:
 
 def _places(low: Array, high: Array) -> Ints:
     """(n,) where the middles of boxes (n, d) are along a Z-curve."""
-    dimensions = low.shape[1]
-    whole = max(float((high.max(axis=0) - low.min(axis=0)).max()), 1e-300)
-    cell = np.clip(
-        (0.5 * (low + high) - low.min(axis=0)) / whole * 2.0**constants.PLACE_BITS, 0, 2**constants.PLACE_BITS - 1
-    ).astype(np.int64)
-    spread = _spread(dimensions)
-    code = spread[cell[:, 0]]
-    for axis in range(1, dimensions):
-        code |= spread[cell[:, axis]] << axis
-    return np.asarray(code)
+    dimensions, least = low.shape[1], bounds(low)[0]
+    whole = max(float((bounds(high)[1] - least).max()), 1e-300)
+    spread, code = _spread(dimensions), np.zeros(len(low), np.int64)
+    for axis in range(dimensions):
+        place = (0.5 * (low[:, axis] + high[:, axis]) - least[axis]) / whole * 2.0**constants.PLACE_BITS
+        code |= spread[np.clip(place, 0, 2**constants.PLACE_BITS - 1).astype(np.int64)] << axis
+    return code
 
 
 @cache

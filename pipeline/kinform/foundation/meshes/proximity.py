@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.constants import CELLS_LEAST, CELLS_MOST
-from kinform.foundation.meshes.boxes import meeting_box
+from kinform.foundation.meshes.boxes import bounds, meeting_box
 from kinform.model.arrays import Array, Flags, Ints
 
 
@@ -20,8 +20,8 @@ def near_boxes(low_a: Array, high_a: Array, low_b: Array, high_b: Array, margin:
     """
     if not len(low_a) or not len(low_b):
         return np.zeros(len(low_a), bool), np.zeros(len(low_b), bool)
-    low = np.maximum(low_a.min(axis=0), low_b.min(axis=0)) - margin
-    high = np.minimum(high_a.max(axis=0), high_b.max(axis=0)) + margin
+    low = np.maximum(bounds(low_a)[0], bounds(low_b)[0]) - margin
+    high = np.minimum(bounds(high_a)[1], bounds(high_b)[1]) + margin
     size = np.maximum(high - low, 1e-300)
     finest = min(CELLS_MOST, CELLS_LEAST + int(np.sqrt(len(low_a) + len(low_b)) / 4))
     counts = np.maximum(np.ceil(finest * size / size.max()), 1).astype(np.int64)
