@@ -23,7 +23,7 @@ from kinform.foundation.algebra.vectors import norm
 from kinform.kinematics import constants
 from kinform.kinematics.loops.loop_kinematics import LoopSystem
 from kinform.kinematics.mobility.second_order import Pose, complement, independent, second_order, units
-from kinform.kinematics.mobility.truncation import truncated_solution
+from kinform.kinematics.mobility.truncation import regular_solution, truncated_solution
 from kinform.model.arrays import Array
 
 
@@ -136,13 +136,24 @@ def _solve(system: LoopSystem, start: Array, step: float, pose: Pose | None = No
 def _solutions(jacobian: Array, missed: Array, pose: Pose | None) -> Array:
     """(D, n) least solutions of J x = missed, (D, m, n) and (D, m), by all singular values that are any, or by those
     that count at a pose beside."""
+    jacobian, missed = _reduced(jacobian, missed)
+    count = jacobian.shape[2]
+    if count < constants.REDUCED_RATES or jacobian.shape[1] != count:
+        return _by_singular_values(jacobian, missed, pose)
     if pose is not None:
-        jacobian, missed = _reduced(jacobian, missed)
-        if jacobian.shape[2] >= constants.REDUCED_RATES and jacobian.shape[1] == jacobian.shape[2]:
-            found = [truncated_solution(*equations, pose.free) for equations in zip(jacobian, missed, strict=True)]
-            sure = [solution for solution in found if solution is not None]
-            if len(sure) == len(found):
-                return np.array(sure)
+        found = [truncated_solution(*equations, pose.free) for equations in zip(jacobian, missed, strict=True)]
+        sure = [solution for solution in found if solution is not None]
+        return np.array(sure) if len(sure) == len(found) else _by_singular_values(jacobian, missed, pose)
+    found = [regular_solution(*equations) for equations in zip(jacobian, missed, strict=True)]
+    out = np.array([np.zeros(count) if solution is None else solution for solution in found])
+    rest = [k for k, solution in enumerate(found) if solution is None]
+    if rest:
+        out[rest] = _by_singular_values(jacobian[rest], missed[rest], None)
+    return out
+
+
+def _by_singular_values(jacobian: Array, missed: Array, pose: Pose | None) -> Array:
+    """See `_solutions`."""
     left, values, right = np.linalg.svd(jacobian, full_matrices=False)
     used = values > constants.FINEST_VALUE * values.max(axis=1, initial=1e-300, keepdims=True)
     if pose is not None:
