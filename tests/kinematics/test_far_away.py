@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from support.copies import Change, answers, copy_of, derived, turned
+from support.copies import Change, answers, checked, copy_of, derived, turned
 from support.places import FIXTURES
 
 from kinform.kinematics.loops.assembly_closure import close
@@ -68,3 +68,17 @@ def test_closed_loops_count_as_the_formula_says(far):
     assert (
         close(4, loop, [hinge(away), hinge(squares[1]), slide((1.0, 0, 0)), slide((0, 1.0, 0))], 0, 1.0).mobility == 1
     )
+
+
+@pytest.mark.parametrize("name", ["revolute_collars", "rack_and_pinion"])
+def test_where_the_numbers_of_a_place_are_too_coarse_nothing_is_certain(name, tmp_path):
+    """At 1e15 m doubles are 0.125 m apart, and the parts are less across."""
+    change = Change(offset=(1e14, -7.5e14, 5e14))
+    copy = copy_of(FIXTURES / DESIGNS[name] / name / f"{name}.toml", tmp_path, change)
+    design = checked(copy.path)
+    parts = {part.name for part in design.assembly.parts}
+    assert design.assembly.lost == parts
+    assert all(joint.status == "ambiguous" for joint in design.kinematics.joints)
+    told = [f for f in design.report.findings if f.code == "KF111"]
+    assert {part for finding in told for part in finding.subject} == parts
+    assert all("where it is placed" in finding.message for finding in told)
