@@ -18,6 +18,7 @@ DESIGNS = {
     "roberval_balance": "mechanisms",
     "rack_and_pinion": "mechanisms",
     "elbow_in_groups": "wild",
+    "general_ball_on_table": "pairs",
 }
 COUNTS = ("instantaneous", "finite", "effective", "idle", "redundant", "blocked", "on_edge", "singular")
 
@@ -68,6 +69,11 @@ def test_closed_loops_count_as_the_formula_says(far):
     assert (
         close(4, loop, [hinge(away), hinge(squares[1]), slide((1.0, 0, 0)), slide((0, 1.0, 0))], 0, 1.0).mobility == 1
     )
+
+
+def test_a_ball_that_is_very_far_away_turns_as_it_does_here(tmp_path):
+    _, kinematics = derivation("general_ball_on_table", tmp_path, Change(offset=(1e10, -0.75e10, 0.5e10)))
+    assert [freedom.kind for freedom in kinematics.mobility.named] == ["turn"] * 3 + ["slide"] * 2
 
 
 @pytest.mark.parametrize("name", ["revolute_collars", "rack_and_pinion"])
