@@ -65,3 +65,20 @@ def write(folder: Path, text: str, name: str = "arm.urdf") -> Path:
     path = package / "urdf" / name
     path.write_text(text)
     return path
+
+
+LIMITED = """<robot name="arm">
+<link name="base"><visual><geometry><box size="0.1 0.12 0.14"/></geometry></visual></link>
+<link name="upper"><visual><origin xyz="0 0 0.25" rpy="0.1 0.2 0.3"/><geometry><box size="0.05 0.04 0.3"/></geometry>
+</visual></link>
+<link name="slider"><visual><origin xyz="0 0.3 0.1"/><geometry><cylinder radius="0.02" length="0.2"/></geometry>
+</visual></link>
+<link name="wheel"><visual><origin xyz="0 0 0.4"/><geometry><sphere radius="0.03"/></geometry></visual></link>
+<joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/>
+<origin xyz="0 0 0.06" rpy="0.3 0 0.5"/><axis xyz="0 1 0"/>
+<limit lower="-1" upper="1.5" effort="12" velocity="3"/></joint>
+<joint name="lift" type="prismatic"><parent link="upper"/><child link="slider"/><origin xyz="0 0 0.3"/>
+<axis xyz="0 0 1"/><limit lower="0" upper="0.2" effort="50" velocity="0.4"/></joint>
+<joint name="spin" type="continuous"><parent link="base"/><child link="wheel"/><axis xyz="0 0 1"/></joint>
+</robot>"""
+"""Parts that are turned in their links, and limits of all kinds."""

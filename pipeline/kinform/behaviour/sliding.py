@@ -37,8 +37,10 @@ class Sliding:
     """Why what contact shows does not say what rubs, by the key of the manifest that says it instead."""
     pairs: tuple[tuple[str | None, str | None], ...] = ()
     """Materials that meet, sorted."""
-    table: Mapping[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
-    """(in motion, at rest) of pairs of materials, sorted."""
+    known: frozenset[tuple[float, float]] = frozenset()
+    """(in motion, at rest) of those whose friction is known, ..."""
+    unknown: tuple[tuple[str, str], ...] = ()
+    """... and those whose friction is not, sorted."""
     riding: bool = False
     """Whether a length that is stated goes along with the second body: the second of `between`."""
 
@@ -46,19 +48,17 @@ class Sliding:
         """(in motion, at rest) of the materials. Raises ValueError where they are not known, or differ."""
         if not self.pairs:
             raise ValueError("state its coefficient or its effort: no contact tells which materials meet")
-        known = set()
         for first, second in self.pairs:
             if first is None or second is None:
                 raise ValueError("state its coefficient: a part in contact has no material")
-            pair = (first, second) if first <= second else (second, first)
-            if pair not in self.table:
-                raise ValueError(
-                    f"the friction of {pair[0]} on {pair[1]} is not known: state its coefficient, or a [[friction]]"
-                )
-            known.add(self.table[pair])
-        if len(known) > 1:
+        for first, second in self.unknown:
+            raise ValueError(
+                f"the friction of {first} on {second} is not known: state its coefficient, or a [[friction]]"
+            )
+        if len(self.known) > 1:
             raise ValueError("its contacts are of materials with different friction: state its coefficient")
-        return known.pop()
+        (one,) = self.known
+        return one
 
     def stated(self, drive: Drive, kind: str, freedom: str) -> Rubs:
         """What rubs in a joint of this kind, along this freedom, with what the drive states in place of what contact
@@ -94,21 +94,21 @@ def sliding_joints(
     """What rubs in each joint, by its name; nothing where no friction is asked for."""
     if not any(drive.kind == "friction" for drive in assembly.function.drives):
         return {}
-    table = dict(MATERIAL_PAIRS)
-    for one in assembly.function.frictions:
-        first, second = sorted(one.materials)
-        table[first, second] = (one.coefficient, one.static)
     parts = {body.name: body.parts for body in kinematics.bodies}
     turned = _turned(assembly, kinematics)
     out: dict[str, Sliding] = {}
     for joint in kinematics.joints:
         patches = [] if contacts is None else [contacts.patches[k] for k in joint.patches]
-        pairs = {_materials(assembly, patch) for patch in patches}
+        meeting = {(_materials(assembly, patch), _shared_scope(patch)) for patch in patches}
+        pairs = {pair for pair, _ in meeting}
         ordered = tuple(sorted(pairs, key=lambda pair: tuple(name or "" for name in pair)))
+        found = {(pair, scope): _friction(assembly, pair, scope) for pair, scope in meeting}
+        unknown = {(a, b) for ((a, b), _), friction in found.items() if a and b and friction is None}
+        known = frozenset(friction for friction in found.values() if friction is not None)
         riding = joint.bodies not in turned
         doubts: dict[str, str] = {}
         rubs = _rubs(assembly, surfaces, joint, patches, parts[joint.bodies[1]], doubts, riding=riding)
-        out[str(joint.name)] = Sliding(rubs, doubts, ordered, table, riding)
+        out[str(joint.name)] = Sliding(rubs, doubts, ordered, known, tuple(sorted(unknown)), riding)
     return out
 
 
@@ -123,6 +123,27 @@ def _turned(assembly: Assembly, kinematics: Kinematics) -> set[tuple[BodyName, B
 def _materials(assembly: Assembly, patch: Patch) -> tuple[str | None, str | None]:
     first, second = (assembly.part(name).material for name in patch.parts)
     return (first, second) if (first or "") <= (second or "") else (second, first)
+
+
+def _shared_scope(patch: Patch) -> str:
+    """The prefix of the innermost sub-assembly that has both parts of a patch; empty: that is the whole."""
+    one, other = (name.split("/")[:-1] for name in patch.parts)
+    shared = 0
+    while shared < min(len(one), len(other)) and one[shared] == other[shared]:
+        shared += 1
+    return "".join(f"{name}/" for name in one[:shared])
+
+
+def _friction(assembly: Assembly, pair: tuple[str | None, str | None], scope: str) -> tuple[float, float] | None:
+    """(in motion, at rest) of materials in a scope: as the innermost of what is about it states it, else as it is built
+    in; None where it is not known."""
+    stated = [one for one in assembly.function.frictions if tuple(sorted(one.materials)) == pair]
+    about = [one for one in stated if scope.startswith(one.prefix)]
+    if about:
+        one = max(about, key=lambda friction: len(friction.prefix))
+        return one.coefficient, one.static
+    first, second = pair
+    return None if first is None or second is None else MATERIAL_PAIRS.get((first, second))
 
 
 def _rubs(

@@ -1,6 +1,7 @@
 """What was done to the parts between two designs, and which changes of behaviour follow from it.
 
-A part is moved by its pose, or by the same mesh written elsewhere: both are one displacement in the world. Where the
+A part is moved by its pose, or by the same mesh written elsewhere: both are one displacement in the world. What
+was not turned in the world is known again though its frame is another, as after a way through another format. Where the
 mesh is another, its volume and its box say how much. A change follows from the parts that it is about; what is about
 no changed part, as the mobility, follows from all of them together.
 """
@@ -19,7 +20,7 @@ from kinform.changes.matching import new_names
 from kinform.design import Design
 from kinform.foundation.algebra.displacements import inverse, twist_of
 from kinform.foundation.words import angle, direction, length, listed, number
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Assembly, Mesh, Part
 
 
@@ -112,7 +113,41 @@ def _displacement(was: Part, part: Part) -> tuple[Array | None, bool]:
     if was.mesh.digest == part.mesh.digest:
         return X, True
     within = _rigid(was.mesh, part.mesh)
-    return (X, False) if within is None else (part.X_WP @ within @ inverse(was.X_WP), True)
+    if within is not None:
+        return part.X_WP @ within @ inverse(was.X_WP), True
+    shift = _shift(was, part)
+    return (X, False) if shift is None else (shift, True)
+
+
+def _shift(was: Part, part: Part) -> Array | None:
+    """The displacement of a part that was not turned in the world, whatever frame its mesh is written in, and in
+    whatever order; None where the facets are not the same."""
+    from scipy.spatial import cKDTree
+
+    assert was.mesh is not None
+    assert part.mesh is not None
+    one, two = _placed(was), _placed(part)
+    if one.shape != two.shape or was.mesh.faces.shape != part.mesh.faces.shape:
+        return None
+    X = np.eye(4)
+    X[:3, 3] = _middle(two) - _middle(one)
+    apart, partner = cKDTree(two).query(one + X[:3, 3])
+    if apart.max() > constants.SAME_SHAPE * _size(part) or len(np.unique(partner)) < len(partner):
+        return None
+    same = np.array_equal(_in_order(partner[was.mesh.faces]), _in_order(part.mesh.faces))
+    return X if same else None
+
+
+def _placed(part: Part) -> Array:
+    """(n, 3) m: the vertices in the world."""
+    assert part.mesh is not None
+    return np.asarray(part.mesh.vertices @ part.X_WP[:3, :3].T + part.X_WP[:3, 3])
+
+
+def _in_order(faces: Ints) -> Ints:
+    """Facets (m, 3) begun at their least vertex, in the order of their vertices."""
+    begun = np.take_along_axis(faces, (faces.argmin(axis=1)[:, None] + np.arange(3)) % 3, axis=1)
+    return begun[np.lexsort(begun.T[::-1])]
 
 
 def _rigid(was: Mesh, now: Mesh) -> Array | None:
@@ -138,7 +173,7 @@ def _moved(X: Array, part: Part, units: str) -> str:
     turn = float(np.linalg.norm(twist[:3]))
     if turn * size > constants.SAME_PLACE * size:
         told = f"turned {angle(turn)} about {_along(twist[:3] / turn)}"
-        place = part.X_WP[:3, 3] if part.mesh is None else _middle(part)
+        place = part.X_WP[:3, 3] if part.mesh is None else _middle_of(part)
         shift = place - (inverse(X)[:3, :3] @ place + inverse(X)[:3, 3])
         far = float(np.linalg.norm(shift))
         return told + (f", its middle moved {length(far, units)}" if far > constants.SAME_PLACE * size else "")
@@ -147,7 +182,12 @@ def _moved(X: Array, part: Part, units: str) -> str:
     return f"moved {length(far, units)} along {_along(shift / far)}" if far > constants.SAME_PLACE * size else ""
 
 
-def _middle(part: Part) -> Array:
+def _middle(points: Array) -> Array:
+    """(3,) middle of the box of points (n, 3)."""
+    return np.asarray(0.5 * (points.min(axis=0) + points.max(axis=0)))
+
+
+def _middle_of(part: Part) -> Array:
     assert part.mesh is not None
     low, high = part.mesh.box
     return np.asarray(part.X_WP[:3, :3] @ (0.5 * (low + high)) + part.X_WP[:3, 3])

@@ -19,7 +19,7 @@ from kinform.behaviour.primitives import Ball
 from kinform.exports.constants import GRAIN, LEAST_MOMENT, MOST_FACETS, STEP, STEP_OF_LOOPS
 from kinform.exports.exported import Exported
 from kinform.exports.mjcf_drives import actuators, gears, load, trains
-from kinform.exports.model import ExportModel
+from kinform.exports.model import ExportModel, Limits
 from kinform.exports.names import MJCF, free_name
 from kinform.exports.robot import Robot, RobotLink, robot_of
 from kinform.exports.text import render, vector
@@ -42,6 +42,8 @@ class _Joint:
     rest: float = 0.0
     friction: float = 0.0
     armature: float = 0.0
+    effort: float | None = None
+    """N·m or N, the most that actuators give; None: without limit."""
 
 
 @dataclass(eq=False)
@@ -110,6 +112,12 @@ def _losses(robot: Robot) -> list[str]:
     for closing in robot.closing:
         if closing.joint.kind.name in CLOSABLE and robot.model.system.actors(closing.joint.name):
             out.append(f"{closing.joint.subject}: what acts on it; it closes a loop and has no coordinate in MJCF")
+        if closing.joint.kind.name in CLOSABLE and closing.joint.subject in robot.model.limits:
+            out.append(f"{closing.joint.subject}: its limits; it closes a loop and has no coordinate in MJCF")
+    for link in robot.links:
+        if link.link.joint is not None and link.limits.speed is not None:
+            unit = "rad/s" if link.link.joint.kind.coordinates[0][1] else "m/s"
+            out.append(f"{link.link.joint.subject}: the limit of its speed ({link.limits.speed:g} {unit})")
     return out
 
 
@@ -163,6 +171,7 @@ def _cut(robot: Robot, closing: Closing, bodies: list[_Body], names: set[str]) -
         whole.link, link=link, name=name, offset=origin - robot.tree.links[parent].origin,
         centre=whole.link.centre + shift, visuals=(), actors=robot.model.system.actors(closing.joint.name),
         range=robot.model.ranges.get(closing.joint.subject),
+        limits=robot.model.limits.get(closing.joint.subject, Limits()),
     )  # fmt: skip
     # Every cut halves what is left, so that the whole body keeps its mass.
     whole.share *= 0.5
@@ -186,7 +195,10 @@ def _joint(robot: Robot, link: RobotLink, motion: Motion, position: Array) -> li
         return [_Joint(name, "ball", position, np.zeros(3))]
     k = motion.coordinate
     limits = link.range if link.single else None
-    on_it = (limits, link.damping(k), link.stiffness(k), link.rest(k), link.friction(k), link.armature(k))
+    on_it = (
+        *(limits, link.damping(k), link.stiffness(k), link.rest(k)),
+        *(link.friction(k), link.armature(k), link.limits.effort),
+    )
     if not primitive.omega.any():
         return [_Joint(name, "slide", position, primitive.slide, *on_it)]
     turn = _Joint(name, "hinge", position, primitive.omega, *on_it)

@@ -44,6 +44,16 @@ class BodyStart:
     """(3,) rad/s."""
 
 
+@dataclass(frozen=True)
+class Limits:
+    """Of a joint with one freedom; None: none is stated."""
+
+    effort: float | None = None
+    """N·m or N."""
+    speed: float | None = None
+    """rad/s or m/s."""
+
+
 @dataclass(frozen=True, eq=False)
 class ExportModel:
     """The port model and what belongs to it."""
@@ -73,6 +83,8 @@ class ExportModel:
     """By name of body."""
     ranges: dict[str, tuple[float, float]]
     """(lower, upper) rad or m of joints with one freedom, ±inf for a free side, by name of joint."""
+    limits: dict[str, Limits]
+    """What joints are limited to besides, by name of joint; of those that are."""
     stated: dict[str, tuple[bool, int]]
     """By name of joint, of those that the function states: whether it only closes a loop, and its place among them."""
     adrift: tuple[str, ...]
@@ -183,6 +195,7 @@ def export_model(design: Design) -> ExportModel:
         v=v,
         start=_starts(mechanism, q, v),
         ranges=_ranges(assembly, kinematics, behaviour.system.joints),
+        limits=_limits(assembly, kinematics, behaviour.system.joints),
         stated=_stated(assembly, kinematics),
         adrift=tuple(sorted(adrift)),
         missing=_missing(behaviour, adrift),
@@ -246,6 +259,20 @@ def _ranges(
                 low, high = max(low, stated_low), min(high, stated_high)
             out[joint.name] = (float(low), float(high))
     return dict(sorted(out.items()))
+
+
+def _limits(assembly: Assembly, kinematics: Kinematics, joints: tuple[JointComponent, ...]) -> dict[str, Limits]:
+    """The least limits of effort and speed that joints have in all runs, as robot descriptions state them."""
+    single = {joint.subject for joint in joints if joint.kind.rates == 1}
+    least: dict[tuple[str, str], float] = {}
+    for requirement in assembly.function.requirements:
+        if requirement.when_run and requirement.kind in ("torque", "speed"):
+            joint = resolve_joint(assembly, kinematics, requirement.values["joint"]).joint
+            if joint is not None and joint.name in single:
+                key, limit = (str(joint.name), requirement.kind), float(requirement.values["limit"])
+                least[key] = min(limit, least.get(key, math.inf))
+    names = sorted({name for name, _ in least})
+    return {name: Limits(least.get((name, "torque")), least.get((name, "speed"))) for name in names}
 
 
 _ELSEWHERE: dict[type[Component], str] = {

@@ -23,7 +23,7 @@ from kinform.behaviour import (
 )
 from kinform.behaviour.components import Gear
 from kinform.exports.looks import Shape, shapes_of, stl
-from kinform.exports.model import ExportModel
+from kinform.exports.model import ExportModel, Limits
 from kinform.exports.names import FILES, XML, Language, identifiers
 from kinform.exports.tree import Closing, Link, Tree, coordinate_names, grow
 from kinform.model.arrays import Array
@@ -63,6 +63,8 @@ class RobotLink:
     actors: tuple[Actor, ...]
     range: tuple[float, float] | None
     """rad or m, of its joint; None: not known."""
+    limits: Limits
+    """Of effort and speed of its joint."""
 
     @property
     def single(self) -> bool:
@@ -208,4 +210,5 @@ def _link(model: ExportModel, link: Link, name: str, offset: Array, shapes: tupl
     joint = link.joint
     actors = () if joint is None else model.system.actors(joint.name)
     limits = None if joint is None else model.ranges.get(joint.subject)
-    return RobotLink(link, name, offset, mass, centre, inertia, visuals, actors, limits)
+    others = Limits() if joint is None else model.limits.get(joint.subject, Limits())
+    return RobotLink(link, name, offset, mass, centre, inertia, visuals, actors, limits, others)

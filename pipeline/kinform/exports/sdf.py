@@ -2,7 +2,8 @@
 
 Link frames are those of `tree`. Cylindrical and planar joints, and universal ones whose axes are askew,
 are chains of joints with links of almost no mass between them, because a link without mass counts as
-1 kg in SDF. That a joint is not driven is said by an effort of 0.
+1 kg in SDF. That a joint of a design that states its drives is not driven is said by an effort of 0: nothing may act on
+it. What a robot description states is a limit, and without one there is none.
 """
 
 from __future__ import annotations
@@ -30,8 +31,10 @@ class _Axis:
     stiffness: float = 0.0
     rest: float = 0.0
     mimic: tuple[str, float] | None = None
-    driven: bool = False
     friction: float = 0.0
+    effort: float | None = None
+    """N·m or N; None: without limit."""
+    speed: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +68,7 @@ def export(model: ExportModel) -> Exported:
             joints.append(direct)
             continue
         hinges = chain(robot, link, taken)
-        joints += [_of_hinge(link, hinge) for hinge in hinges]
+        joints += [_of_hinge(robot, link, hinge) for hinge in hinges]
         grains += [_Grain(hinge.child, link.link.origin) for hinge in hinges if hinge.between]
     for gear, a, b in robot.gears:
         if gear.others:
@@ -100,29 +103,36 @@ def _direct(robot: Robot, link: RobotLink) -> _Joint | None:
             return None
         axes = zip(link.link.motions, screws, strict=True)
         return _Joint(
-            name, "universal", parent, link.name, tuple(_axis(link, m.coordinate, screw.omega) for m, screw in axes)
+            name,
+            "universal",
+            parent,
+            link.name,
+            tuple(_axis(robot, link, m.coordinate, screw.omega) for m, screw in axes),
         )
     if len(screws) != 1:
         return None
     turning = bool(screws[0].omega.any())
     limits = link.range if link.range is not None and any(map(math.isfinite, link.range)) else None
     direction = screws[0].omega if turning else screws[0].slide
-    axis = replace(_axis(link, 0, direction), limits=limits)
+    axis = replace(_axis(robot, link, 0, direction), limits=limits)
     if kind == "screw":
         return _Joint(name, "screw", parent, link.name, (axis,), joint.geometry.pitch)
     return _Joint(name, kind, parent, link.name, (axis,))
 
 
-def _axis(link: RobotLink, k: int, direction: Array) -> _Axis:
+def _axis(robot: Robot, link: RobotLink, k: int, direction: Array) -> _Axis:
     """A coordinate of the link's joint, and what acts on it."""
-    driven = any(drive.freedom == k for drive in link.drives)
+    free = bool(robot.model.assembly.descriptions) or any(drive.freedom == k for drive in link.drives)
+    effort = 0.0 if link.limits.effort is None and not free else link.limits.effort
     return _Axis(
-        direction, None, link.damping(k), link.stiffness(k), link.rest(k), driven=driven, friction=link.friction(k)
-    )
+        direction, None, link.damping(k), link.stiffness(k), link.rest(k),
+        friction=link.friction(k), effort=effort, speed=link.limits.speed,
+    )  # fmt: skip
 
 
-def _of_hinge(link: RobotLink, hinge: Hinge) -> _Joint:
-    axis = _Axis(hinge.axis) if hinge.follows is not None else _axis(link, hinge.coordinate, hinge.axis)
+def _of_hinge(robot: Robot, link: RobotLink, hinge: Hinge) -> _Joint:
+    follows = hinge.follows is not None
+    axis = _Axis(hinge.axis, effort=0.0) if follows else _axis(robot, link, hinge.coordinate, hinge.axis)
     return _Joint(hinge.name, hinge.type, hinge.parent, hinge.child, (axis,))
 
 

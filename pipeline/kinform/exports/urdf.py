@@ -13,7 +13,7 @@ from kinform.behaviour.joints import KINDS
 from kinform.exports.chains import Hinge, chain, tree_losses
 from kinform.exports.constants import UNLIMITED
 from kinform.exports.exported import Exported
-from kinform.exports.model import ExportModel
+from kinform.exports.model import ExportModel, Limits
 from kinform.exports.names import XML
 from kinform.exports.robot import Robot, RobotLink, robot_of
 from kinform.exports.text import render
@@ -26,7 +26,8 @@ class _Joint:
     limits: tuple[float, float] | None
     damping: float
     mimic: tuple[str, float] | None
-    friction: float = 0.0
+    friction: float
+    others: Limits
 
 
 def export(model: ExportModel) -> Exported:
@@ -46,8 +47,9 @@ def export(model: ExportModel) -> Exported:
     free = [link for link in robot.links[1:] if link.link.parent < 0]
     if any(joint.limits is not None and UNLIMITED in map(abs, joint.limits) for joint in joints):
         remarks.append(f"limits of {UNLIMITED:g} stand for ranges that are open or not known")
-    if any(joint.limits is not None for joint in joints):
-        remarks.append(f"limits of effort and velocity are not carried: {UNLIMITED:g} stands for them")
+    bounded = [joint.others for joint in joints if joint.limits is not None or joint.others != Limits()]
+    if any(None in (others.effort, others.speed) for others in bounded):
+        remarks.append(f"limits of effort and velocity of {UNLIMITED:g} stand for none")
     remarks.append("URDF has no gravity; ours is " + ", ".join(f"{x:g}" for x in model.gravity) + " m/s²")
     text = render(
         "robot.urdf.j2", robot=robot, joints=joints, free=free, lost=lost, remarks=remarks, unlimited=UNLIMITED,
@@ -69,7 +71,8 @@ def _joint(robot: Robot, link: RobotLink, hinge: Hinge, mimics: dict[str, tuple[
     ball = link.link.joint is not None and link.link.joint.kind.name == "spherical"
     damping = 0.0 if hinge.follows is not None or ball else link.damping(hinge.coordinate)
     friction = 0.0 if hinge.follows is not None or ball else link.friction(hinge.coordinate)
-    return _Joint(hinge, kind, limits, damping, mimic, friction)
+    others = link.limits if hinge.follows is None else Limits()
+    return _Joint(hinge, kind, limits, damping, mimic, friction, others)
 
 
 def _mimics(robot: Robot, lost: list[str]) -> dict[str, tuple[str, float]]:

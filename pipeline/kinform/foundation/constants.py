@@ -5,6 +5,11 @@ from __future__ import annotations
 
 import numpy as np
 
+# algebra/screws
+
+ROUNDINGS = 8.0
+"""Roundings of a coordinate in what follows from a few: positions of parts, what is measured on them, and twists."""
+
 # texts
 
 JSON_DEPTH = 32

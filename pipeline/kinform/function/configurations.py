@@ -14,7 +14,7 @@ from typing import Literal
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import Frame
+from kinform.foundation.algebra.screws import Frame, scaled
 from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.graphs.graph import blocks
 from kinform.function import constants
@@ -169,7 +169,8 @@ def _chain(assembly: Assembly, kinematics: Kinematics, joints: Sequence[Joint], 
 
 def _coordinates(joint: Joint, frame: Frame, ranges: dict[str, tuple[float, float]]) -> Iterator[Coordinate]:
     for twist in joint.twists:
-        turns = float(np.linalg.norm(twist[:3])) > 1e-9 * float(np.linalg.norm(twist[3:]))
+        beside = scaled(twist[:, None], frame)[:, 0]
+        turns = float(np.linalg.norm(beside[:3])) > 1e-9 * float(np.linalg.norm(beside[3:]))
         vector = twist[:3] if turns else twist[3:]
         sign = -1.0 if joint.axis is not None and float(vector @ joint.axis) < 0.0 else 1.0
         unit = sign if turns else sign / frame.length

@@ -48,7 +48,7 @@ NAMED_AXIS = 5e-4
 SHOWN_COMPONENT = 5e-4
 """Components below this are shown as 0: they would not be seen in three digits beside 1."""
 SHOWN_COORDINATE = 1e-6
-"""The same of coordinates of a point, over the largest."""
+"""The same of coordinates of a point, over the largest, and over the length of the frame."""
 SAME_DIRECTION = 1e-3
 """Two unit directions that differ by less are one; a screw with less advance a radian (over the size) is a turn."""
 
@@ -111,6 +111,11 @@ EXACT_PAIR = 1e-6
 """Twist spaces come out of snapped rows: what is zero is zero to rounding."""
 NEAR_PAIR = 0.02
 """Spaces pieced together from patches that agree within their tolerances are off a lower pair by this much."""
+
+# --- pair/canonical_basis -------------------------------------------------------------------------------------------
+
+NO_COMPONENT = 1e-13
+"""Share of the size of a vector below which a component is rounding."""
 
 # --- pair/decision --------------------------------------------------------------------------------------------------
 

@@ -18,6 +18,7 @@ from kinform.foundation.algebra.screws import Frame, span
 from kinform.foundation.algebra.vectors import canonical, cross, cross_matrix, norm, perpendicular
 from kinform.foundation.words import counted, listed
 from kinform.kinematics import constants
+from kinform.kinematics.pair.canonical_basis import directions as canonical_directions
 from kinform.model.arrays import Array
 
 
@@ -129,7 +130,7 @@ def _turning(turns: Array, slides: Array, frame: Frame) -> list[str]:
         lead = 2.0 * np.pi * frame.length * _lead(twist)
         # along a slide it may be anywhere
         place = frame.centre + frame.length * cross(twist[:3], twist[3:]) / (twist[:3] @ twist[:3])
-        through = "" if slides.shape[1] > 1 else f" through {_point(place)}"
+        through = "" if slides.shape[1] > 1 else f" through {_point(place, frame)}"
         if (
             abs(lead) > constants.NO_LEAD * frame.length
             and norm(slides[3:].T @ canonical(twist[:3])) < 1.0 - constants.EXACT_MOTION
@@ -137,7 +138,7 @@ def _turning(turns: Array, slides: Array, frame: Frame) -> list[str]:
             return [f"screws about {_axis_components(twist[:3])}{through}, {1e3 * lead:.4g} mm a turn"]
         return [f"turns about {_axis_components(twist[:3])}{through}"]
     centre = _centre(turns) if not slides.shape[1] else None
-    about = "" if centre is None else f" through {_point(frame.centre + frame.length * centre)}"
+    about = "" if centre is None else f" through {_point(frame.centre + frame.length * centre, frame)}"
     if count == 3:
         return [f"turns every way{about}"]
     axes = _tidy(turns[:3])
@@ -156,13 +157,12 @@ def _tidy(directions: Array) -> Array:
     """Perpendicular unit vectors (3, k) of the same span: of a plane, the first one across the coordinate axis that
     is nearest to its normal's smallest component."""
     if directions.shape[1] == 2:
-        left = np.linalg.svd(directions)[0]
-        return np.array(perpendicular(canonical(left[:, 2]))).T
+        return canonical_directions(directions)
     return np.linalg.qr(directions)[0] if directions.shape[1] else directions
 
 
-def _point(place: Array) -> str:
-    size = max(*(abs(x) for x in place.tolist()), 1e-300)
+def _point(place: Array, frame: Frame) -> str:
+    size = max(*(abs(x) for x in place.tolist()), frame.length)
     return _in_brackets(1e3 * place, constants.SHOWN_COORDINATE * 1e3 * size, "{:.4g}") + " mm"
 
 

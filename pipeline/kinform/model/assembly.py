@@ -194,6 +194,13 @@ class Part:
     """"#rrggbb" (sRGB) that a manifest or a description states, over that of its mesh. It decides nothing."""
 
     @property
+    def step(self) -> float:
+        """m: the step in which its coordinates go, as its file has them, or where it stands: the farther from the
+        origin, the coarser are the numbers of its place."""
+        there = float(np.spacing(np.abs(self.X_WP[:3, 3]).max()))
+        return there if self.mesh is None else max(self.mesh.resolution, there)
+
+    @property
     def own_colour(self) -> str | None:
         """The colour that its sources give it; None where they give none."""
         return self.colour or (None if self.mesh is None else self.mesh.colour)
@@ -270,12 +277,10 @@ class Assembly:
 
     @cached_property
     def lost(self) -> frozenset[PartName]:
-        """Parts whose files have numbers too coarse for their shape."""
+        """Parts whose files have numbers too coarse for their shape, or whose places have."""
         share = self.tolerances.resolved
         return frozenset(
-            part.name
-            for part in self.parts
-            if part.mesh is not None and part.mesh.resolution > share * part.mesh.diagonal
+            part.name for part in self.parts if part.mesh is not None and part.step > share * part.mesh.diagonal
         )
 
     @cached_property

@@ -160,6 +160,8 @@ class MaterialFriction:
     """At rest."""
     file: str
     line: int | None
+    prefix: str = ""
+    """Of the names of the parts between which it holds: of the sub-assembly that states it."""
 
 
 @dataclass(frozen=True, eq=False)

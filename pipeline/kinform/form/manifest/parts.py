@@ -47,7 +47,9 @@ class Material(Table):
 
 
 class FrictionTable(Table):
-    """`[[friction]]`: Coulomb friction between two materials, for frictions that state no coefficient."""
+    """`[[friction]]`: Coulomb friction between two materials, for frictions that state no coefficient.
+
+    It holds between the parts of the file and of its sub-assemblies."""
 
     materials: Annotated[list[Name], Field(min_length=2, max_length=2)] = Field(
         description="two materials, the same twice where it rubs on itself"

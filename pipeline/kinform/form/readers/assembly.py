@@ -20,7 +20,6 @@ from kinform.form.manifest.parts import TolerancesTable
 from kinform.form.materials import BUILT_IN, density_of
 from kinform.form.meshes.primitives import primitive
 from kinform.form.problems import Problems
-from kinform.form.readers.frictions import one_for_each_pair
 from kinform.form.readers.function import FunctionReader
 from kinform.form.readers.grounds import grounds_of
 from kinform.form.readers.open_manifest import Parsed, Scope, parse
@@ -164,9 +163,7 @@ class _AssemblyReader:
             joints=tuple(joint for reader in readers for joint in reader.intended()),
             couplings=tuple(coupling for reader in readers for coupling in reader.couplings()),
             drives=tuple(drive for reader in readers for drive in reader.drives()),
-            frictions=one_for_each_pair(
-                (pair for reader in readers for pair in reader.frictions(materials)), self.problems
-            ),
+            frictions=tuple(pair for reader in readers for pair in reader.frictions(materials)),
             loads=tuple(load for reader in readers for load in reader.loads()),
             springs=tuple(spring for reader in readers for spring in springs_of(reader)),
             requirements=tuple(requirement for reader in readers for requirement in requirements_of(reader)),

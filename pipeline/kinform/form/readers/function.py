@@ -228,7 +228,8 @@ class FunctionReader:
                 wrong = "friction at rest cannot be less than that in motion"
                 self.scope.complain(f"{what}: {wrong}", "give static ≥ coefficient", *path, "static")
             first, second = table.materials
-            yield MaterialFriction((first, second), table.coefficient, static, *self.scope.where(*path))
+            where = self.scope.where(*path)
+            yield MaterialFriction((first, second), table.coefficient, static, *where, self.scope.prefix)
 
     def _law(self, table: Any, *path: str | int) -> Law | None:
         if table is None:

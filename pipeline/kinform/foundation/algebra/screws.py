@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.foundation.algebra.vectors import box, cross, norm
+from kinform.foundation.constants import ROUNDINGS
 from kinform.model.arrays import Array
 
 
@@ -22,6 +23,12 @@ class Frame:
 
     centre: Array
     length: float
+
+    @property
+    def rounding(self) -> float:
+        """Share of a unit scaled twist that is not known where it stems from coordinates of the world: these are
+        rounded the more coarsely the farther the centre is from the origin."""
+        return ROUNDINGS * float(np.finfo(np.float64).eps) * norm(self.centre) / self.length
 
     @staticmethod
     def of(points: Array) -> Frame:

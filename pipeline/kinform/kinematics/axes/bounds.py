@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import box, norm
 from kinform.kinematics.constants import EXACT_AXIS, SIGMAS
 from kinform.model.arrays import Array
@@ -77,7 +78,8 @@ def _uncertainty(joint: Joint, touching: Sequence[Patch], reach: float) -> tuple
         carriers = [p for p in touching if any(p.axis.tolist())]
     angle = min((p.uncertainty[0] for p in carriers if any(p.axis.tolist())), default=0.0)
     position = min((p.uncertainty[1] for p in carriers), default=0.0)
-    return max(angle, EXACT_AXIS), max(position, EXACT_AXIS * reach)
+    away = 0.0 if joint.point is None else Frame(joint.point, 1.0).rounding
+    return max(angle, EXACT_AXIS), max(position, EXACT_AXIS * reach, away)
 
 
 def _extent(touching: Sequence[Patch], reach: float) -> float:

@@ -13,12 +13,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import Frame, scaled, span, twist_at_origin
+from kinform.foundation.algebra.screws import Frame, scaled, span
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics.constants import AT_REST, DOUBTFUL_MOTION, MOST_TURNED, NEARLY_LEFT, SIGMAS
 from kinform.kinematics.loops.assembly_closure import body_twists
 from kinform.kinematics.loops.joint_graph import JointGraph
+from kinform.kinematics.pair.canonical_basis import canonical_twists
 from kinform.kinematics.pair.certainty import TOUCHING, meets
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
@@ -159,4 +160,4 @@ def _turn_space(joint: Joint, motions: Array, frame: Frame, alignment: float) ->
     rest = space - wanted @ (wanted.T @ space)
     left, _, _ = np.linalg.svd(rest, full_matrices=False)
     basis = np.hstack([wanted, left[:, : space.shape[1] - wanted.shape[1]]])
-    return replace(joint, twists=twist_at_origin(basis, frame).T)
+    return replace(joint, twists=canonical_twists(basis, frame))

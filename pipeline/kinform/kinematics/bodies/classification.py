@@ -56,7 +56,11 @@ class Pairs:
         lost = {part for _, patch, _ in members for part in patch.parts} & self.assembly.lost
         if not lost or answer.joint is None:
             return answer
-        reason = f"the {'file' if len(lost) == 1 else 'files'} of {quoted(sorted(lost))} lost the shape: too few digits"
+        meshes = {part: self.assembly.part(part).mesh for part in lost}
+        share = self.assembly.tolerances.resolved
+        in_file = any(mesh is not None and mesh.resolution > share * mesh.diagonal for mesh in meshes.values())
+        what = ("file" if in_file else "place") + ("" if len(lost) == 1 else "s")
+        reason = f"the {what} of {quoted(sorted(lost))} lost the shape: too few digits"
         return replace(answer, joint=replace(answer.joint, status="ambiguous", reason=reason))
 
 

@@ -69,14 +69,15 @@ def close_block(
     if count > few:
         solutions, sure = _eliminate(members, cycles, norms, prefer, size)
     if solutions is None or (not sure and count <= constants.MOST_RATES):
-        closed = constants.CLOSED
+        closed = max(constants.CLOSED, frame.rounding)
         if doubts is not None:
             blur = doubts[list(block)]
             closed = max(
-                constants.CLOSED,
+                closed,
                 min(constants.LOOSEST_CLOSED, constants.SIGMAS * float((blur[:, 0] + blur[:, 1] / frame.length).max())),
             )
-        solutions, sure = _decompose(loop_matrix(members, cycles, frame, norms), prefer, closed), True
+        nothing = max(constants.RATE_ROUNDING, frame.rounding)
+        solutions, sure = _decompose(loop_matrix(members, cycles, frame, norms), prefer, closed, nothing), True
     return Block(tuple(block), tuple(cycles), frame, _in_joint_units(solutions, norms), sure)
 
 
@@ -95,7 +96,8 @@ def loop_matrix(spaces: Sequence[Array], cycles: Sequence[Cycle], frame: Frame, 
 def axes_frame(spaces: Sequence[Array], size: float) -> Frame:
     """Centre and size of the axes of some joints, so that turns and slides compare. Axes that meet have
     no size of their own: then a share of the assembly's counts."""
-    turns = np.array([t for space in spaces for t in _by_turn(space) if _turns(t, size)]).reshape(-1, 6)
+    middle = _slowest(spaces)
+    turns = np.array([t for space in spaces for t in _by_turn(space) if _turns(t, middle, size)]).reshape(-1, 6)
     if not len(turns):
         return Frame(np.zeros(3), size)
     # the point of an axis nearest to the origin may be far away: take those nearest to the middle of all axes
@@ -119,9 +121,16 @@ def _by_turn(space: Array) -> Array:
     return np.asarray(left.T[:turning] @ space) if 0 < turning < len(space) else space
 
 
-def _turns(twist: Array, size: float) -> bool:
-    """Whether a twist turns, beyond the rounding of a slide."""
-    return norm(twist[:3]) * size > constants.FAR_AXIS * norm(twist[3:])
+def _slowest(spaces: Sequence[Array]) -> Array:
+    """(3,) the point that all the twists together move least: beside their axes, wherever in the world these are."""
+    omega, velocity = np.split(np.concatenate([np.zeros((0, 6)), *spaces]), 2, axis=1)
+    across = (omega**2).sum() * np.eye(3) - omega.T @ omega
+    return np.asarray(np.linalg.lstsq(across, cross(omega, velocity).sum(axis=0), rcond=constants.AXES_RANK)[0])
+
+
+def _turns(twist: Array, middle: Array, size: float) -> bool:
+    """Whether a twist turns, beyond the rounding of a slide, seen from the `middle` (3,) of all."""
+    return norm(twist[:3]) * size > constants.FAR_AXIS * norm(twist[3:] + cross(twist[:3], middle))
 
 
 def _feet(turns: Array, centre: Array) -> Array:
@@ -132,8 +141,9 @@ def _feet(turns: Array, centre: Array) -> Array:
     return feet
 
 
-def _decompose(matrix: Array, prefer: Array, closed: float) -> list[Solution]:
-    """Solutions from the singular values of all equations at once."""
+def _decompose(matrix: Array, prefer: Array, closed: float, nothing: float) -> list[Solution]:
+    """Solutions from the singular values of all equations at once; shares of the largest singular value and of the
+    largest rate of a solution that are zero."""
     _, values, right = np.linalg.svd(matrix)
     rank = int(np.count_nonzero(values > closed * max(values[0], 1e-300))) if len(values) else 0
     null: Array = right[rank:]
@@ -143,7 +153,7 @@ def _decompose(matrix: Array, prefer: Array, closed: float) -> list[Solution]:
     reduced[:, drivers] = np.eye(len(drivers))
     out = []
     for driver, row in sorted(zip(drivers, reduced, strict=True), key=lambda pair: pair[0]):
-        columns = np.flatnonzero(np.abs(row) > constants.RATE_ROUNDING * np.abs(row).max())
+        columns = np.flatnonzero(np.abs(row) > nothing * np.abs(row).max())
         out.append(Solution(driver, columns, row[columns]))
     return out
 

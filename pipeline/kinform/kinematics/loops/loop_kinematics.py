@@ -64,6 +64,8 @@ class LoopSystem:
     """(N, n) rates that add up to the twist of each body."""
     ties: Array
     """(k, n) combinations of coordinates that stay zero: ratios that gears keep. They count as rows of the closure."""
+    rounding: float = 0.0
+    """Share of a unit screw that coordinates of the world leave unknown where the block is."""
 
     @property
     def coordinates(self) -> int:
@@ -176,6 +178,7 @@ def loop_system(
         ahead=reach[first[joint]] + earlier,
         reach=reach,
         ties=held,
+        rounding=frame.rounding,
     )
 
 

@@ -23,7 +23,7 @@ from kinform.foundation.algebra.vectors import norm
 from kinform.kinematics import constants
 from kinform.kinematics.loops.loop_kinematics import LoopSystem
 from kinform.kinematics.mobility.second_order import Pose, complement, independent, second_order, units
-from kinform.kinematics.mobility.truncation import truncated_solution
+from kinform.kinematics.mobility.truncation import regular_solution, truncated_solution
 from kinform.model.arrays import Array
 
 
@@ -92,12 +92,12 @@ def _regular(pose: Pose, mixes: Array, stride: float, step: float) -> tuple[floa
     """(least share kept of a stride, greatest residual) if walks of length `step` along mixes (D, n) close with
     the rank of the pose and find that rank again; else None. However short the strides, the walk goes on to the
     full step: obstructions of third and higher order cannot be told from rounding nearby."""
-    q, kept = pose.q, 1.0
+    q, kept, closed = pose.q, 1.0, max(constants.CLOSED, pose.system.rounding)
     for _ in range(round(step / stride)):
         ahead = q + stride * mixes
         q, residual, jacobian = _solve(pose.system, ahead, stride, pose)
         kept = min(kept, 1.0 - float(np.abs(((ahead - q) * mixes).sum(axis=1)).max()) / stride)
-        if residual.max() > constants.CLOSED * step or kept < constants.STEP_KEPT:
+        if residual.max() > closed * step or kept < constants.STEP_KEPT:
             return None
     worst = float(residual.max())
     if worst > constants.CLOSURE_ROUNDING:
@@ -107,11 +107,8 @@ def _regular(pose: Pose, mixes: Array, stride: float, step: float) -> tuple[floa
             return None
     values = np.linalg.svd(jacobian, compute_uv=False)
     beyond = values[:, pose.rank :].max(initial=0.0) / max(values.max(), 1e-300)
-    return (
-        (kept, worst)
-        if beyond < (constants.STEPPED_RANK if worst > constants.CLOSURE_ROUNDING else constants.STEPPED_RANK_EXACT)
-        else None
-    )
+    zero = constants.STEPPED_RANK if worst > constants.CLOSURE_ROUNDING else constants.STEPPED_RANK_EXACT
+    return (kept, worst) if beyond < max(zero, pose.system.rounding) else None
 
 
 def _solve(system: LoopSystem, start: Array, step: float, pose: Pose | None = None) -> tuple[Array, Array, Array]:
@@ -139,13 +136,24 @@ def _solve(system: LoopSystem, start: Array, step: float, pose: Pose | None = No
 def _solutions(jacobian: Array, missed: Array, pose: Pose | None) -> Array:
     """(D, n) least solutions of J x = missed, (D, m, n) and (D, m), by all singular values that are any, or by those
     that count at a pose beside."""
+    jacobian, missed = _reduced(jacobian, missed)
+    count = jacobian.shape[2]
+    if count < constants.REDUCED_RATES or jacobian.shape[1] != count:
+        return _by_singular_values(jacobian, missed, pose)
     if pose is not None:
-        jacobian, missed = _reduced(jacobian, missed)
-        if jacobian.shape[2] >= constants.REDUCED_RATES and jacobian.shape[1] == jacobian.shape[2]:
-            found = [truncated_solution(*equations, pose.free) for equations in zip(jacobian, missed, strict=True)]
-            sure = [solution for solution in found if solution is not None]
-            if len(sure) == len(found):
-                return np.array(sure)
+        found = [truncated_solution(*equations, pose.free) for equations in zip(jacobian, missed, strict=True)]
+        sure = [solution for solution in found if solution is not None]
+        return np.array(sure) if len(sure) == len(found) else _by_singular_values(jacobian, missed, pose)
+    found = [regular_solution(*equations) for equations in zip(jacobian, missed, strict=True)]
+    out = np.array([np.zeros(count) if solution is None else solution for solution in found])
+    rest = [k for k, solution in enumerate(found) if solution is None]
+    if rest:
+        out[rest] = _by_singular_values(jacobian[rest], missed[rest], None)
+    return out
+
+
+def _by_singular_values(jacobian: Array, missed: Array, pose: Pose | None) -> Array:
+    """See `_solutions`."""
     left, values, right = np.linalg.svd(jacobian, full_matrices=False)
     used = values > constants.FINEST_VALUE * values.max(axis=1, initial=1e-300, keepdims=True)
     if pose is not None:
@@ -190,7 +198,7 @@ def _spread(pose: Pose, directions: Array, step: float) -> _Spread:
     q, residual, _ = _solve(pose.system, start, step)
     moved = (q - pose.q) @ pose.free.T / step
     kept = np.linalg.norm(moved, axis=1)
-    closed = residual < constants.CLOSED * step
+    closed = residual < max(constants.CLOSED, pose.system.rounding) * step
     stays = closed & (kept > constants.STEP_LOST) & (np.linalg.norm(q - start, axis=1) < constants.STEP_ASTRAY * step)
     _, values, right = np.linalg.svd(moved[stays], full_matrices=False)
     cone = right[: int(np.count_nonzero(values > constants.CONE_SHARE * values.max(initial=0.0)))] @ pose.free
@@ -212,7 +220,7 @@ def _smooth(pose: Pose, cone: Array, step: float, rng: np.random.Generator) -> b
     kept = ((q - pose.q) * mixes).sum(axis=1) / step
     aside = np.linalg.norm((q - pose.q) @ pose.free.T / step - kept[:, None] * (mixes @ pose.free.T), axis=1)
     return bool(
-        residual.max() < constants.CLOSED * step
+        residual.max() < max(constants.CLOSED, pose.system.rounding) * step
         and kept.min() > constants.STEP_KEPT
         and aside.max() < constants.STEP_ASIDE
     )

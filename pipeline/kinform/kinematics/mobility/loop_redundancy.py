@@ -58,7 +58,7 @@ def _of_loop(joints: Sequence[Joint], cycle: Cycle, size: float) -> Redundancy |
     if columns.shape[1] > 6:
         columns = np.asarray(np.linalg.qr(columns.T, mode="r")).T
     left, values, _ = np.linalg.svd(columns, full_matrices=True)
-    rank = int(np.count_nonzero(values > CLOSED * values[0])) if len(values) else 0
+    rank = int(np.count_nonzero(values > max(CLOSED, frame.rounding) * values[0])) if len(values) else 0
     if rank == 6:
         return None
     space = locked_wrenches(left[:, rank:].T)

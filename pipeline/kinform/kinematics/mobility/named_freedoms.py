@@ -57,15 +57,15 @@ def named_freedoms(
         body, replaced = spinning.get(n, (None, solution))
         k = int(owner[replaced.driver])
         joint, coordinate = joints[k], replaced.driver - closure.offset[k]
-        kind, axis, point, pitch = _read(joint.twists[coordinate], joint.point, size)
         far = max(graph.edges[k], key=lambda node: depth[node])
+        kind, axis, point, pitch = _read(joint.twists[coordinate], joint.point, places[far], size)
         drives = tuple(
             (joints[int(owner[c])].name, int(c) - closure.offset[int(owner[c])], float(rate))
             for c, rate in zip(replaced.columns, replaced.rates, strict=True)
         )
         if body is not None:
             turn = idle[body[0]][body[1]]
-            kind, axis, point, pitch = _read(turn, joint.point, size)
+            kind, axis, point, pitch = _read(turn, joint.point, places[far], size)
         out.append(
             Freedom(
                 driver=joint.name,
@@ -82,13 +82,13 @@ def named_freedoms(
     return tuple(out)
 
 
-def _read(twist: Array, near: Array | None, size: float) -> tuple[str, Array, Array, float]:
-    """Kind, axis, point (m, beside `near`) and pitch (m a turn) of one twist (ω; v at the world's origin) in an
-    assembly of this size (m)."""
+def _read(twist: Array, near: Array | None, place: Array, size: float) -> tuple[str, Array, Array, float]:
+    """Kind, axis, point (m, beside `near`) and pitch (m a turn) of one twist (ω; v at the world's origin) of a body at
+    `place` (m) in an assembly of this size (m)."""
     omega, velocity = twist[:3], twist[3:]
     square = float(omega @ omega)
     beside = np.zeros(3) if near is None else near
-    there = velocity + cross(omega, beside)
+    there = velocity + cross(omega, place if near is None else near)
     if square * size**2 < NO_TURN**2 * float(there @ there):
         return "slide", canonical(there), beside, 0.0
     axis = omega / np.sqrt(square)

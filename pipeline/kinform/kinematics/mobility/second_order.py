@@ -36,7 +36,8 @@ class Pose:
         rows, columns = closed.jacobian[0].shape
         # all right vectors, and no left ones without need
         left, values, right = np.linalg.svd(closed.jacobian[0], full_matrices=rows < columns)
-        rank = int(np.count_nonzero(values > tolerance * max(values.max(initial=0.0), 1e-300)))
+        share = max(tolerance, system.rounding)
+        rank = int(np.count_nonzero(values > share * max(values.max(initial=0.0), 1e-300)))
         return Pose(q, closed.columns[0], rank, right[rank:], left[:, :rank], system)
 
     @property

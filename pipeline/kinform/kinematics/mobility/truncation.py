@@ -16,6 +16,21 @@ from kinform.kinematics import constants
 from kinform.model.arrays import Array
 
 
+def regular_solution(triangle: Array, right: Array) -> Array | None:
+    """(n,) the x with triangle (n, n) · x = right (n,), where all singular values count; None where one may be less
+    than `FINEST_VALUE` of the largest."""
+    from scipy.linalg import solve_triangular
+
+    size = norm(triangle)
+    if float(np.abs(np.diag(triangle)).min()) <= constants.FINEST_VALUE * size:
+        return None
+    inverse = solve_triangular(triangle, np.eye(len(triangle)), check_finite=False)
+    # the norms of Frobenius are no less than the largest singular values of both
+    if not constants.FINEST_VALUE * size * norm(inverse) < 1.0:
+        return None
+    return np.asarray(solve_triangular(triangle, right, check_finite=False))
+
+
 def truncated_solution(triangle: Array, right: Array, left_out: Array) -> Array | None:
     """(n,) the least x with triangle (n, n) · x = right (n,) but for its least singular values, as many as `left_out`
     (k, n) has rows: orthonormal, near their right singular vectors. None where it is not found to rounding."""

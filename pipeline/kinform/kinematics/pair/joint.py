@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import twist_at_origin
 from kinform.foundation.algebra.vectors import canonical, cross, foot, norm, perpendicular, weighted_mean, widest_gap
 from kinform.kinematics.constants import BESIDE_AXIS, LEAST_MISALIGNMENT, SIGMAS
+from kinform.kinematics.pair.canonical_basis import canonical_twists
 from kinform.kinematics.pair.decision import Decision
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.pair.hypotheses import motion_words
@@ -60,7 +60,7 @@ def joint_from_decision(bodies: tuple[BodyName, BodyName], evidence: Evidence, d
         middle = weighted_mean(np.concatenate([i.points for i in kept]), weights)
         point = middle if form.type in ("prismatic", "planar") else foot(point, form.axis, middle)
     if form.type == "general":
-        twists = twist_at_origin(decision.basis, frame).T
+        twists = canonical_twists(decision.basis, frame)
     else:
         twists = twists_of(form.type, form.axis, point, form.pitch)
     blocking = [(evidence.items[k], motion) for k, motion in decision.left_out]

@@ -197,10 +197,8 @@ def fastest_decay(ints: Ints, work: Work, clock: Row, tally: Counts) -> float:
     """Fastest decay (1/s) that the last two evaluations of the step show; tally[STIFF] counts the steps in a row that
     it keeps short."""
     slopes, rough, moved = work[STAGES], 0.0, 0.0
-    size, meters = ints[COUNTS][0][SIZE], ints[COUNTS][0][METERS]
-    for i in range(size):
-        if size - 1 - meters <= i < size - 1:
-            continue
+    # Nothing depends on meters and work: how they change is no decay.
+    for i in range(ints[COUNTS][0][SIZE] - 1 - ints[COUNTS][0][METERS]):
         change, way = slopes[AT_END][i] - slopes[AT_END - 1][i], slopes[NEW][i] - slopes[TRIED][i]
         rough += change * change
         moved += way * way
@@ -274,7 +272,7 @@ def advance(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Count
         clock[MARGINS] = slope(ints, nums, work, clock, clock[NOW], y, work[STAGES][0])
         if clock[MARGINS] < 0.0:
             return MASSLESS
-        roundings(ints, nums, work, tally, y, clock[NOW])
+        roundings(ints, nums, work, clock, tally, y)
         tally[FRESH] = 0
     clock[GROWTH], tally[LAYINGS], spent = GREATEST_GROWTH, 0, 0
     while clock[NOW] < clock[END]:
@@ -285,7 +283,7 @@ def advance(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Count
         spent += 1
         tally[STEPS] += 1
         if tally[STEPS] % ROUNDINGS_EVERY == 0:
-            roundings(ints, nums, work, tally, y, clock[NOW])
+            roundings(ints, nums, work, clock, tally, y)
         status = attempt(ints, nums, work, y, clock, tally)
         if status == REJECTED:
             continue

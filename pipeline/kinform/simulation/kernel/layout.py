@@ -138,11 +138,12 @@ AT_END, TRIED, NEW, ROUND = 12, 16, 17, 19
 NOW, END, STEP, RTOL, ATOL, CLOSED, NEAR, OPEN, MARGIN, TIGHTEST, KEEP, LEAST, PATIENCE, CROSSING = range(14)
 """STEP: the length to try next. MARGIN: the least of the run, at the time TIGHTEST. LEAST: the least of the step.
 CROSSING: time of a singular pose ahead. The others are settings, see `Run`."""
-SPAN, REACHED, ERROR, WEAR, GROWTH, MARGINS, NARROW, APPROACH, CLOCK = 14, 15, 16, 17, 18, 19, 32, 33, 34
+SPAN, REACHED, ERROR, WEAR, GROWTH, MARGINS, NARROW, APPROACH, ENERGY, CLOCK = 14, 15, 16, 17, 18, 19, 32, 33, 34, 35
 """SPAN and REACHED: length and end of the step on trial. ERROR: its error over the tolerance. WEAR: smallest pivot over
 that of its choice at its end. GROWTH: what the next may be longer by. MARGINS: at its twelve evaluations and its end.
 NARROW: the margin below which branches are not told apart by what is known of lengths. APPROACH: the
-margin below which a step that goes on towards a singular pose is reported. CLOCK: how many numbers."""
+margin below which a step that goes on towards a singular pose is reported. ENERGY (J): the greatest of motion and
+weights so far. CLOCK: how many numbers."""
 STEPS, BUDGET, NEXT, PAUSE, STIFF, SLOPES, FRESH, HIT, LAYINGS, TALLY = range(10)
 """Steps tried; how many may be in one call; the next output, and which to come back before; steps in a row that a decay
 kept short; evaluations; whether stage 0 is to be computed; the stop reached; times that a step was laid anew; how many

@@ -13,7 +13,7 @@ from kinform.simulation.kernel.vectors import add, along, cross, dot, place, put
 
 from kinform.simulation.kernel.layout import (  # isort: skip
     LINKS, COLUMNS, CONSTANTS, SCALE, STATE, SCREWS, MASS, VECTORS,
-    GRAVITY, PARENT, FIRST, WIDTH, HEAVY, WEIGHT, COM, TENSOR, BEFORE, TWIST, GAIN, WRENCH, INERT,
+    GRAVITY, LENGTH, PARENT, FIRST, WIDTH, HEAVY, WEIGHT, COM, TENSOR, BEFORE, TWIST, GAIN, WRENCH, INERT,
     FORCE, ARMATURE,
     Row, Table, Nums, Work,
 )  # fmt: skip
@@ -79,6 +79,27 @@ def wrenches(ints: Ints, nums: Nums, work: Work) -> None:
         put(link, WRENCH, c0 + d0 + m0, c1 + d1 + m1, c2 + d2 + m2)
         c0, c1, c2 = cross(w0, w1, w2, f0, f1, f2)
         put(link, WRENCH + 3, c0 + e0, c1 + e1, c2 + e2)
+
+
+def energies(ints: Ints, nums: Nums, work: Work) -> float:
+    """J: the energy of the motion, and that of all weights in a fall as high as the mechanism."""
+    links, state, constants, total = ints[LINKS], work[STATE], nums[CONSTANTS][0], 0.0
+    g0, g1, g2 = three(constants, GRAVITY)
+    fall = math.sqrt(dot(g0, g1, g2, g0, g1, g2)) * constants[LENGTH]
+    for i in range(1, len(links)):
+        if links[i][HEAVY] == 0:
+            continue
+        link, numbers = state[i], nums[LINKS][i]
+        w0, w1, w2, l0, l1, l2 = six(link, TWIST)
+        c0, c1, c2 = place(link, numbers, COM)
+        a0, a1, a2 = cross(w0, w1, w2, c0, c1, c2)
+        x, y, z = l0 + a0, l1 + a1, l2 + a2
+        total += numbers[WEIGHT] * (0.5 * dot(x, y, z, x, y, z) + fall)
+        for j in range(TENSOR, TENSOR + 12, 4):
+            u0, u1, u2 = along(link, numbers, j + 1)
+            a0, a1, a2 = cross(w0, w1, w2, u0, u1, u2)
+            total += 0.5 * numbers[j] * dot(a0, a1, a2, a0, a1, a2)
+    return total
 
 
 def mass_matrix(ints: Ints, nums: Nums, work: Work, with_forces: bool) -> None:

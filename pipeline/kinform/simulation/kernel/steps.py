@@ -18,11 +18,12 @@ from kinform.simulation.constants import (
     THIRD_ORDER_SHARE,
 )
 from kinform.simulation.kernel.equations import derivative, project, torn
+from kinform.simulation.kernel.masses import energies
 
 from kinform.simulation.kernel.layout import (  # isort: skip
     COUNTS, STAGES, DENSE, COEFFICIENTS,
     RANK, SIZE, METERS, B_ROW, C_ROW, E3_ROW, E5_ROW, D_ROW, AT_END, TRIED, NEW, ROUND, FAILED,
-    NOW, RTOL, ATOL, CLOSED, NEAR, MARGIN, TIGHTEST, LEAST, SPAN, MARGINS,
+    NOW, RTOL, ATOL, CLOSED, NEAR, MARGIN, TIGHTEST, LEAST, SPAN, MARGINS, ENERGY,
     SLOPES,
     Row, Counts, Nums, Work,
 )  # fmt: skip
@@ -44,11 +45,13 @@ def slope(ints: Ints, nums: Nums, work: Work, clock: Row, t: float, y: Row, dy: 
     return margin
 
 
-def roundings(ints: Ints, nums: Nums, work: Work, tally: Counts, y: Row, t: float) -> None:
-    """Writes to [ROUND] how far the slopes at y are known: what changes by a rounding of each number do to them.
+def roundings(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: Row) -> None:
+    """Writes to [ROUND] how far the slopes at y are known: what changes by a rounding of each number do to them; and to
+    clock[ENERGY] which energies flow.
 
     Bodies of small inertia in mechanisms of much greater lose so many digits that tolerances cannot be kept.
     """
+    t = clock[NOW]
     slopes, size = work[STAGES], ints[COUNTS][0][SIZE]
     tally[SLOPES] += 2
     for i in range(size):
@@ -58,6 +61,7 @@ def roundings(ints: Ints, nums: Nums, work: Work, tally: Counts, y: Row, t: floa
         slopes[TRIED][i] = y[i] * (1.0 + (DISTURBANCE if i % 3 != 1 else -DISTURBANCE))
     if derivative(ints, nums, work, t, slopes[TRIED], slopes[NEW]) < 0.0:
         return
+    clock[ENERGY] = max(clock[ENERGY], energies(ints, nums, work))
     for i in range(size):
         slopes[ROUND][i] = abs(slopes[NEW][i] - slopes[ROUND][i])
 
@@ -97,8 +101,10 @@ def try_step(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: R
         new[i] = y[i] + h * total
         if size - 1 - meters <= i < size - 1:
             continue
+        # Work is the small difference of great energies where a heavy thing goes on at its speed.
+        least = clock[ATOL] * max(1.0, clock[ENERGY]) if i == size - 1 else clock[ATOL]
         # What rounding does to a slope no step can do better than.
-        allowed = clock[ATOL] + clock[RTOL] * max(abs(y[i]), abs(new[i])) + h * ROUGHER_SLOPES * slopes[ROUND][i]
+        allowed = least + clock[RTOL] * max(abs(y[i]), abs(new[i])) + h * ROUGHER_SLOPES * slopes[ROUND][i]
         three, five = three / allowed, five / allowed
         third += three * three
         fifth += five * five

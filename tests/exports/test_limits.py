@@ -1,0 +1,81 @@
+"""Limits of effort and speed of a robot description, in other formats."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ElementTree
+
+import numpy as np
+import pytest
+from support.robots import LIMITED, write
+from support.validators import package
+
+import kinform
+from kinform.exports import export
+from kinform.exports import write as write_export
+
+LIMITS = {"base~upper": (12.0, 3.0), "slider~upper": (50.0, 0.4), "base~wheel": (None, None)}
+
+
+@pytest.fixture(scope="module")
+def robot(tmp_path_factory):
+    return kinform.run(write(tmp_path_factory.mktemp("robot"), LIMITED)).design
+
+
+def joints_in(design, format):
+    """The text of the file and its joints by name, those that move."""
+    made = export(design, format)
+    (text,) = (made.files[name].decode() for name in made.files if name.endswith((".sdf", ".xml", ".urdf")))
+    root = ElementTree.fromstring(text)
+    return text, made, {joint.get("name"): joint for joint in root.iter("joint") if joint.get("name") in LIMITS}
+
+
+def number(element, path):
+    text = element.findtext(path)
+    return None if text is None else float(text)
+
+
+def test_sdf_has_limits_of_effort_and_velocity_and_none_where_none_is_stated(robot):
+    """SDF 1.11, joint/axis/limit: `effort` and `velocity` are without limit where they are left out."""
+    _, made, joints = joints_in(robot, "sdf")
+    found = {
+        name: (number(joint, "axis/limit/effort"), number(joint, "axis/limit/velocity"))
+        for name, joint in joints.items()
+    }
+    assert found == LIMITS
+    assert not any("limit" in said for said in made.lost)
+
+
+def test_mjcf_has_limits_of_effort_and_names_those_of_speed(robot):
+    text, made, joints = joints_in(robot, "mjcf")
+    for name, (effort, speed) in LIMITS.items():
+        bounds = joints[name].get("actuatorfrcrange")
+        assert bounds == (None if effort is None else f"{-effort} {effort}")
+        (said,) = [one for one in made.lost if one.startswith(name) and "speed" in one] or [None]
+        assert (said is None) == (speed is None)
+        if speed is not None:
+            assert f"({speed:g} " in said
+            assert f"not carried: {said}" in text
+
+
+def test_mujoco_keeps_to_the_limits_of_effort(robot, tmp_path):
+    mujoco = package("mujoco")
+    write_export(export(robot, "mjcf"), tmp_path)
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "arm.xml"))
+    for name, (effort, _) in LIMITS.items():
+        joint = model.joint(name)
+        assert bool(model.jnt_actfrclimited[joint.id]) == (effort is not None)
+        if effort is not None:
+            np.testing.assert_allclose(model.jnt_actfrcrange[joint.id], [-effort, effort])
+
+
+def test_urdf_written_from_another_format_has_both(robot, tmp_path):
+    """SDF that is read and written as URDF: the numbers of the first URDF."""
+    write_export(export(robot, "sdf"), tmp_path)
+    again = kinform.run(tmp_path / "arm.sdf").design
+    _, _, joints = joints_in(again, "urdf")
+    for name, (effort, speed) in LIMITS.items():
+        limit = joints[name].find("limit")
+        if effort is None:
+            assert limit is None
+        else:
+            assert (float(limit.get("effort")), float(limit.get("velocity"))) == (effort, speed)
