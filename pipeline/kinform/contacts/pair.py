@@ -10,6 +10,8 @@ from kinform.contacts.constants import ACROSS_SINE, MATING_REACH, NARROW_SHARE, 
 from kinform.contacts.higher.edges import edge_contacts
 from kinform.contacts.higher.points_and_lines import higher_pairs, pins_in_slots
 from kinform.contacts.higher.profiles import profile_contacts
+from kinform.contacts.higher.rims import rim_contacts
+from kinform.contacts.higher.sharp import convex_edges
 from kinform.contacts.mating.analytic import analytic_mates
 from kinform.contacts.mating.coarse import rounded
 from kinform.contacts.mating.enclosing import enclosing_patches
@@ -107,8 +109,7 @@ def _with_higher(pair: PairView, patches: list[Patch]) -> list[Patch]:
     if not profiles:
         if patches:
             return patches
-        touches = higher_pairs(pair)
-        return touches + edge_contacts(pair, frozenset(patch.surfaces for patch in touches))
+        return _touching(pair)
     rest = [patch for patch in patches if _across(patch, profiles[0].axis)]
     # facets that face each other well apart say nothing beside curves that touch
     least = max(patch.gap for patch in profiles) + TOUCH * pair.tolerance
@@ -116,6 +117,16 @@ def _with_higher(pair: PairView, patches: list[Patch]) -> list[Patch]:
     if not all(i in pieces[0] and j in pieces[1] for i, j in (patch.surfaces for patch in others)):
         return patches
     return rest + profiles + ([] if rest else higher_pairs(pair, pieces))
+
+
+def _touching(pair: PairView) -> list[Patch]:
+    """Points and lines where nothing else touches."""
+    touches = higher_pairs(pair)
+    convex = convex_edges(pair)
+    if convex is None:
+        return touches
+    met = frozenset(patch.surfaces for patch in touches)
+    return touches + edge_contacts(pair, convex, met) + rim_contacts(pair, convex)
 
 
 def _of_scattered(pair: PairView, patch: Patch, alone: bool) -> Patch:

@@ -1,0 +1,142 @@
+"""Rims of either part on round surfaces of the other: a ball on the edge of a hole, the edge of a cylinder in a conical
+seat, a disc on its rim on a cone.
+
+The normal is that of the round surface. A rim about its axis touches all round, along a line; any other where it comes
+nearest to it, at points. It counts where both faces beside the rim leave the surface: what lies along it mates, or is
+found as a roller.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.contacts import constants
+from kinform.contacts.higher.beside import Beside, beside
+from kinform.contacts.higher.circles import Rim, rims_of
+from kinform.contacts.higher.sharp import ConvexEdges, on_surface
+from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
+from kinform.contacts.search.pair_view import NearSurfaces, PairView
+from kinform.foundation.algebra.vectors import cross
+from kinform.model.arrays import Array
+from kinform.model.contacts import Patch
+from kinform.model.surfaces import KINDS
+
+_ROUND = tuple(KINDS.index(kind) for kind in ("sphere", "cylinder", "cone", "torus"))
+
+
+@dataclass(frozen=True, eq=False)
+class _Touch:
+    """Places on a rim of the first part of a view that touch a surface of the second."""
+
+    rim: Rim
+    row: int
+    """Of the surface among the near ones."""
+    places: Array
+    """(n, 3) m, on the rim."""
+    gaps: Array
+    normals: Array
+    """(n, 3) out of the second part."""
+    spacing: float
+    """m of the rim that each stands for; 0: a point."""
+
+
+def rim_contacts(pair: PairView, convex: tuple[ConvexEdges, ConvexEdges]) -> list[Patch]:
+    """Where rims of either part, which are among its `convex` edges, touch round surfaces of the other, in the frame of
+    the pair."""
+    out = []
+    for view, first, edges in ((pair, True, convex[0]), (pair.swapped, False, convex[1])):
+        rows = np.flatnonzero(np.isin(view.near[1].kinds, _ROUND))
+        if not len(rows):
+            continue
+        for rim in rims_of(view, edges):
+            for row in rows:
+                out += [_patch(pair, touch, first) for touch in _touches(view, rim, int(row))]
+    return out
+
+
+def _touches(view: PairView, rim: Rim, row: int) -> list[_Touch]:
+    """All round, or at points, or not at all."""
+    near, limit = view.near[1], constants.TOUCH * view.tolerance
+    apart = np.maximum(near.lows[row] - rim.high, rim.low - near.highs[row])
+    if float(apart.max()) > limit + float(near.slacks[row]) or rim.shift + float(near.point_uncertainty[row]) > limit:
+        return []
+    angles = 2.0 * math.pi * np.arange(constants.RIM_TRIED) / constants.RIM_TRIED
+    round_it = beside(near, row, rim.points(angles))
+    if (np.abs(round_it.gaps) <= limit).all() and _coaxial(view, rim, row):
+        angles, spacing = rim.samples()
+        found = [_kept(view, rim, row, angles, spacing)]
+    else:
+        nearest = _nearest(rim, near, row, round_it.gaps, limit)
+        found = [_kept(view, rim, row, nearest[[k]], 0.0) for k in np.flatnonzero(rim.has(nearest))]
+    return [touch for touch in found if touch is not None]
+
+
+def _coaxial(view: PairView, rim: Rim, row: int) -> bool:
+    """Whether the axis of a surface that a rim is about, if it has one, is along that of the rim."""
+    near = view.near[1]
+    tilt = math.asin(min(1.0, float(np.linalg.norm(cross(near.axes[row], rim.axis)))))
+    return tilt <= view.tolerances.alignment + rim.turn + float(near.axis_uncertainty[row])
+
+
+def _nearest(rim: Rim, near: NearSurfaces, row: int, gaps: Array, limit: float) -> Array:
+    """(n,) angles at which a rim comes nearest to a surface, and touches it; by the gaps (m,) at equal angles."""
+    step = 2.0 * math.pi / len(gaps)
+    least = (gaps <= np.roll(gaps, 1)) & (gaps < np.roll(gaps, -1)) & (gaps <= limit + rim.radius * step)
+    low = step * (np.flatnonzero(least) - 1.0)
+    high = low + 2.0 * step
+    for _ in range(constants.HALVINGS):
+        middle = 0.5 * (low + high)
+        normals = beside(near, row, rim.points(middle)).normals
+        rising = (normals * rim.forward(middle)).sum(axis=1) > 0.0
+        low, high = np.where(rising, low, middle), np.where(rising, middle, high)
+    return np.asarray(0.5 * (low + high))
+
+
+def _kept(view: PairView, rim: Rim, row: int, angles: Array, spacing: float) -> _Touch | None:
+    """The touch of those of the angles (n,) on a rim at which it touches the surface; one along a line is all round."""
+    near, tolerance = view.near[1], view.tolerance
+    places = rim.points(angles)
+    found = beside(near, row, places)
+    normals = _evened(rim, angles, found, KINDS[near.kinds[row]]) if spacing else found.normals
+    holds = found.within & (np.abs(found.gaps) <= constants.TOUCH * tolerance) & rim.rises(angles, normals)
+    if not holds.any():
+        return None
+    feet, reach = places - found.gaps[:, None] * found.normals, constants.PROBE_SPARE * tolerance
+    holds &= on_surface(view.b, feet, found.normals, int(near.ids[row]), reach)
+    if not holds.any():
+        return None
+    return _Touch(rim, row, places[holds], found.gaps[holds], normals[holds], spacing)
+
+
+def _evened(rim: Rim, angles: Array, found: Beside, kind: str) -> Array:
+    """(n, 3) normals all round a rim, which are alike about its axis: a surface that is not quite about the same axis
+    turns with it as much as one that is. Those of a sphere pass its middle as they are."""
+    if kind == "sphere":
+        return found.normals
+    outward = rim.outward(angles)
+    across, along = float((found.normals * outward).sum(axis=1).mean()), float((found.normals @ rim.axis).mean())
+    size = math.hypot(across, along)
+    return (across * outward + along * rim.axis) / size
+
+
+def _patch(pair: PairView, touch: _Touch, first: bool) -> Patch:
+    """The patch of a rim of the `first` part, or the second, on a round surface of the other."""
+    near, row, rim = pair.near[1 if first else 0], touch.row, touch.rim
+    zone = constants.ZONE * pair.tolerance
+    shift = rim.shift + float(near.point_uncertainty[row])
+    other = int(near.ids[row])
+    radius = float(near.radii[row]) if KINDS[near.kinds[row]] in ("sphere", "cylinder") else rim.radius
+    samples = TouchSamples(
+        touch.places - 0.5 * touch.gaps[:, None] * touch.normals,
+        -touch.normals if first else touch.normals,
+        touch.gaps,
+        2.0 * zone * touch.spacing if touch.spacing else math.pi * zone**2,
+        axis=rim.axis if touch.spacing else None,
+        radii=(rim.radius, radius) if first else (radius, rim.radius),
+        uncertainty=(max(rim.turn, float(near.axis_uncertainty[row])), shift),
+        chord=float(near.chords[row]),
+    )
+    return touch_patch(pair, (rim.surface, other) if first else (other, rim.surface), samples, shift)
