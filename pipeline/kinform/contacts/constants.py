@@ -210,8 +210,8 @@ RIM_ENDS = 1e-6
 """rad by which an edge of a rim may be longer, for rounding."""
 RIM_TRIED = 96
 """Places round a rim at which it is looked how far the other surface is: it comes near at two places or four."""
-HALVINGS = 48
-"""Of the angle between two such places, to where it comes nearest."""
+RIM_STEPS = 20
+"""Steps between two such places to where it comes nearest: the angle is then exact."""
 
 # higher/outlines, profiles: cams, teeth and racks by their smooth outlines
 

@@ -21,9 +21,10 @@ from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.surfaces import KINDS
 
-_TURNING = tuple(KINDS.index(kind) for kind in ("cylinder", "cone", "torus"))
-_EXACT = tuple(KINDS.index(kind) for kind in EXACT_KINDS)
-_PLANE, _SPHERE = KINDS.index("plane"), KINDS.index("sphere")
+_TURNING, _EXACT, _PLANE, _SPHERE = (
+    np.isin(KINDS, kinds) for kinds in (("cylinder", "cone", "torus"), EXACT_KINDS, ("plane",), ("sphere",))
+)
+"""By kind."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,11 +70,10 @@ class Rim:
         speeds = np.stack([(self.outward(angles) * normals).sum(axis=1), normals @ self.axis])
         return np.asarray((self.slopes @ speeds > constants.EDGE_RISE).all(axis=0))
 
-    def has(self, angles: Array) -> Flags:
-        """(n,) whether the part has an edge there."""
-        beyond = np.mod(angles[:, None] - self.starts, 2.0 * math.pi)
-        slack = constants.RIM_ENDS
-        return np.asarray(((beyond <= self.spans + slack) | (beyond >= 2.0 * math.pi - slack)).any(axis=1))
+    def has(self, angles: Array, slack: float) -> Flags:
+        """(n,) whether the part has an edge there, or within `slack` (rad)."""
+        beyond = np.mod(angles[:, None] - self.starts + slack, 2.0 * math.pi)
+        return np.asarray((beyond <= self.spans + 2.0 * slack).any(axis=1))
 
     def samples(self) -> tuple[Array, float]:
         """(n,) angles evenly over what is there of it, and the arc (m) that each stands for."""
@@ -86,25 +86,32 @@ class Rim:
         return self.starts[edge] + passed - (ends - self.spans)[edge], self.radius * total / count
 
 
-def rims_of(view: PairView, edges: ConvexEdges) -> list[Rim]:
-    """The rims of the first part that are among its edges."""
+def rims_of(view: PairView, edges: ConvexEdges, lows: Array, highs: Array) -> list[Rim]:
+    """The rims of the first part that are among its edges, as far as they are near the boxes from `lows` to `highs`
+    (n, 3); those that come to none of them are left out."""
     part, near = view.a, view.near[0]
-    labels = np.sort(part.surfaces.labels[edges.facets], axis=1)
-    rows = np.searchsorted(near.ids, labels)
-    known = np.asarray((rows < len(near.ids)).all(axis=1))
-    rows = np.where(known[:, None], rows, 0)
-    kinds = near.kinds[rows] if len(near.ids) else np.zeros((len(rows), 2), dtype=np.int64)
-    turning = np.isin(kinds, _TURNING).any(axis=1) | ((kinds == _SPHERE).any(axis=1) & (kinds == _PLANE).any(axis=1))
-    exact = np.isin(kinds, _EXACT).all(axis=1)
-    at = np.flatnonzero(known & turning & exact & (labels[:, 0] != labels[:, 1]))
-    at = at[np.lexsort((labels[at, 1], labels[at, 0]))]
+    if not len(edges.ends) or not len(near.ids):
+        return []
+    corners = part.vertices[edges.ends]
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    labels = part.surfaces.labels[edges.facets]
+    rows = np.minimum(np.searchsorted(near.ids, labels), len(near.ids) - 1)
+    turning, exact, flat, ball = (of[near.kinds[rows]] for of in (_TURNING, _EXACT, _PLANE, _SPHERE))
+    wanted = exact.all(axis=1) & (turning.any(axis=1) | (flat.any(axis=1) & ball.any(axis=1)))
+    wanted &= (labels[:, 0] != labels[:, 1]) & (near.ids[rows] == labels).all(axis=1)
+    wanted &= ((high >= lows.min(axis=0)) & (low <= highs.max(axis=0))).all(axis=1)
+    at = np.flatnonzero(wanted)
     if not len(at):
         return []
-    keys = labels[at, 0] * np.int64(len(part.surfaces.surfaces)) + labels[at, 1]
-    out: list[Rim] = []
-    for group in np.split(at, np.flatnonzero(heads(keys))[1:]):
-        out += _circles(view, rows[group[0]], edges.ends[group])
-    return out
+    rows = np.sort(rows[at], axis=1)
+    keys = rows[:, 0] * np.int64(len(near.ids)) + rows[:, 1]
+    order = np.argsort(keys, kind="stable")
+    starts = np.flatnonzero(heads(keys[order]))
+    least, most = np.minimum.reduceat(low[at[order]], starts), np.maximum.reduceat(high[at[order]], starts)
+    meets = np.asarray(((most[:, None] >= lows) & (least[:, None] <= highs)).all(axis=2))
+    groups = np.split(order, starts[1:])
+    chosen = [group for group, met in zip(groups, meets, strict=True) if met.any()]
+    return [rim for group in chosen for rim in _circles(view, rows[group[0]], edges.ends[at[group]])]
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,8 +129,8 @@ class _Axis:
 def _axis(near: NearSurfaces, rows: Ints) -> _Axis:
     """That of one of two surfaces that meet; a plane tells the direction of what it ends better than a short cylinder,
     and of a ball all of it."""
-    turning = [int(row) for row in rows if near.kinds[row] in _TURNING]
-    flat = [int(row) for row in rows if near.kinds[row] == _PLANE]
+    turning = [int(row) for row in rows if _TURNING[near.kinds[row]]]
+    flat = [int(row) for row in rows if _PLANE[near.kinds[row]]]
     own = min(turning, key=lambda row: (near.axis_uncertainty[row], row)) if turning else flat[0]
     middle = own if turning else next(int(row) for row in rows if row != own)
     by_plane = bool(flat) and near.axis_uncertainty[flat[0]] < near.axis_uncertainty[own]

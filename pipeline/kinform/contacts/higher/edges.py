@@ -23,15 +23,6 @@ from kinform.model.tolerances import Tolerances
 
 
 @dataclass(frozen=True, eq=False)
-class _Edges:
-    """Sharp convex edges of a part (e, 2) by vertices, the facets beside them (e, 2), and whether they bend on."""
-
-    ends: Ints
-    facets: Ints
-    bends: Flags
-
-
-@dataclass(frozen=True, eq=False)
 class _Touch:
     """Points (n, 3) on one edge or corner of a part, over a plane of the other."""
 
@@ -53,12 +44,12 @@ def edge_contacts(
     """Edges and corners of either part, which are among its `convex` ones, on planes of the other, in the frame of the
     pair; `met`: pairs of surfaces that touch otherwise and are left out."""
     out = []
-    for view, first, of_first in ((pair, True, convex[0]), (pair.swapped, False, convex[1])):
+    for view, first, edges in ((pair, True, convex[0]), (pair.swapped, False, convex[1])):
         planes = view.near[1]
-        edges = _sharp_edges(view.a, of_first, pair.tolerances)
         large = planes.areas >= constants.GIVER_AREA * pair.tolerance**2
+        sharp = edges.where(edges.cosine < math.cos(pair.tolerances.smooth_edge))
         for row in np.flatnonzero((planes.kinds == KINDS.index("plane")) & large):
-            touches = _standing(view, edges, int(row))
+            touches = _standing(view, sharp, int(row))
             out += [
                 _patch(pair, touch, first)
                 for touch in touches
@@ -67,26 +58,17 @@ def edge_contacts(
     return out
 
 
-def _sharp_edges(part: PartView, convex: ConvexEdges, tolerances: Tolerances) -> _Edges:
-    """Those of the convex edges at which the part is sharp."""
-    sharp = convex.where(convex.cosine < math.cos(tolerances.smooth_edge))
-    ends, along = sharp.ends, part.vertices[sharp.ends[:, 1]] - part.vertices[sharp.ends[:, 0]]
+def _bends(sharp: PartView, edges: ConvexEdges, k: int, tolerances: Tolerances) -> bool:
+    """Whether one of the edges goes on into another at a slight angle."""
+    meets = np.flatnonzero(np.isin(edges.ends, edges.ends[k]).any(axis=1))
+    start, stop = (sharp.vertices[edges.ends[np.append(meets, k)][:, side]] for side in (0, 1))
+    along = stop - start
     unit = along / np.maximum(np.linalg.norm(along, axis=1), 1e-300)[:, None]
-    bends = np.zeros(len(ends), dtype=bool)
-    meeting: dict[int, list[int]] = {}
-    for k, pair in enumerate(ends.tolist()):
-        for vertex in pair:
-            meeting.setdefault(vertex, []).append(k)
-    for group in meeting.values():
-        for i, k in enumerate(group):
-            for m in group[:i]:
-                turn = math.acos(min(1.0, abs(float(unit[k] @ unit[m]))))
-                if tolerances.coplanar < turn < tolerances.smooth_edge:
-                    bends[[k, m]] = True
-    return _Edges(ends, sharp.facets, bends)
+    turns = np.arccos(np.minimum(1.0, np.abs(unit[:-1] @ unit[-1])))
+    return bool(((turns > tolerances.coplanar) & (turns < tolerances.smooth_edge)).any())
 
 
-def _standing(view: PairView, edges: _Edges, row: int) -> list[_Touch]:
+def _standing(view: PairView, edges: ConvexEdges, row: int) -> list[_Touch]:
     """Edges and corners of the first part that stand on one plane of the second."""
     (sharp, flat), planes, limit = view.parts, view.near[1], constants.TOUCH * view.tolerance
     normal, origin = planes.axes[row], planes.points[row]
@@ -108,7 +90,9 @@ def _standing(view: PairView, edges: _Edges, row: int) -> list[_Touch]:
     spots: list[tuple[Ints, Array, Array | None]] = [
         (
             edges.facets[k, 0],
-            _between(sharp, edges.ends[k], 1 if edges.bends[k] else constants.LINE_SAMPLES),
+            _between(
+                sharp, edges.ends[k], 1 if _bends(sharp, edges, int(k), view.tolerances) else constants.LINE_SAMPLES
+            ),
             vectors[k] / length[k],
         )
         for k in lines
@@ -130,7 +114,7 @@ def _standing(view: PairView, edges: _Edges, row: int) -> list[_Touch]:
     return out
 
 
-def _rises(sharp: PartView, edges: _Edges, height: Array) -> Flags:
+def _rises(sharp: PartView, edges: ConvexEdges, height: Array) -> Flags:
     """Whether both faces beside each edge rise from it, and not as good as flat."""
     out = np.ones(len(edges.ends), dtype=bool)
     base = height[edges.ends].mean(axis=1)

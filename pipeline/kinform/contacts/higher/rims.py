@@ -20,11 +20,12 @@ from kinform.contacts.higher.sharp import ConvexEdges, on_surface
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.pair_view import NearSurfaces, PairView
 from kinform.foundation.algebra.vectors import cross
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 
-_ROUND = tuple(KINDS.index(kind) for kind in ("sphere", "cylinder", "cone", "torus"))
+_ROUND = np.isin(KINDS, ("sphere", "cylinder", "cone", "torus"))
+"""By kind."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,29 +49,38 @@ def rim_contacts(pair: PairView, convex: tuple[ConvexEdges, ConvexEdges]) -> lis
     the pair."""
     out = []
     for view, first, edges in ((pair, True, convex[0]), (pair.swapped, False, convex[1])):
-        rows = np.flatnonzero(np.isin(view.near[1].kinds, _ROUND))
+        rows = np.flatnonzero(_ROUND[view.near[1].kinds])
         if not len(rows):
             continue
-        for rim in rims_of(view, edges):
-            for row in rows:
+        low, high = _boxes(view, rows)
+        for rim in rims_of(view, edges, low, high):
+            known = rim.shift + view.near[1].point_uncertainty[rows] <= constants.TOUCH * view.tolerance
+            beside_it = ((low <= rim.high) & (rim.low <= high)).all(axis=1)
+            for row in rows[known & beside_it]:
                 out += [_patch(pair, touch, first) for touch in _touches(view, rim, int(row))]
     return out
+
+
+def _boxes(view: PairView, rows: Ints) -> tuple[Array, Array]:
+    """Lowest and highest corners (n, 3) of where near surfaces of the second part may be touched."""
+    near = view.near[1]
+    margin = (constants.TOUCH * view.tolerance + near.slacks[rows])[:, None]
+    return near.lows[rows] - margin, near.highs[rows] + margin
 
 
 def _touches(view: PairView, rim: Rim, row: int) -> list[_Touch]:
     """All round, or at points, or not at all."""
     near, limit = view.near[1], constants.TOUCH * view.tolerance
-    apart = np.maximum(near.lows[row] - rim.high, rim.low - near.highs[row])
-    if float(apart.max()) > limit + float(near.slacks[row]) or rim.shift + float(near.point_uncertainty[row]) > limit:
-        return []
     angles = 2.0 * math.pi * np.arange(constants.RIM_TRIED) / constants.RIM_TRIED
     round_it = beside(near, row, rim.points(angles))
+    if not -limit <= float(round_it.gaps.max()) or float(round_it.gaps.min()) > limit + rim.radius * angles[1]:
+        return []
     if (np.abs(round_it.gaps) <= limit).all() and _coaxial(view, rim, row):
         angles, spacing = rim.samples()
         found = [_kept(view, rim, row, angles, spacing)]
     else:
-        nearest = _nearest(rim, near, row, round_it.gaps, limit)
-        found = [_kept(view, rim, row, nearest[[k]], 0.0) for k in np.flatnonzero(rim.has(nearest))]
+        nearest = _nearest(rim, near, row, angles, round_it, limit)
+        found = [_kept(view, rim, row, nearest[[k]], 0.0) for k in range(len(nearest))]
     return [touch for touch in found if touch is not None]
 
 
@@ -81,18 +91,28 @@ def _coaxial(view: PairView, rim: Rim, row: int) -> bool:
     return tilt <= view.tolerances.alignment + rim.turn + float(near.axis_uncertainty[row])
 
 
-def _nearest(rim: Rim, near: NearSurfaces, row: int, gaps: Array, limit: float) -> Array:
-    """(n,) angles at which a rim comes nearest to a surface, and touches it; by the gaps (m,) at equal angles."""
-    step = 2.0 * math.pi / len(gaps)
-    least = (gaps <= np.roll(gaps, 1)) & (gaps < np.roll(gaps, -1)) & (gaps <= limit + rim.radius * step)
-    low = step * (np.flatnonzero(least) - 1.0)
-    high = low + 2.0 * step
-    for _ in range(constants.HALVINGS):
-        middle = 0.5 * (low + high)
+def _nearest(rim: Rim, near: NearSurfaces, row: int, angles: Array, there: Beside, limit: float) -> Array:
+    """(n,) angles at which a rim is nearest to a surface, within `limit` (m), and goes up on both sides; by what the
+    surface is to it at equal `angles` (m,)."""
+    speed = rim.radius * (there.normals * rim.forward(angles)).sum(axis=1)
+    ahead = np.roll(speed, -1)
+    step = 2.0 * math.pi / len(angles)
+    # between two places it is not below the tangents, but for its bends
+    least = np.minimum(there.gaps, np.roll(there.gaps, -1))
+    lowest = least - step * np.maximum(-speed, ahead) - rim.radius * step**2
+    tried = np.flatnonzero((speed <= 0.0) & (ahead > 0.0) & (lowest <= limit) & (least >= -limit))
+    tried = tried[rim.has(angles[tried] + 0.5 * step, 0.5 * step)]
+    low, high, down, up = angles[tried], angles[tried] + step, speed[tried], ahead[tried]
+    middle = low
+    for _ in range(constants.RIM_STEPS if len(tried) else 0):
+        middle = (low * up - high * down) / (up - down)
         normals = beside(near, row, rim.points(middle)).normals
-        rising = (normals * rim.forward(middle)).sum(axis=1) > 0.0
+        rate = rim.radius * (normals * rim.forward(middle)).sum(axis=1)
+        rising = rate > 0.0
+        # Illinois: the end that stays counts half, so that both come nearer
         low, high = np.where(rising, low, middle), np.where(rising, middle, high)
-    return np.asarray(0.5 * (low + high))
+        down, up = np.where(rising, 0.5 * down, rate), np.where(rising, rate, 0.5 * up)
+    return middle[rim.has(middle, constants.RIM_ENDS)]
 
 
 def _kept(view: PairView, rim: Rim, row: int, angles: Array, spacing: float) -> _Touch | None:
