@@ -10,7 +10,7 @@ from kinform.contacts.constants import ACROSS_SINE, MATING_REACH, NARROW_SHARE, 
 from kinform.contacts.higher.edges import edge_contacts
 from kinform.contacts.higher.points_and_lines import higher_pairs, pins_in_slots
 from kinform.contacts.higher.profiles import profile_contacts
-from kinform.contacts.higher.rims import rim_contacts
+from kinform.contacts.higher.rims import rim_contacts, seats
 from kinform.contacts.higher.sharp import convex_edges
 from kinform.contacts.mating.analytic import analytic_mates
 from kinform.contacts.mating.coarse import rounded
@@ -65,6 +65,8 @@ def pair_contacts(
     patches = _with_higher(pair, patches)
     if not any(patch.kind in ("line", "point") for patch in patches):
         patches += pins_in_slots(pair, patches)
+    if any(_firm(pair, patch) for patch in patches):
+        patches += seats(pair, patches)
     patches += enclosing_patches(pair, patches)
     alone = all(_strip(pair, patch) for patch in patches)
     patches = [_of_scattered(pair, patch, alone) for patch in patches]
@@ -101,7 +103,7 @@ def _with_higher(pair: PairView, patches: list[Patch]) -> list[Patch]:
     beside patches of facets, which say less than they do, beside planes across them, which leave them free, and
     beside single facets of the curves that happen to face each other.
     """
-    firm = [patch for patch in patches if not patch.one_sided and not _strip(pair, patch)]
+    firm = [patch for patch in patches if _firm(pair, patch)]
     along = firm[0].axis if firm else None
     if along is not None and not all(_across(patch, along) for patch in firm):
         return patches
@@ -153,6 +155,11 @@ def _of_scattered(pair: PairView, patch: Patch, alone: bool) -> Patch:
 def _across(patch: Patch, along: Array) -> bool:
     """Whether it is of planes that leave motion across the direction `along` free."""
     return patch.kind == "plane" and float(np.linalg.norm(cross(patch.axis, along))) < ACROSS_SINE
+
+
+def _firm(pair: PairView, patch: Patch) -> bool:
+    """Whether both its surfaces are known, and no facets of curves."""
+    return not patch.one_sided and not _strip(pair, patch)
 
 
 def _strip(pair: PairView, patch: Patch) -> bool:

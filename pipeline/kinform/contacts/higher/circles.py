@@ -75,6 +75,11 @@ class Rim:
         beyond = np.mod(angles[:, None] - self.starts + slack, 2.0 * math.pi)
         return np.asarray((beyond <= self.spans + 2.0 * slack).any(axis=1))
 
+    @property
+    def closed(self) -> bool:
+        """Whether it goes all round."""
+        return float(self.spans.sum()) >= constants.ROUND_SWEEP
+
     def samples(self) -> tuple[Array, float]:
         """(n,) angles evenly over what is there of it, and the arc (m) that each stands for."""
         total = float(self.spans.sum())

@@ -16,7 +16,7 @@ import numpy as np
 from kinform.contacts import constants
 from kinform.contacts.higher.beside import Beside, beside
 from kinform.contacts.higher.circles import Rim, rims_of
-from kinform.contacts.higher.sharp import ConvexEdges, on_surface
+from kinform.contacts.higher.sharp import ConvexEdges, convex_edges, on_surface
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.pair_view import NearSurfaces, PairView
 from kinform.foundation.algebra.vectors import cross
@@ -25,6 +25,7 @@ from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 
 _ROUND = np.isin(KINDS, ("sphere", "cylinder", "cone", "torus"))
+_SEATED = np.isin(KINDS, ("sphere", "cone", "torus"))
 """By kind."""
 
 
@@ -49,15 +50,40 @@ def rim_contacts(pair: PairView, convex: tuple[ConvexEdges, ConvexEdges]) -> lis
     the pair."""
     out = []
     for view, first, edges in ((pair, True, convex[0]), (pair.swapped, False, convex[1])):
-        rows = np.flatnonzero(_ROUND[view.near[1].kinds])
-        if not len(rows):
-            continue
-        low, high = _boxes(view, rows)
-        for rim in rims_of(view, edges, low, high):
-            known = rim.shift + view.near[1].point_uncertainty[rows] <= constants.TOUCH * view.tolerance
-            beside_it = ((low <= rim.high) & (rim.low <= high)).all(axis=1)
-            for row in rows[known & beside_it]:
-                out += [_patch(pair, touch, first) for touch in _touches(view, rim, int(row))]
+        touches = _of_view(view, edges, np.flatnonzero(_ROUND[view.near[1].kinds]))
+        out += [_patch(pair, touch, first) for touch in touches]
+    return out
+
+
+def seats(pair: PairView, patches: list[Patch]) -> list[Patch]:
+    """Rims that go all round, on balls, cones and rings that none of the `patches` is of: what stands in a seat beside
+    what guides it, as countersunk screws and valves do."""
+    mated = tuple(np.array(sorted({patch.surfaces[k] for patch in patches}), dtype=np.int64) for k in (0, 1))
+    free = [_SEATED[side.kinds] & ~np.isin(side.ids, ids) for side, ids in zip(pair.near, mated, strict=True)]
+    if not any(of.any() for of in free):
+        return []
+    convex = convex_edges(pair)
+    if convex is None:
+        return []
+    out = []
+    for view, first, edges, rows in ((pair, True, convex[0], free[1]), (pair.swapped, False, convex[1], free[0])):
+        for touch in _of_view(view, edges, np.flatnonzero(rows)):
+            if touch.spacing and len(touch.places) == constants.BALL_BORE_SAMPLES and touch.rim.closed:
+                out.append(_patch(pair, touch, first))
+    return out
+
+
+def _of_view(view: PairView, edges: ConvexEdges, rows: Ints) -> list[_Touch]:
+    """Where rims of the first part touch round surfaces of the second, at these positions among the near ones."""
+    if not len(rows):
+        return []
+    low, high = _boxes(view, rows)
+    out = []
+    for rim in rims_of(view, edges, low, high):
+        known = rim.shift + view.near[1].point_uncertainty[rows] <= constants.TOUCH * view.tolerance
+        beside_it = ((low <= rim.high) & (rim.low <= high)).all(axis=1)
+        for row in rows[known & beside_it]:
+            out += _touches(view, rim, int(row))
     return out
 
 
