@@ -295,3 +295,40 @@ def test_a_face_along_a_round_surface_has_no_rim_on_it():
     assert {patch.kind for patch in shaft.patches} == {"cylinder"}
     socket = box(-12, 12, -12, 12, -12, 0) - ball(8, 48)
     assert {patch.kind for patch in placed((ball(8, 48, 2.0), socket), False, np.eye(4))[1].patches} == {"sphere"}
+
+
+def countersunk(n, lift=0.0):
+    """A screw whose cone stands on the rim of a hole with play for its shank."""
+    head = cone(45, 9, n).trim_by_plane((0, 0, 1), 3.5).translate((0, 0, -5))
+    return (head + rod(4.8, -15, -1.4, n)).translate((0, 0, lift)), plate(5, n, 10)
+
+
+def valve(n, lift=0.0):
+    """A ball on a rim, with a stem in a guide above."""
+    ball_on_stem = ball(8, n).translate((0, 0, H8)) + rod(3, 5, 40, n)
+    guide = box(-20, 20, -20, 20, 20, 35) - rod(3.05, 19, 36, n, 1.0)
+    return ball_on_stem.translate((0, 0, lift)), plate(5, n) + guide + box(18, 20, -20, 20, -5, 35)
+
+
+@pytest.mark.parametrize("make", [countersunk, valve])
+@pytest.mark.parametrize(("segments", "swap"), [(24, False), (64, True)])
+def test_what_stands_on_a_rim_beside_its_guide_is_held_or_stopped(make, segments, swap):
+    kinematics, contacts, _ = placed(make(segments), swap, random_pose(np.random.default_rng(segments)))
+    assert sorted(patch.kind for patch in contacts.patches) == ["cylinder", "line"]
+    (joint,) = kinematics.joints
+    assert (joint.type, joint.status) == ("revolute", "ambiguous")
+    assert [reading.type for reading in joint.readings] == ["cylindrical"]
+
+
+@pytest.mark.parametrize("make", [countersunk, valve])
+def test_what_is_lifted_off_its_rim_slides_in_its_guide(make):
+    kinematics, contacts, _ = placed(make(48, 0.5), False, np.eye(4))
+    assert {patch.kind for patch in contacts.patches} == {"cylinder"}
+    assert (kinematics.joints[0].type, kinematics.joints[0].status) == ("cylindrical", "determined")
+
+
+def test_a_screw_in_its_countersink_lies_on_it_and_on_no_rim():
+    screw, board = countersunk(48)
+    sunk = board - cone(45, 9, 48, 2.0).translate((0, 0, -8))
+    contacts = placed((screw.translate((0, 0, -3)), sunk), False, np.eye(4))[1]
+    assert {patch.kind for patch in contacts.patches} == {"cone", "cylinder"}
