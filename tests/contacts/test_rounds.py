@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from manifold3d import CrossSection, Manifold
+from scipy.spatial.transform import Rotation
 from support.solids import ball, box, derived, random_pose, rod
 
 
@@ -46,7 +47,53 @@ def seat(n, half=45.0):
     return rod(wide + 5, 1, 19, n) - Manifold.cylinder(20, 0, wide, n)
 
 
+LEAN = np.degrees(np.arctan2(4, 30))
+"""Half-angle of a taper."""
+
+
+def roller_on_a_taper(n):
+    """A roller along the generator of a taper at +x."""
+    away = 4 * np.array([np.cos(np.radians(LEAN)), 0, -np.sin(np.radians(LEAN))])
+    roller = rod(4, -12, 12, n, 2.0).rotate((0, LEAN, 0)).translate(tuple(np.array([7, 0, 15]) + away))
+    return {"a": taper(n), "b": roller}
+
+
+def roller_in_a_cup(n, lean=12.0):
+    """A tapered roller of half-angle 3° in a conical ring of 15°, both with their apex at the origin."""
+
+    def frustum(half, low, high):
+        slope = np.tan(np.radians(half))
+        return Manifold.cylinder(high - low, slope * low, slope * high, n).translate((0, 0, low))
+
+    return {"a": frustum(3, 60, 80).rotate((0, lean, 0)), "b": rod(40, 55, 85, n) - frustum(15, 50, 90)}
+
+
+def crossed_tapers(n, turn=70.0):
+    """Two tapers that touch at (7, 0, 15), the second turned about the normal there."""
+    lean = np.radians(LEAN)
+    about = Rotation.from_rotvec(np.radians(turn) * np.array([np.cos(lean), 0, -np.sin(lean)]))
+    R = (about * Rotation.from_euler("y", 2 * LEAN, degrees=True)).as_matrix()
+    shift = np.array([7, 0, 15]) - R @ [-7, 0, 15]
+    return {"a": taper(n), "b": taper(n).rotate((0, 0, 5)).transform(np.column_stack([R, shift]))}
+
+
 CASES = {
+    "tapered rollers side by side": (
+        4,
+        "line",
+        lambda n: {"a": taper(n), "b": taper(n).rotate((180, 0, 3)).translate((14, 0, 30))},
+    ),
+    "tapered rollers with one apex": (
+        4,
+        "line",
+        lambda n: {
+            "a": taper(n).translate((0, 0, 37.5)),
+            "b": taper(n).rotate((0, 0, 4)).translate((0, 0, 37.5)).rotate((0, 2 * LEAN, 0)),
+        },
+    ),
+    "a roller on a taper": (4, "line", roller_on_a_taper),
+    "a tapered roller in its ring": (4, "line", roller_in_a_cup),
+    "crossed tapers": (5, "point", crossed_tapers),
     "ball on a plane": (5, "point", lambda n: {"a": ball(5, n).translate((0, 0, 5)), "b": block()}),
     "roller on a plane": (
         4,
@@ -131,6 +178,9 @@ def test_what_does_not_touch_is_no_pair(apart):
         (ball(4.5 - apart / 2, 48), tube(48)),
         (ball(4, 48).translate((0, 0, 4 * np.sqrt(2) + apart)), seat(48)),
         (laid(taper(48)).translate((0, 0, apart)), box(-20, 60, -20, 20, -5, 0)),
+        (taper(48), taper(48).rotate((180, 0, 0)).translate((14 + apart, 0, 30))),
+        (taper(48), crossed_tapers(48)["b"].translate((apart, 0, 0))),
+        (roller_in_a_cup(48)["a"].translate((-apart, 0, 0)), roller_in_a_cup(48)["b"]),
     ):
         _, contacts = derived(np.eye(4), a=a, b=b)
         assert not contacts.patches
@@ -148,3 +198,25 @@ def test_a_pin_beside_one_wall_and_a_face_is_not_in_a_slot():
     pin = rod(3, -10, 10, 48) + rod(8, 5.1, 10, 48)
     _, contacts = derived(np.eye(4), a=pin, b=box(-20, 20, -15, -3.0, -5, 5))
     assert {patch.kind for patch in contacts.patches} == {"plane"}
+
+
+@pytest.mark.parametrize("segments", [24, 57])
+def test_the_line_of_two_tapers_is_the_generator_that_they_share(segments):
+    X = random_pose(np.random.default_rng(segments))
+    (patch,) = derived(X, **roller_in_a_cup(segments))[1].patches
+    generator = X[:3, :3] @ [np.sin(np.radians(15)), 0, np.cos(np.radians(15))]
+    normal = X[:3, :3] @ [np.cos(np.radians(15)), 0, -np.sin(np.radians(15))]
+    along = (patch.points - X[:3, 3]) @ generator
+    assert np.abs(patch.points - X[:3, 3] - np.outer(along, generator)).max() < 2e-7
+    assert np.allclose(patch.normals, normal, atol=1e-5)
+    cosine = np.cos(np.radians(3))
+    assert 0.06 / cosine < along.min() < 0.061 / cosine
+    assert 0.079 / cosine < along.max() < 0.08 / cosine
+
+
+def test_tapered_rollers_that_lie_askew_touch_at_a_point():
+    """Beyond the angle up to which they share a generator."""
+    for turn in (2.0, -10.0):
+        kinematics, contacts = derived(random_pose(np.random.default_rng(8)), **crossed_tapers(64, turn))
+        assert [patch.kind for patch in contacts.patches] == ["point"]
+        assert kinematics.joints[0].freedoms == 5

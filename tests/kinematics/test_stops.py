@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
-from support.patches import Z, cylinder, plane, ring, sphere
+from support.patches import Z, cylinder, patch, plane, ring, sphere
 
 from kinform.kinematics.pair.decision import decide
 from kinform.kinematics.pair.evidence import gather
@@ -182,3 +182,24 @@ def test_a_constraint_that_the_directions_may_lack_is_none_for_sure(known_to, an
     faces = [plane((0, 0.01, 0), size=(0.02, 0.02)), plane((0, -0.01, 0), leaning, size=(0.02, 0.02))]
     found = decision([replace(face, mismatch=(known_to, 1e-7)) for face in faces])
     assert types(found)[:2] == answer, found.reason
+
+
+def rim(height=0.01, radius=0.008, slope=(-0.6, 0.8), **keys):
+    """A circle on a cone or ball about z: its normals out of a."""
+    angles = np.linspace(0, 2 * np.pi, 16, endpoint=False)
+    outward = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
+    normals = slope[0] * outward + slope[1] * Z
+    return patch(radius * outward + height * Z, normals, "line", area=3e-7, radii=(radius, 0.0), **keys)
+
+
+def test_a_rim_in_its_seat_beside_a_guide_holds_it_or_is_a_stop():
+    assert types(decision([cylinder(), rim()])) == ("revolute", "ambiguous", "cylindrical")
+    assert types(decision([cylinder(), rim(slope=(0.6, -0.8))])) == ("revolute", "ambiguous", "cylindrical")
+
+
+def test_a_rim_that_a_shoulder_holds_in_its_seat_changes_nothing():
+    assert types(decision([cylinder(), ring((0, 0, -0.01), -Z), rim()])) == ("revolute", "determined", None)
+
+
+def test_rims_in_seats_at_both_ends_are_no_stop():
+    assert types(decision([cylinder(), rim(), rim(-0.01, slope=(-0.6, -0.8))])) == ("revolute", "ambiguous", None)

@@ -200,6 +200,18 @@ EDGE_RISE = math.sin(math.radians(3.0))
 """Faces beside an edge rise at least this steeply; flatter ones lie on the plane badly."""
 EDGES_MOST = 64
 """More edges and corners than these on one plane are a rough surface."""
+RIM_UNEVEN = 0.02
+"""Vertices of a rim are on one circle to within this: a sixth of what touches."""
+RIM_EVEN = 0.75
+"""Least share of the vertices of a rim that are."""
+RIM_SAMPLES = 4
+"""Least number of samples along a rim of which not all is there."""
+RIM_ENDS = 1e-6
+"""rad by which an edge of a rim may be longer, for rounding."""
+RIM_TRIED = 96
+"""Places round a rim at which it is looked how far the other surface is: it comes near at two places or four."""
+RIM_STEPS = 20
+"""Steps between two such places to where it comes nearest: the angle is then exact."""
 
 # higher/outlines, profiles: cams, teeth and racks by their smooth outlines
 

@@ -10,6 +10,8 @@ from kinform.contacts.constants import ACROSS_SINE, MATING_REACH, NARROW_SHARE, 
 from kinform.contacts.higher.edges import edge_contacts
 from kinform.contacts.higher.points_and_lines import higher_pairs, pins_in_slots
 from kinform.contacts.higher.profiles import profile_contacts
+from kinform.contacts.higher.rims import rim_contacts, seats
+from kinform.contacts.higher.sharp import convex_edges
 from kinform.contacts.mating.analytic import analytic_mates
 from kinform.contacts.mating.coarse import rounded
 from kinform.contacts.mating.enclosing import enclosing_patches
@@ -63,6 +65,8 @@ def pair_contacts(
     patches = _with_higher(pair, patches)
     if not any(patch.kind in ("line", "point") for patch in patches):
         patches += pins_in_slots(pair, patches)
+    if any(_firm(pair, patch) for patch in patches):
+        patches += seats(pair, patches)
     patches += enclosing_patches(pair, patches)
     alone = all(_strip(pair, patch) for patch in patches)
     patches = [_of_scattered(pair, patch, alone) for patch in patches]
@@ -99,7 +103,7 @@ def _with_higher(pair: PairView, patches: list[Patch]) -> list[Patch]:
     beside patches of facets, which say less than they do, beside planes across them, which leave them free, and
     beside single facets of the curves that happen to face each other.
     """
-    firm = [patch for patch in patches if not patch.one_sided and not _strip(pair, patch)]
+    firm = [patch for patch in patches if _firm(pair, patch)]
     along = firm[0].axis if firm else None
     if along is not None and not all(_across(patch, along) for patch in firm):
         return patches
@@ -107,8 +111,7 @@ def _with_higher(pair: PairView, patches: list[Patch]) -> list[Patch]:
     if not profiles:
         if patches:
             return patches
-        touches = higher_pairs(pair)
-        return touches + edge_contacts(pair, frozenset(patch.surfaces for patch in touches))
+        return _touching(pair)
     rest = [patch for patch in patches if _across(patch, profiles[0].axis)]
     # facets that face each other well apart say nothing beside curves that touch
     least = max(patch.gap for patch in profiles) + TOUCH * pair.tolerance
@@ -116,6 +119,16 @@ def _with_higher(pair: PairView, patches: list[Patch]) -> list[Patch]:
     if not all(i in pieces[0] and j in pieces[1] for i, j in (patch.surfaces for patch in others)):
         return patches
     return rest + profiles + ([] if rest else higher_pairs(pair, pieces))
+
+
+def _touching(pair: PairView) -> list[Patch]:
+    """Points and lines where nothing else touches."""
+    touches = higher_pairs(pair)
+    convex = convex_edges(pair)
+    if convex is None:
+        return touches
+    met = frozenset(patch.surfaces for patch in touches)
+    return touches + edge_contacts(pair, convex, met) + rim_contacts(pair, convex)
 
 
 def _of_scattered(pair: PairView, patch: Patch, alone: bool) -> Patch:
@@ -142,6 +155,11 @@ def _of_scattered(pair: PairView, patch: Patch, alone: bool) -> Patch:
 def _across(patch: Patch, along: Array) -> bool:
     """Whether it is of planes that leave motion across the direction `along` free."""
     return patch.kind == "plane" and float(np.linalg.norm(cross(patch.axis, along))) < ACROSS_SINE
+
+
+def _firm(pair: PairView, patch: Patch) -> bool:
+    """Whether both its surfaces are known, and no facets of curves."""
+    return not patch.one_sided and not _strip(pair, patch)
 
 
 def _strip(pair: PairView, patch: Patch) -> bool:

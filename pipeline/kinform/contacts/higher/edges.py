@@ -12,23 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.contacts import constants
+from kinform.contacts.higher.sharp import ConvexEdges, on_surface
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
-from kinform.contacts.search.pair_view import PairView, PartView, near_facets
+from kinform.contacts.search.pair_view import PairView, PartView
 from kinform.foundation.algebra.vectors import dot
-from kinform.foundation.meshes.edges import shared_edges
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances
-
-
-@dataclass(frozen=True, eq=False)
-class _Edges:
-    """Sharp convex edges of a part (e, 2) by vertices, the facets beside them (e, 2), and whether they bend on."""
-
-    ends: Ints
-    facets: Ints
-    bends: Flags
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,19 +38,18 @@ class _Touch:
     """m² that each point stands for."""
 
 
-def edge_contacts(pair: PairView, met: frozenset[tuple[int, int]] = frozenset()) -> list[Patch]:
-    """Edges and corners of either part on planes of the other, in the frame of the pair; `met`: pairs of surfaces
-    that touch otherwise and are left out."""
-    box = pair.common_box()
-    if box is None:
-        return []
+def edge_contacts(
+    pair: PairView, convex: tuple[ConvexEdges, ConvexEdges], met: frozenset[tuple[int, int]] = frozenset()
+) -> list[Patch]:
+    """Edges and corners of either part, which are among its `convex` ones, on planes of the other, in the frame of the
+    pair; `met`: pairs of surfaces that touch otherwise and are left out."""
     out = []
-    for view, first in ((pair, True), (pair.swapped, False)):
+    for view, first, edges in ((pair, True, convex[0]), (pair.swapped, False, convex[1])):
         planes = view.near[1]
-        edges = _sharp_edges(view.a, near_facets(view.a, *box)[0], pair.tolerances)
         large = planes.areas >= constants.GIVER_AREA * pair.tolerance**2
+        sharp = edges.where(edges.cosine < math.cos(pair.tolerances.smooth_edge))
         for row in np.flatnonzero((planes.kinds == KINDS.index("plane")) & large):
-            touches = _standing(view, edges, int(row))
+            touches = _standing(view, sharp, int(row))
             out += [
                 _patch(pair, touch, first)
                 for touch in touches
@@ -68,30 +58,17 @@ def edge_contacts(pair: PairView, met: frozenset[tuple[int, int]] = frozenset())
     return out
 
 
-def _sharp_edges(part: PartView, facets: Ints, tolerances: Tolerances) -> _Edges:
-    """Those among the facets (ascending) between which the part is sharp and convex."""
-    edges = shared_edges(part.faces[facets], len(part.vertices), by_corner=True)
-    edges = edges.where(edges.opposed)
-    one, two = (part.normals(facets[side]) for side in edges.facets.T)
-    convex = edges.convexity(part.vertices, one, two) > 0.0
-    edges = edges.where((dot(one, two) < math.cos(tolerances.smooth_edge)) & convex)
-    ends, beside, along = edges.ends, facets[edges.facets], edges.along(part.vertices)
+def _bends(sharp: PartView, edges: ConvexEdges, k: int, tolerances: Tolerances) -> bool:
+    """Whether one of the edges goes on into another at a slight angle."""
+    meets = np.flatnonzero(np.isin(edges.ends, edges.ends[k]).any(axis=1))
+    start, stop = (sharp.vertices[edges.ends[np.append(meets, k)][:, side]] for side in (0, 1))
+    along = stop - start
     unit = along / np.maximum(np.linalg.norm(along, axis=1), 1e-300)[:, None]
-    bends = np.zeros(len(ends), dtype=bool)
-    meeting: dict[int, list[int]] = {}
-    for k, pair in enumerate(ends.tolist()):
-        for vertex in pair:
-            meeting.setdefault(vertex, []).append(k)
-    for group in meeting.values():
-        for i, k in enumerate(group):
-            for m in group[:i]:
-                turn = math.acos(min(1.0, abs(float(unit[k] @ unit[m]))))
-                if tolerances.coplanar < turn < tolerances.smooth_edge:
-                    bends[[k, m]] = True
-    return _Edges(ends, beside, bends)
+    turns = np.arccos(np.minimum(1.0, np.abs(unit[:-1] @ unit[-1])))
+    return bool(((turns > tolerances.coplanar) & (turns < tolerances.smooth_edge)).any())
 
 
-def _standing(view: PairView, edges: _Edges, row: int) -> list[_Touch]:
+def _standing(view: PairView, edges: ConvexEdges, row: int) -> list[_Touch]:
     """Edges and corners of the first part that stand on one plane of the second."""
     (sharp, flat), planes, limit = view.parts, view.near[1], constants.TOUCH * view.tolerance
     normal, origin = planes.axes[row], planes.points[row]
@@ -113,7 +90,9 @@ def _standing(view: PairView, edges: _Edges, row: int) -> list[_Touch]:
     spots: list[tuple[Ints, Array, Array | None]] = [
         (
             edges.facets[k, 0],
-            _between(sharp, edges.ends[k], 1 if edges.bends[k] else constants.LINE_SAMPLES),
+            _between(
+                sharp, edges.ends[k], 1 if _bends(sharp, edges, int(k), view.tolerances) else constants.LINE_SAMPLES
+            ),
             vectors[k] / length[k],
         )
         for k in lines
@@ -124,7 +103,8 @@ def _standing(view: PairView, edges: _Edges, row: int) -> list[_Touch]:
     for facet, points, axis in spots:
         ids = (int(sharp.surfaces.labels[facet]), int(planes.ids[row]))
         gaps = (points - origin) @ normal
-        holds = _over(flat, points - gaps[:, None] * normal, normal, ids[1], view.tolerance)
+        on, up = points - gaps[:, None] * normal, np.tile(normal, (len(points), 1))
+        holds = on_surface(flat, on, up, ids[1], constants.PROBE_SPARE * view.tolerance)
         if holds.any():
             area = math.pi * (constants.ZONE * view.tolerance) ** 2
             if len(points) > 1:
@@ -134,7 +114,7 @@ def _standing(view: PairView, edges: _Edges, row: int) -> list[_Touch]:
     return out
 
 
-def _rises(sharp: PartView, edges: _Edges, height: Array) -> Flags:
+def _rises(sharp: PartView, edges: ConvexEdges, height: Array) -> Flags:
     """Whether both faces beside each edge rise from it, and not as good as flat."""
     out = np.ones(len(edges.ends), dtype=bool)
     base = height[edges.ends].mean(axis=1)
@@ -164,16 +144,6 @@ def _between(sharp: PartView, ends: Ints, count: int) -> Array:
     share = (np.arange(count) + 0.5) / count
     start, stop = sharp.vertices[ends]
     return np.asarray(start + share[:, None] * (stop - start))
-
-
-def _over(flat: PartView, points: Array, normal: Array, surface: int, tolerance: float) -> Flags:
-    """Whether points on a plane are on the facets of that surface."""
-    reach = np.full(len(points), constants.PROBE_SPARE * tolerance + flat.surfaces.surfaces[surface].chord)
-    directions = np.tile(normal, (len(points), 1))
-    hits = flat.region.cast(flat.to_part(points), flat.turn_to_part(directions), reach)
-    out = np.zeros(len(points), dtype=bool)
-    out[hits.probe[flat.surfaces.labels[hits.facet] == surface]] = True
-    return out
 
 
 def _patch(pair: PairView, touch: _Touch, first: bool) -> Patch:

@@ -14,7 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinform.contacts import constants
-from kinform.contacts.higher.rounds import Meeting, meeting
+from kinform.contacts.higher.meeting import Meeting
+from kinform.contacts.higher.rounds import meeting
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.narrow_phase import Probes, verify
 from kinform.contacts.search.pair_view import PairView, SurfacePair
@@ -63,8 +64,8 @@ def higher_pairs(
         ball, other = view.near
         plane, rounded = other.kinds == KINDS.index("plane"), np.isin(other.kinds, _ROUND)
         for row in np.flatnonzero((ball.sides > 0) & ((ball.radii > 0) | (ball.kinds == KINDS.index("cone")))):
-            # of two alike, each is met once
-            apart = rounded if first else rounded & (other.kinds != ball.kinds[row])
+            # of two alike, each is met once; what is hollow comes second
+            apart = rounded if first else rounded & ((other.kinds != ball.kinds[row]) | (other.sides < 0))
             for column in [*np.flatnonzero(flags[row] & plane), *np.flatnonzero(flags[row] & apart)]:
                 touch = _touch(view, view.surfaces(int(row), int(column)), first)
                 if touch is not None:

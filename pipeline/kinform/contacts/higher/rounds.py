@@ -1,5 +1,5 @@
 """Where a round surface comes closest to a plane or another: balls and rollers on each other, balls in bores, in
-grooves of rings and on cones, tapered rollers on planes.
+grooves of rings and on cones, tapered rollers on planes, on each other and in their rings.
 
 Everything is analytic, so that the tessellation of neither side matters.
 """
@@ -7,36 +7,16 @@ Everything is analytic, so that the tessellation of neither side matters.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 
 import numpy as np
 
 from kinform.contacts.constants import BALL_BORE_SAMPLES, ROLLER_SAMPLES, ROUND_AXIS
+from kinform.contacts.higher.meeting import Meeting
+from kinform.contacts.higher.tapers import tapers
 from kinform.contacts.mating.charts import perpendicular
 from kinform.contacts.search.pair_view import SurfacePair
 from kinform.foundation.algebra.vectors import cross
-from kinform.model.arrays import Array, Flags
-
-
-@dataclass(frozen=True, eq=False)
-class Meeting:
-    """Points (n, 3) between two surfaces, normals (n, 3) from the second towards the first, gaps (n,) m."""
-
-    points: Array
-    normals: Array
-    gaps: Array
-    line: bool
-    spacing: float
-    clearance: float | None = None
-    """m: by how much a bore or groove is wider than the ball in it, as a radius."""
-    along: Array | None = None
-    """(3,) of a line that is along neither axis."""
-    radius: float | None = None
-    """m: by which the first surface bends across it."""
-
-    def chosen(self, keep: Flags) -> Meeting:
-        """Some of the points."""
-        return replace(self, points=self.points[keep], normals=self.normals[keep], gaps=self.gaps[keep])
+from kinform.model.arrays import Array
 
 
 def meeting(surfaces: SurfacePair, parallel: float) -> Meeting | None:
@@ -56,6 +36,8 @@ def meeting(surfaces: SurfacePair, parallel: float) -> Meeting | None:
         return _ball_on_cone(surfaces)
     if (first, second) == ("cylinder", "cylinder") and convex:
         return _rollers(surfaces, parallel)
+    if second == "cone" or ((first, second) == ("cone", "cylinder") and not convex):
+        return tapers(surfaces, parallel) if first in ("cylinder", "cone") else None
     return None
 
 

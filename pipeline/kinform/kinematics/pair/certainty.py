@@ -24,7 +24,15 @@ from kinform.kinematics.pair.in_step import Steps
 from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.kinematics.pair.preserved import preserved_motions
 from kinform.kinematics.pair.scraps import narrow, scraps
-from kinform.kinematics.pair.stops import ROLES, OtherReading, faces_in_words, freed_motions, one_sense, stop_reading
+from kinform.kinematics.pair.stops import (
+    ROLES,
+    OtherReading,
+    faces_in_words,
+    freed_motions,
+    one_sense,
+    seat_reading,
+    stop_reading,
+)
 from kinform.kinematics.pair.uncertainty import uncertainty_doubt
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
@@ -66,9 +74,11 @@ def certainty(
         )
     form = evidence.form(basis)
     touching = momentary(evidence, basis) or (form.type == "general" and meets([item.patch for item in evidence.items]))
-    doubt = ""
+    doubt, seat = "", None
     if not touching:
-        doubt = (yield from _loose_doubt(evidence, twists, count, tolerances)) or _stray_doubt(evidence)
+        seat = yield from seat_reading(evidence, twists, preserved, basis, _sure(evidence, count), tolerances)
+        if seat is None:
+            doubt = (yield from _loose_doubt(evidence, twists, count, tolerances)) or _stray_doubt(evidence)
     doubt = doubt or (yield from _near_axes_doubt(evidence, twists, count, tolerances))
     doubt = doubt or _thread_doubt(evidence, basis)
     doubt = doubt or (yield from _torn_doubt(evidence, twists, preserved, count, tolerances))
@@ -79,7 +89,7 @@ def certainty(
     if prism is not None:
         return Certainty("ambiguous", _prism_words(evidence, form, prism), prism)
     reading = _teeth_reading if touching else _scrap_reading
-    other = yield from reading(evidence, twists, preserved, basis, tolerances)
+    other = seat or (yield from reading(evidence, twists, preserved, basis, tolerances))
     other = other or (yield from stop_reading(evidence, twists, preserved, basis, tolerances))
     if other is not None:
         faces = faces_in_words(evidence, other.out)
@@ -145,12 +155,22 @@ def _count(evidence: Evidence, twists: Array, keep: Flags, tolerances: Tolerance
     return int(basis.shape[1])
 
 
+def _known(evidence: Evidence, count: int) -> Flags:
+    """(items,) whether they are of known surfaces, on both sides where they leave no freedom of `count`."""
+    firm = np.array([item.patch.kind not in HIGHER for item in evidence.items])
+    return firm & [not item.patch.one_sided for item in evidence.items] if count == 0 else firm
+
+
+def _sure(evidence: Evidence, count: int) -> Flags:
+    """(items,) whether, besides, their directions are known."""
+    vague = [_vagueness(item.patch, fixed=count == 0) for item in evidence.items]
+    return _known(evidence, count) & (np.array(vague) <= constants.VAGUE_DIRECTION)
+
+
 def _loose_doubt(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> Steps[str]:
     """What the patches of known surfaces do not hold, the others do not hold for sure; bodies become one
     only by surfaces that are known on both sides."""
-    firm = np.array([item.patch.kind not in HIGHER for item in evidence.items])
-    if count == 0:
-        firm &= [not item.patch.one_sided for item in evidence.items]
+    firm = _known(evidence, count)
     vague = [_vagueness(item.patch, fixed=count == 0) for item in evidence.items]
     clear = np.array(vague) <= constants.VAGUE_DIRECTION
     sure = firm & clear

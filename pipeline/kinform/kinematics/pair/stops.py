@@ -8,6 +8,7 @@ no doubt: a block rests on a table, a shaft on its collar. What tells a guide fr
 - A face inside of the guide's own cross-section, at the end of a guide that is long enough to slide in, may be the
   bottom of a bore that a piston has reached, or the step bearing of a shaft. So may a face beside the axis.
 - A face that opposes a turn in one sense is what the lever came to rest on.
+- A rim that stands in a seat beside a guide may be either: the head of a countersunk screw is tightened, a valve opens.
 - A flank beside a plane contact makes a slider of it where it runs along with it, and is a stop where it is short.
 
 Where the candidate may be either, both readings are kept, and the joint is ambiguous until something else chooses.
@@ -76,6 +77,21 @@ def stop_reading(
         if (best is None or area < best[0]) and _may_be_stop(evidence, strict, reading, keep):
             best = area, reading
     return None if best is None else best[1]
+
+
+def seat_reading(
+    evidence: Evidence, twists: Array, preserved: Flags, strict: Array, sure: Flags, tolerances: Tolerances
+) -> Steps[OtherReading | None]:
+    """The other reading of a pair whose freedoms are `strict` (6, k), if all that holds it are surfaces that are known
+    (`sure` (items,)) and rims in seats beside them, which end one motion in one sense; None if not."""
+    lines = np.array([item.patch.kind == "line" and not item.patch.one_sided for item in evidence.items])
+    if not lines.any() or lines.all() or not (lines | sure).all():
+        return None
+    basis, _ = yield from freedoms(evidence, twists, preserved, ~lines, tolerances)
+    freed, out = freed_motions(strict, basis), tuple(int(k) for k in np.flatnonzero(lines))
+    if freed.shape[1] != 1 or not one_sense(evidence, freed[:, 0], out):
+        return None
+    return OtherReading(evidence.form(basis), basis, out, "stop")
 
 
 def _candidates(evidence: Evidence) -> list[tuple[int, ...]]:

@@ -1,0 +1,54 @@
+"""Convex edges of a part beside another, and whether places are on a surface of a part."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.contacts.search.pair_view import PairView, PartView, near_facets
+from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.meshes.edges import shared_edges
+from kinform.model.arrays import Array, Flags, Ints
+
+
+@dataclass(frozen=True, eq=False)
+class ConvexEdges:
+    """Edges at which facets of a part, near the other one, meet convexly."""
+
+    ends: Ints
+    """(e, 2) vertices."""
+    facets: Ints
+    """(e, 2) beside them."""
+    cosine: Array
+    """(e,) of the angle between the normals of these."""
+
+    def where(self, rows: Flags) -> ConvexEdges:
+        """Some of them."""
+        return ConvexEdges(self.ends[rows], self.facets[rows], self.cosine[rows])
+
+
+def convex_edges(pair: PairView) -> tuple[ConvexEdges, ConvexEdges] | None:
+    """Those of a and of b in their common box; None where there is no such box."""
+    box = pair.common_box()
+    if box is None:
+        return None
+    return _convex(pair.a, near_facets(pair.a, *box)[0]), _convex(pair.b, near_facets(pair.b, *box)[0])
+
+
+def _convex(part: PartView, facets: Ints) -> ConvexEdges:
+    """Those between the facets (ascending)."""
+    edges = shared_edges(part.faces[facets], len(part.vertices), by_corner=True)
+    edges = edges.where(edges.opposed)
+    one, two = (part.normals(facets[side]) for side in edges.facets.T)
+    convex = edges.convexity(part.vertices, one, two) > 0.0
+    return ConvexEdges(edges.ends[convex], facets[edges.facets[convex]], dot(one, two)[convex])
+
+
+def on_surface(part: PartView, points: Array, normals: Array, surface: int, spare: float) -> Flags:
+    """(n,) whether points (n, 3) that lie within `spare` (m) of a surface, with these normals, are on its facets."""
+    reach = np.full(len(points), spare + part.surfaces.surfaces[surface].chord)
+    hits = part.region.cast(part.to_part(points), part.turn_to_part(normals), reach)
+    out = np.zeros(len(points), dtype=bool)
+    out[hits.probe[part.surfaces.labels[hits.facet] == surface]] = True
+    return out
