@@ -92,4 +92,4 @@ __all__ = [
     "smooth",
 ]
 
-CODE_VERSION: int = 16
+CODE_VERSION: int = 17

@@ -41,7 +41,7 @@ def facet_boxes(points: Array, faces: Ints) -> tuple[Array, Array]:
 
 
 def triangle_boxes(corners: Array) -> tuple[Array, Array]:
-    """Lower and upper corners (n, …) of the boxes of triangles (n, 3, …), least and greatest of three values: by columns,
+    """Lower and upper corners (n, …) of the boxes of triangles (n, 3, …), the least and greatest of three: by columns,
     numpy being slow along short rows."""
     first, second, third = (corners[:, corner] for corner in range(3))
     return np.minimum(np.minimum(first, second), third), np.maximum(np.maximum(first, second), third)
