@@ -100,14 +100,16 @@ def _regular(pose: Pose, mixes: Array, stride: float, step: float) -> tuple[floa
         if residual.max() > closed * step or kept < constants.STEP_KEPT:
             return None
     worst = float(residual.max())
-    if worst > constants.CLOSURE_ROUNDING:
-        # misfit of the axes grows with the step, an obstruction of third or higher order with its powers
+    # where the numbers of the place leave more unknown, what is missed may be that
+    misfit = worst > max(constants.CLOSURE_ROUNDING, pose.system.rounding * step)
+    if misfit:
+        # it grows with the step where axes are off, an obstruction of third or higher order with its powers
         _, half, _ = _solve(pose.system, pose.q + 0.5 * stride * mixes, stride, pose)
         if float(half.max()) < constants.HIGHER_ORDER * worst * stride / step:
             return None
     values = np.linalg.svd(jacobian, compute_uv=False)
     beyond = values[:, pose.rank :].max(initial=0.0) / max(values.max(), 1e-300)
-    zero = constants.STEPPED_RANK if worst > constants.CLOSURE_ROUNDING else constants.STEPPED_RANK_EXACT
+    zero = constants.STEPPED_RANK if misfit else constants.STEPPED_RANK_EXACT
     return (kept, worst) if beyond < max(zero, pose.system.rounding) else None
 
 
