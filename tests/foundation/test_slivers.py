@@ -117,3 +117,26 @@ def test_a_grid_finds_the_boxes_that_comparison_finds(seed):
         by_grid = box_pairs.meeting_boxes(*kinds)
     assert len(every[0])
     assert [found.tolist() for found in by_grid] == [found.tolist() for found in every]
+
+
+@pytest.mark.parametrize("most", [0, 10**9])
+def test_directions_are_asked_together_or_in_turn_with_one_answer(most, monkeypatch):
+    first, second = scene(5)
+    expected = told_by_fcl(first, second)
+    monkeypatch.setattr(slivers, "MET_FEW", most)
+    assert pairs(first, second) == expected
+
+
+def test_what_a_grid_does_not_part_is_all_compared_while_it_is_little(monkeypatch):
+    first, second = scene(6)
+    expected = told_by_fcl(first, second)
+    monkeypatch.setattr(box_pairs, "BOXES_MATRIX", 0)
+    monkeypatch.setattr(box_pairs, "BESIDE_MOST", 0)
+    assert pairs(first, second) == expected
+    monkeypatch.setattr(box_pairs, "BOXES_COMPARED", 0)
+    assert meeting(first, second) is None
+
+
+def test_triangles_most_of_which_are_beside_each_other_are_left_to_trees(monkeypatch):
+    monkeypatch.setattr(slivers, "MET_MOST", 1)
+    assert meeting(*scene(7)) is None

@@ -74,8 +74,10 @@ CROSSING_SHARE = 0.02
 
 # meshes/box_pairs
 
-BOXES_MATRIX = 60_000
-"""Boxes times boxes up to which all are compared: 0.1 ms; a grid takes 0.5 ms."""
+BOXES_MATRIX = 600_000
+"""Boxes times boxes up to which all are compared: 1 ms; a grid takes from 0.5 ms to 4."""
+BOXES_COMPARED = 1_500_000
+"""The same where a grid does not part them: 3 ms, in which FCL makes a tree of several hundred facets."""
 BOXES_MOST = 50_000
 """Boxes of either kind up to which a grid is made of them."""
 BESIDE_MOST = 100_000
@@ -183,6 +185,20 @@ CROSSED_FEW = 100_000
 """Triangles times triangles up to which all are asked whether they cross; beyond, one in so many that it is this."""
 CROSSED_SOME = 8
 """... and no more than one in this many: where nothing crosses, all are asked after them."""
+MET_FEW = 1000
+"""Pairs of triangles up to which all directions but the normals are asked at once."""
+MET_MOST = 10
+"""Pairs of triangles, in all triangles, from which on to ask about each takes longer than to make trees of them."""
+
+# meshes/closest
+AS_NEAR = 1e-9
+"""Share of their distance by which facets may be farther than the nearest and still as near, ..."""
+CLOSEST_ROUNDING = 1e-15
+"""... and share of the largest coordinate."""
+CLOSEST_SOME = 60_000
+"""Points times the corners that bound how far they are off: nearer bounds cost more than they leave to be measured."""
+CLOSEST_MOST = 1_000_000
+"""Points times the facets near each up to which all are measured: 0.1 s, and 0.2 GB."""
 
 # --- alike ------------------------------------------------------------------------------------------------------------
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.constants import BESIDE_MOST, BOXES_MATRIX, BOXES_MOST
+from kinform.foundation.constants import BESIDE_MOST, BOXES_COMPARED, BOXES_MATRIX, BOXES_MOST
 from kinform.foundation.meshes.boxes import FlatBoxes
 from kinform.model.arrays import Array, Ints
 
@@ -17,7 +17,8 @@ def meeting_boxes(first: Boxes, second: Boxes) -> tuple[Ints, Ints] | None:
     is quicker.
 
     Few are all compared. Of more, the second are listed by the cells of a grid across the two coordinates along which
-    boxes are smallest beside the whole, grown by what the largest of the first reach from their middles.
+    boxes are smallest beside the whole, grown by what the largest of the first reach from their middles; where that
+    leaves too many, as large facets do, they may still be few enough to be all compared.
     """
     count, others = len(first[0]), len(second[0])
     if count * others <= BOXES_MATRIX:
@@ -32,7 +33,7 @@ def meeting_boxes(first: Boxes, second: Boxes) -> tuple[Ints, Ints] | None:
     middles = 0.5 * (low + high)
     listed = FlatBoxes(low_other[:, axes] - reach, high_other[:, axes] + reach)
     if listed.listed_at(middles[:, axes]) > BESIDE_MOST:
-        return None
+        return _compared(first, second) if count * others <= BOXES_COMPARED else None
     one, two = listed.around(middles[:, axes])
     for axis in range(3):
         meets = low[:, axis].take(one) <= high_other[:, axis].take(two)

@@ -20,6 +20,7 @@ from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.constants import HITS_A_PROBE, SLIVER_WIDTH, STEEP_LEAST
 from kinform.foundation.meshes.boxes import facet_boxes, triangle_boxes
+from kinform.foundation.meshes.closest import closest_facets
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, fcl_pose, partial_model, point_model
 from kinform.foundation.meshes.slivers import beside, crossing, meeting
 from kinform.foundation.sorting import distinct
@@ -86,11 +87,6 @@ class Region:
         mesh = self.index.mesh
         return partial_model(mesh.vertices, mesh.faces[self.facets])
 
-    @property
-    def _has_model(self) -> bool:
-        """Whether FCL's model is made already, so that to ask it costs little."""
-        return "bvh" in vars(self)
-
     def cast(self, points: Array, directions: Array, reach: Array, width: float = SLIVER_WIDTH) -> Hits:
         """Facets within `reach` (n,) m of `points` (n, 3) along ±`directions` (n, 3), part frame.
 
@@ -139,6 +135,10 @@ class Region:
 
     def depths(self, points: Array) -> tuple[Array, Ints]:
         """Distance (n,) m of points (n, 3) of the part frame to these facets, and the nearest of them (n,)."""
+        if not self.index.is_large:
+            told = closest_facets(points, self._corners())
+            if told is not None:
+                return told[0], told[1] if self.facets is None else self.facets[told[1]]
         point = fcl.CollisionObject(point_model())
         mesh = fcl.CollisionObject(self.bvh)
         distance, facet = np.zeros(len(points)), np.zeros(len(points), dtype=np.int64)
@@ -153,7 +153,7 @@ class Region:
         """Whether any facets of the two intersect; `X_SO` (4, 4): pose of the other part here."""
         if self.empty or other.empty:
             return False
-        if not (self._has_model and other._has_model) and not (self.index.is_large or other.index.is_large):
+        if not (self.index.is_large or other.index.is_large):
             told = crossing(self._corners(), other._corners() @ X_SO[:3, :3].T + X_SO[:3, 3])
             if told is not None:
                 return told

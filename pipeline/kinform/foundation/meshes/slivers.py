@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.constants import CROSSED_FEW, CROSSED_SOME
+from kinform.foundation.constants import CROSSED_FEW, CROSSED_SOME, MET_FEW, MET_MOST
 from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import facet_boxes, meeting_box, triangle_boxes
 from kinform.model.arrays import Array, Flags, Ints
@@ -29,7 +29,7 @@ def meeting(slivers: Array, corners: Array) -> tuple[Ints, Ints] | None:
     """(k,) each: slivers (n, 3, 3) and facets (m, 3, 3) that meet, by sliver, then by facet; one unit of length. None
     where too many are near each other to ask about all."""
     candidates = meeting_boxes(triangle_boxes(slivers), triangle_boxes(corners))
-    if candidates is None:
+    if candidates is None or len(candidates[0]) > MET_MOST * (len(slivers) + len(corners)):
         return None
     sliver, facet = candidates
     first, second = (
@@ -41,9 +41,10 @@ def meeting(slivers: Array, corners: Array) -> tuple[Ints, Ints] | None:
     second -= origin
     edges = _edges(first), _edges(second)
     normals = [_cross(sides[0], sides[1]) for sides in edges]
-    met = np.flatnonzero(~_apart(np.stack(normals, axis=1), first, second))
-    first, second, *rest = (array.take(met, axis=-1) for array in (first, second, *edges, *normals))
-    met = met[~_apart(_across(*rest), first, second)]
+    triangles, met = [first, second, *edges, *normals], np.arange(len(sliver))
+    for directions in _MANY if len(sliver) > MET_FEW else _FEW:
+        kept = np.flatnonzero(~_apart(directions(*triangles[2:]), *triangles[:2]))
+        met, triangles = met[kept], [array.take(kept, axis=-1) for array in triangles]
     return sliver[met], facet[met]
 
 
@@ -90,15 +91,31 @@ def _cross(a: Array, b: Array) -> Array:
     return out
 
 
-def _across(one: Array, two: Array, normal: Array, other: Array) -> Array:
-    """(3, 15, c) directions across edges (3, 3, c) of two triangles, and across an edge in the plane of its triangle,
-    which has the normal (3, c)."""
-    one, two = one.transpose(1, 0, 2), two.transpose(1, 0, 2)
-    out = np.empty((3, 15, one.shape[2]))
-    out[:, :9] = _cross(one[:, :, None], two[:, None]).reshape(3, 9, -1)
-    out[:, 9:12] = _cross(one, normal[:, None])
-    out[:, 12:] = _cross(two, other[:, None])
+def _normals(one: Array, two: Array, normal: Array, other: Array) -> Array:
+    """(3, 2, c) the normals (3, c) of two triangles, of which also the edges (3, 3, c) are given, as below."""
+    return np.stack([normal, other], axis=1)
+
+
+def _in_planes(one: Array, two: Array, normal: Array, other: Array) -> Array:
+    """(3, 6, c) directions across an edge in the plane of its triangle."""
+    out = np.empty((3, 6, one.shape[2]))
+    out[:, :3] = _cross(one.transpose(1, 0, 2), normal[:, None])
+    out[:, 3:] = _cross(two.transpose(1, 0, 2), other[:, None])
     return out
+
+
+def _products(one: Array, two: Array, normal: Array, other: Array) -> Array:
+    """(3, 9, c) directions across an edge of either."""
+    return _cross(one.transpose(1, 0, 2)[:, :, None], two.transpose(1, 0, 2)[:, None]).reshape(3, 9, -1)
+
+
+def _across(one: Array, two: Array, normal: Array, other: Array) -> Array:
+    """(3, 15, c) both."""
+    return np.concatenate([_products(one, two, normal, other), _in_planes(one, two, normal, other)], axis=1)
+
+
+_FEW, _MANY = (_normals, _across), (_normals, _in_planes, _products)
+"""Directions that are asked together. Of many triangles, most are parted by the first of them."""
 
 
 def _apart(axes: Array, first: Array, second: Array) -> Flags:

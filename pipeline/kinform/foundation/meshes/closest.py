@@ -1,0 +1,70 @@
+"""Which of some facets points are nearest to, and how far off that is: measured, of all facets whose boxes come as
+near to a point as the nearest of some of their corners.
+
+FCL tells the same from a tree, which takes longer to make of a few thousand facets than a few hundred points take to
+be measured so, and names any one of facets that are as near as each other; here it is the first.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinform.foundation.constants import AS_NEAR, CLOSEST_MOST, CLOSEST_ROUNDING, CLOSEST_SOME
+from kinform.foundation.meshes.box_pairs import meeting_boxes
+from kinform.foundation.meshes.boxes import triangle_boxes
+from kinform.foundation.meshes.near import Nearest
+from kinform.model.arrays import Array, Flags, Ints
+
+
+def closest_facets(points: Array, corners: Array) -> tuple[Array, Ints] | None:
+    """Distance (n,) of points (n, 3) from triangles (m, 3, 3), m > 0, and the first of those that are nearest (n,), one
+    unit of length; None where too many would have to be measured."""
+    if len(points) == 0:
+        return np.zeros(0), np.zeros(0, np.int64)
+    some = corners[:: len(points) * len(corners) // CLOSEST_SOME + 1, 0]
+    reach = (1.0 + AS_NEAR) * Nearest(some).away(points)[:, None]
+    candidates = meeting_boxes((points - reach, points + reach), triangle_boxes(corners))
+    if candidates is None or len(candidates[0]) > CLOSEST_MOST:
+        return None
+    point, facet = candidates
+    triangles = np.ascontiguousarray(corners.transpose(1, 2, 0)).take(facet, axis=2)
+    triangles -= np.ascontiguousarray(points.T).take(point, axis=1)
+    away = _from_origin(triangles)
+    # the box of a corner touches that of its facet, so that every point has candidates, in their order
+    starts = np.searchsorted(point, np.arange(len(points)))
+    distance = np.minimum.reduceat(away, starts)
+    rounding = CLOSEST_ROUNDING * float(np.abs(corners).max())
+    as_near = np.flatnonzero(away <= ((1.0 + AS_NEAR) * distance + rounding).take(point))
+    first = as_near[np.searchsorted(point[as_near], np.arange(len(points)))]
+    return distance, facet[first]
+
+
+def _from_origin(triangles: Array) -> Array:
+    """(k,) distances of the origin from triangles (3, 3, k): corner, coordinate, triangle."""
+    sides = triangles[[1, 2, 0]] - triangles
+    normal = _cross(sides[0], sides[1])
+    length = np.sqrt(_dot(normal, normal))
+    over: Flags = length > 0.0
+    square = np.full(triangles.shape[2], np.inf)
+    for corner, side in zip(triangles, sides, strict=True):
+        # outside of an edge, seen along the normal, the foot of the perpendicular is not on the triangle
+        over &= _dot(_cross(corner, side), normal) >= 0.0
+        long = _dot(side, side)
+        share = np.clip(-_dot(corner, side) / np.where(long > 0.0, long, 1.0), 0.0, 1.0)
+        foot = corner + share * side
+        np.minimum(square, _dot(foot, foot), out=square)
+    height = np.abs(_dot(normal, triangles[0])) / np.where(over, length, 1.0)
+    return np.where(over, height, np.sqrt(square))
+
+
+def _dot(a: Array, b: Array) -> Array:
+    """(k,) products of vectors by their coordinates (3, k)."""
+    out = a[0] * b[0]
+    out += a[1] * b[1]
+    out += a[2] * b[2]
+    return np.asarray(out)
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """(3, k) the same, vectors."""
+    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
