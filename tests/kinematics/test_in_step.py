@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from support.patches import Z, cone, cylinder, plane, ring, sphere
 
-from kinform.kinematics.pair.in_step import Remainder, in_step, remains
+from kinform.foundation.in_step import in_step
+from kinform.kinematics.pair.in_step import Remainder, remains
 from kinform.kinematics.pair.question import Question, answer_each
 from kinform.model.tolerances import Tolerances
 from kinform.reuse.packing import pack
@@ -93,5 +94,5 @@ def test_ways_of_different_lengths_each_get_their_own_answers():
             got.append(basis.shape[1])
         return [question.basis.shape[1] for question in asked], got
 
-    for wanted, got in in_step([way(length) for length in (0, 3, 1, 5)]):
+    for wanted, got in in_step([way(length) for length in (0, 3, 1, 5)], remains):
         assert got == wanted

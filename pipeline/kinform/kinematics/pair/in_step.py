@@ -1,8 +1,8 @@
-"""Many pairs decided in step: each goes its own way, and what they ask of linear algebra is answered for all at once.
+"""What decisions of pairs ask of linear algebra, answered for many at once.
 
-A decision is a generator. Where it needs to know what rows leave free it yields a `Remainder`, and is sent the answer.
-`in_step` lets all go on to their next question, stacks the questions of one shape, and so forth until none is left. The
-matrices of a stack are decomposed one by one: an answer is the same to the last bit whatever it is stacked with.
+A decision is a generator. Where it needs to know what rows leave free it yields a `Remainder`, and is sent the answer:
+many are decided in step (`foundation.in_step`), and `remains` stacks their questions of one shape. The matrices of a
+stack are decomposed one by one: an answer is the same to the last bit whatever it is stacked with.
 """
 
 from __future__ import annotations
@@ -42,27 +42,6 @@ class Remainder:
 
 Steps = Generator[Remainder, Remains, Result]
 """A way to a result, with questions on it."""
-
-
-def in_step(ways: Sequence[Steps[Result]]) -> list[Result]:
-    """Where each of the ways leads."""
-    results: dict[int, Result] = {}
-    asked: dict[int, Remainder] = {}
-
-    def go_on(k: int, answer: Remains | None) -> None:
-        try:
-            asked[k] = next(ways[k]) if answer is None else ways[k].send(answer)
-        except StopIteration as end:
-            results[k] = end.value
-
-    for k in range(len(ways)):
-        go_on(k, None)
-    while asked:
-        questions, answers = list(asked), remains(list(asked.values()))
-        asked.clear()
-        for k, answer in zip(questions, answers, strict=True):
-            go_on(k, answer)
-    return [results[k] for k in range(len(ways))]
 
 
 def remains(questions: Sequence[Remainder]) -> list[Remains]:
