@@ -15,6 +15,7 @@ from typing import TypeVar
 import numpy as np
 
 from kinform.foundation.algebra.screws import spans
+from kinform.kinematics import constants
 from kinform.model.arrays import Array
 
 Result = TypeVar("Result")
@@ -22,8 +23,9 @@ Result = TypeVar("Result")
 Turns = tuple[Array, Array]
 """Singular values and right singular vectors (k, k) of the turns of a basis (6, k), which are its first three rows."""
 
-Remains = tuple[Array, Array, Turns]
-"""Orthonormal basis (6, k) of what rows leave free, their singular values (6,) ascending, the turns of the basis."""
+Remains = tuple[Array, Array, Turns, Array]
+"""Orthonormal basis (6, k) of what rows leave free, their singular values (6,) ascending, the turns of the basis, and
+what it has beyond the freedoms that were named (6, n)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +40,8 @@ class Remainder:
     """(6, k) orthonormal, of the motions that are known."""
     free: float
     """Singular values below count as none."""
+    beyond: Array | None = None
+    """(6, k') orthonormal freedoms: what is there beyond them? None: it is not asked."""
 
 
 Steps = Generator[Remainder, Remains, Result]
@@ -68,7 +72,7 @@ def _remains(questions: Sequence[Remainder]) -> list[Remains]:
     free = np.array([question.free for question in questions])
     null = [vectors[of] for vectors, of in zip(right, values < free[:, None], strict=True)]
     bases = spans([vectors.T for vectors in null])
-    return list(zip(bases, values, _turns(bases), strict=True))
+    return list(zip(bases, values, _turns(bases), _freed(questions, bases), strict=True))
 
 
 def _turns(bases: Sequence[Array]) -> list[Turns]:
@@ -79,3 +83,20 @@ def _turns(bases: Sequence[Array]) -> list[Turns]:
         _, values, right = np.linalg.svd(np.array([bases[k][:3] for k in members]), full_matrices=True)
         out |= zip(members, zip(values, right, strict=True), strict=True)
     return [out[k] for k in range(len(bases))]
+
+
+def _freed(questions: Sequence[Remainder], bases: Sequence[Array]) -> list[Array]:
+    """(6, n) orthonormal: what each basis (6, k) has beyond the freedoms that its question names."""
+    out = [basis[:, :0] for basis in bases]
+    alike: dict[tuple[int, int], list[int]] = defaultdict(list)
+    for k, (question, basis) in enumerate(zip(questions, bases, strict=True)):
+        if question.beyond is not None:
+            alike[question.beyond.shape[1], basis.shape[1]].append(k)
+    for members in alike.values():
+        before = np.array([questions[k].beyond for k in members])
+        basis = np.array([bases[k] for k in members])
+        rest = basis - before @ (np.swapaxes(before, 1, 2) @ basis)
+        vectors, sizes, _ = np.linalg.svd(rest, full_matrices=False)
+        for k, of_basis, new in zip(members, vectors, sizes > constants.NEW_FREEDOM, strict=True):
+            out[k] = of_basis[:, new]
+    return out
