@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import linprog
 
 from kinform.kinematics.constants import LARGEST_TWIST
-from kinform.kinematics.separation.cone import nothing_opens
+from kinform.kinematics.separation.cone import nothing_opens, nothing_opens_in_each
 
 
 def fastest(rows, fixed):
@@ -20,8 +20,8 @@ def fastest(rows, fixed):
     return -linprog(aim, A_ub=upper, b_ub=np.zeros(2 * n), bounds=bounds, method="highs", **held).fun
 
 
-@pytest.mark.parametrize("seed", range(40))
-def test_what_opens_nowhere_for_certain_opens_nowhere(seed):
+def program(seed):
+    """Unit rows (n, d) and fixed rows (m, d)."""
     rng = np.random.default_rng(seed)
     size = int(rng.integers(3, 13))
     fixed = rng.normal(size=(int(rng.integers(0, size)), size))
@@ -30,7 +30,12 @@ def test_what_opens_nowhere_for_certain_opens_nowhere(seed):
         # rows that pull against each other, and, of every third, by a hair not quite
         rows = np.vstack([rows, -rng.uniform(0.5, 2.0, len(rows)) @ rows])
         rows = rows + (10.0 ** -rng.integers(2, 9) * rng.normal(size=rows.shape) if seed % 3 == 0 else 0.0)
-    rows /= np.linalg.norm(rows, axis=1)[:, None]
+    return rows / np.linalg.norm(rows, axis=1)[:, None], fixed
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_what_opens_nowhere_for_certain_opens_nowhere(seed):
+    rows, fixed = program(seed)
     if nothing_opens(rows, fixed):
         assert fastest(rows, fixed) < 0.5
     elif seed % 2 and seed % 3:
@@ -42,3 +47,15 @@ def test_rows_of_what_is_held_open_nowhere_and_others_do():
     assert nothing_opens(across[:2], across)
     assert not nothing_opens(along, across)
     assert nothing_opens(np.vstack([along, -along]), across)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_what_is_said_of_a_block_does_not_depend_on_the_others(seed):
+    programs = [program(k) for k in range(60)]
+    programs += [(rows, fixed[:0]) for rows, fixed in programs[:10]]
+    programs += [(rows[:1] * 0.0, fixed) for rows, fixed in programs[:10]]
+    alone = [nothing_opens(*one) for one in programs]
+    assert set(alone) == {True, False}
+    rng = np.random.default_rng(seed)
+    chosen = rng.permutation(len(programs))[: int(rng.integers(2, len(programs) + 1))].tolist()
+    assert nothing_opens_in_each([programs[k] for k in chosen]) == [alone[k] for k in chosen]

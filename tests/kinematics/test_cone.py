@@ -9,9 +9,13 @@ from support.assemblies import assembly, assume, between, contacts, part
 from support.patches import Z, cylinder, patch, plane, ring, sphere
 from support.solids import ball, box, derived, random_pose, rod
 
+from kinform.foundation.algebra.screws import Frame
 from kinform.kinematics import derive
 from kinform.kinematics.pair.extremes import extreme_samples
-from kinform.kinematics.separation.cone import extreme_rays, held_for_certain, opening, unit_rows
+from kinform.kinematics.separation.cone import extreme_rays, held_for_certain, opening, rows_beside, unit_rows
+from kinform.kinematics.separation.contact_rows import Cone
+from kinform.kinematics.separation.releases import certainly_held, leaving_of_each
+from kinform.reuse.packing import pack
 
 X, Y = np.array([1.0, 0, 0]), np.array([0, 1.0, 0])
 
@@ -345,3 +349,32 @@ def test_the_order_of_parts_and_patches_does_not_matter():
         assert [(j.held, [w.words for w in j.releases]) for j in again] == [
             (j.held, [w.words for w in j.releases]) for j in plain
         ]
+
+
+# --- many pairs at once ------------------------------------------------------------------------
+
+
+def loose_cones(rng):
+    """Cones that are held both ways in up to five directions, and one way by a few random rows, or by many all round
+    one direction; few of them are held."""
+    out = []
+    for held in range(6):
+        for count in (1, 2, 4, 40):
+            fixed = np.linalg.qr(rng.normal(size=(6, 6)))[0][:held]
+            fixed = np.linalg.qr(rng.normal(size=(3, 3)))[0][:held] @ np.eye(3, 6, 3) if held < 3 else fixed
+            rows = rng.normal(size=(count, 6)) + 2.0 * rng.normal(size=6)
+            out.append(Cone(fixed, rows_beside(unit_rows(rows), fixed), Frame(rng.normal(size=3), 0.1)))
+    return out
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("turns", [True, False])
+def test_how_a_pair_comes_apart_does_not_depend_on_the_others(seed, turns):
+    found = loose_cones(np.random.default_rng(9))
+    cones = [cone for cone, held in zip(found, certainly_held(found), strict=True) if not held]
+    alone = [pack(leaving_of_each([cone], turns=turns)[0]) for cone in cones]
+    assert len(set(alone)) > 12
+    rng = np.random.default_rng(seed)
+    chosen = rng.permutation(len(cones))[: int(rng.integers(2, len(cones) + 1))].tolist()
+    together = leaving_of_each([cones[k] for k in chosen], turns=turns)
+    assert [pack(leaving) for leaving in together] == [alone[k] for k in chosen]

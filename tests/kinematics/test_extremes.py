@@ -21,6 +21,34 @@ def test_corners_are_those_that_qhull_finds(seed):
     assert hull(points, Z).tolist() == sorted(found.tolist())
 
 
+@pytest.mark.parametrize("sides", [3, 5, 24, 40])
+@pytest.mark.parametrize("size", [1e-4, 1.0, 1e3])
+def test_corners_of_a_polygon_are_its_own_and_what_stands_out_from_its_sides(sides, size):
+    turn = 2.0 * np.pi * np.arange(sides) / sides + 0.3
+    corners = np.stack([np.cos(turn), np.sin(turn), np.zeros(sides)], axis=1)
+    middles = 0.5 * (corners + np.roll(corners, -1, axis=0))
+    rng = np.random.default_rng(sides)
+    for out, counts in ((-1e-3, False), (0.0, False), (1e-8, False), (1e-4, True)):
+        points = np.concatenate([corners, middles * (1.0 + out), 0.5 * corners])
+        wanted = np.zeros(len(points), dtype=bool)
+        wanted[: 2 * sides if counts else sides] = True
+        order = rng.permutation(len(points))
+        moved = size * (points[order] + [3.0, -2.0, 5.0])
+        assert hull(moved, Z).tolist() == np.flatnonzero(wanted[order]).tolist()
+
+
+def test_a_large_ring_at_one_height_keeps_the_ends_of_its_sectors():
+    """No matter how large it is: its samples are all of one level."""
+    small, large = (
+        replace(cylinder(), points=scale * cylinder().points * [1.0, 1.0, 0.0] + [0.0, 0.0, scale])
+        for scale in (1.0, 1e6)
+    )
+    with np.errstate(all="raise"):
+        assert [samples.tolist() for samples in extreme_samples([small])] == [
+            samples.tolist() for samples in extreme_samples([large])
+        ]
+
+
 def test_samples_of_a_patch_do_not_depend_on_those_asked_with_it():
     patches = [plane(), ring(), cylinder(), cylinder(arc=(0.0, 2.0)), plane(size=(0.02, 1e-4)), ring(inner=0.001)]
     patches += [replace(patch, points=patch.points + 0.1 * k) for k, patch in enumerate(patches)]

@@ -29,7 +29,7 @@ from kinform.foundation.algebra.screws import Frame
 from kinform.kinematics import constants
 from kinform.kinematics.loops.assembly_closure import close
 from kinform.kinematics.loops.loop_kinematics import loop_system
-from kinform.kinematics.mobility import local_dimension
+from kinform.kinematics.mobility import gauss_newton
 from kinform.kinematics.mobility.finite_motion import finite_mobility
 
 X, Y, Z = np.eye(3)
@@ -284,7 +284,7 @@ def test_equations_of_a_large_block_made_triangular_have_the_same_solution(empty
     jacobian, missed = rng.normal(size=(2, 150, 64)), rng.normal(size=(2, 150))
     jacobian[:, :, 63] = jacobian[:, :, 0] - jacobian[:, :, 1]
     jacobian[:, :empty] = 0.0
-    short, rest = local_dimension._reduced(jacobian, missed)
+    short, rest = gauss_newton.reduced(jacobian, missed)
     assert short.shape == (2, 64, 64)
     full, less = (np.linalg.svd(a, compute_uv=False) for a in (jacobian, short))
     assert np.abs(full - less).max() < 1e-13 * full.max()

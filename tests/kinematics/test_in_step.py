@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from support.patches import Z, cone, cylinder, plane, ring, sphere
 
-from kinform.kinematics.pair.in_step import Remainder, in_step, remains
+from kinform.foundation.in_step import in_step
+from kinform.kinematics.pair.in_step import Remainder, remains
 from kinform.kinematics.pair.question import Question, answer_each
 from kinform.model.tolerances import Tolerances
 from kinform.reuse.packing import pack
@@ -72,7 +73,7 @@ def remainder(rng, count, known):
 def test_what_is_known_to_be_free_remains_and_few_rows_leave_the_rest():
     rng = np.random.default_rng(0)
     asked = [remainder(rng, count, known) for count in (1, 4, 6, 30) for known in (0, 1, 2, 5)]
-    for question, (basis, values, (turns, right)) in zip(asked, remains(asked), strict=True):
+    for question, (basis, values, (turns, right), _) in zip(asked, remains(asked), strict=True):
         held = question.rows - question.rows @ question.basis @ question.basis.T
         assert basis.shape[1] == 6 - np.linalg.matrix_rank(held)
         assert np.abs(held @ basis).max(initial=0.0) < 1e-12
@@ -80,6 +81,20 @@ def test_what_is_known_to_be_free_remains_and_few_rows_leave_the_rest():
         assert (np.diff(values) >= 0.0).all()
         assert np.allclose(right.T @ right, np.eye(basis.shape[1]))
         assert np.allclose(np.linalg.norm(basis[:3] @ right.T, axis=0)[: len(turns)], turns)
+
+
+def test_what_remains_beyond_freedoms_is_what_they_lack_of_it():
+    rng = np.random.default_rng(0)
+    asked = []
+    for count in (1, 4, 6, 30):
+        for known in (0, 1, 2, 5, 6):
+            of_known = remainder(rng, count, known)
+            asked += [dataclasses.replace(of_known, beyond=of_known.basis[:, :n]) for n in range(known + 1)]
+    for question, (basis, *_, freed) in zip(asked, remains(asked), strict=True):
+        assert freed.shape[1] == basis.shape[1] - question.beyond.shape[1]
+        both = np.hstack([question.beyond, freed])
+        assert np.allclose(both.T @ both, np.eye(both.shape[1]))
+        assert np.allclose(both @ (both.T @ basis), basis)
 
 
 def test_ways_of_different_lengths_each_get_their_own_answers():
@@ -93,5 +108,5 @@ def test_ways_of_different_lengths_each_get_their_own_answers():
             got.append(basis.shape[1])
         return [question.basis.shape[1] for question in asked], got
 
-    for wanted, got in in_step([way(length) for length in (0, 3, 1, 5)]):
+    for wanted, got in in_step([way(length) for length in (0, 3, 1, 5)], remains):
         assert got == wanted

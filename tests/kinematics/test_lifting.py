@@ -48,7 +48,7 @@ def test_what_is_lifted_apart_opens_in_the_linear_program(monkeypatch):
     monkeypatch.setattr(separations, "lifts_apart", lambda *block: asked.append(lifts_apart(*block)))
     for trial in range(12):
         links = grid(rng, 5, turned=0.0 if trial % 2 else 0.3)
-        opened = separations._links_that_open(links)
+        (opened,) = separations._opened([links], None)
         if asked[-1]:
             assert opened == tuple(k for k, link in enumerate(links) if link.cone is not None)
     assert len(asked) == 12

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kinform.kinematics.constants import REDUCED_RATES
-from kinform.kinematics.mobility import local_dimension
+from kinform.kinematics.mobility import gauss_newton
 from kinform.kinematics.mobility.truncation import regular_solution, truncated_solution
 
 
@@ -77,6 +77,6 @@ def test_steps_of_large_blocks_are_those_by_singular_values():
     jacobian, missed = rng.normal(size=(4, rows, count)), rng.normal(size=(4, rows))
     jacobian[:, ::7] = 0.0
     jacobian[2, :, 3] = jacobian[2, :, 4]
-    found = local_dimension._solutions(jacobian, missed, None)
+    found = gauss_newton.solutions(jacobian, missed, None)
     for one, equation, right in zip(found, jacobian, missed, strict=True):
         np.testing.assert_allclose(one, np.linalg.pinv(equation, rcond=1e-12) @ right, atol=1e-10)

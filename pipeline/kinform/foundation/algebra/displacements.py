@@ -28,11 +28,11 @@ def identities(*shape: int) -> Array:
 
 
 def exponentials(screws: Array, q: Array) -> Array:
-    """(D, n, 4, 4) exp(S q) of unit screws (n, 6), |ω| 1 or 0, for coordinates q (D, n); a slide has no ω and
-    falls out of the same terms."""
-    spin = cross_matrix(screws[:, :3])
+    """(D, n, 4, 4) exp(S q) of unit screws (n, 6), or (D, n, 6), |ω| 1 or 0, for coordinates q (D, n); a slide has no ω
+    and falls out of the same terms."""
+    spin = cross_matrix(screws[..., :3])
     twice = spin @ spin
-    v = screws[:, 3:]
+    v = screws[..., 3:]
     s, c = np.sin(q)[..., None], 1.0 - np.cos(q)[..., None]
     out = np.zeros((*q.shape, 4, 4))
     out[..., :3, :3] = np.eye(3) + s[..., None] * spin + c[..., None] * twice
@@ -69,9 +69,9 @@ def inverse(X: Array) -> Array:
 
 
 def carry(X: Array, twists: Array) -> Array:
-    """Twists (n, 6) carried along by displacements (…, n, 4, 4)."""
-    omega = (X[..., :3, :3] @ twists[:, :3, None])[..., 0]
-    v = (X[..., :3, :3] @ twists[:, 3:, None])[..., 0]
+    """Twists (…, n, 6) carried along by displacements (…, n, 4, 4)."""
+    omega = (X[..., :3, :3] @ twists[..., :3, None])[..., 0]
+    v = (X[..., :3, :3] @ twists[..., 3:, None])[..., 0]
     return np.concatenate([omega, v + cross(X[..., :3, 3], omega)], axis=-1)
 
 

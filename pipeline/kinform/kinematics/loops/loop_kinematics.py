@@ -21,10 +21,12 @@ from kinform.foundation.algebra.displacements import carry, exponentials, identi
 from kinform.foundation.algebra.screws import Frame, bracket, scaled
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import forest
+from kinform.foundation.records import altered
 from kinform.kinematics.constants import FAR_AXIS
 from kinform.model.arrays import Array, Flags
 
 Index = NDArray[np.intp]
+Form = tuple[bytes, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +47,7 @@ class LoopSystem:
     """A block of N bodies, its joints and independent loops; n coordinates."""
 
     screws: Array
-    """(n, 6) unit twists at the reference pose."""
+    """(n, 6) unit twists at the reference pose; (D, n, 6) of alike systems, those of each configuration."""
     joint: Index
     """(n,) joint of each coordinate, counted within the block."""
     first: Index
@@ -70,7 +72,17 @@ class LoopSystem:
     @property
     def coordinates(self) -> int:
         """n."""
-        return len(self.screws)
+        return len(self.joint)
+
+    @property
+    def form(self) -> Form:
+        """The same for systems that differ in nothing but their screws, and in what is not known of them."""
+        parts = (self.joint, self.first, *self.chords, *(part for layer in self.depths for part in layer), self.ties)
+        return tuple(part.tobytes() for part in parts)
+
+    def at(self, rows: Index) -> LoopSystem:
+        """The systems of these configurations, where each has its own."""
+        return self if self.screws.ndim == 2 else altered(self, screws=self.screws[rows])
 
     def close(self, q: Array) -> Closed:
         """Residual and Jacobian of the loops at configurations (D, n)."""
@@ -85,7 +97,7 @@ class LoopSystem:
         )
         jacobian = self.loops[:, None, :] * np.swapaxes(columns, -1, -2)[:, None]
         missed = residual.reshape(batch, 6 * len(members))
-        rows = jacobian.reshape(batch, 6 * len(members), len(self.screws))
+        rows = jacobian.reshape(batch, 6 * len(members), self.coordinates)
         if len(self.ties):
             missed = np.concatenate([missed, q @ self.ties.T], axis=1)
             rows = np.concatenate([rows, np.broadcast_to(self.ties, (batch, *self.ties.shape))], axis=1)
@@ -99,7 +111,7 @@ class LoopSystem:
         """Displacements of bodies, of coordinates within their joints, and across joints."""
         batch, joints = len(q), len(self.first)
         steps = exponentials(self.screws, q)
-        inside, across = identities(batch, len(self.screws)), identities(batch, joints)
+        inside, across = identities(batch, self.coordinates), identities(batch, joints)
         for level, (coordinates, members) in enumerate(self.levels):
             if level:
                 inside[:, coordinates] = across[:, members]
@@ -180,6 +192,12 @@ def loop_system(
         ties=held,
         rounding=frame.rounding,
     )
+
+
+def stacked(systems: Sequence[LoopSystem], counts: Sequence[int]) -> LoopSystem:
+    """Systems of one form as one, to be closed at the configurations of the first, so many as `counts` says, then at
+    those of the second, and so forth: each as by itself, to the last bit, where there are no ties."""
+    return altered(systems[0], screws=np.repeat(np.array([system.screws for system in systems]), counts, axis=0))
 
 
 def _unit_screws(twists: Array, frame: Frame) -> tuple[Array, Flags]:

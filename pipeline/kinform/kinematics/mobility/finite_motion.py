@@ -1,14 +1,15 @@
 """Finite mobility of the assembly: which first-order freedoms are motions over a distance.
 
-Each block of the graph of bodies and joints is tried by itself (`local_dimension`); a bridge closes no loop, so its
-freedoms are motions. A `general` joint is known by its velocities alone, which say nothing of where they
-lead: its block counts only where its other joints, with the general ones held, move as freely.
+Each block of the graph of bodies and joints is tried by itself (`local_dimension`), though in step with others, which
+takes less time; a bridge closes no loop, so its freedoms are motions. A `general` joint is known by its velocities
+alone, which say nothing of where they lead: its block counts only where its other joints, with the general ones held,
+move as freely.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,16 +17,21 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import UnionFind, blocks
+from kinform.foundation.in_step import in_step
 from kinform.foundation.words import counted, listed
-from kinform.kinematics.constants import LEAST_FRAME, MOST_BLOCK_WORK, MOST_STATEMENTS, MOVING_JOINT
+from kinform.kinematics.constants import LEAST_FRAME, MOST_BATCH_NUMBERS, MOST_BLOCK_WORK, MOST_STATEMENTS, MOVING_JOINT
 from kinform.kinematics.loops.loop_kinematics import LoopSystem, loop_system
-from kinform.kinematics.mobility.local_dimension import LocalMotions, local_motions
+from kinform.kinematics.mobility.local_dimension import LocalMotions, local_motions_of_each
 from kinform.kinematics.mobility.second_order import first_order
 from kinform.model.kinematics import Coupling, FiniteCertificate, Joint
 from kinform.model.names import JointName
 
 PLACED = ("revolute", "screw", "cylindrical", "spherical", "universal")
 """Joints whose point says where the mechanism is."""
+
+
+Certified = Generator[LoopSystem, LocalMotions, FiniteCertificate | None]
+"""A way to a certificate, on which it is asked how loops move."""
 
 
 @dataclass(frozen=True)
@@ -52,20 +58,18 @@ def finite_mobility(
     """Finite mobility of joints between bodies 0 … nodes−1 (`edges`, in the order of `joints`) that have
     `instantaneous` freedoms of first order; `size` of the assembly (m); `ties`: couplings of constant ratio, which
     stand for the contacts that they go through."""
-    certificates = []
     trees = UnionFind(nodes)
     for a, b in edges:
         trees.union(a, b)
+    of_graph = blocks(nodes, edges)
     # bridges, and trees that are loose
     open_ended = 6 * (len({trees.find(n) for n in range(nodes)}) - 1)
-    for block in blocks(nodes, edges):
-        if len(block) == 1:
-            open_ended += joints[block[0]].freedoms
-            continue
-        couplings = tuple(tie for tie in ties if any(joints[k].name == tie.through for k in block))
-        certificate = _block([edges[k] for k in block], [joints[k] for k in block], size, couplings)
-        if certificate is not None:
-            certificates.append(certificate)
+    open_ended += sum(joints[block[0]].freedoms for block in of_graph if len(block) == 1)
+    looped = [block for block in of_graph if len(block) > 1]
+    certificates = []
+    for batch in _batches(looped, [sum(joints[k].freedoms for k in block) for block in looped]):
+        found = in_step([_block(edges, joints, block, size, ties) for block in batch], local_motions_of_each)
+        certificates += [certificate for certificate in found if certificate is not None]
     first = [c.instantaneous for c in certificates if c.instantaneous is not None]
     last = [c.finite for c in certificates if c.finite is not None]
     statements = [c.statement for c in sorted(certificates, key=lambda c: c.finite is not None) if c.statement]
@@ -84,21 +88,40 @@ def finite_mobility(
     )
 
 
+def _batches(of_graph: Sequence[Sequence[int]], freedoms: Sequence[int]) -> Iterator[Sequence[Sequence[int]]]:
+    """Blocks, of so many `freedoms` each, in lots that are small enough to be held at once."""
+    batch: list[Sequence[int]] = []
+    numbers = 0
+    for block, count in zip(of_graph, freedoms, strict=True):
+        if batch and numbers + count**2 > MOST_BATCH_NUMBERS:
+            yield batch
+            batch, numbers = [], 0
+        batch.append(block)
+        numbers += count**2
+    if batch:
+        yield batch
+
+
 def _block(
-    edges: Sequence[tuple[int, int]], joints: Sequence[Joint], size: float, ties: Sequence[Coupling] = ()
-) -> FiniteCertificate | None:
+    every_edge: Sequence[tuple[int, int]],
+    every_joint: Sequence[Joint],
+    block: Sequence[int],
+    size: float,
+    every_tie: Sequence[Coupling],
+) -> Certified:
     """The certificate of one block with loops; None where nothing in it moves, even at first order.
 
     Gears whose ratios are known are tried as ratios; other general joints are held, and ambiguous ones leave the motion
     unknown.
     """
+    edges, joints = [every_edge[k] for k in block], [every_joint[k] for k in block]
     names = tuple(joint.name for joint in joints)
-    geared = _without_gears(edges, joints, ties)
+    geared = _without_gears(joints, tuple(tie for tie in every_tie if tie.through in names))
     if geared is not None:
         kept, ratios = geared
         members = [joints[k] for k in kept]
         system = loop_system([edges[k] for k in kept], [j.twists for j in members], block_frame(members, size), ratios)
-        certificate = _certificate([joint.name for joint in members], system)
+        certificate = _certificate([joint.name for joint in members], system, (yield system))
         return certificate and replace(certificate, joints=names)
     frame = block_frame(joints, size)
     system = loop_system(edges, [joint.twists for joint in joints], frame)
@@ -109,13 +132,14 @@ def _block(
     doubtful = [joint.name for joint in joints if joint.status == "ambiguous"]
     general = [joint.name for joint in joints if joint.type == "general"]
     if not doubtful and not general:
-        return _certificate(names, system)
+        return _certificate(names, system, (yield system))
     count = first_order(system)
     if count == 0:
         return None
     if not doubtful:
         held = [joint.twists[:0] if joint.type == "general" else joint.twists for joint in joints]
-        certificate = _certificate(names, loop_system(edges, held, frame))
+        system = loop_system(edges, held, frame)
+        certificate = _certificate(names, system, (yield system))
         if certificate is not None and certificate.finite == count:
             return certificate
     why = f"{_few(doubtful)} is ambiguous" if doubtful else f"{_few(general)} is known by its velocities only"
@@ -125,7 +149,7 @@ def _block(
 
 
 def _without_gears(
-    edges: Sequence[tuple[int, int]], joints: Sequence[Joint], ties: Sequence[Coupling]
+    joints: Sequence[Joint], ties: Sequence[Coupling]
 ) -> tuple[list[int], list[tuple[int, int, float]]] | None:
     """Joints that are left when the contacts of gears are taken out, and the ratios between these (by their places
     among them); None where there are no gears, or something else is not certain."""
@@ -152,9 +176,8 @@ def block_frame(joints: Sequence[Joint], size: float) -> Frame:
     return Frame(0.5 * (low + high), max(0.5 * norm(high - low), LEAST_FRAME * size))
 
 
-def _certificate(names: Sequence[JointName], system: LoopSystem) -> FiniteCertificate | None:
+def _certificate(names: Sequence[JointName], system: LoopSystem, motions: LocalMotions) -> FiniteCertificate | None:
     """How the loops of these joints move, with names and in words; None where nothing moves."""
-    motions = local_motions(system)
     if not motions.freedoms:
         return None
     # a shaky part that rides along is as short of freedoms on the one branch

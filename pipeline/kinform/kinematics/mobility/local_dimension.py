@@ -14,16 +14,26 @@ Three tests, none of which needs another's result:
 
 from __future__ import annotations
 
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
 from kinform.foundation.algebra.screws import bracket
 from kinform.foundation.algebra.vectors import norm
+from kinform.foundation.in_step import in_step
 from kinform.kinematics import constants
 from kinform.kinematics.loops.loop_kinematics import LoopSystem
-from kinform.kinematics.mobility.second_order import Pose, complement, independent, second_order, units
-from kinform.kinematics.mobility.truncation import regular_solution, truncated_solution
+from kinform.kinematics.mobility.gauss_newton import Ends, Walk, ends, solve
+from kinform.kinematics.mobility.second_order import (
+    Pose,
+    complement,
+    independent,
+    reference_poses,
+    second_order,
+    units,
+)
 from kinform.model.arrays import Array
 
 
@@ -53,20 +63,35 @@ class LocalMotions:
     """Why `dimension` is not known; else empty."""
 
 
+Result = TypeVar("Result")
+
+Steps = Generator[Walk, Ends, Result]
+"""A way to a result, with steps on it that others may go at the same time."""
+
+
 def local_motions(system: LoopSystem) -> LocalMotions:
     """Motions of the block at its reference pose."""
-    pose = Pose.at(system, np.zeros(system.coordinates))
-    count, none = pose.freedoms, np.zeros((0, system.coordinates))
+    return local_motions_of_each([system])[0]
+
+
+def local_motions_of_each(systems: Sequence[LoopSystem]) -> list[LocalMotions]:
+    """Motions of each of several blocks at its reference pose: as if it were alone, to the last bit."""
+    return in_step([_local_motions(pose) for pose in reference_poses(systems)], ends)
+
+
+def _local_motions(pose: Pose) -> Steps[LocalMotions]:
+    """Motions of a block at its reference pose."""
+    count, none = pose.freedoms, np.zeros((0, pose.system.coordinates))
     if count == 0:
         return LocalMotions(0, 0, none, stepped=0)
     rng = np.random.default_rng(constants.SEED)
-    mixes = units(rng.normal(size=(1 if _submersion(system, pose) else constants.MIXES, count)))
+    mixes = units(rng.normal(size=(1 if _submersion(pose) else constants.MIXES, count)))
     if count == 1:
         mixes = np.unique(mixes, axis=0)  # forth and back are all that there is
     mixes = mixes @ pose.free
     bends = np.linalg.norm(pose.obstruction(mixes), axis=1)
     for step in constants.STEP_SIZES:
-        closed = _regular(pose, mixes, step, constants.STEP_SIZES[0])
+        closed = yield from _regular(pose, mixes, step, constants.STEP_SIZES[0])
         if closed is not None and bends.max() > constants.UNBALANCED:
             why = "steps close, but the second-order test finds an obstruction"
             return LocalMotions(count, None, none, (count,), step, *closed, count, "obstructed", why)
@@ -75,8 +100,9 @@ def local_motions(system: LoopSystem) -> LocalMotions:
     return _singular(pose, rng)
 
 
-def _submersion(system: LoopSystem, pose: Pose) -> bool:
+def _submersion(pose: Pose) -> bool:
     """Does each independent loop have the full rank of the algebra that the joints generate?"""
+    system = pose.system
     generators = independent(system.screws)
     algebra = generators
     while len(algebra) < 6:
@@ -88,14 +114,14 @@ def _submersion(system: LoopSystem, pose: Pose) -> bool:
     return pose.rank == len(algebra) * len(system.loops) + len(system.ties)
 
 
-def _regular(pose: Pose, mixes: Array, stride: float, step: float) -> tuple[float, float] | None:
+def _regular(pose: Pose, mixes: Array, stride: float, step: float) -> Steps[tuple[float, float] | None]:
     """(least share kept of a stride, greatest residual) if walks of length `step` along mixes (D, n) close with
     the rank of the pose and find that rank again; else None. However short the strides, the walk goes on to the
     full step: obstructions of third and higher order cannot be told from rounding nearby."""
     q, kept, closed = pose.q, 1.0, max(constants.CLOSED, pose.system.rounding)
     for _ in range(round(step / stride)):
         ahead = q + stride * mixes
-        q, residual, jacobian = _solve(pose.system, ahead, stride, pose)
+        q, residual, jacobian = yield Walk(pose, ahead, stride)
         kept = min(kept, 1.0 - float(np.abs(((ahead - q) * mixes).sum(axis=1)).max()) / stride)
         if residual.max() > closed * step or kept < constants.STEP_KEPT:
             return None
@@ -104,80 +130,13 @@ def _regular(pose: Pose, mixes: Array, stride: float, step: float) -> tuple[floa
     misfit = worst > max(constants.CLOSURE_ROUNDING, pose.system.rounding * step)
     if misfit:
         # it grows with the step where axes are off, an obstruction of third or higher order with its powers
-        _, half, _ = _solve(pose.system, pose.q + 0.5 * stride * mixes, stride, pose)
+        _, half, _ = yield Walk(pose, pose.q + 0.5 * stride * mixes, stride)
         if float(half.max()) < constants.HIGHER_ORDER * worst * stride / step:
             return None
     values = np.linalg.svd(jacobian, compute_uv=False)
     beyond = values[:, pose.rank :].max(initial=0.0) / max(values.max(), 1e-300)
     zero = constants.STEPPED_RANK if misfit else constants.STEPPED_RANK_EXACT
     return (kept, worst) if beyond < max(zero, pose.system.rounding) else None
-
-
-def _solve(system: LoopSystem, start: Array, step: float, pose: Pose | None = None) -> tuple[Array, Array, Array]:
-    """Configurations (D, n) near `start` (D, n) that close the loops as well as Gauss–Newton can, their residuals (D,)
-    and Jacobians (D, 6 loops, n).
-
-    No iteration moves by more than half of `step`. With a `pose` only as many singular values are used as are its rank,
-    and convergence is quadratic or there is none.
-    """
-    q = start.copy()
-    active = np.arange(len(q))
-    for _ in range(constants.SLOW_ITERATIONS if pose is None else constants.FAST_ITERATIONS):
-        closed = system.close(q[active])
-        change = -_solutions(closed.jacobian, closed.residual, pose)
-        size = np.linalg.norm(change, axis=1)
-        change *= np.minimum(1.0, constants.LONGEST_CHANGE * step / np.maximum(size, 1e-300))[:, None]
-        q[active] += change
-        active = active[size > (constants.SLOW_CHANGE if pose is None else constants.FAST_CHANGE)]
-        if not len(active):
-            break
-    closed = system.close(q)
-    return q, np.abs(closed.residual).max(axis=1, initial=0.0), closed.jacobian
-
-
-def _solutions(jacobian: Array, missed: Array, pose: Pose | None) -> Array:
-    """(D, n) least solutions of J x = missed, (D, m, n) and (D, m), by all singular values that are any, or by those
-    that count at a pose beside."""
-    jacobian, missed = _reduced(jacobian, missed)
-    count = jacobian.shape[2]
-    if count < constants.REDUCED_RATES or jacobian.shape[1] != count:
-        return _by_singular_values(jacobian, missed, pose)
-    if pose is not None:
-        found = [truncated_solution(*equations, pose.free) for equations in zip(jacobian, missed, strict=True)]
-        sure = [solution for solution in found if solution is not None]
-        return np.array(sure) if len(sure) == len(found) else _by_singular_values(jacobian, missed, pose)
-    found = [regular_solution(*equations) for equations in zip(jacobian, missed, strict=True)]
-    out = np.array([np.zeros(count) if solution is None else solution for solution in found])
-    rest = [k for k, solution in enumerate(found) if solution is None]
-    if rest:
-        out[rest] = _by_singular_values(jacobian[rest], missed[rest], None)
-    return out
-
-
-def _by_singular_values(jacobian: Array, missed: Array, pose: Pose | None) -> Array:
-    """See `_solutions`."""
-    left, values, right = np.linalg.svd(jacobian, full_matrices=False)
-    used = values > constants.FINEST_VALUE * values.max(axis=1, initial=1e-300, keepdims=True)
-    if pose is not None:
-        used[:, pose.rank :] = False
-    parts = np.einsum("dri,dr->di", left, missed)
-    return np.asarray(np.einsum("di,din->dn", np.where(used, parts / np.where(used, values, 1.0), 0.0), right))
-
-
-def _reduced(jacobian: Array, residual: Array) -> tuple[Array, Array]:
-    """The equations J change = residual, (D, m, n) and (D, m), in as many rows as columns where a large block has many
-    more: the triangle of Householder's reflections, which keeps singular values, right singular vectors and parts of
-    the residual along the left ones (Golub and Van Loan, Matrix Computations, 5.3), without these reflections
-    themselves. Rows without entries, half of those of planar loops, say nothing."""
-    count = jacobian.shape[2]
-    if count < constants.REDUCED_RATES or jacobian.shape[1] <= count:
-        return jacobian, residual
-    used = np.asarray(jacobian.any(axis=(0, 2)))
-    if np.count_nonzero(used) <= count:
-        used[:] = True
-    equations = np.concatenate([jacobian, residual[..., None]], axis=2)[:, used]
-    triangle = np.asarray(np.linalg.qr(equations, mode="r"))
-    return triangle[:, :count, :count], triangle[:, :count, count]
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,7 +156,7 @@ class _Spread:
 def _spread(pose: Pose, directions: Array, step: float) -> _Spread:
     """Steps both ways along directions (D, n), solved in full."""
     start = pose.q + step * np.concatenate([directions, -directions])
-    q, residual, _ = _solve(pose.system, start, step)
+    q, residual, _ = solve(pose.system, start, step)
     moved = (q - pose.q) @ pose.free.T / step
     kept = np.linalg.norm(moved, axis=1)
     closed = residual < max(constants.CLOSED, pose.system.rounding) * step
@@ -218,7 +177,7 @@ def _smooth(pose: Pose, cone: Array, step: float, rng: np.random.Generator) -> b
     if not len(cone):
         return True
     mixes = units(rng.normal(size=(constants.MIXES, len(cone)))) @ cone
-    q, residual, _ = _solve(pose.system, pose.q + step * mixes, step)
+    q, residual, _ = solve(pose.system, pose.q + step * mixes, step)
     kept = ((q - pose.q) * mixes).sum(axis=1) / step
     aside = np.linalg.norm((q - pose.q) @ pose.free.T / step - kept[:, None] * (mixes @ pose.free.T), axis=1)
     return bool(
@@ -299,7 +258,7 @@ def _dimension(pose: Pose, step: float, rng: np.random.Generator) -> int | None:
     if count == 0:
         return 0
     mixes = units(rng.normal(size=(constants.BRANCH_MIXES, count))) @ pose.free
-    if _regular(pose, mixes, step, step) is not None:
+    if in_step([_regular(pose, mixes, step, step)], ends)[0] is not None:
         return count
     more = units(rng.normal(size=(count + 3, count))) @ pose.free
     cone = _spread(pose, more, step).cone

@@ -7,12 +7,14 @@ Duffy 1999 and Müller 2014 for joints, by Lie brackets).
 
 from __future__ import annotations
 
+from collections import defaultdict
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.kinematics import constants
-from kinform.kinematics.loops.loop_kinematics import LoopSystem
+from kinform.kinematics.loops.loop_kinematics import Form, LoopSystem, stacked
 from kinform.model.arrays import Array
 
 
@@ -32,13 +34,7 @@ class Pose:
     @staticmethod
     def at(system: LoopSystem, q: Array, tolerance: float = constants.CLOSED) -> Pose:
         """The pose at the closed configuration q (n,); relative `tolerance` of its rank."""
-        closed = system.close(q[None])
-        rows, columns = closed.jacobian[0].shape
-        # all right vectors, and no left ones without need
-        left, values, right = np.linalg.svd(closed.jacobian[0], full_matrices=rows < columns)
-        share = max(tolerance, system.rounding)
-        rank = int(np.count_nonzero(values > share * max(values.max(initial=0.0), 1e-300)))
-        return Pose(q, closed.columns[0], rank, right[rank:], left[:, :rank], system)
+        return _poses([system], system, q[None], tolerance)[0]
 
     @property
     def freedoms(self) -> int:
@@ -50,6 +46,33 @@ class Pose:
         bent = self.system.curvature(self.columns, rates)
         left: Array = bent - (bent @ self.reach) @ self.reach.T
         return left
+
+
+def reference_poses(systems: Sequence[LoopSystem]) -> list[Pose]:
+    """The reference pose of each system: as if it were alone, to the last bit."""
+    alike: dict[Form, list[int]] = defaultdict(list)
+    for k, system in enumerate(systems):
+        alike[system.form].append(k)
+    out: dict[int, Pose] = {}
+    for members in alike.values():
+        of_form = [systems[k] for k in members]
+        q = np.zeros((len(of_form), of_form[0].coordinates))
+        out |= zip(members, _poses(of_form, stacked(of_form, [1] * len(of_form)), q, constants.CLOSED), strict=True)
+    return [out[k] for k in range(len(systems))]
+
+
+def _poses(systems: Sequence[LoopSystem], together: LoopSystem, q: Array, tolerance: float) -> list[Pose]:
+    """The poses of systems that are stacked `together`, each at its own closed configuration of q (D, n)."""
+    closed = together.close(q)
+    rows, columns = closed.jacobian.shape[1:]
+    # all right vectors, and no left ones without need
+    left, values, right = np.linalg.svd(closed.jacobian, full_matrices=rows < columns)
+    out = []
+    for k, system in enumerate(systems):
+        share = max(tolerance, system.rounding)
+        rank = int(np.count_nonzero(values[k] > share * max(values[k].max(initial=0.0), 1e-300)))
+        out.append(Pose(q[k], closed.columns[k], rank, right[k, rank:], left[k, :, :rank], system))
+    return out
 
 
 def first_order(system: LoopSystem) -> int:

@@ -19,7 +19,7 @@ from kinform.foundation.algebra.vectors import cross, perpendicular, sine
 from kinform.foundation.words import counted
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
-from kinform.kinematics.pair.freedoms import freedoms
+from kinform.kinematics.pair.freedoms import freedoms, freedoms_beyond
 from kinform.kinematics.pair.in_step import Steps
 from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.kinematics.pair.preserved import preserved_motions
@@ -28,7 +28,6 @@ from kinform.kinematics.pair.stops import (
     ROLES,
     OtherReading,
     faces_in_words,
-    freed_motions,
     one_sense,
     seat_reading,
     stop_reading,
@@ -76,9 +75,12 @@ def certainty(
     touching = momentary(evidence, basis) or (form.type == "general" and meets([item.patch for item in evidence.items]))
     doubt, seat = "", None
     if not touching:
-        seat = yield from seat_reading(evidence, twists, preserved, basis, _sure(evidence, count), tolerances)
+        firm, vague = _known(evidence, count), _vagueness(evidence, count)
+        sure = firm & (vague <= constants.VAGUE_DIRECTION)
+        seat = yield from seat_reading(evidence, twists, preserved, basis, sure, tolerances)
         if seat is None:
-            doubt = (yield from _loose_doubt(evidence, twists, count, tolerances)) or _stray_doubt(evidence)
+            loose = yield from _loose_doubt(evidence, twists, count, firm, vague, tolerances)
+            doubt = loose or _stray_doubt(evidence)
     doubt = doubt or (yield from _near_axes_doubt(evidence, twists, count, tolerances))
     doubt = doubt or _thread_doubt(evidence, basis)
     doubt = doubt or (yield from _torn_doubt(evidence, twists, preserved, count, tolerances))
@@ -157,27 +159,28 @@ def _count(evidence: Evidence, twists: Array, keep: Flags, tolerances: Tolerance
 
 def _known(evidence: Evidence, count: int) -> Flags:
     """(items,) whether they are of known surfaces, on both sides where they leave no freedom of `count`."""
-    firm = np.array([item.patch.kind not in HIGHER for item in evidence.items])
-    return firm & [not item.patch.one_sided for item in evidence.items] if count == 0 else firm
+    patches = [item.patch for item in evidence.items]
+    return np.array([patch.kind not in HIGHER and (count > 0 or not patch.one_sided) for patch in patches])
 
 
-def _sure(evidence: Evidence, count: int) -> Flags:
-    """(items,) whether, besides, their directions are known."""
-    vague = [_vagueness(item.patch, fixed=count == 0) for item in evidence.items]
-    return _known(evidence, count) & (np.array(vague) <= constants.VAGUE_DIRECTION)
+def _vagueness(evidence: Evidence, count: int) -> Array:
+    """(items,) rad: how well the direction of each patch is known, by the better of its surfaces, or, where they leave
+    no freedom of `count`, by both."""
+    patches = [item.patch for item in evidence.items]
+    return np.array([max(patch.uncertainty[0], 0.0 if count else patch.mismatch[0]) for patch in patches])
 
 
-def _loose_doubt(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> Steps[str]:
-    """What the patches of known surfaces do not hold, the others do not hold for sure; bodies become one
-    only by surfaces that are known on both sides."""
-    firm = _known(evidence, count)
-    vague = [_vagueness(item.patch, fixed=count == 0) for item in evidence.items]
-    clear = np.array(vague) <= constants.VAGUE_DIRECTION
+def _loose_doubt(
+    evidence: Evidence, twists: Array, count: int, firm: Flags, vague: Array, tolerances: Tolerances
+) -> Steps[str]:
+    """What the patches of known surfaces (`firm`, whose directions are known to `vague` rad) do not hold, the others do
+    not hold for sure; bodies become one only by surfaces that are known on both sides."""
+    clear = vague <= constants.VAGUE_DIRECTION
     sure = firm & clear
     if sure.all() or (sure.any() and (yield from _count(evidence, twists, sure, tolerances)) <= count):
         return ""
     if firm.all() or (firm.any() and (yield from _count(evidence, twists, firm, tolerances)) <= count):
-        least = min(v for v, known, other in zip(vague, firm, clear, strict=True) if known and not other)
+        least = float(vague[firm & ~clear].min())
         return (
             f"{count} of 6 freedoms are left only because of surfaces whose direction is known no better than to "
             f"{np.degrees(least):.2g}°: the vertices of the mesh scatter"
@@ -198,8 +201,7 @@ def _scrap_reading(
     out = tuple(int(k) for k in np.flatnonzero(slight))
     if slight.all():
         return OtherReading(JointForm("general"), np.eye(6), out, role)
-    firm, _ = yield from freedoms(evidence, twists, preserved, ~slight, tolerances)
-    freed = freed_motions(basis, firm)
+    firm, freed = yield from freedoms_beyond(evidence, twists, preserved, ~slight, tolerances, basis)
     if freed.shape[1] == 0:
         return None
     flats = all(evidence.items[k].patch.kind == "plane" and not evidence.items[k].interferes for k in out)
@@ -229,11 +231,6 @@ def _teeth_reading(
         return None
     out = tuple(int(k) for k in np.flatnonzero(flanks))
     return OtherReading(evidence.form(firm), firm, out, "flank")
-
-
-def _vagueness(patch: Patch, *, fixed: bool) -> float:
-    """rad: how well its direction is known, by the better of its surfaces, or, of what is to be fixed, by both."""
-    return max(patch.uncertainty[0], patch.mismatch[0] if fixed else 0.0)
 
 
 def _near_axes_doubt(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> Steps[str]:

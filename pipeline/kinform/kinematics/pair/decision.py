@@ -13,12 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.foundation.algebra.vectors import norm, sine
+from kinform.foundation.in_step import in_step
 from kinform.kinematics import constants
 from kinform.kinematics.pair.certainty import Certainty, certainty, momentary
 from kinform.kinematics.pair.evidence import COAXIAL, GUIDES, Evidence, Item
 from kinform.kinematics.pair.freedoms import freedoms
 from kinform.kinematics.pair.hypotheses import Motion, candidate_motions
-from kinform.kinematics.pair.in_step import Steps, in_step
+from kinform.kinematics.pair.in_step import Steps, remains
 from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.kinematics.pair.preserved import preserved_by_each
 from kinform.kinematics.pair.uncertainty import uncertainty_doubt
@@ -60,7 +61,7 @@ def decide_each(pairs: Sequence[tuple[Evidence, Tolerances]]) -> list[Decision]:
     twists = [np.array([m.twist for m in of_pair]).reshape(-1, 6).T for of_pair in candidates]
     preserved = preserved_by_each([(evidence, of_pair) for (evidence, _), of_pair in zip(pairs, twists, strict=True)])
     of_each = zip(pairs, candidates, twists, preserved, strict=True)
-    return in_step([_decide(*pair, motions, of_pair, flags) for pair, motions, of_pair, flags in of_each])
+    return in_step([_decide(*pair, motions, of_pair, flags) for pair, motions, of_pair, flags in of_each], remains)
 
 
 def _decide(

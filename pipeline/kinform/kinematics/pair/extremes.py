@@ -57,7 +57,8 @@ def _ends_of_sectors(patches: Sequence[Patch]) -> list[Ints]:
         np.matmul(patch.points, patch.axis, out=along)
     sector = np.floor(angle / (2.0 * np.pi / constants.NORMAL_SECTORS)).astype(int)
     turn = np.round(angle / constants.SAME_PLACE)
-    level = np.round(height / (constants.SAME_PLACE * np.maximum(np.ptp(height, axis=1, keepdims=True), 1e-300)))
+    tall = np.ptp(height, axis=1, keepdims=True)
+    level = np.round(height / np.where(tall > 1e-300, constants.SAME_PLACE * tall, 1.0))
     ends = [np.lexsort((p * level, q * turn, sector)) for p in (1.0, -1.0) for q in (1.0, -1.0)]
     ends += [np.lexsort((p * level, sector)) for p in (1.0, -1.0)]
     ordered = np.take_along_axis(sector, ends[0], axis=1)
@@ -93,7 +94,11 @@ def _hulls(views: Sequence[tuple[Array, Array]]) -> list[Ints]:
     size = np.abs(flat).max(axis=(1, 2))
     wide = _wide(flat, size)
     inside = _inside(flat)
-    return [_hull(*of_view) for of_view in zip(flat, size.tolist(), wide.tolist(), inside, strict=True)]
+    corners = _convex(flat, size, inside) & wide
+    return [
+        np.flatnonzero(~within) if sure else _hull(places, large, spread, within)
+        for sure, places, large, spread, within in zip(corners, flat, size.tolist(), wide.tolist(), inside, strict=True)
+    ]
 
 
 def _wide(flat: Array, size: Array) -> Flags:
@@ -136,6 +141,25 @@ def _inside(flat: Array) -> Flags:
     inside = (ends == ends[:, _after(ends.shape[1])])[:, None]
     for_x, for_y = (flat[..., k, None] - corners[:, None, :, k] for k in (0, 1))
     return np.asarray((inside | (edge[:, None, :, 0] * for_y - edge[:, None, :, 1] * for_x > 0.0)).all(axis=2))
+
+
+def _convex(flat: Array, size: Array, inside: Flags) -> Flags:
+    """(m,): of which groups of points (m, n, 2) all that are not `inside` (m, n) are corners of the hull for certain:
+    each stands out from its neighbours, in the order about the mean, twice as far as a corner has to."""
+    sure = np.zeros(len(flat), dtype=np.bool_)
+    counts = np.count_nonzero(~inside, axis=1)
+    for count in set(counts.tolist()) - {0, 1, 2}:
+        members = np.flatnonzero(counts == count)
+        outer = flat[members][~inside[members]].reshape(-1, count, 2)
+        order = np.arctan2(outer[..., 1], outer[..., 0]).argsort(axis=1)
+        here = np.take_along_axis(outer, order[..., None], axis=1)
+        before, after = here[:, _before(count)], here[:, _after(count)]
+        edge, arm = after - before, here - before
+        out = arm[..., 0] * edge[..., 1] - arm[..., 1] * edge[..., 0]
+        straight = constants.STRAIGHT_EDGE * size[members, None]
+        far = out > 2.0 * straight * np.maximum(np.hypot(edge[..., 0], edge[..., 1]), straight)
+        sure[members] = far.all(axis=1)
+    return sure
 
 
 def _around(flat: Array, outer: Ints) -> Ints:

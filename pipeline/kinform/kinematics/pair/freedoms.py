@@ -12,7 +12,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import norm
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import Evidence
-from kinform.kinematics.pair.in_step import Remainder, Steps
+from kinform.kinematics.pair.in_step import Remainder, Remains, Steps
 from kinform.kinematics.pair.lower_pairs import nearest_pair
 from kinform.kinematics.pair.preserved import preserved_motions
 from kinform.model.arrays import Array, Flags
@@ -27,14 +27,32 @@ def freedoms(
     `preserved` (items, motions) is what `preserved_motions` says of the candidate `twists` (6, motions); `keep`
     (items,) which patches count.
     """
+    basis, values, _, _ = yield from _remains(evidence, twists, preserved, keep, tolerances, None)
+    return basis, values
+
+
+def freedoms_beyond(
+    evidence: Evidence, twists: Array, preserved: Flags, keep: Flags, tolerances: Tolerances, strict: Array
+) -> Steps[tuple[Array, Array]]:
+    """Basis (6, k) of what the kept patches leave free, as of `freedoms`, and what it has beyond the freedoms `strict`
+    (6, k'): (6, n) orthonormal."""
+    basis, _, _, freed = yield from _remains(evidence, twists, preserved, keep, tolerances, strict)
+    return basis, freed
+
+
+def _remains(
+    evidence: Evidence, twists: Array, preserved: Flags, keep: Flags, tolerances: Tolerances, strict: Array | None
+) -> Steps[Remains]:
+    """What the kept patches leave: as a lower pair, where it is one but for what they can tell."""
     rows, share = evidence.rows_of(keep)
     known = _independent(evidence, twists[:, preserved[keep].all(axis=0)], keep)
-    basis, values, turns = yield Remainder(rows, share, known, tolerances.free)
+    left = yield Remainder(rows, share, known, tolerances.free, strict)
+    basis, _, turns, _ = left
     if evidence.form(basis, turns).type == "general":
         rounded = nearest_pair(basis, evidence.frame)
         if rounded is not None and _all_preserve(evidence, rounded, keep):
-            basis, values, _ = yield Remainder(rows, share, rounded, tolerances.free)
-    return basis, values
+            left = yield Remainder(rows, share, rounded, tolerances.free, strict)
+    return left
 
 
 def _independent(evidence: Evidence, twists: Array, keep: Flags) -> Array:

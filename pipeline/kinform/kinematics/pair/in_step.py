@@ -1,8 +1,8 @@
-"""Many pairs decided in step: each goes its own way, and what they ask of linear algebra is answered for all at once.
+"""What decisions of pairs ask of linear algebra, answered for many at once.
 
-A decision is a generator. Where it needs to know what rows leave free it yields a `Remainder`, and is sent the answer.
-`in_step` lets all go on to their next question, stacks the questions of one shape, and so forth until none is left. The
-matrices of a stack are decomposed one by one: an answer is the same to the last bit whatever it is stacked with.
+A decision is a generator. Where it needs to know what rows leave free it yields a `Remainder`, and is sent the answer:
+many are decided in step (`foundation.in_step`), and `remains` stacks their questions of one shape. The matrices of a
+stack are decomposed one by one: an answer is the same to the last bit whatever it is stacked with.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from typing import TypeVar
 import numpy as np
 
 from kinform.foundation.algebra.screws import spans
+from kinform.kinematics import constants
 from kinform.model.arrays import Array
 
 Result = TypeVar("Result")
@@ -22,8 +23,9 @@ Result = TypeVar("Result")
 Turns = tuple[Array, Array]
 """Singular values and right singular vectors (k, k) of the turns of a basis (6, k), which are its first three rows."""
 
-Remains = tuple[Array, Array, Turns]
-"""Orthonormal basis (6, k) of what rows leave free, their singular values (6,) ascending, the turns of the basis."""
+Remains = tuple[Array, Array, Turns, Array]
+"""Orthonormal basis (6, k) of what rows leave free, their singular values (6,) ascending, the turns of the basis, and
+what it has beyond the freedoms that were named (6, n)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,31 +40,12 @@ class Remainder:
     """(6, k) orthonormal, of the motions that are known."""
     free: float
     """Singular values below count as none."""
+    beyond: Array | None = None
+    """(6, k') orthonormal freedoms: what is there beyond them? None: it is not asked."""
 
 
 Steps = Generator[Remainder, Remains, Result]
 """A way to a result, with questions on it."""
-
-
-def in_step(ways: Sequence[Steps[Result]]) -> list[Result]:
-    """Where each of the ways leads."""
-    results: dict[int, Result] = {}
-    asked: dict[int, Remainder] = {}
-
-    def go_on(k: int, answer: Remains | None) -> None:
-        try:
-            asked[k] = next(ways[k]) if answer is None else ways[k].send(answer)
-        except StopIteration as end:
-            results[k] = end.value
-
-    for k in range(len(ways)):
-        go_on(k, None)
-    while asked:
-        questions, answers = list(asked), remains(list(asked.values()))
-        asked.clear()
-        for k, answer in zip(questions, answers, strict=True):
-            go_on(k, answer)
-    return [results[k] for k in range(len(ways))]
 
 
 def remains(questions: Sequence[Remainder]) -> list[Remains]:
@@ -89,7 +72,7 @@ def _remains(questions: Sequence[Remainder]) -> list[Remains]:
     free = np.array([question.free for question in questions])
     null = [vectors[of] for vectors, of in zip(right, values < free[:, None], strict=True)]
     bases = spans([vectors.T for vectors in null])
-    return list(zip(bases, values, _turns(bases), strict=True))
+    return list(zip(bases, values, _turns(bases), _freed(questions, bases), strict=True))
 
 
 def _turns(bases: Sequence[Array]) -> list[Turns]:
@@ -100,3 +83,20 @@ def _turns(bases: Sequence[Array]) -> list[Turns]:
         _, values, right = np.linalg.svd(np.array([bases[k][:3] for k in members]), full_matrices=True)
         out |= zip(members, zip(values, right, strict=True), strict=True)
     return [out[k] for k in range(len(bases))]
+
+
+def _freed(questions: Sequence[Remainder], bases: Sequence[Array]) -> list[Array]:
+    """(6, n) orthonormal: what each basis (6, k) has beyond the freedoms that its question names."""
+    out = [basis[:, :0] for basis in bases]
+    alike: dict[tuple[int, int], list[int]] = defaultdict(list)
+    for k, (question, basis) in enumerate(zip(questions, bases, strict=True)):
+        if question.beyond is not None:
+            alike[question.beyond.shape[1], basis.shape[1]].append(k)
+    for members in alike.values():
+        before = np.array([questions[k].beyond for k in members])
+        basis = np.array([bases[k] for k in members])
+        rest = basis - before @ (np.swapaxes(before, 1, 2) @ basis)
+        vectors, sizes, _ = np.linalg.svd(rest, full_matrices=False)
+        for k, of_basis, new in zip(members, vectors, sizes > constants.NEW_FREEDOM, strict=True):
+            out[k] = of_basis[:, new]
+    return out

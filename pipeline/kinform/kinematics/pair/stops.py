@@ -26,7 +26,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross, perpendicular, sine, widest_turn
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
-from kinform.kinematics.pair.freedoms import freedoms
+from kinform.kinematics.pair.freedoms import freedoms_beyond
 from kinform.kinematics.pair.in_step import Steps
 from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.model.arrays import Array, Flags
@@ -69,12 +69,12 @@ def stop_reading(
         free = preserved[keep].all(axis=0) if keep.any() else np.zeros(twists.shape[1], dtype=bool)
         if not (free & ~preserved[~keep].all(axis=0)).any():
             continue
-        basis, _ = yield from freedoms(evidence, twists, preserved, keep, tolerances)
+        basis, freed = yield from freedoms_beyond(evidence, twists, preserved, keep, tolerances, strict)
         if basis.shape[1] <= strict.shape[1]:
             continue
         reading = OtherReading(evidence.form(basis), basis, out, "stop")
         area = sum(evidence.items[k].area for k in out)
-        if (best is None or area < best[0]) and _may_be_stop(evidence, strict, reading, keep):
+        if (best is None or area < best[0]) and _may_be_stop(evidence, strict, freed, reading, keep):
             best = area, reading
     return None if best is None else best[1]
 
@@ -87,8 +87,8 @@ def seat_reading(
     lines = np.array([item.patch.kind == "line" and not item.patch.one_sided for item in evidence.items])
     if not lines.any() or lines.all() or not (lines | sure).all():
         return None
-    basis, _ = yield from freedoms(evidence, twists, preserved, ~lines, tolerances)
-    freed, out = freed_motions(strict, basis), tuple(int(k) for k in np.flatnonzero(lines))
+    basis, freed = yield from freedoms_beyond(evidence, twists, preserved, ~lines, tolerances, strict)
+    out = tuple(int(k) for k in np.flatnonzero(lines))
     if freed.shape[1] != 1 or not one_sense(evidence, freed[:, 0], out):
         return None
     return OtherReading(evidence.form(basis), basis, out, "stop")
@@ -109,9 +109,8 @@ def _candidates(evidence: Evidence) -> list[tuple[int, ...]]:
     return [found for found in sets if len(found) < len(items)]
 
 
-def _may_be_stop(evidence: Evidence, strict: Array, reading: OtherReading, keep: Flags) -> bool:
-    """Is there nothing that tells the faces left out to be guides?"""
-    motions = freed_motions(strict, reading.basis)
+def _may_be_stop(evidence: Evidence, strict: Array, motions: Array, reading: OtherReading, keep: Flags) -> bool:
+    """Is there nothing that tells the faces left out to be guides? `motions` (6, n) is what they oppose."""
     guides = evidence.chosen(keep)
     faces = evidence.chosen(~keep)
     if motions.shape[1] == 2:
@@ -122,12 +121,6 @@ def _may_be_stop(evidence: Evidence, strict: Array, reading: OtherReading, keep:
     if reading.form.type in turned.get(evidence.form(strict).type, ()):
         return True
     return reading.form.axis is not None and _ends_guide(reading.form, guides, faces)
-
-
-def freed_motions(strict: Array, basis: Array) -> Array:
-    """(6, n) orthonormal: what the freedoms `basis` (6, k) have beyond `strict` (6, k')."""
-    vectors, sizes, _ = np.linalg.svd(basis - strict @ (strict.T @ basis), full_matrices=False)
-    return np.asarray(vectors[:, sizes > constants.NEW_FREEDOM])
 
 
 def one_sense(evidence: Evidence, motion: Array, out: tuple[int, ...]) -> bool:

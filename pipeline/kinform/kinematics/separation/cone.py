@@ -122,19 +122,42 @@ def nothing_opens(rows: Array, fixed: Array) -> bool:
     For programs whose components are up to LARGEST_TWIST and where what counts opens by a half: each tolerance is
     so small that neither rounding nor what HiGHS admits comes near that.
     """
-    free = np.eye(rows.shape[1])
-    if len(fixed):
-        _, values, right = np.linalg.svd(fixed)
-        free = right[np.append(values, np.zeros(len(right) - len(values))) < constants.SURELY_HELD]
-    inner = rows @ free.T
-    size = np.linalg.norm(inner, axis=1)
-    inner = inner[size > constants.SURELY_STILL] / size[size > constants.SURELY_STILL, None]
-    if not len(inner):
-        return True
-    values = np.linalg.eigvalsh(inner.T @ inner) / len(inner)
-    if ((values > constants.SURELY_STILL**2) & (values < constants.CONE_FREE**2)).any():
-        return False
-    return bool(held_for_certain([inner])[0])
+    return nothing_opens_in_each([(rows, fixed)])[0]
+
+
+def nothing_opens_in_each(programs: Sequence[tuple[Array, Array]]) -> list[bool]:
+    """As `nothing_opens`, of several programs (rows, fixed)."""
+    within = zip(programs, _free(programs), strict=True)
+    inner = [_scaled(rows @ free.T) for (rows, _), free in within]
+    out = [not len(of) for of in inner]
+    for size in {of.shape[1] for of in inner if len(of)}:
+        members = [k for k, of in enumerate(inner) if len(of) and of.shape[1] == size]
+        values = np.linalg.eigvalsh([inner[k].T @ inner[k] for k in members]) / [[len(inner[k])] for k in members]
+        unsure = np.any((values > constants.SURELY_STILL**2) & (values < constants.CONE_FREE**2), axis=1)
+        clear = [k for k, doubt in zip(members, unsure, strict=True) if not doubt]
+        for k, held in zip(clear, held_for_certain([inner[k] for k in clear]), strict=True):
+            out[k] = bool(held)
+    return out
+
+
+def _free(programs: Sequence[tuple[Array, Array]]) -> list[Array]:
+    """(k, d) of each program (rows, fixed): orthonormal motions that nothing fixed hinders for certain."""
+    out = [np.eye(rows.shape[1]) for rows, _ in programs]
+    for shape in {fixed.shape for _, fixed in programs if len(fixed)}:
+        members = [k for k, (_, fixed) in enumerate(programs) if fixed.shape == shape]
+        _, values, right = np.linalg.svd(np.array([programs[k][1] for k in members]))
+        free = np.ones(right.shape[:2], dtype=np.bool_)
+        free[:, : values.shape[1]] = values < constants.SURELY_HELD
+        for k, motions, chosen in zip(members, right, free, strict=True):
+            out[k] = motions[chosen]
+    return out
+
+
+def _scaled(rows: Array) -> Array:
+    """The rows (n, d) that move for certain, at length one."""
+    size = np.linalg.norm(rows, axis=1)
+    moves = size > constants.SURELY_STILL
+    return np.asarray(rows[moves] / size[moves, None])
 
 
 def grams(rows: Array, weight: Array, counts: Ints) -> Array:

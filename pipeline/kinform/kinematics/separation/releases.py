@@ -30,7 +30,10 @@ class Leaving:
 
 def with_releases(joints: Sequence[Joint], cones: Sequence[Cone | None]) -> tuple[Joint, ...]:
     """The joints with whether contact holds them, and how they come apart."""
-    certain = iter(certainly_held([cone for cone in cones if cone is not None]))
+    decided = [cone for cone in cones if cone is not None]
+    held = certainly_held(decided)
+    certain = iter(held)
+    leaving = iter(leaving_of_each([cone for cone, sure in zip(decided, held, strict=True) if not sure]))
     out = []
     for joint, cone in zip(joints, cones, strict=True):
         if cone is None:
@@ -38,7 +41,7 @@ def with_releases(joints: Sequence[Joint], cones: Sequence[Cone | None]) -> tupl
         elif next(certain):
             out.append(altered(joint, held=True))
         else:
-            out.append(altered(joint, **vars(leaving_of(cone))))
+            out.append(altered(joint, **vars(next(leaving))))
     return tuple(out)
 
 
@@ -48,9 +51,26 @@ def certainly_held(cones: Sequence[Cone]) -> Flags:
     return np.asarray(held_for_certain([cone.rows for cone in cones]) | nothing_left)
 
 
-def leaving_of(cone: Cone, *, turns: bool = True) -> Leaving:
-    """Whether and how a pair that is not certainly held comes apart; without `turns` only slides, where there are."""
-    slides, many = _slides(cone)
+def leaving_of_each(cones: Sequence[Cone], *, turns: bool = True) -> list[Leaving]:
+    """Whether and how pairs that are not certainly held come apart; without `turns` only slides, where there are."""
+    return [_leaving_of(cone, straight, turns) for cone, straight in zip(cones, _straight(cones), strict=True)]
+
+
+def _straight(cones: Sequence[Cone]) -> list[Array]:
+    """(3, k) of each cone: orthonormal directions in which nothing that is held both ways hinders a slide."""
+    out = [np.eye(3) for _ in cones]
+    for count in {len(cone.fixed) for cone in cones} - {0}:
+        members = [k for k, cone in enumerate(cones) if len(cone.fixed) == count]
+        _, values, right = np.linalg.svd(np.array([cones[k].fixed[:, 3:] for k in members]), full_matrices=True)
+        held = np.count_nonzero(values > constants.SAME_DIRECTION, axis=1).tolist()
+        for k, rank, directions in zip(members, held, right, strict=True):
+            out[k] = directions[rank:].T
+    return out
+
+
+def _leaving_of(cone: Cone, straight: Array, turns: bool) -> Leaving:
+    """Of one pair, whose slides are within the `straight` directions (3, k)."""
+    slides, many = _slides(cone, straight)
     if not len(slides):
         lp = opening(cone.rows)
         if lp.held:
@@ -68,16 +88,12 @@ def leaving_of(cone: Cone, *, turns: bool = True) -> Leaving:
     return Leaving(held=False, releases=tuple(releases), extremes=None if rays is None else len(rays))
 
 
-def _slides(cone: Cone) -> tuple[Array, bool]:
+def _slides(cone: Cone, straight: Array) -> tuple[Array, bool]:
     """Unit directions (k, 3) in which it leaves without turning: the extreme ones, or, where those are many, the
     one in their middle (and True).
 
     What patches hold both ways leaves `straight` directions only; among these the rows' normals make a cone.
     """
-    straight = np.eye(3)
-    if len(cone.fixed):
-        _, values, right = np.linalg.svd(cone.fixed[:, 3:], full_matrices=True)
-        straight = right[int(np.count_nonzero(values > constants.SAME_DIRECTION)) :].T
     normals = unit_rows(cone.rows[:, 3:] @ straight)
     none = np.zeros((0, 3))
     if not len(normals):

@@ -13,9 +13,8 @@ Contact that fuses bodies is looked at too: a block in a corner has no freedom, 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,19 +22,21 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, scaled, twist_at_origin
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.graphs.graph import UnionFind, blocks
+from kinform.foundation.in_step import in_step
 from kinform.kinematics.answers import Answers, ask
 from kinform.kinematics.constants import (
     CONE_HELD,
     LARGEST_TWIST,
     MOST_CERTIFIED,
+    MOST_IN_STEP,
     MOST_OPENING_ROWS,
     MOST_TOGETHER,
     ROUNDED_ROW,
 )
-from kinform.kinematics.separation.cone import nothing_opens, rows_beside, split_directions, unit_rows
+from kinform.kinematics.separation.cone import nothing_opens_in_each, rows_beside, split_directions, unit_rows
 from kinform.kinematics.separation.contact_rows import Cone, ContactRows, is_stated
 from kinform.kinematics.separation.lifting import lifts_apart
-from kinform.kinematics.separation.releases import certainly_held, leaving_of, release_of
+from kinform.kinematics.separation.releases import certainly_held, leaving_of_each, release_of
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, Joint, Release, Separation
@@ -56,6 +57,10 @@ class Link:
     """(f, 6) its freedoms where nothing opens, (0, 6) elsewhere."""
     slides: tuple[Release, ...] | None = None
     """In which the second leaves the first; None where not known yet."""
+
+
+Opened = tuple[int, ...] | None
+"""Links of one block that can open together, by their places in it; None where that is not known."""
 
 
 def links_between(
@@ -103,20 +108,19 @@ def separations(
     """What can leave, and why it is not known of the rest ("" where it is)."""
     opened: set[int] = set()
     reason = ""
+    joined: list[Sequence[int]] = []
     for block in blocks(len(names), [link.ends for link in links]):
         loose = [k for k in block if links[k].cone is not None]
-        if not loose:
-            continue
-        if len(block) == 1:
+        if loose and len(block) == 1:
             opened.update(loose)
-            continue
-        members = [links[k] for k in block]
-        question = [(link.ends, link.cone, link.twists) for link in members]
-        solved = ask(answers, "opened", [question], partial(_answers_of, members))[0]
+        elif loose:
+            joined.append(block)
+    of_each = _opened([[links[k] for k in block] for block in joined], answers)
+    for members, solved in zip(joined, of_each, strict=True):
         if solved is None:
             reason = "whether parts can leave is not known of all: some loops of contacts are too large to decide"
-            continue
-        opened.update(block[k] for k in solved)
+        else:
+            opened.update(members[k] for k in solved)
     sets, missing = _sets(names, ground, links, opened)
     if missing:
         more = f"{missing} more can move out of contact, but only together with many others, or while these move too"
@@ -124,13 +128,24 @@ def separations(
     return sets, reason
 
 
-def _answers_of(links: Sequence[Link], questions: Sequence[object]) -> list[tuple[int, ...] | None]:
-    """To the one question what it is of these links."""
-    return [_links_that_open(links) for _ in questions]
+def _opened(of_each: Sequence[Sequence[Link]], answers: Answers | None) -> Sequence[Opened]:
+    """Which links of each block can open together: of the block, so far as it is not known."""
+    questions = [[(link.ends, link.cone, link.twists) for link in of_block] for of_block in of_each]
+    links = {id(question): of_block for question, of_block in zip(questions, of_each, strict=True)}
+
+    def solved(asked: Sequence[object]) -> list[Opened]:
+        out: list[Opened] = []
+        for first in range(0, len(asked), MOST_IN_STEP):
+            ways = [_links_that_open(links[id(question)]) for question in asked[first : first + MOST_IN_STEP]]
+            out += in_step(ways, nothing_opens_in_each)
+        return out
+
+    return ask(answers, "opened", questions, solved)
 
 
-def _links_that_open(links: Sequence[Link]) -> tuple[int, ...] | None:
-    """Indices of the links of one block that can open together; None where the program is too large or fails."""
+def _links_that_open(links: Sequence[Link]) -> Generator[tuple[Array, Array], bool, Opened]:
+    """Indices of the links of one block that can open together; None where the program is too large or fails. It is
+    asked on the way whether nothing opens for certain."""
     nodes = {n: k for k, n in enumerate(sorted({n for link in links for n in link.ends}))}
     loose = [k for k, link in enumerate(links) if link.cone is not None]
     frame = _common([link.cone.frame for link in links if link.cone is not None])
@@ -150,12 +165,11 @@ def _links_that_open(links: Sequence[Link]) -> tuple[int, ...] | None:
             equal.append((rows_in_frame(link.cone.fixed, link.cone.frame, frame), a, b, -1))
             less.append((-turned[k], a, b, -1))
             less.append((-turned[k].mean(axis=0, keepdims=True), a, b, width + loose.index(k)))
-    if width <= MOST_CERTIFIED and nothing_opens(
-        -_dense([item for item in less if item[3] < 0], width), _dense(equal, width)
-    ):
-        return ()
-    if width <= MOST_CERTIFIED and _lift_apart(links, nodes):
-        return tuple(loose)
+    if width <= MOST_CERTIFIED:
+        if (yield -_dense([item for item in less if item[3] < 0], width), _dense(equal, width)):
+            return ()
+        if _lift_apart(links, nodes):
+            return tuple(loose)
     from scipy.optimize import linprog
 
     columns = width + len(loose)
@@ -293,7 +307,8 @@ def _sides(links: Sequence[Link], opened: Sequence[int], together: UnionFind) ->
         first, second = (together.find(end) for end in link.ends)
         ways = link.slides
         if ways is None:
-            ways = tuple(way for way in leaving_of(link.cone, turns=False).releases if way.kind == "slide")
+            (leaving,) = leaving_of_each([link.cone], turns=False)
+            ways = tuple(way for way in leaving.releases if way.kind == "slide")
         slides = np.array([way.direction for way in ways]).reshape(-1, 3)
         extreme = all(way.extreme for way in ways)
         out[first].append(_Side(link.name, second, link.cone, -1.0, -slides, extreme))
@@ -343,14 +358,15 @@ def _ways(groups: Sequence[set[int]], sides: dict[int, list[_Side]]) -> list[tup
     borders = [[side for g in sorted(group) for side in sides[g] if side.other not in group] for group in groups]
     alone = [len(border) == 1 and len(border[0].slides) > 0 for border in borders]
     cones = [_cone_beside(border) for border, known in zip(borders, alone, strict=True) if border and not known]
-    loose = zip(cones, certainly_held(cones), strict=True)
+    held = certainly_held(cones)
+    certain = iter(held)
+    leaving = iter(leaving_of_each([cone for cone, sure in zip(cones, held, strict=True) if not sure], turns=False))
     out: list[tuple[Release, ...]] = []
     for border, known in zip(borders, alone, strict=True):
         if known:
             out.append(_ways_of(border[0]))
-            continue
-        cone, held = next(loose) if border else (None, True)
-        out.append(() if held or cone is None else leaving_of(cone, turns=False).releases)
+        else:
+            out.append(() if not border or next(certain) else next(leaving).releases)
     return out
 
 
