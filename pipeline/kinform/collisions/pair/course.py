@@ -52,3 +52,13 @@ class Course:
             return low
         node = float(self.nodes[max(int(np.searchsorted(self.nodes, low, side="right")) - 1, 0)])
         return node if node > start else low
+
+
+def narrowed(left: float, right: float, fine: float, met: Callable[[float], bool]) -> tuple[float, float]:
+    """Where what is not met at `left`, and is at `right`, is first met, to within `fine`."""
+    while right - left > fine:
+        middle = 0.5 * (left + right)
+        if middle in (left, right):
+            break
+        left, right = (left, middle) if met(middle) else (middle, right)
+    return left, right

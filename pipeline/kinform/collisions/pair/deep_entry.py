@@ -5,10 +5,12 @@ Each point is asked for again only after it may have travelled as far as it was 
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
-from kinform.collisions.constants import CERTAIN, SPARSE, SPECK, UNSEEN
-from kinform.collisions.pair.course import Course
+from kinform.collisions.constants import CERTAIN, REFINED, SPARSE, SPECK, UNSEEN
+from kinform.collisions.pair.course import Course, narrowed
 from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.model.arrays import Array, Ints
 
@@ -87,7 +89,7 @@ class Inside:
 
     def _first(self, points: Ints, heights: Array, right: float, fine: float) -> Entry | None:
         """Where the first of points came in that are inside at `right`."""
-        first, further = None, right
+        first, last, further = None, points, right
         while len(points):
             deepest = int(np.argmax(heights))
             point = points[deepest : deepest + 1]
@@ -97,27 +99,29 @@ class Inside:
                 self._ignored[point] = True
                 points, heights = np.delete(points, deepest), np.delete(heights, deepest)
                 continue
-            first = left, hit
+            first, last = (left, hit), point
             # of those that came in before, the next
             others = points[(points != point) & (self._entered[points] < left)]
             heights = self._heights(left, others)
             met = heights > self._least[others]
             points, heights, right = others[met], heights[met], left
-        return None if first is None else (*first, self._middle(first[1], further))
+        if first is None:
+            return None
+        return (*narrowed(*first, REFINED * fine, partial(self._is_in, last, [])), self._middle(first[1], further))
 
     def _entry(self, point: Ints, height: float, right: float, fine: float) -> tuple[float, float, float]:
         """Where a point (1,) that is inside at `right` came in: outside and inside, and how deep it is there (m)."""
-        left, least = float(self._entered[point[0]]), float(self._least[point[0]])
-        while right - left > fine:
-            middle = 0.5 * (left + right)
-            if middle in (left, right):
-                break
-            there = float(self._heights(middle, point)[0])
-            if there > least:
-                right, height = middle, there
-            else:
-                left = middle
-        return left, right, height
+        depths = [height]
+        left, right = narrowed(float(self._entered[point[0]]), right, fine, partial(self._is_in, point, depths))
+        return left, right, depths[-1]
+
+    def _is_in(self, point: Ints, depths: list[float], s: float) -> bool:
+        """Whether a point (1,) is inside at s; its depth (m) is then noted."""
+        there = float(self._heights(s, point)[0])
+        if there > self._least[point[0]]:
+            depths.append(there)
+            return True
+        return False
 
     def _middle(self, s: float, later: float) -> Array:
         """(3,) m, first part's frame: about where points come in at s, by those that are deeper a little later."""

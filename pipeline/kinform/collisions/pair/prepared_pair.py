@@ -88,6 +88,13 @@ class PairTest:
         """Diagonal of the smaller part (m)."""
         return min(mesh.diagonal for mesh in self._meshes)
 
+    def holds(self, facets: tuple[Ints, Ints]) -> bool:
+        """Whether these facets of both parts, ascending, are among those that count."""
+        return all(
+            len(some) <= len(side) and bool(np.isin(some, side, assume_unique=True).all())
+            for some, side in zip(facets, self.facets, strict=True)
+        )
+
     def pose(self, D: Array) -> Array:
         """(4, 4) of the second part in the first, by the displacement `D` of the second body relative to the first."""
         return np.asarray(self._X_AW @ D @ self.X_WB)
@@ -242,9 +249,19 @@ class PairTest:
             slack = max(slack, sum(self._surfaces[k].surfaces[pair[k]].chord for k in (0, 1)))
         return Crossing(out, slack) if out else NONE
 
+    def of_surfaces(self, hits: Ints, pairs: Collection[SurfacePair]) -> Ints:
+        """(k, 2) those of facets (n, 2), as counted by FCL, that are of some pairs of surfaces."""
+        first, second = (self.counted(side)[hits[:, side]].tolist() for side in (0, 1))
+        return hits[[pair in pairs for pair in zip(first, second, strict=True)]]
+
     def counted(self, side: int) -> Ints:
         """(n,) the surface of each facet that counts, of the first or second part (0, 1)."""
-        return np.asarray(self._surfaces[side].labels[self.facets[side]])
+        return self._counted[side]
+
+    @cached_property
+    def _counted(self) -> tuple[Ints, Ints]:
+        first, second = (s.labels[f] for s, f in zip(self._surfaces, self.facets, strict=True))
+        return first, second
 
     def _in_both(self, first: MeshIndex, second: MeshIndex, points: Array, other: Array) -> Ints:
         """Which points (n, 3), in the frame of either part, are inside both: within rounding on the surface of one, and
