@@ -18,7 +18,7 @@ def inside(depth):
         probes=[SimpleNamespace(points=np.zeros((1, 3)))],
         size=1.0,
         loose=1e-3,
-        heights=lambda s, chosen: np.full(len(chosen), depth(s)),
+        heights=lambda s, chosen, away: np.full(len(chosen), depth(s)),
         places=lambda s: np.zeros((1, 3)),
     )
     return Inside(test, Course(lambda s: s, lambda s: s), 0.0)

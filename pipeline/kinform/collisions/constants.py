@@ -58,6 +58,9 @@ SPARSE = 0.016
 """So far points near the other part may travel between two questions: to ask whether they are inside is dear, and what
 came in is found by halving anyhow."""
 
+PASSAGE_ROUNDING = 1e-9
+"""By this share of a facet's extent points pass through it that pass beside: of two that share an edge, one is met."""
+
 # pair/prepared_pair: crossings, depths
 
 DEPTH_ENDS = 32

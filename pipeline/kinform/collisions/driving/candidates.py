@@ -22,6 +22,7 @@ from kinform.collisions.pair.advancement import First, Search, first_crossing
 from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.distance_bounds import Apart, Counted, Wholes
 from kinform.collisions.pair.mate_surfaces import Kept
+from kinform.collisions.pair.passages import Path
 from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.displacements import displacement
@@ -63,7 +64,8 @@ class Candidate:
         along = float(abs(self._twist[:3] @ self._twist[3:]))
         speed = math.hypot(min(radii), along) if self._turning else 1.0
         moved = lru_cache(maxsize=64)(lambda s: displacement(sign * s * self._twist))
-        return Course(moved, lambda s: speed * s)
+        path = None if self.turns is None else Path(self.profiles[0].frame, self.turns, sign)
+        return Course(moved, lambda s: speed * s, path=path)
 
     def wholes(self) -> Wholes:
         """The parts with all their facets."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.collisions.pair.passages import Path
 from kinform.model.arrays import Array
 
 
@@ -23,6 +24,9 @@ class Course:
 
     meets: Callable[[float], tuple[bool, float]] | None = None
     """Whether facets that count can meet at s, and up to where that stays so; None: not known."""
+
+    path: Path | None = None
+    """The turn or slide that it is; None: it is neither."""
 
     def apart(self, low: float, high: float) -> bool:
         """Whether it is known that nothing that counts can meet between two parameters."""

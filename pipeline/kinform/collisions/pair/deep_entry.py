@@ -1,6 +1,7 @@
 """When points of one part come to be deep inside another along a motion.
 
-Each point is asked for again only after it may have travelled as far as it was away (conservative advancement).
+Each point is asked for again only after it may have travelled as far as it was away (conservative advancement); along
+a turn or a slide, after it has passed through a facet (`passages`).
 """
 
 from __future__ import annotations
@@ -30,7 +31,12 @@ class Inside:
         count = sum(len(probes.points) for probes in test.probes)
         speck = SPECK * test.size
         self._every = np.arange(count)
-        heights = self._heights(s, self._every)
+        self._passages = None if course.path is None else test.passages(course.path)
+        self._last = s
+        """Up to where passages have been looked at."""
+        heights = np.zeros(count)
+        asked = self._every if self._passages is None else np.flatnonzero(self._passages.maybe_inside(s))
+        heights[asked] = self._heights(s, asked)
         self._ignored = heights > test.loose
         self._entered = np.where(heights > speck, s, np.nan)
         """Where each point that is inside was last outside."""
@@ -46,7 +52,7 @@ class Inside:
         self._wait(course.travel(s), self._every, heights)
 
     def _heights(self, s: float, chosen: Ints) -> Array:
-        return self._test.heights(self._course.displacement(s), chosen)
+        return self._test.heights(self._course.displacement(s), chosen, self._passages is None)
 
     def _wait(self, travelled: float, chosen: Ints, heights: Array) -> None:
         """When points have to be asked for again: once they may be out, in, or deep."""
@@ -61,7 +67,7 @@ class Inside:
         travelled = self._course.travel(right)
         if not every and travelled < self._next:
             return None
-        asked = self._every if every else np.flatnonzero(self._due <= travelled)
+        asked = self._asked(right, travelled, every)
         if not len(asked):
             return None
         self._next = travelled + self._stride
@@ -86,6 +92,19 @@ class Inside:
             if (later > self._test.loose).any():
                 return self._first(shallow[later > self._test.loose], later[later > self._test.loose], further, fine)
         return None
+
+    def _asked(self, right: float, travelled: float, every: bool) -> Ints:
+        """Points that are due at `right`, or all; of a turn or a slide, those that are inside, or have passed."""
+        due = self._every if every else np.flatnonzero(self._due <= travelled)
+        if self._passages is None:
+            return due
+        passed = self._passages.last(self._last, right)
+        self._last = right
+        asked = ~np.isnan(passed)
+        outside = asked & np.isnan(self._entered)
+        self._outside[outside] = passed[outside]
+        asked[due] |= ~np.isnan(self._entered[due]) & ~self._ignored[due]
+        return np.flatnonzero(asked)
 
     def _first(self, points: Ints, heights: Array, right: float, fine: float) -> Entry | None:
         """Where the first of points came in that are inside at `right`."""
