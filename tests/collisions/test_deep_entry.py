@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from kinform.collisions.constants import SPECK
 from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.deep_entry import Inside
 
@@ -17,7 +18,7 @@ def inside(depth):
         probes=[SimpleNamespace(points=np.zeros((1, 3)))],
         size=1.0,
         loose=1e-3,
-        heights=lambda s, chosen: np.full(len(chosen), depth(s)),
+        heights=lambda s, chosen, away: np.full(len(chosen), depth(s)),
         places=lambda s: np.zeros((1, 3)),
     )
     return Inside(test, Course(lambda s: s, lambda s: s), 0.0)
@@ -26,8 +27,8 @@ def inside(depth):
 @pytest.mark.parametrize("entry", [0.2, 0.5, 0.77])
 def test_a_point_comes_in_where_it_is_on_the_surface(entry):
     at, hit, _ = inside(lambda s: s - entry).met(1.0, 1.0, 1e-6, every=True)
-    assert at <= entry <= hit
-    assert hit - at <= 1e-6
+    assert at - 1.01 * SPECK <= entry <= hit
+    assert hit - at <= 1e-8
 
 
 @pytest.mark.parametrize("deep", [0.002, 0.1])
@@ -42,4 +43,4 @@ def test_what_only_seemed_to_be_inside_counts_once_it_has_been_out():
     assert known.met(0.4, 1.0, 1e-6, every=True) is None
     assert known.met(0.6, 1.0, 1e-6, every=True) is None
     at, hit, _ = known.met(1.0, 1.0, 1e-6, every=True)
-    assert at <= 0.9 <= hit
+    assert at - 1.01 * SPECK <= 0.9 <= hit

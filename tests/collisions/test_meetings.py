@@ -100,6 +100,25 @@ def test_what_meets_in_a_piece_of_the_way_is_among_the_facets_that_can(kind, see
     assert left_out
 
 
+@pytest.mark.parametrize("middle", np.linspace(0.0, 6.0, 7))
+def test_what_lies_on_the_far_side_does_not_count_in_a_gap_of_a_ring(middle):
+    """A facet in a gap of 1 rad in a ring, turned by less than half of it, and by more."""
+
+    def facets(angles):
+        corners = np.array([[1.0, 0, 0], [1.01, 0, 0], [1.0, 0.01, 0.01]])
+        c, s = np.cos(angles)[:, None], np.sin(angles)[:, None]
+        x, y = corners[:, 0], corners[:, 1]
+        turned = np.stack([c * x - s * y, s * x + c * y, np.broadcast_to(corners[:, 2], (len(angles), 3))], axis=2)
+        return turned.reshape(-1, 3), np.arange(3 * len(angles)).reshape(-1, 3)
+
+    twist = np.array([0, 0, 1.0, 0, 0, 0])
+    around = middle + np.linspace(0.5, TURN - 0.5, 200)
+    first, second = Profile(*facets(np.array([middle])), twist), Profile(*facets(around), twist)
+    found = meeting(first, second, np.arange(1), np.arange(200), MARGIN)
+    assert [len(side) for side in found.within(-0.45, 0.45)] == [0, 0]
+    assert 1 <= len(found.within(0.45, 0.6)[1]) < 40
+
+
 def test_a_fine_ring_is_met_no_further_than_its_teeth_reach():
     """Two small facets at 90° meet at a quarter of a turn, and for about as long as they are wide."""
     first = np.array([[[1.0, 0, 0], [1.0, 0.01, 0], [1.0, 0.01, 0.01]]])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import acos, asin, atan2, degrees, hypot, pi
+from math import acos, asin, atan2, degrees, hypot, pi, radians
 from re import search
 
 import numpy as np
@@ -13,6 +13,9 @@ from support.slots import lever_between_pegs
 from support.solids import assembly, box, part, random_pose, rod
 
 from kinform import collisions, contacts, kinematics, stages, surfaces
+from kinform.collisions import constants
+from kinform.collisions.driving import candidates
+from kinform.collisions.pair import distance_bounds
 from kinform.consistency import check
 from kinform.model.function import Law, SimulationRequest
 
@@ -25,6 +28,45 @@ def found(X=None, scale=1e-3, **solids):
     touching = contacts.find(made, known)
     derived = kinematics.derive(made, known, touching)
     return collisions.ranges(made, known, touching, derived), derived
+
+
+def turned_lever(angle):
+    """The lever between pegs from another pose (degrees)."""
+    solids = lever_between_pegs()
+    return {"base": solids["base"], "lever": solids["lever"].rotate((0, 0, angle))}
+
+
+def values(item, joint, axis=(0, 0, 1.0)):
+    return np.array([end.value for end in ends(joint, np.array(axis), item)])
+
+
+@pytest.fixture
+def other_steps(monkeypatch):
+    monkeypatch.setattr(constants, "RESOLUTION", 9e-3)
+    monkeypatch.setattr(candidates, "WINDOW_TURN", 0.31)
+    monkeypatch.setattr(candidates, "MODEL_MOST", 0.0)
+    monkeypatch.setattr(distance_bounds, "SHORT_STEP", 0.003)
+    monkeypatch.setattr(distance_bounds, "STEPS_MOST", 7)
+
+
+@pytest.mark.parametrize("angle", [0.0, 3.3, -7.1])
+def test_where_a_joint_stops_does_not_hang_on_the_steps_by_which_it_is_found(angle, request):
+    """Neither on where it begins, nor on how long steps are, nor on which facets are looked at."""
+    (item,), derived = found(**lever_between_pegs())
+    at = values(item, derived.joints[0])
+    request.getfixturevalue("other_steps")
+    (item,), derived = found(**turned_lever(angle))
+    assert values(item, derived.joints[0]) + radians(angle) == pytest.approx(at, abs=1e-8)
+
+
+@pytest.mark.parametrize("reach", [0.0, 1.7, -12.3])
+def test_where_a_slide_stops_does_not_hang_on_where_it_begins(reach, request):
+    rail = box(-60, 60, -15, 15, -5, 0) + box(-60, 60, -15, -10, -1, 10) + box(-60, 60, 10, 15, -1, 10)
+    rail += box(50, 55, -11, 11, -1, 10) + rod(3, -1, 10, 40).translate((-51, 0, 0))
+    request.getfixturevalue("other_steps")
+    (item,), derived = found(rail=rail, slider=box(-10, 25, -10, 10, 0, 8).translate((reach, 0, 0)))
+    expected = np.array([-0.038, 0.025]) - 1e-3 * reach
+    assert values(item, derived.joints[0], (1.0, 0, 0)) == pytest.approx(expected, abs=3e-9)
 
 
 def ends(joint, axis, item):

@@ -58,6 +58,9 @@ SPARSE = 0.016
 """So far points near the other part may travel between two questions: to ask whether they are inside is dear, and what
 came in is found by halving anyhow."""
 
+PASSAGE_ROUNDING = 1e-9
+"""By this share of a facet's extent points pass through it that pass beside: of two that share an edge, one is met."""
+
 # pair/prepared_pair: crossings, depths
 
 DEPTH_ENDS = 32
@@ -101,6 +104,11 @@ BEHIND_LEAST = 4.0
 """Nothing is asked behind a face nearer than this many times what a contact is found to."""
 BEHIND_DEPTH = 0.4
 """Share of the way behind a face by which its points are then inside."""
+REFINED = 2e-3
+"""Share of what a contact is found to, to which the facets that cross first, or a point that comes in, are followed:
+less than 1e-9 rad of a turn."""
+FIRST_TRIED = 4
+"""So often the facets that cross first are looked for among those that cross a little later."""
 RISE = 0.02
 """Share of what may be overlap of mates or chord errors by which the depth has to grow."""
 RISE_UNEVEN = 0.1
@@ -134,6 +142,10 @@ WINDOW_TURN = 2.0 * math.pi / 32
 WINDOW_SLIDE = 0.05
 """... and share of the smaller part's diagonal of a slide, that parts which come near each other are followed with the
 facets that can meet there."""
+MODEL_MOST = 0.7
+"""Where more than this share of the facets that can meet at all can in a window, all are modelled, ..."""
+MODEL_SHARED = 8.0
+"""... and a model that is there is used for as many times fewer of its facets."""
 MEETING_MARGIN = 1e-6
 """Facets whose swept profiles come no nearer than this never meet."""
 

@@ -9,6 +9,8 @@ from functools import cached_property, lru_cache
 from kinform.collisions.constants import (
     CROSSING_LEAST,
     MEETING_MARGIN,
+    MODEL_MOST,
+    MODEL_SHARED,
     STOP_ANGLE,
     STOP_LENGTH,
     WINDOW_SLIDE,
@@ -20,6 +22,7 @@ from kinform.collisions.pair.advancement import First, Search, first_crossing
 from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.distance_bounds import Apart, Counted, Wholes
 from kinform.collisions.pair.mate_surfaces import Kept
+from kinform.collisions.pair.passages import Path
 from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.displacements import displacement
@@ -43,8 +46,9 @@ class Candidate:
         """rad or m to which a stop is found."""
         self.window = math.inf if self.turns is None else WINDOW_TURN if turning else WINDOW_SLIDE * self._size
         """rad or m along which parts that come near are followed with the facets that can meet there."""
+        self._tests: list[PairTest] = []
         self._modelled = 0
-        """Facets of models so far."""
+        """Facets of models of some so far."""
 
     @property
     def part_names(self) -> Pair:
@@ -60,7 +64,8 @@ class Candidate:
         along = float(abs(self._twist[:3] @ self._twist[3:]))
         speed = math.hypot(min(radii), along) if self._turning else 1.0
         moved = lru_cache(maxsize=64)(lambda s: displacement(sign * s * self._twist))
-        return Course(moved, lambda s: speed * s)
+        path = None if self.turns is None else Path(self.profiles[0].frame, self.turns, sign)
+        return Course(moved, lambda s: speed * s, path=path)
 
     def wholes(self) -> Wholes:
         """The parts with all their facets."""
@@ -72,16 +77,21 @@ class Candidate:
         return meeting(*self.profiles, *facets, MEETING_MARGIN * self._size)
 
     def between(self, sign: int, begin: float, end: float) -> PairTest | None:
-        """With the facets that can meet between two places of the motion to one side; None where none can. With all
-        that can meet, where models of some of them would take more facets than one of all."""
-        all_facets = sum(len(side) for side in self._meeting.facets)
-        facets = self._meeting.facets
-        if self._modelled <= all_facets:
-            facets = self._meeting.within(*sorted((sign * begin, sign * end)))
-            if not (len(facets[0]) and len(facets[1])):
-                return None
-            self._modelled += len(facets[0]) + len(facets[1])
-        return self._test(facets) if self._modelled <= all_facets else self.anywhere
+        """With the facets that can meet between two places of the motion to one side, some more where these have been
+        asked for; None where none can. With all that can meet, where models of some of them would take more facets than
+        one of all."""
+        all_facets = sum(map(len, self._meeting.facets))
+        if self._modelled > all_facets:
+            return self.anywhere
+        facets = self._meeting.within(*sorted((sign * begin, sign * end)))
+        count = len(facets[0]) + len(facets[1])
+        if not (len(facets[0]) and len(facets[1])):
+            return None
+        for test in self._tests:
+            if sum(map(len, test.facets)) <= MODEL_SHARED * count and test.holds(facets):
+                return test
+        self._modelled += count if count <= MODEL_MOST * all_facets else all_facets + 1
+        return self.anywhere if self._modelled > all_facets else self._test(facets)
 
     @cached_property
     def anywhere(self) -> PairTest | None:
@@ -91,7 +101,9 @@ class Candidate:
     def _test(self, facets: tuple[Ints, Ints]) -> PairTest | None:
         if not (len(facets[0]) and len(facets[1])):
             return None
-        return PairTest(self._shapes, *self.names, facets, self.mates)
+        test = PairTest(self._shapes, *self.names, facets, self.mates)
+        self._tests.append(test)
+        return test
 
     @cached_property
     def mates(self) -> list[Patch]:

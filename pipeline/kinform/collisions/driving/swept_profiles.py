@@ -151,20 +151,29 @@ class Meeting:
         """Those that can meet while the second moves from `begin` to `end` (rad or m).
 
         What a facet sweeps over meanwhile is its box, drawn out along the motion; where these boxes are apart, facets
-        do not meet. Of a turn, boxes across the cut are taken to go all round.
+        do not meet. Of a turn, boxes across the cut are cut in two.
         """
         if self._along is None:
             return self.facets
         (start, stop), (first, last) = self._along
-        places = [(start, stop), (first + begin, last + end)]
-        if self.turning:
-            places = [_cut(*side) for side in places]
-        boxes = [
-            (np.column_stack([low[:, :2], self.unit * start]), np.column_stack([high[:, :2], self.unit * stop]))
-            for (low, high), (start, stop) in zip(self.kept, places, strict=True)
-        ]
-        chosen = _near(boxes[0], boxes[1], self.margin)
-        return self.facets[0][chosen[0]], self.facets[1][chosen[1]]
+        sides, owners = [], []
+        for (low, high), (from_, to) in zip(self.kept, ((start, stop), (first + begin, last + end)), strict=True):
+            owner, from_, to = _cut(from_, to) if self.turning else (np.arange(len(from_)), from_, to)
+            sides.append(
+                (
+                    np.column_stack([low[owner, :2], self.unit * from_]),
+                    np.column_stack([high[owner, :2], self.unit * to]),
+                )
+            )
+            owners.append(owner)
+        chosen = _near(sides[0], sides[1], self.margin)
+        return self._some(0, owners[0][chosen[0]]), self._some(1, owners[1][chosen[1]])
+
+    def _some(self, side: int, chosen: Ints) -> Ints:
+        """Facets of one part by their places, ascending, each once."""
+        kept = np.zeros(len(self.facets[side]), dtype=bool)
+        kept[chosen] = True
+        return self.facets[side][kept]
 
 
 def _near(first: Sides, second: Sides, margin: float) -> tuple[Ints, Ints]:
@@ -186,12 +195,15 @@ def _near(first: Sides, second: Sides, margin: float) -> tuple[Ints, Ints]:
     return chosen[0][kept[0]], chosen[1][kept[1]]
 
 
-def _cut(start: Array, stop: Array) -> Sides:
-    """Where facets are on a turn (rad) that is cut open at 0."""
-    wide = stop - start
-    start = start % TURN
-    over = (wide >= TURN) | (start + wide > TURN)
-    return np.where(over, 0.0, start), np.where(over, TURN, start + wide)
+def _cut(start: Array, stop: Array) -> tuple[Ints, Array, Array]:
+    """Where facets (n,) are on a turn (rad) that is cut open at 0: of each piece (m,) the facet, and from where to
+    where."""
+    wide = np.minimum(stop - start, TURN)
+    start = np.where(wide >= TURN, 0.0, start % TURN)
+    over = np.flatnonzero(start + wide > TURN)
+    rest = start[over] + wide[over] - TURN
+    ends = np.append(np.minimum(start + wide, TURN), rest)
+    return np.append(np.arange(len(start)), over), np.append(start, np.zeros(len(over))), ends
 
 
 def meeting(first: Profile, second: Profile, facets_first: Ints, facets_second: Ints, margin: float) -> Meeting:

@@ -7,18 +7,18 @@ a resolution. What happens within the resolution, free at both ends, is a graze 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cached_property, partial
 
 import numpy as np
 
 from kinform.collisions import constants
-from kinform.collisions.pair.course import Course
+from kinform.collisions.pair.course import Course, narrowed
 from kinform.collisions.pair.deep_entry import Inside
 from kinform.collisions.pair.mate_surfaces import SurfacePair
 from kinform.collisions.pair.prepared_pair import NONE, Crossing, PairTest
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Ints
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,9 +55,11 @@ class _State:
     def __init__(self, test: PairTest, D: Array, touching: bool):
         self._test, self._D = test, D
         # to ask for what touches costs no more than to ask how far apart it is
-        self._hits = test.hits(D) if touching else None
-        self.distance = 0.0 if self._hits is not None and len(self._hits) else self._found[0]
+        known = test.hits(D) if touching else None
+        self.distance = 0.0 if known is not None and len(known) else self._found[0]
         """m: of the facets that count."""
+        if known is not None:
+            self.hits = known
 
     @cached_property
     def _found(self) -> tuple[float, tuple[int, int]]:
@@ -69,9 +71,14 @@ class _State:
         return self._found[1]
 
     @cached_property
+    def hits(self) -> Ints:
+        """(n, 2) facets that touch or cross."""
+        return self._test.hits(self._D)
+
+    @cached_property
     def crossing(self) -> Crossing:
         """What crosses; where facets are apart there is nothing."""
-        return NONE if self.distance > 0.0 else self._test.crossing(self._D, self._hits)
+        return NONE if self.distance > 0.0 else self._test.crossing(self._D, self.hits)
 
 
 class Search:
@@ -139,7 +146,7 @@ class Search:
                     stack.append(self.course.middle(left, right))
                     continue
                 if self.goes_in(left, end, resolution, fine):
-                    return self.flat(left, right)
+                    return self.flat(left, right, fine)
             entered = self.entered(left, right, end, fine, resolution)
             if entered is not None:
                 return entered
@@ -226,11 +233,16 @@ class Search:
         at, hit, place = point
         return _Hit(at, hit, (self.test.X_WA @ np.append(place, 1.0))[:3], before=self.before)
 
-    def flat(self, left: float, right: float) -> First:
-        """Where faces meet flat."""
+    def flat(self, left: float, right: float, fine: float) -> First:
+        """Where faces meet flat: one passes through the other between `left` and `right`."""
         f, g = self.state(left).nearest
+        left, right = narrowed(left, right, constants.REFINED * fine, partial(self._behind, (f, g)))
         place = self.test.middle(self.course.displacement(right), f, g)
         return First(left, right, (self.test.X_WA @ np.append(place, 1.0))[:3], before=self.before)
+
+    def _behind(self, nearest: tuple[int, int], s: float) -> bool:
+        height = self.test.height(self.course.displacement(s), nearest)
+        return height <= constants.CROSSING_LEAST * self.test.size
 
     def pass_(self, left: float, right: float) -> float:
         """Go on from `right`: parts that overlapped from the start and have parted count from there."""
@@ -272,7 +284,7 @@ class Search:
                 continue
             newest = frozenset(pair for pair, step in since.items() if step is not None and step >= earliest)
             if newest == since.keys() or self._deep(right, newest):
-                return self._narrow(*earliest, fine, partial(self._crosses, newest))
+                return self._begun(*earliest, fine, newest)
         return self._rise(right, fine, resolution)
 
     def _rise(self, right: float, fine: float, step: float) -> First:
@@ -287,7 +299,7 @@ class Search:
             if depth < least:
                 low, least = place, depth
         least += constants.RISE * slack
-        return self._narrow(low, right, fine, lambda s: self._depth(s) > least)
+        return self._hit(*narrowed(low, right, fine, lambda s: self._depth(s) > least))
 
     def _depth(self, s: float) -> float:
         crossing = self.state(s).crossing
@@ -296,14 +308,27 @@ class Search:
     def _crosses(self, pairs: Collection[SurfacePair], s: float) -> bool:
         return not self.state(s).crossing.shared.keys().isdisjoint(pairs)
 
-    def _narrow(self, left: float, right: float, fine: float, met: Callable[[float], bool]) -> First:
-        while right - left > fine:
-            middle = 0.5 * (left + right)
-            if middle in (left, right):
-                break
-            if met(middle):
-                right = middle
+    def _begun(self, left: float, right: float, fine: float, pairs: Collection[SurfacePair]) -> First:
+        """Where pairs of surfaces begin to cross between `left` and `right`.
+
+        Of the facets that cross at `right` the first is found; where others cross before that, they take their place.
+        What is found does not hang on the steps in which it was come near to.
+        """
+        for to in (fine, constants.REFINED * fine):
+            for _ in range(constants.FIRST_TRIED):
+                hits = self.test.of_surfaces(self.state(right).hits, pairs)
+                low, high = narrowed(left, right, to, partial(self._cross, hits))
+                if low <= left or not self._crosses(pairs, low):
+                    left, right = low, high
+                    break
+                right = low
             else:
-                left = middle
+                left, right = narrowed(left, right, to, partial(self._crosses, pairs))
+        return self._hit(left, right)
+
+    def _cross(self, hits: Ints, s: float) -> bool:
+        return bool(self.test.crossing(self.course.displacement(s), hits))
+
+    def _hit(self, left: float, right: float) -> First:
         at = np.append(self.state(right).crossing.segments().mean(axis=(0, 1)), 1.0)
         return First(left, right, (self.test.X_WA @ at)[:3], before=self.before)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.collisions.pair.passages import Path
 from kinform.model.arrays import Array
 
 
@@ -23,6 +24,9 @@ class Course:
 
     meets: Callable[[float], tuple[bool, float]] | None = None
     """Whether facets that count can meet at s, and up to where that stays so; None: not known."""
+
+    path: Path | None = None
+    """The turn or slide that it is; None: it is neither."""
 
     def apart(self, low: float, high: float) -> bool:
         """Whether it is known that nothing that counts can meet between two parameters."""
@@ -52,3 +56,13 @@ class Course:
             return low
         node = float(self.nodes[max(int(np.searchsorted(self.nodes, low, side="right")) - 1, 0)])
         return node if node > start else low
+
+
+def narrowed(left: float, right: float, fine: float, met: Callable[[float], bool]) -> tuple[float, float]:
+    """Where what is not met at `left`, and is at `right`, is first met, to within `fine`."""
+    while right - left > fine:
+        middle = 0.5 * (left + right)
+        if middle in (left, right):
+            break
+        left, right = (left, middle) if met(middle) else (middle, right)
+    return left, right

@@ -1,14 +1,17 @@
 """When points of one part come to be deep inside another along a motion.
 
-Each point is asked for again only after it may have travelled as far as it was away (conservative advancement).
+Each point is asked for again only after it may have travelled as far as it was away (conservative advancement); along
+a turn or a slide, after it has passed through a facet (`passages`).
 """
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
-from kinform.collisions.constants import CERTAIN, SPARSE, SPECK, UNSEEN
-from kinform.collisions.pair.course import Course
+from kinform.collisions.constants import CERTAIN, REFINED, SPARSE, SPECK, UNSEEN
+from kinform.collisions.pair.course import Course, narrowed
 from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.model.arrays import Array, Ints
 
@@ -28,7 +31,12 @@ class Inside:
         count = sum(len(probes.points) for probes in test.probes)
         speck = SPECK * test.size
         self._every = np.arange(count)
-        heights = self._heights(s, self._every)
+        self._passages = None if course.path is None else test.passages(course.path)
+        self._last = s
+        """Up to where passages have been looked at."""
+        heights = np.zeros(count)
+        asked = self._every if self._passages is None else np.flatnonzero(self._passages.maybe_inside(s))
+        heights[asked] = self._heights(s, asked)
         self._ignored = heights > test.loose
         self._entered = np.where(heights > speck, s, np.nan)
         """Where each point that is inside was last outside."""
@@ -44,7 +52,7 @@ class Inside:
         self._wait(course.travel(s), self._every, heights)
 
     def _heights(self, s: float, chosen: Ints) -> Array:
-        return self._test.heights(self._course.displacement(s), chosen)
+        return self._test.heights(self._course.displacement(s), chosen, self._passages is None)
 
     def _wait(self, travelled: float, chosen: Ints, heights: Array) -> None:
         """When points have to be asked for again: once they may be out, in, or deep."""
@@ -59,7 +67,7 @@ class Inside:
         travelled = self._course.travel(right)
         if not every and travelled < self._next:
             return None
-        asked = self._every if every else np.flatnonzero(self._due <= travelled)
+        asked = self._asked(right, travelled, every)
         if not len(asked):
             return None
         self._next = travelled + self._stride
@@ -85,9 +93,22 @@ class Inside:
                 return self._first(shallow[later > self._test.loose], later[later > self._test.loose], further, fine)
         return None
 
+    def _asked(self, right: float, travelled: float, every: bool) -> Ints:
+        """Points that are due at `right`, or all; of a turn or a slide, those that are inside, or have passed."""
+        due = self._every if every else np.flatnonzero(self._due <= travelled)
+        if self._passages is None:
+            return due
+        passed = self._passages.last(self._last, right)
+        self._last = right
+        asked = ~np.isnan(passed)
+        outside = asked & np.isnan(self._entered)
+        self._outside[outside] = passed[outside]
+        asked[due] |= ~np.isnan(self._entered[due]) & ~self._ignored[due]
+        return np.flatnonzero(asked)
+
     def _first(self, points: Ints, heights: Array, right: float, fine: float) -> Entry | None:
         """Where the first of points came in that are inside at `right`."""
-        first, further = None, right
+        first, last, further = None, points, right
         while len(points):
             deepest = int(np.argmax(heights))
             point = points[deepest : deepest + 1]
@@ -97,27 +118,29 @@ class Inside:
                 self._ignored[point] = True
                 points, heights = np.delete(points, deepest), np.delete(heights, deepest)
                 continue
-            first = left, hit
+            first, last = (left, hit), point
             # of those that came in before, the next
             others = points[(points != point) & (self._entered[points] < left)]
             heights = self._heights(left, others)
             met = heights > self._least[others]
             points, heights, right = others[met], heights[met], left
-        return None if first is None else (*first, self._middle(first[1], further))
+        if first is None:
+            return None
+        return (*narrowed(*first, REFINED * fine, partial(self._is_in, last, [])), self._middle(first[1], further))
 
     def _entry(self, point: Ints, height: float, right: float, fine: float) -> tuple[float, float, float]:
         """Where a point (1,) that is inside at `right` came in: outside and inside, and how deep it is there (m)."""
-        left, least = float(self._entered[point[0]]), float(self._least[point[0]])
-        while right - left > fine:
-            middle = 0.5 * (left + right)
-            if middle in (left, right):
-                break
-            there = float(self._heights(middle, point)[0])
-            if there > least:
-                right, height = middle, there
-            else:
-                left = middle
-        return left, right, height
+        depths = [height]
+        left, right = narrowed(float(self._entered[point[0]]), right, fine, partial(self._is_in, point, depths))
+        return left, right, depths[-1]
+
+    def _is_in(self, point: Ints, depths: list[float], s: float) -> bool:
+        """Whether a point (1,) is inside at s; its depth (m) is then noted."""
+        there = float(self._heights(s, point)[0])
+        if there > self._least[point[0]]:
+            depths.append(there)
+            return True
+        return False
 
     def _middle(self, s: float, later: float) -> Array:
         """(3,) m, first part's frame: about where points come in at s, by those that are deeper a little later."""

@@ -25,9 +25,9 @@ class Probes:
 
     points: Array
 
-    def heights(self, other: MeshIndex, X: Array, chosen: Ints) -> Array:
+    def heights(self, other: MeshIndex, X: Array, chosen: Ints, away: bool = True) -> Array:
         """(k,) m: how deep some of the points are inside another part, in whose frame the pose of this one is X (4, 4);
-        outside of it, the negative of a distance that they keep at least."""
+        outside of it, the negative of a distance that they keep at least, about 0 unless `away` is asked."""
         placed = self.points[chosen] @ X[:3, :3].T + X[:3, 3]
         beyond = np.maximum(np.maximum(other.low - placed, placed - other.high), 0.0)
         out = -np.linalg.norm(beyond, axis=1)
@@ -35,7 +35,7 @@ class Probes:
         if len(near):
             inside = other.contains(placed[near])
             deep, clear = near[inside], near[~inside]
-            out[clear] = -other.away(placed[clear])
+            out[clear] = -other.away(placed[clear]) if away else 0.0
             out[deep] = other.depths(placed[deep])
         return np.asarray(out)
 

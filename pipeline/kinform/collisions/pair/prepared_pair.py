@@ -18,6 +18,7 @@ from kinform.collisions import constants
 from kinform.collisions.pair.facet_crossings import crossings
 from kinform.collisions.pair.flush_entry import Probes, probes
 from kinform.collisions.pair.mate_surfaces import Mates, SurfacePair
+from kinform.collisions.pair.passages import Passages, Path, passages
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.vectors import perpendicular
 from kinform.foundation.at_work import at_work_on
@@ -70,6 +71,7 @@ class PairTest:
         """m: less deep, parts scrape, as mates may."""
         self.loose = max([self.scrape, *self.mates.slacks])
         """m: less deep, points of one may be in the other though the parts only mate."""
+        self._passages: Passages | None = None
         self.empty = not (len(facets[0]) and len(facets[1]))
         if not self.empty:
             with at_work_on(*self.names):
@@ -87,6 +89,13 @@ class PairTest:
     def size(self) -> float:
         """Diagonal of the smaller part (m)."""
         return min(mesh.diagonal for mesh in self._meshes)
+
+    def holds(self, facets: tuple[Ints, Ints]) -> bool:
+        """Whether these facets of both parts, ascending, are among those that count."""
+        return all(
+            len(some) <= len(side) and bool(np.isin(some, side, assume_unique=True).all())
+            for some, side in zip(facets, self.facets, strict=True)
+        )
 
     def pose(self, D: Array) -> Array:
         """(4, 4) of the second part in the first, by the displacement `D` of the second body relative to the first."""
@@ -123,7 +132,7 @@ class PairTest:
         middle = X[:3, :3] @ (second.sum(axis=0) / 3.0) + X[:3, 3]
         return float(self._normals[0][nearest[0]] @ (middle - first[0]))
 
-    def _corners(self, side: int, chosen: int | Ints) -> Array:
+    def _corners(self, side: int, chosen: int | Ints | slice) -> Array:
         """(…, 3, 3) m, part frame: corners of some of the facets that count, of the first or second part (0, 1)."""
         mesh = self._meshes[side]
         return np.asarray(mesh.vertices[mesh.faces[self.facets[side][chosen]]])
@@ -182,17 +191,31 @@ class PairTest:
         )
         return first, second
 
-    def heights(self, D: Array, chosen: Ints) -> Array:
+    def passages(self, path: Path) -> Passages:
+        """Where these points, counted through, pass through the facets that count of the other part as the second part
+        moves along a path, the same whenever it is asked, or the other way."""
+        if self._passages is None:
+            frames = [path.frame @ X for X in (self.X_WA, self.X_WB)]
+            points = [_moved(probes.points, X) for probes, X in zip(self.probes, frames, strict=True)]
+            corners = [_moved(self._corners(k, slice(None)), X) for k, X in enumerate(frames)]
+            self._passages = Passages.joined(
+                # the first part goes the other way as the second sees it
+                passages(points[0], corners[1], path.turning, self._meshes[1]).reversed(),
+                passages(points[1], corners[0], path.turning, self._meshes[0]),
+            )
+        return self._passages.ordered(path)
+
+    def heights(self, D: Array, chosen: Ints, away: bool = True) -> Array:
         """(k,) m: how deep some of both parts' `probes`, counted through, are inside the other part; outside, the
-        negative of a distance that they keep at least."""
+        negative of a distance that they keep at least, 0 unless it is asked how far `away` they are."""
         X = self.pose(D)
         near, far = self.probes
         count = len(near.points)
         first, second = (self._shapes.index(name) for name in self.names)
         mine, other = chosen[chosen < count], chosen[chosen >= count] - count
         out = np.zeros(len(chosen))
-        out[chosen < count] = near.heights(second, np.asarray(np.linalg.inv(X)), mine)
-        out[chosen >= count] = far.heights(first, X, other)
+        out[chosen < count] = near.heights(second, np.asarray(np.linalg.inv(X)), mine, away)
+        out[chosen >= count] = far.heights(first, X, other, away)
         return out
 
     def places(self, D: Array) -> Array:
@@ -242,9 +265,19 @@ class PairTest:
             slack = max(slack, sum(self._surfaces[k].surfaces[pair[k]].chord for k in (0, 1)))
         return Crossing(out, slack) if out else NONE
 
+    def of_surfaces(self, hits: Ints, pairs: Collection[SurfacePair]) -> Ints:
+        """(k, 2) those of facets (n, 2), as counted by FCL, that are of some pairs of surfaces."""
+        first, second = (self.counted(side)[hits[:, side]].tolist() for side in (0, 1))
+        return hits[[pair in pairs for pair in zip(first, second, strict=True)]]
+
     def counted(self, side: int) -> Ints:
         """(n,) the surface of each facet that counts, of the first or second part (0, 1)."""
-        return np.asarray(self._surfaces[side].labels[self.facets[side]])
+        return self._counted[side]
+
+    @cached_property
+    def _counted(self) -> tuple[Ints, Ints]:
+        first, second = (s.labels[f] for s, f in zip(self._surfaces, self.facets, strict=True))
+        return first, second
 
     def _in_both(self, first: MeshIndex, second: MeshIndex, points: Array, other: Array) -> Ints:
         """Which points (n, 3), in the frame of either part, are inside both: within rounding on the surface of one, and
@@ -301,6 +334,11 @@ class PairTest:
             total = first.depths(middles[inside]) + second.depths(other[inside])
         deepest = float(total.max(initial=0.0))
         return deepest if deepest > least else 0.0
+
+
+def _moved(points: Array, X: Array) -> Array:
+    """Points (…, 3) by a displacement (4, 4)."""
+    return np.asarray(points @ X[:3, :3].T + X[:3, 3])
 
 
 def _hits(first: fcl.CollisionObject, second: fcl.CollisionObject) -> Ints:
