@@ -30,5 +30,5 @@ from kinform.contacts.find import find
 
 __all__ = ["CODE_VERSION", "find"]
 
-CODE_VERSION: int = 21
+CODE_VERSION: int = 22
 """Raised when the same input would give other contacts."""
