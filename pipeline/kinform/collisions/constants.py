@@ -65,6 +65,8 @@ PASSAGE_ROUNDING = 1e-9
 
 DEPTH_ENDS = 32
 """Ends of crossing segments between which the depth is looked for."""
+DEPTH_SEGMENTS = 256
+"""Segments to which these are so near, or not, that they may be deep."""
 DEPTH_MIDDLES = 64
 """Places between them that are asked whether they are inside both parts."""
 DEPTH_INSIDE = 40

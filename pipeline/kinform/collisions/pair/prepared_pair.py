@@ -20,7 +20,7 @@ from kinform.collisions.pair.flush_entry import Probes, probes
 from kinform.collisions.pair.mate_surfaces import Mates, SurfacePair
 from kinform.collisions.pair.passages import Passages, Path, passages
 from kinform.collisions.parts.shapes import Shapes
-from kinform.foundation.algebra.vectors import perpendicular
+from kinform.foundation.algebra.vectors import dot, perpendicular
 from kinform.foundation.at_work import at_work_on
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_pose
 from kinform.foundation.meshes.index import MeshIndex
@@ -290,11 +290,11 @@ class PairTest:
                 within[asked, k] = index.depths(places[asked]) <= least
         return np.flatnonzero(within.all(axis=1))
 
-    def _deeper(self, middles: Array, other: Array, ends: Array, least: float) -> bool:
+    def _deeper(self, middles: Array, other: Array, segments: Array, least: float) -> bool:
         """Whether any of `middles` (n, 3), in the frame of either part, is inside both and deeper than `least` (m):
-        none that is near some of `ends` (m, 3), which are on both, nor any that is near enough to the facets."""
-        apart = middles[:, None] - ends
-        near = 2.0 * np.sqrt((apart * apart).sum(axis=2).min(axis=1, initial=np.inf))
+        none that is near some of `segments` (m, 2, 3), which are on both, nor any that is near enough to the facets."""
+        chosen = np.unique(np.linspace(0, len(segments) - 1, constants.DEPTH_SEGMENTS).astype(int))
+        near = 2.0 * _from_segments(middles, segments[chosen])
         asked = np.flatnonzero(near > constants.CERTAIN * least)
         first, second = self._shapes.index(self.names[0]), self._shapes.index(self.names[1])
         with at_work_on(*self.names):
@@ -321,7 +321,7 @@ class PairTest:
         X = self.pose(D)
         other = (middles - X[:3, 3]) @ X[:3, :3]
         first, second = self._shapes.index(self.names[0]), self._shapes.index(self.names[1])
-        if least > 0.0 and not self._deeper(middles, other, points, least):
+        if least > 0.0 and not self._deeper(middles, other, segments, least):
             return 0.0
         with at_work_on(*self.names):
             inside = self._in_both(first, second, middles, other)
@@ -339,6 +339,16 @@ class PairTest:
 def _moved(points: Array, X: Array) -> Array:
     """Points (…, 3) by a displacement (4, 4)."""
     return np.asarray(points @ X[:3, :3].T + X[:3, 3])
+
+
+def _from_segments(points: Array, segments: Array) -> Array:
+    """(n,) m of points (n, 3) from the nearest of segments (m, 2, 3)."""
+    start, along = segments[:, 0], segments[:, 1] - segments[:, 0]
+    from_start = [points[:, k, None] - start[:, k] for k in range(3)]
+    share = sum(apart * along[:, k] for k, apart in enumerate(from_start)) / np.maximum(dot(along, along), 1e-300)
+    share = np.clip(share, 0.0, 1.0)
+    square = sum((apart - share * along[:, k]) ** 2 for k, apart in enumerate(from_start))
+    return np.asarray(np.sqrt(np.min(square, axis=1, initial=np.inf)))
 
 
 def _hits(first: fcl.CollisionObject, second: fcl.CollisionObject) -> Ints:
