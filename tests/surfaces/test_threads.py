@@ -12,6 +12,8 @@ from support.solids import block
 
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import recover
+from kinform.surfaces.recovery import _Start
+from kinform.surfaces.swept.threads import _advances, _Screw, _with_helices
 
 
 def posed(seed):
@@ -86,3 +88,25 @@ def test_what_is_no_thread_has_no_helicoid(shape):
         outline = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
         solid = Manifold.extrude(CrossSection([outline]), 20.0)
     assert "helicoid" not in kinds(found_on(solid, posed(5)))
+
+
+@pytest.mark.parametrize("lead, segments", [(1.5, 32), (-4.0, 12), (10.0, 24)])
+def test_no_line_that_suggests_an_advance_is_left_out(lead, segments):
+    pose = posed(6)
+    start = _Start.of(
+        of_manifold(threaded(Thread(9.0, 10.0, lead), 0.0, 0.6 * abs(lead), segments).manifold, pose=pose, scale=1e-3),
+        Tolerances(),
+    )
+    draw, about = np.random.default_rng(segments), []
+    for far in np.repeat(np.geomspace(1e-6, 1.0, 13), 12):
+        axis = pose[:3, 2] + far * draw.normal(size=3)
+        place = (pose[:3, 3] - start.centre) / start.diagonal + far * draw.normal(size=3)
+        about.append((axis / np.linalg.norm(axis), place))
+    edges = np.arange(len(start.work.a))
+    kept = {id(axis) for axis, _ in _with_helices(start.work, edges, about, start.scale)}
+    suggests = {
+        id(axis) for axis, place in about if _advances(start.work, edges, _Screw(axis, place, 0.0), start.scale)
+    }
+    assert 12 <= len(suggests)
+    assert suggests <= kept
+    assert len(kept) < len(about)

@@ -20,7 +20,7 @@ from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.kinds.kind import Kind
 from kinform.surfaces.kinds.ruled import with_apices
 from kinform.surfaces.polygons.coplanar import fit_planes
-from kinform.surfaces.polygons.noise import Scale, Scales
+from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.candidates import Candidates
 
@@ -48,7 +48,7 @@ class Description(NamedTuple):
     samples: int = 0
 
 
-def flat(work: Patchwork, number: Ints, scale: Scale) -> list[Description]:
+def flat(work: Patchwork, number: Ints, scales: Scales) -> list[Description]:
     """The planes that polygons (P,) with equal numbers make, -1 for none, each through all its vertices."""
     planes = members(number)
     count = len(planes)
@@ -62,25 +62,23 @@ def flat(work: Patchwork, number: Ints, scale: Scale) -> list[Description]:
     points = work.vertices[vertex]
     outward = group_sum(group, work.normal[member] * work.area[member][:, None], count)
     size = np.linalg.norm(outward, axis=1)
-    first = work.normal[[polygons[0] for polygons in planes]]
+    heads = np.array([polygons[0] for polygons in planes])
+    rounding, first = scales.rounding[work.mesh[heads]], work.normal[heads]
     outward = np.where(size[:, None] > 0, outward / np.maximum(size, 1e-300)[:, None], first)
     normal, centre, variances = fit_planes(region, points, outward)
     distance = dot(points - centre[region], normal[region])
     squares, samples, deepest = _deviations(region, distance, count)
-    scatter = np.maximum(
-        np.sqrt(squares / np.maximum(samples - 3, 1)), constants.ROUNDED_SCATTER_OF_PLANES * scale.rounding
-    )
+    scatter = np.maximum(np.sqrt(squares / np.maximum(samples - 3, 1)), constants.ROUNDED_SCATTER_OF_PLANES * rounding)
     spread = np.maximum(np.sqrt(variances[:, 1] * samples), constants.LEAST_SPREAD)
     angular = np.minimum(constants.COVERAGE * scatter / spread, np.pi / 2)
-    linear = np.maximum(constants.COVERAGE * scatter / np.sqrt(np.maximum(samples, 1)), scale.rounding)
-    deep, of_samples = deepest.tolist(), samples.tolist()
-    numbers = zip(angular.tolist(), linear.tolist(), squares.tolist(), strict=True)
+    linear = np.maximum(constants.COVERAGE * scatter / np.sqrt(np.maximum(samples, 1)), rounding)
+    numbers = (values.tolist() for values in (deepest, angular, linear, squares, samples))
     return [
         Description(
-            "plane", planes[k], normal[k], centre[k], residual=deep[k], axis_uncertainty=turn, point_uncertainty=shift,
-            chord=deep[k], squares=square, samples=of_samples[k],
+            "plane", polygons, axis, point, residual=deep, axis_uncertainty=turn, point_uncertainty=shift, chord=deep,
+            squares=square, samples=many,
         )
-        for k, (turn, shift, square) in enumerate(numbers)
+        for polygons, axis, point, deep, turn, shift, square, many in zip(planes, normal, centre, *numbers, strict=True)
     ]  # fmt: skip
 
 

@@ -6,7 +6,7 @@ neither the size of a part nor the order in its file changes what is found.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +28,7 @@ from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.candidates import Candidates
 from kinform.surfaces.regions.merge import coincident_planes, coincident_regions
 from kinform.surfaces.regions.partition import CURVED, Region, partition
+from kinform.surfaces.swept.lines import lines, turning_lines
 from kinform.surfaces.swept.sliding import sliding
 from kinform.surfaces.swept.threads import threads
 
@@ -49,7 +50,7 @@ def recover_all(meshes: Sequence[Mesh], tolerances: Tolerances) -> list[MeshSurf
     described = iter(_describe_all(starts)) if starts else iter(())
     begun = iter(starts)
     return [
-        _assemble(mesh, next(begun), next(described))
+        _assemble(mesh, next(begun), *next(described))
         if there
         else MeshSurfaces(mesh.digest, (), np.zeros(0, np.int64), 0.0)
         for mesh, there in zip(meshes, solid, strict=True)
@@ -113,41 +114,63 @@ def _canonical_order(vertices: Array, faces: Ints) -> tuple[Array, Ints, Ints]:
     return vertices.take(by_place, axis=0), np.stack([corner.take(order) for corner in corners], axis=1), order
 
 
-def _describe_all(starts: Sequence[_Start]) -> list[list[Description]]:
-    """Merges what is one surface and measures every surface of every mesh."""
-    works = [start.work for start in starts]
-    joint, scales = Patchwork.joined(works), Scales.of([start.scale for start in starts])
-    parts = partition(joint, scales)
+def _describe_all(starts: Sequence[_Start]) -> list[tuple[list[Description], Ints]]:
+    """(surfaces, number of that of each polygon) of every mesh: curved ones, threads, planes, what slides on itself in
+    one way, and freeform patches, each among what those before it left.
+
+    The surfaces' polygons are those of all meshes joined.
+    """
+    joint, scales = Patchwork.joined([start.work for start in starts]), Scales.of([start.scale for start in starts])
+    ends = np.cumsum([0, *(start.work.count for start in starts)]).tolist()
+    runs = [slice(*run) for run in zip(ends, ends[1:], strict=False)]
     found: list[list[Description]] = [[] for _ in starts]
-    first = np.cumsum([0, *(work.count for work in works)])
+
+    def add(surfaces: Iterable[Description]) -> None:
+        for surface in surfaces:
+            found[joint.mesh.item(surface.polygons[0])].append(surface)
+
+    parts = partition(joint, scales)
     for kind in CURVED:
         regions = [region for region in parts.regions if region.kind is kind]
         regions.sort(key=lambda region: int(joint.mesh[region.polygons[0]]))
-        for surface in _surfaces_of_kind(joint, regions, scales) if regions else ():
-            mesh = int(joint.mesh[surface.polygons[0]])
-            found[mesh].append(surface._replace(polygons=surface.polygons - first[mesh]))
-    return [
-        _describe(start, curved, parts.planes[low:high], parts.freeform[low:high])
-        for start, curved, low, high in zip(starts, found, first[:-1], first[1:], strict=True)
-    ]
+        add(_surfaces_of_kind(joint, regions, scales) if regions else ())
+    planes, patches = parts.planes, parts.freeform
+    loose = (patches >= 0) | ((planes >= 0) & (joint.area < THREAD_FACET * joint.total[joint.mesh]))
+    for start, run, others, turning in zip(starts, runs, list(found), turning_lines(joint, loose), strict=True):
+        for thread in threads(start.work, loose[run], lines(joint, others, turning), start.scale):
+            polygons = thread.polygons + run.start
+            add([thread._replace(polygons=polygons)])
+            planes[polygons] = patches[polygons] = -1
+    add(flat(joint, _planes(starts, planes, runs), scales))
+    chords = patch_chords(joint, patches)
+    for surface in sliding(joint, patches, scales):
+        add([surface._replace(chord=float(chords[patches[surface.polygons]].max()))])
+        patches[surface.polygons] = -1
+    add(freeform(patch, float(chords[patches[patch[0]]])) for patch in members(patches))
+    owner = _owners(found, joint.count)
+    return [(surfaces, owner[run]) for surfaces, run in zip(found, runs, strict=True)]
 
 
-def _describe(start: _Start, curved: list[Description], planes: Ints, patches: Ints) -> list[Description]:
-    """All surfaces of a mesh: curved ones, threads, planes, what slides on itself in one way, and freeform patches,
-    each among what those before it left."""
-    work, scale, out = start.work, start.scale, curved
-    rest, alone = patches.copy(), planes.copy()
-    small = (alone >= 0) & (work.area < THREAD_FACET * work.total[0])
-    for thread in threads(work, (rest >= 0) | small, out, scale):
-        out.append(thread)
-        rest[thread.polygons] = alone[thread.polygons] = -1
-    alone[alone >= 0] = np.unique(alone[alone >= 0], return_inverse=True)[1]
-    out += flat(work, coincident_planes(work, alone, scale), scale)
-    chords = patch_chords(work, rest)
-    for surface in sliding(work, rest, scale):
-        out.append(surface._replace(chord=float(chords[rest[surface.polygons]].max())))
-        rest[surface.polygons] = -1
-    return out + [freeform(patch, float(chords[rest[patch[0]]])) for patch in members(rest)]
+def _planes(starts: Sequence[_Start], planes: Ints, runs: Sequence[slice]) -> Ints:
+    """(P,) numbers of the planes of all meshes, of polygons with any number from 0 on; -1 elsewhere."""
+    out = np.full(len(planes), -1)
+    count: int = 0
+    for start, run in zip(starts, runs, strict=True):
+        there = np.flatnonzero(planes[run] >= 0)
+        alone = np.full(start.work.count, -1)
+        alone[there] = np.arange(len(there))
+        out[run][there] = coincident_planes(start.work, alone, start.scale)[there] + count
+        count += len(there)
+    return out
+
+
+def _owners(found: Sequence[Sequence[Description]], count: int) -> Ints:
+    """(P,) number in its mesh of the surface of each polygon."""
+    polygons = [surface.polygons for surfaces in found for surface in surfaces]
+    numbers = np.concatenate([np.arange(len(surfaces)) for surfaces in found])
+    owner = np.full(count, -1)
+    owner[np.concatenate(polygons)] = numbers.repeat([len(mine) for mine in polygons])
+    return owner
 
 
 def _surfaces_of_kind(work: Patchwork, regions: list[Region], scales: Scales) -> list[Description]:
@@ -171,12 +194,10 @@ def _surfaces_of_kind(work: Patchwork, regions: list[Region], scales: Scales) ->
     return curved(surfaces.of(heads).within(loosest), batch, scales.at(batch.mesh))
 
 
-def _assemble(mesh: Mesh, start: _Start, descriptions: list[Description]) -> MeshSurfaces:
-    """Back to metres and to the mesh's own facets, in the promised order."""
+def _assemble(mesh: Mesh, start: _Start, descriptions: list[Description], owner: Ints) -> MeshSurfaces:
+    """Back to metres and to the mesh's own facets, in the promised order; `owner` says which surface each polygon is
+    of."""
     work, order, centre, diagonal = start.work, start.order, start.centre, start.diagonal
-    owner = np.full(work.count, -1)
-    for number, item in enumerate(descriptions):
-        owner[item.polygons] = number
     facet_owner = np.empty(len(order), np.int64)
     facet_owner[order] = owner[work.polygon]
     area: Array = np.bincount(owner[work.polygon], work.facet_area, len(descriptions)).astype(float)

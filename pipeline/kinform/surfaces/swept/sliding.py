@@ -10,32 +10,34 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical_sign, cross, dot
 from kinform.foundation.graphs.components import components
-from kinform.model.arrays import Ints
+from kinform.model.arrays import Array, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.describe import Description
 from kinform.surfaces.groups import members
-from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.slippage import Slippage, slippage
 
 
-def sliding(work: Patchwork, number: Ints, scale: Scale) -> list[Description]:
-    """Patches of polygons (P,), -1 for none, that slide on themselves in one way; the others are left out."""
+def sliding(work: Patchwork, number: Ints, scales: Scales) -> list[Description]:
+    """Patches of polygons (P,) of one or more meshes, -1 for none, that slide on themselves in one way; the others are
+    left out."""
     out, left = [], []
+    rounding = scales.rounding[work.mesh]
     for patch in members(number):
         if len(patch) >= constants.SLIDING_POLYGONS:
-            extrusion = _extrusion(work, patch, scale)
+            extrusion = _extrusion(work, patch, float(rounding[patch[0]]))
             out += [extrusion] if extrusion else []
             left += [] if extrusion else [patch]
-    single = _turning(work, left, scale)
+    single = _turning(work, left, rounding)
     out += [surface for surface in single if surface is not None]
     # the flanks of a thread are each too narrow to tell a screw from a tilt: together they do
     rest = [patch for patch, surface in zip(left, single, strict=True) if surface is None]
     pooled = [np.sort(np.concatenate([rest[k] for k in group])) for group in _together(work, rest)]
-    return out + [surface for surface in _turning(work, pooled, scale) if surface and surface.kind == "helicoid"]
+    return out + [surface for surface in _turning(work, pooled, rounding) if surface and surface.kind == "helicoid"]
 
 
-def _extrusion(work: Patchwork, polygons: Ints, scale: Scale) -> Description | None:
+def _extrusion(work: Patchwork, polygons: Ints, rounding: float) -> Description | None:
     """The patch as an extrusion: all its normals stand across one direction, and lie in no plane with it."""
     normal, weight = work.normal[polygons], work.area[polygons]
     values, vectors = np.linalg.eigh((normal * weight[:, None]).T @ normal / weight.sum())
@@ -47,14 +49,14 @@ def _extrusion(work: Patchwork, polygons: Ints, scale: Scale) -> Description | N
     _, vertex = work.corners.expand(polygons)
     span = (work.vertices[vertex] - middle) @ axis
     length = max(float(np.ptp(span)), 1e-12)
-    angular = float(min(constants.COVERAGE * (speed + scale.rounding / length) / spread, np.pi / 2))
+    angular = float(min(constants.COVERAGE * (speed + rounding / length) / spread, np.pi / 2))
     return Description(
         "extrusion", polygons, axis, middle, extent=(float(span.min()), float(span.max())),
         axis_uncertainty=angular, point_uncertainty=angular * length,
     )  # fmt: skip
 
 
-def _turning(work: Patchwork, patches: list[Ints], scale: Scale) -> list[Description | None]:
+def _turning(work: Patchwork, patches: list[Ints], rounding: Array) -> list[Description | None]:
     """What turns or screws into itself in one way only, for each of the patches."""
     if not patches:
         return []
@@ -64,12 +66,19 @@ def _turning(work: Patchwork, patches: list[Ints], scale: Scale) -> list[Descrip
         motion.next_speed > constants.UNIQUE * np.maximum(motion.speed, constants.STILL / 2)
     )
     return [
-        _surface_of_turn(work, polygons, motion, k, scale) if unique[k] else None for k, polygons in enumerate(patches)
+        _surface_of_turn(work, polygons, motion, k, float(rounding[polygons[0]])) if unique[k] else None
+        for k, polygons in enumerate(patches)
     ]
 
 
-def _together(work: Patchwork, patches: list[Ints]) -> list[list[int]]:
-    """Sets of two or more patches whose boxes nearly agree."""
+def _together(work: Patchwork, patches: list[Ints]) -> list[Ints]:
+    """Sets of two or more patches of one mesh whose boxes nearly agree."""
+    of_mesh = work.mesh[[polygons[0] for polygons in patches]] if patches else np.zeros(0, np.int64)
+    return [mine[group] for mine in members(of_mesh) for group in _agreeing(work, [patches[k] for k in mine])]
+
+
+def _agreeing(work: Patchwork, patches: list[Ints]) -> list[Ints]:
+    """The same among patches of one mesh."""
     if len(patches) < 2:
         return []
     low = np.array([work.centre[polygons].min(axis=0) for polygons in patches])
@@ -78,16 +87,16 @@ def _together(work: Patchwork, patches: list[Ints]) -> list[list[int]]:
     joint = np.maximum(high[:, None], high[None]) - np.minimum(low[:, None], low[None])
     agree = (shared > constants.BOXES_AGREE * joint).all(axis=2)
     a, b = np.nonzero(np.triu(agree, 1))
-    return [group.tolist() for group in members(components(a, b, len(patches))) if len(group) > 1]
+    return [group for group in members(components(a, b, len(patches))) if len(group) > 1]
 
 
-def _surface_of_turn(work: Patchwork, polygons: Ints, motion: Slippage, k: int, scale: Scale) -> Description | None:
+def _surface_of_turn(work: Patchwork, polygons: Ints, motion: Slippage, k: int, rounding: float) -> Description | None:
     """What the k-th motion makes of its patch: its kind with axis, point, pitch, and uncertainty."""
     turning, size = float(np.linalg.norm(motion.angular[k])), float(motion.size[k])
     if turning < constants.TURNS:
         return None
     gained = max(float(motion.next_speed[k]), 1e-12)
-    angular = float(min(constants.COVERAGE * (motion.speed[k] + scale.rounding / size) / gained, np.pi / 2))
+    angular = float(min(constants.COVERAGE * (motion.speed[k] + rounding / size) / gained, np.pi / 2))
     axis, moment = motion.angular[k] / turning, motion.linear[k] / turning
     point = motion.middle[k] + cross(axis, moment) * size
     advance = float(axis @ moment) * size

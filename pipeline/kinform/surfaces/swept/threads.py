@@ -4,12 +4,11 @@ Facets of a thread are too coarse to say what their pitch is, and its flanks fal
 planes or nothing. But whatever the tessellation, the borders of its flanks are polylines with every vertex on a true
 helix: edges along which the distance from the axis stays and the height grows with the angle, all by one amount.
 Candidates for the axis are those of coaxial cylinders (crests, roots, shanks) and of the linear line complex of
-what is left (see `slippage`); a least squares over the polylines then gives axis and pitch.
+what is left (see `lines`); a least squares over the polylines then gives axis and pitch.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -21,8 +20,10 @@ from kinform.foundation.sorting import median
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.describe import Description, standoffs
+from kinform.surfaces.groups import slices
 from kinform.surfaces.polygons.noise import Scale
 from kinform.surfaces.polygons.patchwork import Patchwork
+from kinform.surfaces.swept.lines import Line
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,14 +64,14 @@ class _Helices:
     """(m,) rad."""
 
 
-def threads(work: Patchwork, loose: Flags, others: Sequence[Description], scale: Scale) -> list[Description]:
-    """Helicoids among the loose polygons (P,), each with all its flanks; `others` suggest axes."""
+def threads(work: Patchwork, loose: Flags, about: Sequence[Line], scale: Scale) -> list[Description]:
+    """Helicoids about these lines among the loose polygons (P,) of a mesh, each with all its flanks."""
     free = loose.copy()
     out: list[Description] = []
     if int(free.sum()) < constants.THREAD_POLYGONS:
         return out
     edges = _beside(work, free)
-    for axis, point in _lines(work, free, others):
+    for axis, point in _with_helices(work, edges, about, scale):
         if int(free.sum()) < constants.THREAD_POLYGONS:
             break
         thread = _about(work, free, edges, axis, point, scale)
@@ -84,64 +85,6 @@ def threads(work: Patchwork, loose: Flags, others: Sequence[Description], scale:
 def _beside(work: Patchwork, free: Flags) -> Ints:
     """Edges of free polygons."""
     return np.flatnonzero(free[work.a] | ((work.b >= 0) & free[work.b]))
-
-
-def _lines(work: Patchwork, free: Flags, others: Sequence[Description]) -> list[tuple[Array, Array]]:
-    """Axes and points on them: of cylinders, the largest first, and those about which pieces of what is free turn."""
-    cylinders = [(float(work.area[item.polygons].sum()), k) for k, item in enumerate(others) if item.kind == "cylinder"]
-    largest = sorted(cylinders, key=lambda c: (-c[0], c[1]))[: 4 * constants.MOST_LINES]
-    lines = _distinct([(others[k].axis, others[k].point) for _, k in largest], constants.MOST_LINES)
-    turning = _turning(work, free)
-    return _distinct([*lines, *turning], len(lines) + len(turning))
-
-
-def _distinct(candidates: Sequence[tuple[Array, Array]], most: int) -> list[tuple[Array, Array]]:
-    """The first lines, `most` of them, without those that nearly are an earlier one."""
-    kept: list[int] = []
-    axes, points = ([pair[k].tolist() for pair in candidates] for k in range(2))
-    for k, (axis, point) in enumerate(zip(axes, points, strict=True)):
-        if not any(
-            _across(axis, axes[j]) < constants.SAME_LINE
-            and _across([p - q for p, q in zip(point, points[j], strict=True)], axes[j]) < constants.SAME_LINE
-            for j in kept
-        ):
-            kept.append(k)
-            if len(kept) == most:
-                break
-    return [candidates[k] for k in kept]
-
-
-def _across(a: list[float], b: list[float]) -> float:
-    """|a × b|; of a few vectors without numpy, which takes ten times as long."""
-    (x, y, z), (u, v, w) = a, b
-    return math.hypot(y * w - z * v, z * u - x * w, x * v - y * u)
-
-
-def _turning(work: Patchwork, free: Flags) -> list[tuple[Array, Array]]:
-    """Axes of the motions under which the largest connected pieces of free polygons slide best."""
-    use = (work.b >= 0) & free[work.a]
-    use[use] &= free[work.b[use]]
-    label = components(work.a[use], work.b[use], work.count)
-    area, size = np.bincount(label, work.area * free), np.bincount(label, free)
-    out = []
-    for piece in np.argsort(-area, kind="stable")[: constants.MOST_PIECES]:
-        if size[piece] < constants.THREAD_POLYGONS:
-            continue
-        members = np.flatnonzero(free & (label == piece))
-        weight, normal, centre = work.area[members], work.normal[members], work.centre[members]
-        for _ in range(constants.REWEIGHINGS):
-            middle = weight @ centre / weight.sum()
-            arm = centre - middle
-            reach = max(float(np.sqrt(weight @ dot(arm, arm) / weight.sum())), 1e-12)
-            rows = np.concatenate([cross(arm / reach, normal), normal], axis=1)
-            twist = np.linalg.eigh((rows * weight[:, None]).T @ rows / weight.sum())[1][:, 0]
-            speed = np.abs(rows @ twist)
-            weight = work.area[members] / (1 + (speed / max(median(speed), 1e-6)) ** 2)
-        turn = float(np.linalg.norm(twist[:3]))
-        if turn > constants.PIECE_TURNS:
-            axis = twist[:3] / turn
-            out.append((axis, middle + cross(axis, twist[3:] / turn) * reach))
-    return out
 
 
 def _about(
@@ -169,16 +112,46 @@ def _about(
     return _description(work, edges, best[1], best[2], scale)
 
 
-def _level(work: Patchwork, edges: Ints, screw: _Screw, wide: float, scale: Scale) -> Flags:
-    """(m,) edges whose ends are as far from the axis as those of a helix may be, judged by their lengths: that needs no
-    angles, and leaves few. An arc is no longer than HELIX_STEP / 2 over its sine in chords."""
-    u, v = screw.frame
-    arms = work.columns - screw.point[:, None]
-    x, y = (arms[0] * across[0] + arms[1] * across[1] + arms[2] * across[2] for across in (u, v))
-    distance = np.sqrt(x * x + y * y)
-    widening = np.abs(distance.take(work.ends[:, 1].take(edges)) - distance.take(work.ends[:, 0].take(edges)))
+def _with_helices(work: Patchwork, edges: Ints, about: Sequence[Line], scale: Scale) -> list[Line]:
+    """Those of the lines about which edges may turn enough for `_advances`: bounds from lengths need no angles, are had
+    of all lines at once, and leave few."""
+    out: list[Line] = []
+    enough = (1.0 - constants.PLAINLY) * 2 * np.pi * constants.TURNED
+    shown = (1.0 - constants.PLAINLY) * constants.ADVANCE_NOISES / constants.ADVANCE_SHOWS * scale.noise
+    for run in slices(len(about), max(constants.ROWS // len(work.vertices), 1)):
+        some = about[run]
+        distance = _distances(work, some)
+        line, place = _level(work, edges, distance, constants.WIDE[0], scale).nonzero()
+        edge = edges.take(place)
+        one, other = (distance[line, work.ends[:, end].take(edge)] for end in range(2))
+        length = work.length.take(edge)
+        rise = np.abs(dot(work.along(edge), np.array([axis for axis, _ in some])[line]))
+        across = np.sqrt(np.maximum(length * length - rise * rise, 0.0))
+        turn = np.minimum(constants.ARC * across / np.maximum(np.sqrt(one * other), 1e-300), constants.HELIX_STEP)
+        flat = (1.0 - constants.PLAINLY) * rise < constants.STEEP[1] * turn * (one + other) / 2
+        turned = np.bincount(line, np.where(flat & (rise > shown), turn, 0.0), len(some))
+        out += [some[k] for k in np.flatnonzero(turned >= enough).tolist()]
+    return out
+
+
+def _distances(work: Patchwork, about: Sequence[Line]) -> Array:
+    """(n, V) of all vertices from n lines."""
+    frames = np.array([perpendicular(axis) for axis, _ in about])[..., None]
+    arms = work.columns[:, None] - np.array([point for _, point in about]).T[..., None]
+    x, y = (
+        arms[0] * across[:, 0] + arms[1] * across[:, 1] + arms[2] * across[:, 2]
+        for across in (frames[:, 0], frames[:, 1])
+    )
+    return np.asarray(np.sqrt(x * x + y * y))
+
+
+def _level(work: Patchwork, edges: Ints, distance: Array, wide: float, scale: Scale) -> Flags:
+    """(…, m) edges whose ends, at these distances (…, V) from an axis, are as far from it as those of a helix may be,
+    judged by their lengths: that needs no angles, and leaves few. An arc is no longer than HELIX_STEP / 2 over its sine
+    in chords."""
+    one, other = (distance.take(work.ends[:, end].take(edges), axis=-1) for end in range(2))
     room = constants.LEVEL_NOISES * scale.noise
-    return np.asarray(widening <= constants.ARC * wide * constants.LEVEL * work.length.take(edges) + room)
+    return np.asarray(np.abs(other - one) <= constants.ARC * wide * constants.LEVEL * work.length.take(edges) + room)
 
 
 def _slopes(
@@ -205,7 +178,8 @@ def _slopes(
 
 def _advances(work: Patchwork, edges: Ints, start: _Screw, scale: Scale) -> list[float]:
     """Advances that many edges have in common, the most turned first."""
-    edges = edges.take(_level(work, edges, start, constants.WIDE[0], scale).nonzero()[0])
+    distance = _distances(work, [(start.axis, start.point)])[0]
+    edges = edges.take(_level(work, edges, distance, constants.WIDE[0], scale).nonzero()[0])
     advance, doubt, turn, usable = _slopes(work, work.ends[edges], start, scale, constants.WIDE[0])
     rows = np.flatnonzero(usable & (doubt < constants.ADVANCE_SHOWS * np.abs(advance)))
     out: list[float] = []

@@ -1,0 +1,103 @@
+"""Lines about which threads may run: axes of cylinders, and those about which pieces of what is left turn best."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TypeAlias
+
+import numpy as np
+
+from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.graphs.components import components
+from kinform.foundation.sorting import median
+from kinform.model.arrays import Array, Flags, Ints
+from kinform.surfaces import constants
+from kinform.surfaces.describe import Description
+from kinform.surfaces.groups import members, starts_of
+from kinform.surfaces.polygons.patchwork import Patchwork
+
+Line: TypeAlias = tuple[Array, Array]
+"""Direction (3,) and a point (3,) of it."""
+
+
+def lines(work: Patchwork, others: Sequence[Description], turning: Sequence[Line]) -> list[Line]:
+    """Those of cylinders among the others, the largest first, then the turning ones."""
+    cylinders = [(float(work.area[item.polygons].sum()), k) for k, item in enumerate(others) if item.kind == "cylinder"]
+    largest = sorted(cylinders, key=lambda c: (-c[0], c[1]))[: 4 * constants.MOST_LINES]
+    first = _distinct([(others[k].axis, others[k].point) for _, k in largest], constants.MOST_LINES)
+    return _distinct([*first, *turning], len(first) + len(turning))
+
+
+def _distinct(candidates: Sequence[Line], most: int) -> list[Line]:
+    """The first lines, `most` of them, without those that nearly are an earlier one."""
+    kept: list[int] = []
+    axes, points = ([pair[k].tolist() for pair in candidates] for k in range(2))
+    for k, (axis, point) in enumerate(zip(axes, points, strict=True)):
+        if not any(
+            _across(axis, axes[j]) < constants.SAME_LINE
+            and _across([p - q for p, q in zip(point, points[j], strict=True)], axes[j]) < constants.SAME_LINE
+            for j in kept
+        ):
+            kept.append(k)
+            if len(kept) == most:
+                break
+    return [candidates[k] for k in kept]
+
+
+def _across(a: list[float], b: list[float]) -> float:
+    """|a × b|; of a few vectors without numpy, which takes ten times as long."""
+    (x, y, z), (u, v, w) = a, b
+    return math.hypot(y * w - z * v, z * u - x * w, x * v - y * u)
+
+
+def turning_lines(work: Patchwork, free: Flags) -> list[list[Line]]:
+    """Of each mesh the axes of the motions under which its largest connected pieces of free polygons slide best.
+
+    All pieces at once, because most of the time of small ones goes into beginning steps; sums are each piece's own.
+    """
+    out: list[list[Line]] = [[] for _ in work.total]
+    pieces = _pieces(work, free)
+    if not pieces:
+        return out
+    polygon, ends = np.concatenate(pieces), np.cumsum([0, *(len(piece) for piece in pieces)]).tolist()
+    runs = [slice(*run) for run in zip(ends, ends[1:], strict=False)]
+    piece = np.repeat(np.arange(len(pieces)), np.diff(ends))
+    weight, normal, centre = work.area[polygon], work.normal[polygon], work.centre[polygon]
+    for _ in range(constants.REWEIGHINGS):
+        total = [weight[run].sum() for run in runs]
+        middle = np.array([weight[run] @ centre[run] / size for run, size in zip(runs, total, strict=True)])
+        arm = centre - middle[piece]
+        square = dot(arm, arm)
+        spread = [float(np.sqrt(weight[run] @ square[run] / size)) for run, size in zip(runs, total, strict=True)]
+        reach = np.maximum(spread, 1e-12)
+        rows = np.concatenate([cross(arm / reach[piece][:, None], normal), normal], axis=1)
+        weighed = rows * weight[:, None]
+        matrix = np.stack([weighed[run].T @ rows[run] / size for run, size in zip(runs, total, strict=True)])
+        twist = np.linalg.eigh(matrix)[1][:, :, 0]
+        speed = np.abs(np.concatenate([rows[run] @ motion for run, motion in zip(runs, twist, strict=True)]))
+        typical = np.maximum([median(speed[run]) for run in runs], 1e-6)
+        weight = work.area[polygon] / (1 + (speed / typical[piece]) ** 2)
+    for run, motion, about, size in zip(runs, twist, middle, reach.tolist(), strict=True):
+        turn = float(np.linalg.norm(motion[:3]))
+        if turn > constants.PIECE_TURNS:
+            axis = motion[:3] / turn
+            out[int(work.mesh[polygon[run.start]])].append((axis, about + cross(axis, motion[3:] / turn) * size))
+    return out
+
+
+def _pieces(work: Patchwork, free: Flags) -> list[Ints]:
+    """Polygons of the largest connected pieces of free ones, mesh by mesh, where they are enough for a thread."""
+    use = (work.b >= 0) & free[work.a]
+    use[use] &= free[work.b[use]]
+    label = components(work.a[use], work.b[use], work.count)
+    area, size = np.bincount(label, work.area * free), np.bincount(label, free)
+    # pieces are numbered by their first polygon, and so mesh by mesh
+    first = [*label[starts_of(work.mesh, len(work.total))[:-1]].tolist(), len(area)]
+    number, count = np.full(len(area), -1), 0
+    for low, high in zip(first, first[1:], strict=False):
+        for piece in low + np.argsort(-area[low:high], kind="stable")[: constants.MOST_PIECES]:
+            if size[piece] >= constants.THREAD_POLYGONS:
+                number[piece] = count
+                count += 1
+    return members(np.where(free, number[label], -1))
