@@ -119,5 +119,5 @@ def test_no_pair_of_rounds_raises_however_badly_their_axes_are_known(kinds, turn
     first = row(kinds[0], z, np.zeros(3), vague[0], 1.0)
     second = row(kinds[1], Rotation.from_rotvec(turn).apply(z), np.array(place), vague[1], side)
     pair = SurfacePair(first, second, 0, 0)
-    met = meeting(pair, parallel_within(pair, Tolerances()))
+    met = meeting(pair, parallel_within(pair, Tolerances()), 0.5)
     assert met is None or (np.isfinite(met.points).all() and np.isfinite(met.gaps).all())

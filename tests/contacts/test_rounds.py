@@ -77,7 +77,66 @@ def crossed_tapers(n, turn=70.0):
     return {"a": taper(n), "b": taper(n).rotate((0, 0, 5)).transform(np.column_stack([R, shift]))}
 
 
+def upright(solid, height):
+    """What turns about z, standing on the plane z = 0, which is so far below its middle."""
+    return solid.rotate((90, 0, 0)).translate((0, 0, height))
+
+
+def barrel(n, tube, middle, half=8.0):
+    """What is crowned by `tube`, and as thick as `tube` and `middle` together."""
+    a = np.linspace(-np.arcsin(half / tube), np.arcsin(half / tube), n // 2)
+    crown = np.stack([middle + tube * np.cos(a), tube * np.sin(a)], axis=1)
+    return Manifold.revolve(CrossSection([np.vstack([[[0, -half]], crown, [[0, half]]])]), n)
+
+
+def wide_tube(n):
+    return rod(35, -30, 30, n) - rod(25, -31, 31, n, 2.0)
+
+
+def rolling_cones(n, first, second):
+    """Two cones with one apex at the origin that roll on each other; half-angles in degrees."""
+
+    def frustum(half):
+        low, high = 10 * np.tan(np.radians(half)), 5 * np.tan(np.radians(half))
+        return Manifold.cylinder(5, low, high, n).translate((0, 0, -10))
+
+    return {"a": frustum(first), "b": frustum(second).rotate((0, 0, 3)).rotate((0, first + second, 0))}
+
+
 CASES = {
+    "cones at right angles": (4, "line", lambda n: rolling_cones(n, 45, 45)),
+    "unequal cones at right angles": (4, "line", lambda n: rolling_cones(n, 30, 60)),
+    "cones at an obtuse angle": (4, "line", lambda n: rolling_cones(n, 60, 70)),
+    "cones at an acute angle": (4, "line", lambda n: rolling_cones(n, 20, 40)),
+    "a tyre on a plane": (5, "point", lambda n: {"a": upright(torus(n), 19), "b": block()}),
+    "a leaning tyre on a plane": (
+        5,
+        "point",
+        lambda n: {"a": torus(n).rotate((60, 0, 0)).translate((0, 0, 4 + 15 * np.sin(np.pi / 3))), "b": block()},
+    ),
+    "a tyre on a roller": (
+        5,
+        "point",
+        lambda n: {"a": upright(torus(n), 24), "b": rod(5, -20, 20, n, 1.0).rotate((90, 0, 20))},
+    ),
+    "a rod in an eye": (5, "point", lambda n: {"a": torus(n), "b": rod(5, -30, 30, n, 1.0).translate((6, 0, 0))}),
+    "two links of a chain": (
+        5,
+        "point",
+        lambda n: {"a": torus(n), "b": torus(n).rotate((90, 0, 0)).translate((22, 0, 0))},
+    ),
+    "tyres side by side": (
+        5,
+        "point",
+        lambda n: {"a": torus(n), "b": torus(n).rotate((0, 0, 3)).translate((38, 0, 0))},
+    ),
+    "a barrel in a bore": (4, "line", lambda n: {"a": barrel(n, 20, 5), "b": wide_tube(n)}),
+    "a ring in a bore": (4, "line", lambda n: {"a": torus(n, 5.0, 20.0), "b": wide_tube(n)}),
+    "a barrel in a wider bore": (
+        5,
+        "point",
+        lambda n: {"a": barrel(n, 20, 3).translate((2, 0, 0)), "b": wide_tube(n)},
+    ),
     "tapered rollers side by side": (
         4,
         "line",
@@ -180,6 +239,9 @@ def test_what_does_not_touch_is_no_pair(apart):
         (laid(taper(48)).translate((0, 0, apart)), box(-20, 60, -20, 20, -5, 0)),
         (taper(48), taper(48).rotate((180, 0, 0)).translate((14 + apart, 0, 30))),
         (taper(48), crossed_tapers(48)["b"].translate((apart, 0, 0))),
+        (upright(torus(48), 19 + apart), block()),
+        (torus(48), rod(5, -30, 30, 48).translate((6 - apart, 0, 0))),
+        (torus(48), torus(48).translate((38 + apart, 0, 0))),
         (roller_in_a_cup(48)["a"].translate((-apart, 0, 0)), roller_in_a_cup(48)["b"]),
     ):
         _, contacts = derived(np.eye(4), a=a, b=b)
@@ -220,3 +282,14 @@ def test_tapered_rollers_that_lie_askew_touch_at_a_point():
         kinematics, contacts = derived(random_pose(np.random.default_rng(8)), **crossed_tapers(64, turn))
         assert [patch.kind for patch in contacts.patches] == ["point"]
         assert kinematics.joints[0].freedoms == 5
+
+
+def test_a_ring_on_a_shaft_is_held_upright_by_more_than_its_line():
+    kinematics, _ = derived(random_pose(np.random.default_rng(2)), a=torus(64), b=rod(11, -20, 20, 64, 1.0))
+    assert (kinematics.joints[0].type, kinematics.joints[0].status) == ("cylindrical", "determined")
+
+
+def test_how_finely_a_barrel_is_meshed_says_nothing_about_how_it_is_held():
+    for rings in (20, 21, 48, 65):
+        kinematics, _ = derived(random_pose(np.random.default_rng(rings)), a=barrel(rings, 20, 5), b=wide_tube(64))
+        assert (kinematics.joints[0].type, kinematics.joints[0].freedoms) == ("general", 4)

@@ -8,7 +8,7 @@ import numpy as np
 
 from kinform.contacts.constants import ACROSS_SINE, MATING_REACH, NARROW_SHARE, STRIP_AREA, TOUCH
 from kinform.contacts.higher.edges import edge_contacts
-from kinform.contacts.higher.points_and_lines import higher_pairs, pins_in_slots
+from kinform.contacts.higher.points_and_lines import higher_pairs, pins_in_slots, tubes_for_facets
 from kinform.contacts.higher.profiles import profile_contacts
 from kinform.contacts.higher.rims import rim_contacts, seats
 from kinform.contacts.higher.sharp import convex_edges
@@ -62,6 +62,7 @@ def pair_contacts(
     patches = [*_beside(patches, screwed), *screwed]
     patches = rounded(pair, patches, reach)
     patches = without_continuations(pair, patches)
+    patches = tubes_for_facets(pair, patches)
     patches = _with_higher(pair, patches)
     if not any(patch.kind in ("line", "point") for patch in patches):
         patches += pins_in_slots(pair, patches)

@@ -31,7 +31,8 @@ The steps, in the order of `recovery.recover`, which calls them:
 7. Seeds (`regions.growth.pursue`): where tangent surfaces run together no piece is one surface. Single edges then
    suggest surfaces, whose regions grow layer by layer over smooth edges (`regions.territory`). Fits alternate with
    growth, so that a fit over few polygons only has to predict twice as many. Cylinders and cones grow in the same
-   rounds (`kinds.mixed`). The largest regions win.
+   rounds (`kinds.mixed`). The largest regions win. What seems to bend both ways only because a neighbour leans away as
+   little as its own facets do (a chamfer of 30°) is tried last, as cylinder and cone.
 8. Which vertices define a surface: those where three of its polygons meet, and ends of ridges along its generators. A
    vertex between two of its polygons and a foreign one may be a cut through a chord (a keyway in a shaft), and counts
    only where it lies on the surface.
@@ -76,5 +77,5 @@ from kinform.surfaces.recovery import packs, recover, recover_all
 
 __all__ = ["CODE_VERSION", "packs", "recover", "recover_all", "rigid_copies", "surfaces_of_copy"]
 
-CODE_VERSION: int = 11
+CODE_VERSION: int = 12
 """Bumped when results change."""

@@ -296,6 +296,13 @@ TOLERANCE_MEDIANS = 6
 ROUNDS = 8
 """Rounds of searching from seeds, at most."""
 
+LAST_ROUNDS = 2
+"""Rounds of searching among what may be generators, without regard to how it bends: the longest come first, and hide
+those beside them until the second."""
+
+MOST_LINKS = 32
+"""Smooth edges of a polygon between two generators, at most."""
+
 LEAST_TURNING_POLYGONS = 3
 """Polygons of a piece beside edges that turn one way, at least."""
 

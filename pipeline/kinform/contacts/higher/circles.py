@@ -13,6 +13,7 @@ import numpy as np
 
 from kinform.contacts import constants
 from kinform.contacts.higher.beside import EXACT_KINDS, beside
+from kinform.contacts.higher.nearest import Circle
 from kinform.contacts.higher.sharp import ConvexEdges
 from kinform.contacts.mating.charts import perpendicular
 from kinform.contacts.search.pair_view import NearSurfaces, PairView
@@ -28,18 +29,13 @@ _TURNING, _EXACT, _PLANE, _SPHERE = (
 
 
 @dataclass(frozen=True, eq=False)
-class Rim:
+class Rim(Circle):
     """Arcs of a circle of a part, in the frame of the pair (m)."""
 
     surface: int
     """Which its axis is of, in the part's MeshSurfaces."""
     faces: tuple[int, int]
     """Both surfaces that meet here."""
-    axis: Array
-    centre: Array
-    radius: float
-    basis: Array
-    """(2, 3) directions from which angles are measured, and to which they run."""
     starts: Array
     """(e,) rad where each edge begins, ascending."""
     spans: Array
@@ -52,18 +48,6 @@ class Rim:
     low: Array
     high: Array
     """(3,) box of the edges."""
-
-    def outward(self, angles: Array) -> Array:
-        """(n, 3) unit, away from the axis."""
-        return np.stack([np.cos(angles), np.sin(angles)], axis=1) @ self.basis
-
-    def forward(self, angles: Array) -> Array:
-        """(n, 3) unit, along the circle."""
-        return np.stack([-np.sin(angles), np.cos(angles)], axis=1) @ self.basis
-
-    def points(self, angles: Array) -> Array:
-        """(n, 3) on the circle."""
-        return np.asarray(self.centre + self.radius * self.outward(angles))
 
     def rises(self, angles: Array, normals: Array) -> Flags:
         """(n,) whether both faces leave a surface that touches the rim at these angles, with outward normals (n, 3)."""
@@ -181,7 +165,7 @@ def _rim(view: PairView, rows: Ints, axis: _Axis, ends: Ints) -> Rim | None:
     low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
     faces, surface = (int(near.ids[rows[0]]), int(near.ids[rows[1]])), int(near.ids[axis.row])
     return Rim(
-        surface, faces, axis.along, centre, radius, basis, starts, spans, slopes, axis.turn, axis.shift, low, high
+        axis.along, centre, radius, basis, surface, faces, starts, spans, slopes, axis.turn, axis.shift, low, high
     )
 
 

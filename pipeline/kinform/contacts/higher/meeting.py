@@ -23,6 +23,10 @@ class Meeting:
     radius: float | None = None
     """m: by which the first surface bends across it."""
 
+    bends: bool = False
+    """Whether the surfaces bend into each other along the line: a ring on a shaft tilts by no more than its play, while
+    the normals all round leave that free."""
+
     def chosen(self, keep: Flags) -> Meeting:
         """Some of the points."""
         return replace(self, points=self.points[keep], normals=self.normals[keep], gaps=self.gaps[keep])

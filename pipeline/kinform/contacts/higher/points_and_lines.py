@@ -59,6 +59,31 @@ def higher_pairs(
     """
     overlap = pair.overlap(pair.tolerance)
     overlap &= ~np.outer(*(np.isin(side.ids, sorted(ids)) for side, ids in zip(pair.near, pieces, strict=True)))
+    return _touching(pair, overlap)
+
+
+def tubes_for_facets(pair: PairView, patches: list[Patch]) -> list[Patch]:
+    """The patches, where all of them are of facets of convex tubes, which lie on nothing but a facet or two: the points
+    and lines in which the tubes touch, if these say all that the facets say."""
+    loose = frozenset(patch.surfaces for patch in patches)
+    if not loose or not all(patch.one_sided and _of_tube(pair, patch) for patch in patches):
+        return patches
+    flags = pair.overlap(pair.tolerance)
+    for k, side in enumerate(pair.near):
+        flags &= np.expand_dims(np.isin(side.ids, [ids[k] for ids in loose]), 1 - k)
+    found = [patch for patch in _touching(pair, flags) if patch.surfaces in loose]
+    all_said = loose == {patch.surfaces for patch in found if not patch.one_sided}
+    return found if all_said else patches
+
+
+def _of_tube(pair: PairView, patch: Patch) -> bool:
+    """Whether one of its surfaces is a convex torus."""
+    surfaces = [part.surfaces.surfaces[k] for part, k in zip(pair.parts, patch.surfaces, strict=True)]
+    return any(surface.kind == "torus" and surface.side > 0 for surface in surfaces)
+
+
+def _touching(pair: PairView, overlap: Flags) -> list[Patch]:
+    """Points and lines in which surfaces flagged in `overlap` (s, t) touch."""
     touches: list[_Touch] = []
     for view, flags, first in ((pair, overlap, True), (pair.swapped, overlap.T, False)):
         ball, other = view.near
@@ -85,10 +110,11 @@ def parallel_within(surfaces: SurfacePair, tolerances: Tolerances) -> float:
 
 def _touch(view: PairView, surfaces: SurfacePair, first: bool) -> _Touch | None:
     """The touch of a convex ball or roller with a plane or another round surface, if they come close enough."""
-    met = meeting(surfaces, parallel_within(surfaces, view.tolerances))
+    limit = constants.CAPTIVE * view.tolerance
+    met = meeting(surfaces, parallel_within(surfaces, view.tolerances), limit)
     if met is None:
         return None
-    close = np.abs(met.gaps) <= constants.CAPTIVE * view.tolerance
+    close = np.abs(met.gaps) <= limit
     if sum(surfaces.shifts) > constants.TOUCH * view.tolerance or not close.any():
         return None
     # a roller on a plane lies along it, however little of it is close
@@ -162,5 +188,6 @@ def _patch(pair: PairView, touch: _Touch, holds: Flags) -> Patch:
         radii=(radius, 0.0) if touch.first else (0.0, radius),
         uncertainty=(max(surfaces.turns), shift),
         chord=surfaces.chord,
+        bends=met.bends,
     )
     return touch_patch(pair, touch.ids, samples, shift)

@@ -16,6 +16,7 @@ import numpy as np
 from kinform.contacts import constants
 from kinform.contacts.higher.beside import Beside, beside
 from kinform.contacts.higher.circles import Rim, rims_of
+from kinform.contacts.higher.nearest import dips_of, evened, nearest
 from kinform.contacts.higher.sharp import ConvexEdges, convex_edges, on_surface
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.pair_view import NearSurfaces, PairView
@@ -120,24 +121,10 @@ def _coaxial(view: PairView, rim: Rim, row: int) -> bool:
 def _nearest(rim: Rim, near: NearSurfaces, row: int, angles: Array, there: Beside, limit: float) -> Array:
     """(n,) angles at which a rim is nearest to a surface, within `limit` (m), and goes up on both sides; by what the
     surface is to it at equal `angles` (m,)."""
-    speed = rim.radius * (there.normals * rim.forward(angles)).sum(axis=1)
-    ahead = np.roll(speed, -1)
+    dips = dips_of(rim, angles, there, -limit, limit)
     step = 2.0 * math.pi / len(angles)
-    # between two places it is not below the tangents, but for its bends
-    least = np.minimum(there.gaps, np.roll(there.gaps, -1))
-    lowest = least - step * np.maximum(-speed, ahead) - rim.radius * step**2
-    tried = np.flatnonzero((speed <= 0.0) & (ahead > 0.0) & (lowest <= limit) & (least >= -limit))
-    tried = tried[rim.has(angles[tried] + 0.5 * step, 0.5 * step)]
-    low, high, down, up = angles[tried], angles[tried] + step, speed[tried], ahead[tried]
-    middle = low
-    for _ in range(constants.RIM_STEPS if len(tried) else 0):
-        middle = (low * up - high * down) / (up - down)
-        normals = beside(near, row, rim.points(middle)).normals
-        rate = rim.radius * (normals * rim.forward(middle)).sum(axis=1)
-        rising = rate > 0.0
-        # Illinois: the end that stays counts half, so that both come nearer
-        low, high = np.where(rising, low, middle), np.where(rising, middle, high)
-        down, up = np.where(rising, 0.5 * down, rate), np.where(rising, rate, 0.5 * up)
+    dips = dips.where(rim.has(dips.low + 0.5 * step, 0.5 * step))
+    middle = nearest(rim, near, row, dips)
     return middle[rim.has(middle, constants.RIM_ENDS)]
 
 
@@ -146,7 +133,7 @@ def _kept(view: PairView, rim: Rim, row: int, angles: Array, spacing: float) -> 
     near, tolerance = view.near[1], view.tolerance
     places = rim.points(angles)
     found = beside(near, row, places)
-    normals = _evened(rim, angles, found, KINDS[near.kinds[row]]) if spacing else found.normals
+    normals = evened(rim, angles, found.normals, KINDS[near.kinds[row]]) if spacing else found.normals
     holds = found.within & (np.abs(found.gaps) <= constants.TOUCH * tolerance) & rim.rises(angles, normals)
     if not holds.any():
         return None
@@ -155,17 +142,6 @@ def _kept(view: PairView, rim: Rim, row: int, angles: Array, spacing: float) -> 
     if not holds.any():
         return None
     return _Touch(rim, row, places[holds], found.gaps[holds], normals[holds], spacing)
-
-
-def _evened(rim: Rim, angles: Array, found: Beside, kind: str) -> Array:
-    """(n, 3) normals all round a rim, which are alike about its axis: a surface that is not quite about the same axis
-    turns with it as much as one that is. Those of a sphere pass its middle as they are."""
-    if kind == "sphere":
-        return found.normals
-    outward = rim.outward(angles)
-    across, along = float((found.normals * outward).sum(axis=1).mean()), float((found.normals @ rim.axis).mean())
-    size = math.hypot(across, along)
-    return (across * outward + along * rim.axis) / size
 
 
 def _patch(pair: PairView, touch: _Touch, first: bool) -> Patch:

@@ -12,6 +12,7 @@ import numpy as np
 
 from kinform.contacts.constants import BALL_BORE_SAMPLES, ROLLER_SAMPLES, ROUND_AXIS
 from kinform.contacts.higher.meeting import Meeting
+from kinform.contacts.higher.rings import ring
 from kinform.contacts.higher.tapers import tapers
 from kinform.contacts.mating.charts import perpendicular
 from kinform.contacts.search.pair_view import SurfacePair
@@ -19,11 +20,15 @@ from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array
 
 
-def meeting(surfaces: SurfacePair, parallel: float) -> Meeting | None:
-    """The closest points of a convex ball or roller and of a plane or another round surface; `parallel` (rad) is the
-    angle up to which a roller lies along the other. None where the pairing is none of these."""
+def meeting(surfaces: SurfacePair, parallel: float, limit: float) -> Meeting | None:
+    """The closest points of a convex ball, roller or ring and of a plane or another round surface; `parallel` (rad) is
+    the angle up to which a roller lies along the other, and within `limit` (m) rings are looked at. None where the
+    pairing is none of these."""
     first, second = surfaces.kinds
     convex = surfaces.sides[1] > 0
+    if first == "torus":
+        # a ball comes first
+        return None if second == "sphere" and convex else ring(surfaces, parallel, limit)
     if second == "plane":
         return _taper_on_plane(surfaces, parallel) if first == "cone" else _on_plane(surfaces, parallel)
     if (first, second) == ("sphere", "sphere") and convex:

@@ -53,15 +53,30 @@ def _generator(surfaces: SurfacePair, k: int, outward: Array) -> _Generator:
 
 
 def _side_by_side(surfaces: SurfacePair, parallel: float) -> Meeting | None:
-    """Both along the generator of the first that is nearest to the second."""
-    (axis, other), side = surfaces.axes, surfaces.sides[1]
-    on_axis = foot(surfaces.points[0], axis, surfaces.box()[0])
-    towards = side * (foot(surfaces.points[1], other, on_axis) - on_axis)
-    towards = towards - float(towards @ axis) * axis
-    size = float(np.linalg.norm(towards))
-    if size <= ROUND_AXIS * max(*surfaces.radii, float(np.abs(surfaces.extents[0]).max())):
+    """Both along a generator of the first in the plane of both axes: the nearer one of two."""
+    towards = _towards(surfaces)
+    if towards is None:
         return None
-    line = _generator(surfaces, 0, towards / size)
+    lines = [_along(surfaces, _generator(surfaces, 0, sense * towards), parallel) for sense in (1.0, -1.0)]
+    met = [line for line in lines if line is not None]
+    return min(met, key=lambda line: float(np.abs(line.gaps).min())) if met else None
+
+
+def _towards(surfaces: SurfacePair) -> Array | None:
+    """(3,) unit: across the axis of the first surface, in the plane of both axes, in either sense; None where they are
+    one. It is the direction to the other axis or, where that is nearly met, of it."""
+    (axis, other), (point, far) = surfaces.axes, surfaces.points
+    on_axis = foot(point, axis, surfaces.box()[0])
+    scale = max(*surfaces.radii, float(np.abs(surfaces.extents[0]).max()))
+    arms = [(foot(far, other, on_axis) - on_axis) / scale, other]
+    across = [arm - float(arm @ axis) * axis for arm in arms]
+    sizes = [float(np.linalg.norm(arm)) for arm in across]
+    best = 0 if sizes[0] >= sizes[1] else 1
+    return across[best] / sizes[best] if sizes[best] > ROUND_AXIS else None
+
+
+def _along(surfaces: SurfacePair, line: _Generator, parallel: float) -> Meeting | None:
+    """The second surface along a generator of the first."""
     ends = line.start + np.array([[line.low], [line.high]]) * line.along
     feet = _feet(surfaces, ends)
     if feet[0] == feet[1]:
@@ -76,7 +91,8 @@ def _side_by_side(surfaces: SurfacePair, parallel: float) -> Meeting | None:
     if slope > math.sin(parallel) or float((met.normals @ line.normal).max()) > FACING_OPPOSED:
         return None
     points = on - 0.5 * met.gaps[:, None] * met.normals
-    spacing, radius = (high - low) / ROLLER_SAMPLES, _radius(surfaces, 0, float(on.mean(axis=0) @ axis))
+    middle = float(on.mean(axis=0) @ surfaces.axes[0])
+    spacing, radius = (high - low) / ROLLER_SAMPLES, _radius(surfaces, 0, middle)
     return Meeting(points, met.normals, met.gaps, True, spacing, along=line.along, radius=radius)
 
 

@@ -32,6 +32,8 @@ class TouchSamples:
     uncertainty: tuple[float, float]
     """rad, of the normal; m, of the place."""
     chord: float
+    bends: bool = False
+    """Whether the surfaces bend into each other along the line, and hold more than it says."""
 
 
 def touch_patch(pair: PairView, surfaces: tuple[int, int], touch: TouchSamples, exact: float) -> Patch:
@@ -41,7 +43,7 @@ def touch_patch(pair: PairView, surfaces: tuple[int, int], touch: TouchSamples, 
         parts=pair.names,
         surfaces=surfaces,
         kind="point" if touch.axis is None else "line",
-        one_sided=False,
+        one_sided=touch.bends,
         points=points,
         normals=touch.normals,
         gaps=gaps,

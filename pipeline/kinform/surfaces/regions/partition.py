@@ -6,7 +6,9 @@ from seeds. Larger regions win; what nothing explains is a plane where it stands
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -78,8 +80,11 @@ def partition(work: Patchwork, scales: Scales) -> Partition:
     inner = work.b >= 0
     least = constants.GRAIN * work.total[of_edge[inner]]
     tried[inner] = work.area[work.a[inner]] + work.area[work.b[inner]] < least
+    last, asked = tried.copy(), np.zeros(len(work.a), bool)
     for _ in range(constants.ROUNDS):
-        chosen = _choose(_search(territory, tried, bent), territory)
+        before = tried.copy()
+        chosen = _choose(_search(territory, tried, partial(_bends, work, bent)), territory)
+        asked |= tried & ~before
         if not chosen:
             break
         regions += chosen
@@ -87,7 +92,10 @@ def partition(work: Patchwork, scales: Scales) -> Partition:
         for region in chosen:
             gained[work.mesh[region.polygons[0]]] += work.area[region.polygons].sum()
         tried |= (gained < constants.WORTH * work.total)[of_edge]
-    del bent, like, tried  # large, and needed no longer
+    last |= ~_ruled(territory)
+    for _ in range(constants.LAST_ROUNDS):
+        regions += _choose(_search(territory, last, partial(_unasked, work, bent, asked)), territory)
+    del bent, like, tried, last, asked, before  # large, and needed no longer
     rounds: Rounds | None = None
     for factor in constants.CHORD_FITS:
         rounds = rounds or Rounds.of(CYLINDER, *_pieces(territory, link, link.alike))
@@ -175,8 +183,9 @@ def _choose(growths: list[Growth], territory: Territory) -> list[Region]:
     return chosen
 
 
-def _search(territory: Territory, tried: Flags, bent: Curvature) -> list[Growth]:
-    """One round of hypotheses from seeds, of all kinds and both sides; the seeds are tried from now on."""
+def _search(territory: Territory, tried: Flags, suits: Callable[[Kind, Ints], Flags]) -> list[Growth]:
+    """One round of hypotheses from seeds, of all kinds and both sides; the seeds are tried from now on. `suits` says
+    which of the seeds (n,) a kind is tried at."""
     growths: list[Growth] = []
     work = territory.patchwork
     edges = territory.smooth
@@ -186,20 +195,31 @@ def _search(territory: Territory, tried: Flags, bent: Curvature) -> list[Growth]
         return growths
     side = np.repeat(np.array([1, -1]), [len(s) for s in both])
     tried[seeds] = True
-    first, second = bent.ratio[work.a[seeds]], bent.ratio[work.b[seeds]]
-    least, most = np.minimum(first, second), np.maximum(first, second)
     starts: list[tuple[Kind, Batch, Ints]] = []
     for kind in SIMPLE:
-        suits = np.flatnonzero(
-            (least <= kind.bends[1] + constants.BEND_SLACK) & (most >= kind.bends[0] - constants.BEND_SLACK)
-        )
-        batch = _around(territory, seeds[suits], side[suits], constants.STRAIGHT[kind.name])
+        here = np.flatnonzero(suits(kind, seeds))
+        batch = _around(territory, seeds[here], side[here], constants.STRAIGHT[kind.name])
         batch, number = batch.where(kind.enough(batch.size)).compact()
-        starts.append((kind, batch, side[suits[number]]))
+        starts.append((kind, batch, side[here[number]]))
     for kind, batch, facing in _ruled_together(starts):
         if len(batch.region):
             growths += pursue(territory, kind, batch, facing).each()
     return growths
+
+
+def _bends(work: Patchwork, bent: Curvature, kind: Kind, seeds: Ints) -> Flags:
+    """(n,) whether the polygons beside these edges seem to bend as the kind does."""
+    first, second = bent.ratio[work.a[seeds]], bent.ratio[work.b[seeds]]
+    least, most = np.minimum(first, second), np.maximum(first, second)
+    return np.asarray((least <= kind.bends[1] + constants.BEND_SLACK) & (most >= kind.bends[0] - constants.BEND_SLACK))
+
+
+def _unasked(work: Patchwork, bent: Curvature, asked: Flags, kind: Kind, seeds: Ints) -> Flags:
+    """(n,) whether a kind with generators was not tried at these edges when they were `asked` (E,): at the border of a
+    narrow surface, a neighbour that leans away as little as its facets do makes it seem to bend both ways."""
+    if kind not in (CYLINDER, CONE):
+        return np.zeros(len(seeds), bool)
+    return ~(asked[seeds] & _bends(work, bent, kind, seeds))
 
 
 def _ruled_together(starts: list[tuple[Kind, Batch, Ints]]) -> list[tuple[Kind, Batch, Ints]]:
@@ -228,6 +248,24 @@ def _seeds(work: Patchwork, edges: Ints, tried: Flags, side: int) -> Ints:
     np.maximum.at(wider, b, reach)
     foremost: Ints = start[rank[start] >= np.minimum(wider[work.a[start]], wider[work.b[start]])]
     return foremost
+
+
+def _ruled(territory: Territory) -> Flags:
+    """(E,) which smooth edges may be generators: both polygons have another smooth edge along them."""
+    work, edges = territory.patchwork, territory.smooth
+    polygon = np.concatenate([work.a[edges], work.b[edges]])
+    few = np.diff(territory.links.starts)[polygon] <= constants.MOST_LINKS
+    rows = np.flatnonzero(few)
+    owner, edge = territory.links.expand(polygon[rows])
+    mine = edges[rows[owner] % len(edges)] if len(edges) else edge
+    cosine = np.abs(dot(work.along(edge), work.along(mine)))
+    along = (edge != mine) & (cosine >= constants.STRAIGHT["cone"] * work.length[edge] * work.length[mine])
+    along &= territory.free[work.a[edge]] & territory.free[work.b[edge]]
+    lined = np.zeros(len(polygon), bool)
+    lined[rows[owner[along]]] = True
+    out = np.zeros(len(work.a), bool)
+    out[edges[lined.reshape(2, -1).all(axis=0)]] = True
+    return out
 
 
 def _around(territory: Territory, seeds: Ints, side: Ints, straightness: float) -> Batch:
