@@ -30,5 +30,5 @@ from kinform.contacts.find import find
 
 __all__ = ["CODE_VERSION", "find"]
 
-CODE_VERSION: int = 22
+CODE_VERSION: int = 23
 """Raised when the same input would give other contacts."""
