@@ -119,3 +119,16 @@ def test_no_name_that_a_package_gives_on_first_use_is_that_of_a_module_in_it():
 
 def _first_used(node: ast.AST) -> bool:
     return isinstance(node, ast.Call) and getattr(node.func, "id", "") == "first_used"
+
+
+def test_no_name_of_a_module_is_given_twice():
+    """Of two constants of one name the second holds, where the first was meant too."""
+    twice = []
+    for module, path in modules().items():
+        names: list[str] = []
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            targets = node.targets if isinstance(node, ast.Assign) else []
+            targets += [node.target] if isinstance(node, ast.AnnAssign) else []
+            names += [one.id for one in targets if isinstance(one, ast.Name)]
+        twice += [f"{module}.{name}" for name in sorted(set(names)) if names.count(name) > 1]
+    assert twice == []

@@ -168,9 +168,9 @@ XML_BYTES = 64 * 1024 * 1024
 PACKAGE_LEVELS = 4
 """Folders, from that of a description upwards, in which its package is looked for where nothing names it."""
 
-SHEAR = 1e-9
-"""Cosine of the angle between the axes of a scaled mesh up to which it is not sheared: printed quaternions have twelve
-digits."""
+SHEAR = 1e-5
+"""Cosine between the axes of a scaled or placed mesh up to which they are at right angles: ten roundings of single
+precision, times ten for chains of nodes; quaternions are often printed with six digits."""
 
 QUARTER_TURN = 1e-11
 """Quarter turns by which an angle may miss a whole one and be taken for it: what eleven printed digits lose. The pose
@@ -218,10 +218,6 @@ SCENE_DEEP = 64
 
 SCENE_NODES = 400_000
 """Nodes that a scene places, counted each time that they are: four for each of the parts that a design may have."""
-
-SHEAR = 1e-5
-"""Cosine between the axes of a placed mesh up to which they are at right angles: ten roundings of single precision,
-times ten for chains of nodes."""
 
 UNSCALED = 1e-5
 """Relative difference up to which a scale is 1, as rotations in single precision have it."""
