@@ -35,7 +35,9 @@ def graphs(draw):
         for a, b, price in joints:
             if a != b:
                 parted[(a, b)] = parted[(b, a)] = price
-        edges.append(Edge(ends, parted, draw(st.sampled_from([1000.0, 6000.0]))))
+        jams = draw(st.lists(st.tuples(st.integers(0, seeds - 1), st.integers(0, seeds - 1)), max_size=2))
+        jammed = {two for a, b in jams if a != b for two in ((a, b), (b, a))} - parted.keys()
+        edges.append(Edge(ends, parted, draw(st.sampled_from([10.0, 1000.0, 6000.0])), jammed=frozenset(jammed)))
     return seeds, free, edges
 
 

@@ -588,6 +588,9 @@ PRESERVED_SHARE = 0.03
 ADMITTED = 0.02
 """Share of an intended motion that the freedoms of a contact may miss and still admit it: a degree, or a fiftieth of
 the contact's size; axes are compared more finely where the types agree (KF403, KF404)."""
+POINT_REACH = 1e-3
+"""Of its distance from a stated joint, a contact at a point has at least this size: what blocks a turn there must not
+seem small beside what a metre would."""
 
 # questions.near_motion: what a small correction of one joint would free.
 

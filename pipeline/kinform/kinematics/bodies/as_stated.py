@@ -21,7 +21,7 @@ from kinform.foundation.words import counted, quoted
 from kinform.kinematics.bodies.complete import complete_joints, without_effect
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.bodies.stated_joints import Pair, joint_form, pair_between
-from kinform.kinematics.constants import ADMITTED
+from kinform.kinematics.constants import ADMITTED, POINT_REACH
 from kinform.kinematics.pair.joint import reading_of, stated_joint
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
@@ -97,17 +97,37 @@ def _at(twists: Array, place: Array) -> Array:
     return np.concatenate([twists[:, :3], twists[:, 3:] + cross(twists[:, :3], place)], axis=1)
 
 
-def opens(patches: Sequence[Patch], motion: Array, first: Collection[PartName]) -> bool:
-    """Whether one sense of a motion (6,) of the second body leaves all contact that the motion does not slide along;
-    `first` are the parts of the first body."""
-    senses = set()
+def opens(patches: Sequence[Patch], motions: Array, first: Collection[PartName]) -> bool:
+    """Whether some of these motions (k, 6) of the second body leaves all contact that they do not slide along: with
+    one motion, in one of its senses; `first` are the parts of the first body."""
+    rows = []
     for patch in patches:
         side = 1.0 if patch.parts[0] in first else -1.0
-        speeds = motion[3:] + cross(np.broadcast_to(motion[:3], patch.points.shape), patch.points)
-        across = side * np.einsum("ni,ni->n", speeds, patch.normals)
-        pace = float(np.linalg.norm(speeds, axis=1).max(initial=0.0))
-        senses |= {float(sign) for sign in np.sign(across[np.abs(across) > ADMITTED * pace])}
-    return len(senses) <= 1
+        speeds = motions[:, None, 3:] + cross(motions[:, None, :3], patch.points[None])
+        across = side * np.einsum("kni,ni->kn", speeds, patch.normals)
+        pace = np.linalg.norm(speeds, axis=2).max(axis=1, initial=0.0)
+        across = np.where(np.abs(across) > ADMITTED * pace[:, None], across, 0.0)
+        rows.append(across.T[np.any(across != 0.0, axis=0)])
+    found = np.concatenate(rows)
+    found = found / np.linalg.norm(found, axis=1)[:, None]
+    return len(found) == 0 or _leaving(found) > ADMITTED
+
+
+def _leaving(rows: Array) -> float:
+    """How fast a motion x (k,), |x| at most 1 in each component, opens the slowest of these unit rows (n, k) at most:
+    max t, rows·x ≥ t."""
+    from scipy.optimize import linprog
+
+    if rows.shape[1] == 1:
+        return 1.0 if len(set(np.sign(rows[:, 0]))) == 1 else -1.0
+    solved = linprog(
+        np.r_[np.zeros(rows.shape[1]), -1.0],
+        A_ub=np.c_[-rows, np.ones(len(rows))],
+        b_ub=np.zeros(len(rows)),
+        bounds=[(-1.0, 1.0)] * rows.shape[1] + [(0.0, None)],
+        method="highs",
+    )
+    return float(solved.x[-1]) if solved.status == 0 else -1.0
 
 
 def _in_force(
@@ -132,9 +152,9 @@ def _in_force(
     place = corners.mean(axis=0) if taken.point is None else taken.point
     if joint.status in ("ambiguous", "blocked"):
         cause, why = "doubt", "contact leaves it undecided"
-    elif leaves_free(joint.twists, taken.twists, place, norm(np.ptp(corners, axis=0)) or 1.0):
+    elif leaves_free(joint.twists, taken.twists, place, _reach(corners, place)):
         cause, why = "contact", "contact leaves it free and does not hold it"
-    elif len(taken.twists) == 1 and opens([patches[k] for k in joint.patches], taken.twists[0], first):
+    elif len(taken.twists) and opens([patches[k] for k in joint.patches], taken.twists, first):
         cause, why = "end", "contact leaves it free in one sense, as an end stop does, and does not hold it"
     else:
         return joint
@@ -148,6 +168,12 @@ def _in_force(
         singular_values=joint.singular_values,
         readings=(replace(reading_of(replace(joint, blockers=()), ""), cause=cause),),
     )
+
+
+def _reach(corners: Array, place: Array) -> float:
+    """m: how far a contact reaches, with corners (n, 3) and asked about at a place (3,). One at a point has no size,
+    and its distance counts."""
+    return max(norm(np.ptp(corners, axis=0)), POINT_REACH * norm(corners.mean(axis=0) - place)) or 1.0
 
 
 def _aside(joint: Joint, patches: Sequence[Patch]) -> Aside:

@@ -49,6 +49,13 @@ ROLLING = 1.0
 """Price of parting what touches at points or along lines only: balls, rollers, teeth hold nothing together."""
 BROKEN = 20000.0
 """Price of a contact between bodies that no joint of theirs may part: legs that cross are drawn touching, too."""
+GRAZED = 300.0
+"""The same of one at points or along lines: it holds no more than a flat beside the axis does. With 100 as many joints
+of rings of bodies are found without any name as with 20000, but one that is asked."""
+JAMMED = 25.0
+"""Price of such a contact between two bodies that stated joints connect, beside: it is in the way of the joint, and
+that of others is not. Less than any face, so that it only decides between a face and a journal; what it decides is
+listed."""
 EITHER = 25.0
 """Margin up to which a part may go either way: less than the price of a flange."""
 EITHER_WAY = 150.0

@@ -188,6 +188,7 @@ def _edges(
     """The contacts between pieces; of two that cost the same, the larger is a little dearer."""
     area = _areas(patches)
     largest = max(area.values(), default=1.0)
+    joined = frozenset(labels for a, b in sides if a != b for labels in ((a, b), (b, a)))
     edges = []
     for pair, parted in costs.by_joint.items():
         ends = (piece_of[pair[0]], piece_of[pair[1]])
@@ -198,7 +199,8 @@ def _edges(
         for joint, price in parted.items():
             for labels in (sides[joint], sides[joint][::-1]):
                 table[labels] = min(price + touch, table.get(labels, np.inf))
-        edges.append(Edge(ends, table, costs.held[pair] + touch, costs.held[pair] - constants.BROKEN))
+        jammed = joined - table.keys()
+        edges.append(Edge(ends, table, costs.held[pair] + touch, costs.hints.get(pair, 0.0), jammed))
     return edges
 
 
@@ -207,7 +209,7 @@ def _contract(sets: UnionFind, number: Mapping[PartName, int], costs: Prices, se
     held = UnionFind(len(number))
     for node in number.values():
         held.union(node, sets.find(node))
-    firm = [pair for pair, parted in costs.by_joint.items() if not parted]
+    firm = costs.firm()
     for first, second in firm:
         held.union(number[first], number[second])
     inside: dict[int, set[int]] = {}

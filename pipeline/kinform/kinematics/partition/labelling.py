@@ -30,10 +30,15 @@ class Edge:
     """Price for any other two labels."""
     hint: float = 0.0
     """What of these prices is there because something suggests that its ends are fastened."""
+    jammed: frozenset[Labels] = frozenset()
+    """Labels of bodies with joints, none of which may part it: it would be in the way of them."""
 
     def price(self, first: int, second: int) -> float:
         """What it costs that its ends have these labels."""
-        return 0.0 if first == second else min(self.parted.get((first, second), self.broken), self.broken)
+        if first == second:
+            return 0.0
+        jam = constants.JAMMED if (first, second) in self.jammed else 0.0
+        return min(self.parted.get((first, second), self.broken), self.broken) + jam
 
     def plain(self, first: int, second: int) -> float:
         """The same by contact alone, whatever suggests that its ends are fastened."""
@@ -46,7 +51,9 @@ class Edge:
             ends = (new[first], new[second])
             if ends[0] != ends[1]:
                 table[ends] = min(price, table.get(ends, price))
-        return Edge(self.ends, table, self.broken, self.hint)
+        jammed = {(new[first], new[second]) for first, second in self.jammed}
+        jammed = {ends for ends in jammed if ends[0] != ends[1] and ends not in table}
+        return Edge(self.ends, table, self.broken, self.hint, frozenset(jammed))
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +107,8 @@ def _question(
     among = set(candidates)
     ends = ((edge.ends, edge.broken, *(seeds.get(node) for node in edge.ends)) for edge in edges)
     tables = (tuple(sorted(item for item in edge.parted.items() if among.issuperset(item[0]))) for edge in edges)
-    return tuple(members), tuple(candidates), tuple(zip(ends, tables, strict=True))
+    jams = (tuple(sorted(item for item in edge.jammed if among.issuperset(item))) for edge in edges)
+    return tuple(members), tuple(candidates), tuple(zip(ends, tables, jams, strict=True))
 
 
 def regions(nodes: int, seeds: Mapping[int, int], edges: Sequence[Edge]) -> list[list[int]]:
@@ -122,8 +130,8 @@ def _solve(
     """The labels of some nodes, by an integer program.
 
     x[i, l]: node i has label l. Of an edge between two nodes, y[a, b] says that its ends have the labels a and b, for
-    equal labels and for those that a joint parts; what is left of 1 is broken. With y below x on both sides the
-    relaxation is that of the local polytope, and mostly whole.
+    equal labels and for those that a joint parts; what is left of 1 is broken, and if that jams a joint, one more of
+    its own says so. With y below x on both sides the relaxation is that of the local polytope, and mostly whole.
     """
     from scipy.optimize import Bounds, LinearConstraint, milp
     from scipy.sparse import coo_matrix
@@ -164,6 +172,10 @@ def _solve(
             for label, c in number.items():
                 terms = [(at + k, 1.0) for k, ends in enumerate(allowed) if ends[side] == label]
                 constrain([*terms, (place[node] * wide + c, -1.0)], -np.inf, 0.0)
+        for one, other in sorted(ends for ends in edge.jammed if set(ends) <= set(number)):
+            both = (place[first] * wide + number[one], place[second] * wide + number[other])
+            constrain([(both[0], 1.0), (both[1], 1.0), (len(cost), -1.0)], -np.inf, 1.0)
+            cost.append(constants.JAMMED)
     whole = np.zeros(len(cost))
     whole[: len(members) * wide] = 1
     answer = milp(
@@ -225,7 +237,8 @@ def margins(labels: Sequence[int | None], seeds: Mapping[int, int], edges: Seque
                 then, now = (((one, beyond) if inner else (beyond, one)) for one in (other, label))
                 change += edge.price(*then) - edge.price(*now)
                 plain += edge.plain(*then) - edge.plain(*now)
-                moves &= other == beyond or then in edge.parted
+                broken = label != beyond and now not in edge.parted
+                moves &= other == beyond or then in edge.parted or broken
             for node in members:
                 known = best.get(node)
                 least = min(np.inf if known is None else known.plain, plain if moves else np.inf)

@@ -7,6 +7,7 @@ it turns on, a motor's face with its horn. Nothing of that cut is where the join
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.partition import constants
@@ -91,7 +92,7 @@ def _held(costs: Prices, number: int, pairs: Sequence[PartPair]) -> Prices:
     by_joint = dict(costs.by_joint)
     for pair in pairs:
         by_joint[pair] = {k: price for k, price in by_joint[pair].items() if k != number}
-    return Prices(by_joint, costs.held)
+    return replace(costs, by_joint=by_joint)
 
 
 def _broken(cut: Cut) -> int:

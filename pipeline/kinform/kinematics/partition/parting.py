@@ -7,8 +7,8 @@ face without a journal may be a flange; a flat beside the axis that a turn leave
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence, Set
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -68,6 +68,10 @@ class Prices:
     """For each pair that touches, the joints that may part it, by number, and the price. Without any it is held."""
     held: Mapping[PartPair, float]
     """What it costs to part a pair although no joint may: what holds it is broken."""
+    hints: Mapping[PartPair, float] = field(default_factory=dict)
+    """What of these prices is there because something suggests that a pair is fastened."""
+    slight: frozenset[PartPair] = frozenset()
+    """Pairs that touch at points or along lines only."""
 
     def of(self, numbers: Sequence[int]) -> Prices:
         """The prices of some of the joints, numbered anew."""
@@ -75,7 +79,30 @@ class Prices:
         some = {
             pair: {new[k]: price for k, price in parted.items() if k in new} for pair, parted in self.by_joint.items()
         }
-        return Prices(some, self.held)
+        return replace(self, by_joint=some)
+
+    def firm(self) -> list[PartPair]:
+        """The pairs that no joint may part: they are one body wherever that joins no two.
+
+        What touches at points or along lines is none of them, nor are two parts with journals about axes of different
+        joints, as gears in mesh: what each of them goes with says more.
+        """
+        turning: dict[PartName, set[int]] = {}
+        for pair, parted in self.by_joint.items():
+            hint = self.hints.get(pair, 0.0)
+            about = {k for k, price in parted.items() if constants.LOOSE_JOURNAL <= price - hint <= constants.JOURNAL}
+            for name in pair:
+                turning.setdefault(name, set()).update(about)
+        return [
+            (first, second)
+            for (first, second), parted in self.by_joint.items()
+            if not parted and (first, second) not in self.slight and _same_turns(turning[first], turning[second])
+        ]
+
+
+def _same_turns(first: Set[int], second: Set[int]) -> bool:
+    """Whether parts that turn about the axes of these joints may be one body by that."""
+    return not first or not second or bool(first & second)
 
 
 def prices(
@@ -86,7 +113,7 @@ def prices(
 ) -> Prices:
     """The price of parting every pair of parts that touch, by every joint that may."""
     hints = hints_of(suggestions)
-    by_joint, held = {}, {}
+    by_joint, held, slight = {}, {}, set()
     asked = [(number, motions) for number, motions in enumerate(twists) if motions is not None and len(motions)]
     for pair, contact in contact_of_pairs(patches).items():
         hint = hints.get(pair, 0.0)
@@ -96,8 +123,9 @@ def prices(
             if cost is not None:
                 costs[number] = cost + hint
         by_joint[pair] = costs
-        held[pair] = constants.BROKEN + hint
-    return Prices(by_joint, held)
+        held[pair] = (constants.GRAZED if contact.slight else constants.BROKEN) + hint
+        slight |= {pair} if contact.slight else set()
+    return Prices(by_joint, held, hints, frozenset(slight))
 
 
 def contact_of_pairs(patches: Sequence[Patch]) -> dict[PartPair, Contact]:
@@ -139,6 +167,11 @@ class Contact:
             np.cumsum([0, *(len(patch.points) for patch in patches)]),
         )
 
+    @property
+    def slight(self) -> bool:
+        """Whether it is at points or along lines only."""
+        return all(patch.kind in ("point", "line") for patch in self.patches)
+
     def near(self, joint: IntendedJoint) -> bool:
         """Whether the joint's axis, or centre, passes through the ball round the contact."""
         assert joint.point is not None
@@ -174,7 +207,7 @@ class Contact:
         serrated = self._serrated(joint) if turns else np.zeros(len(self.points), dtype=bool)
         if float(self.weights[opposed & ~serrated].sum()) > constants.OPPOSED_AREA * total:
             return None
-        if all(patch.kind in ("point", "line") for patch in self.patches):
+        if self.slight:
             return constants.ROLLING
         if not turns:
             return self._guided(joint, opposed)
