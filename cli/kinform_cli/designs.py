@@ -63,14 +63,14 @@ def looked_at(source: Path, *, at_need: bool = False) -> Design:
     With `at_need` a results file is read part by part, as it is looked at: for what is only shown.
     Raises as `whole_design`.
     """
-    from kinform.form.sources import AS_IT_IS
-    from kinform_cli.options import cores
-
     if source.is_dir():
         (source, *others) = files.sources_of([source])
         files.is_manifest([source, *others], None)
     if source.suffix.lower() in RESULTS or not is_design(source):
         return files.read(source, at_need=at_need)
+    from kinform.form.sources import AS_IT_IS
+    from kinform_cli.options import cores
+
     return whole_design(
         [source], units=None, reading=AS_IT_IS, allow_outside=False, jobs=cores(None), as_it_is=True
     )  # fmt: skip
