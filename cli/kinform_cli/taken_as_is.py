@@ -25,12 +25,11 @@ class _Converted:
 
     def coerce(self, value: Any, param: Any, ctx: Any) -> Any:
         """The value as the command takes it. Raises typer's errors."""
-        if value is not None:
-            plain = _plain(value, self._descriptor)
-            if plain is not None:
-                return plain
-        elif not (param.multiple or param.nargs == -1):
-            return None
+        if value is None:
+            return () if param.multiple or param.nargs == -1 else None
+        plain = _plain(value, self._descriptor)
+        if plain is not None:
+            return plain
         if self._typers is None:
             from typer._coercion import build_runtime_param
 
@@ -58,7 +57,7 @@ def _plain(value: Any, descriptor: Any) -> Any:
 def _one(value: Any, kind: Any) -> Any:
     if not isinstance(value, str) or not isinstance(kind, type):
         return None
-    if kind is str:
+    if kind is str or isinstance(value, kind):
         return value
     if kind is Path:
         return None if not value or (os.path.exists(value) and not os.access(value, os.R_OK)) else Path(value)
