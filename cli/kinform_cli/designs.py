@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from kinform.form.sources import Reading
 
 RESULTS = (".h5", ".hdf5")
+_STAGES = ("contacts", "kinematics", "mass", "simulation", "report")
+"""What a design has of which every stage was run."""
 
 
 def whole_design(
@@ -21,6 +23,7 @@ def whole_design(
 ) -> Design:
     """The design with every stage. What a results file lacks is computed and not kept, unless it is wanted
     `as_it_is`; of any other source everything is computed, but what the results file beside it still has of it.
+    What is whole is read part by part, as it is looked at.
 
     Raises InputError for sources that are no design, ResultsError for a results file that cannot be read.
     """
@@ -28,9 +31,10 @@ def whole_design(
     from kinform.form.sources import AS_IT_IS
 
     if len(sources) == 1 and sources[0].suffix.lower() in RESULTS:
+        looked_into = files.read(sources[0], at_need=True)
+        if as_it_is or all(map(looked_into.has, _STAGES)):
+            return looked_into
         design = files.read(sources[0])
-        if as_it_is:
-            return design
         with Working("run") as working:
             design, ran = method.completed(design, jobs=jobs, progress=working.step, say=console.say)
         if ran:
@@ -63,14 +67,14 @@ def looked_at(source: Path, *, at_need: bool = False) -> Design:
     With `at_need` a results file is read part by part, as it is looked at: for what is only shown.
     Raises as `whole_design`.
     """
-    from kinform.form.sources import AS_IT_IS
-    from kinform_cli.options import cores
-
     if source.is_dir():
         (source, *others) = files.sources_of([source])
         files.is_manifest([source, *others], None)
     if source.suffix.lower() in RESULTS or not is_design(source):
         return files.read(source, at_need=at_need)
+    from kinform.form.sources import AS_IT_IS
+    from kinform_cli.options import cores
+
     return whole_design(
         [source], units=None, reading=AS_IT_IS, allow_outside=False, jobs=cores(None), as_it_is=True
     )  # fmt: skip

@@ -23,6 +23,8 @@ def main(arguments: Sequence[str]) -> int:
 
     # small matrices: threads of BLAS cost more than they give, and `--jobs` shares the work between processes
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    # to look for plugins of pydantic among all packages that are installed takes longer than to read a manifest
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "1")
     console.settings.quiet, console.settings.cut = False, None
     console.settings.debug = bool(os.environ.get("KINFORM_DEBUG"))
     try:

@@ -15,16 +15,24 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from kinform_cli import console
+from kinform_cli.taken_as_is import take_as_is
 
 if TYPE_CHECKING:
     from kinform.form.sources import Reading
 
 
 class _WithExamples:
-    """Help at whose end examples stand, line by line as they are written."""
+    """Help at whose end examples stand, line by line as they are written; plain values are taken as they are."""
 
     epilog: str | None
     params: list[Any]
+
+    def get_params(self, ctx: Any) -> list[Any]:
+        """As typer."""
+        parameters: list[Any] = super().get_params(ctx)  # type: ignore[misc]
+        for parameter in parameters:
+            take_as_is(parameter)
+        return parameters
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
         """Print typer's help, then the examples (kept in `epilog`)."""

@@ -137,7 +137,7 @@ class Lengths:
         """As fine as the parts of that assembly call for."""
         from kinform.foundation.units import metres_per
 
-        largest = max((part.mesh.diagonal for part in assembly.parts if part.mesh is not None), default=0.0)
+        largest = assembly.largest
         metric = assembly.units in ("m", "cm", "mm")
         unit = assembly.units if not metric else "m" if largest >= LARGE else "mm"
         metres = metres_per(unit)

@@ -45,3 +45,14 @@ def test_what_is_left_without_each_box():
     for k, rest in enumerate(_rests(boxes)):
         others = np.delete(boxes, k, axis=0).reshape(-1, 3)
         assert (rest == np.ptp(others, axis=0)).all()
+
+
+def test_the_largest_part_is_the_one_with_the_greatest_diagonal():
+    for name in (
+        "mechanisms/four_bar/four_bar",
+        "mechanisms/stewart_platform/stewart_platform",
+        "seekers/seeker_2dof/seeker_2dof",
+    ):
+        assembly = form.load(FIXTURES / f"{name}.toml")
+        assert assembly.largest == max(part.mesh.diagonal for part in assembly.parts if part.mesh is not None)
+    assert form.load(FIXTURES / "functional/stick_four_bar/stick_four_bar.toml").largest == 0.0

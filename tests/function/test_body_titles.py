@@ -7,7 +7,7 @@ from dataclasses import replace
 from support.places import FIXTURES
 
 from kinform.function.body_titles import body_titles
-from kinform.kinematics.partition.proposals import volumes
+from kinform.kinematics.part_volumes import volumes
 from kinform.model.names import BodyName
 
 

@@ -62,10 +62,9 @@ def render(design: Design, *, short: bool = False) -> RenderableType:
         )
     items: list[RenderableType] = [rows]
     items += _intended(design, given, lengths)
-    items += _leaving(kinematics)
-    for joint in kinematics.joints:
-        if joint.status != "determined":
-            items += _doubt(joint, lengths)
+    items += _leaving(kinematics, short)
+    for joint in beginning([joint for joint in kinematics.joints if joint.status != "determined"], short):
+        items += _doubt(joint, lengths)
     items += [Text(f"\n{j.name}: {j.motion}") for j in kinematics.joints if j.type == "general" and j.motion]
     items += _bodies(design)
     note = ground_note(design)
@@ -138,13 +137,13 @@ def _ways(releases: Sequence[Release], *, many: bool = False) -> str:
     return words + (f", and {counted(more, 'more way')}" if more else "")
 
 
-def _leaving(kinematics: Kinematics) -> list[RenderableType]:
-    """How each joint comes apart that does, and what leaves the assembly."""
+def _leaving(kinematics: Kinematics, short: bool) -> list[RenderableType]:
+    """How each joint comes apart that does, and what leaves the assembly; with `short` no more than can be shown."""
     lines: list[RenderableType] = []
     loose = [joint for joint in kinematics.joints if joint.held is False]
     if loose:
         lines.append(Text("\nContact that can be broken, by the second body relative to the first", style="bold"))
-        lines += [f"  {joint.name}: {sentence(joint)}" for joint in loose]
+        lines += [f"  {joint.name}: {sentence(joint)}" for joint in beginning(loose, short)]
     held = sum(joint.held is True for joint in kinematics.joints)
     if held:
         lines.append(f"{'' if loose else chr(10)}held by contact: {held} of {counted(len(kinematics.joints), 'joint')}")
@@ -152,7 +151,8 @@ def _leaving(kinematics: Kinematics) -> list[RenderableType]:
         lines.append(
             Text("\nNothing stated holds these; contact alone lets them leave, the rest at rest", style="bold")
         )
-        lines += [f"  {', '.join(item.bodies)}: {_ways(item.releases)}" for item in kinematics.separations]
+        leaving = beginning(kinematics.separations, short)
+        lines += [f"  {', '.join(item.bodies)}: {_ways(item.releases)}" for item in leaving]
     if kinematics.separations_reason:
         lines.append(f"\n{kinematics.separations_reason}")
     return lines

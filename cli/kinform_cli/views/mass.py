@@ -12,14 +12,15 @@ from kinform.design import Design
 from kinform.foundation import words
 from kinform.model.mass import MassProperties
 from kinform_cli.constants import HEAVY
+from kinform_cli.shortened import beginning
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import NONE, Lengths, number
 
 
-def bodies(design: Design) -> RenderableType:
-    """One row a body."""
+def bodies(design: Design, *, short: bool = False) -> RenderableType:
+    """One row a body; with `short` no more than can be shown of it."""
     assert design.mass is not None
-    table = _table("Mass of bodies", design.mass.bodies, Lengths.of(design.assembly))
+    table = _table("Mass of bodies", design.mass.bodies, Lengths.of(design.assembly), short)
     return stacked(table, *_unclear(design))
 
 
@@ -58,7 +59,7 @@ def _unclear(design: Design) -> list[RenderableType]:
     return [Text(f"{words.counted(len(unclear), 'part')}{known}, could be in another body: kinform show F.h5 bodies")]
 
 
-def _table(title: str, rows: Sequence[MassProperties], lengths: Lengths) -> RenderableType:
+def _table(title: str, rows: Sequence[MassProperties], lengths: Lengths, short: bool = False) -> RenderableType:
     if rows and all(row.mass is None for row in rows):
         return Text(f"{title}: none is known", style="bold")
     mass_unit, grams = ("kg", 1.0) if _most(row.mass for row in rows) >= HEAVY else ("g", 1e3)
@@ -66,7 +67,7 @@ def _table(title: str, rows: Sequence[MassProperties], lengths: Lengths) -> Rend
     mass = f"mass {mass_unit}"
     headings = ("name", mass, f"centre of mass {lengths.unit}", f"principal moments {moment_unit}", "from")
     grid = Rows(*headings, title=title, right=[mass], names=["name"])
-    for row in rows:
+    for row in beginning(rows, short):
         weighed = row.mass is not None
         grid.add(
             row.name,

@@ -145,7 +145,7 @@ def _misfit(design: Design) -> list[str]:
     kinematics, units = design.kinematics, design.assembly.units
     assert kinematics is not None
     misfit = kinematics.misfit
-    size = max((part.mesh.diagonal for part in design.assembly.parts if part.mesh is not None), default=1.0)
+    size = design.assembly.largest or 1.0
     most = []
     if misfit.distance > NO_SHIFT * size:
         most.append(f"{length(misfit.distance, units, 2)} at {misfit.distance_at}")

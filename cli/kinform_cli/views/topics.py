@@ -64,7 +64,7 @@ def _overview(design: Design, source: str | Path) -> RenderableType:
             "",
         ]
     if design.mass is not None:
-        items += [short(_view("mass").bodies(design), "mass"), ""]
+        items += [short(_view("mass").bodies(design, short=True), "mass"), ""]
     if design.simulation is not None:
         items.append(_view("simulation").headline(design.simulation))
     if design.report is not None:

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-from kinform.function.acted_freedoms import FREEDOMS, ActedFreedom, acted_freedom
-from kinform.function.acting_forces import acting_by_force, needing_forces
-from kinform.function.as_intended import DesignersJoint, as_intended, designers_joints
-from kinform.function.joint_names import Resolution, resolve_joint, stated_ranges
+from typing import TYPE_CHECKING
+
+from kinform.foundation.lazily import first_used
+
+if TYPE_CHECKING:
+    from kinform.function.acted_freedoms import FREEDOMS, ActedFreedom, acted_freedom
+    from kinform.function.acting_forces import acting_by_force, needing_forces
+    from kinform.function.designers_view import DesignersJoint, as_intended, designers_joints
+    from kinform.function.joint_names import Resolution, resolve_joint, stated_ranges
 
 __all__ = [
     "CODE_VERSION",
@@ -23,3 +28,20 @@ __all__ = [
 ]
 
 CODE_VERSION: int = 5
+
+__getattr__ = first_used(
+    __name__,
+    {
+        "FREEDOMS": "acted_freedoms",
+        "ActedFreedom": "acted_freedoms",
+        "acted_freedom": "acted_freedoms",
+        "acting_by_force": "acting_forces",
+        "needing_forces": "acting_forces",
+        "DesignersJoint": "designers_view",
+        "as_intended": "designers_view",
+        "designers_joints": "designers_view",
+        "Resolution": "joint_names",
+        "resolve_joint": "joint_names",
+        "stated_ranges": "joint_names",
+    },
+)

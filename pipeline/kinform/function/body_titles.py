@@ -6,7 +6,7 @@ results, fingerprints, locks and JSON stay what the contract says.
 
 from __future__ import annotations
 
-from kinform.kinematics.partition.proposals import volumes
+from kinform.kinematics.part_volumes import volumes
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Kinematics
 

@@ -284,6 +284,19 @@ class Assembly:
         )
 
     @cached_property
+    def largest(self) -> float:
+        """m: the greatest diagonal of a part's bounding box; nought where no part has a mesh."""
+        meshes = list({id(m): m for part in self.parts if (m := part.mesh) is not None and len(m.vertices)}.values())
+        if not meshes:
+            return 0.0
+        # all boxes at once: one by one they take ten times as long, of thousands of parts
+        columns = np.ascontiguousarray(np.concatenate([mesh.vertices for mesh in meshes]).T)
+        starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes[:-1])])
+        spans = np.maximum.reduceat(columns, starts, axis=1) - np.minimum.reduceat(columns, starts, axis=1)
+        squares = np.einsum("ij,ij->j", spans, spans)
+        return max(meshes[k].diagonal for k in np.flatnonzero(squares >= (1.0 - 1e-9) * squares.max()))
+
+    @cached_property
     def weighed(self) -> frozenset[PartName]:
         """Parts of groups whose mass is stated as a whole."""
         return frozenset(part for group in self.groups if group.override is not None for part in group.parts)

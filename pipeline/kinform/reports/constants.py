@@ -210,5 +210,5 @@ OUTLINE_SHADE = 0.52
 """Brightness of outlines."""
 ARC_PIECES = 28
 """Pieces of an arc."""
-MOST_AT_ONCE = 200_000
-"""Pixels times pieces of a line that are painted at one stroke: above it a pass for each piece is faster."""
+MOST_AT_ONCE = 50_000
+"""Pixels of pieces of lines that are looked at in one pass: with more they no longer fit in the processor's cache."""

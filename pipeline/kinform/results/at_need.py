@@ -17,7 +17,7 @@ from kinform.results.conformity import check_group
 from kinform.results.groups import assembly
 from kinform.results.held import HeldGroup
 from kinform.results.opening import not_whole, opened
-from kinform.results.table import read_columns
+from kinform.results.table import row_count
 
 if TYPE_CHECKING:
     from kinform.behaviour import Behaviour
@@ -166,7 +166,7 @@ class Earlier:
         if not self.has("contacts"):
             return None
         try:
-            patches, overlaps = (len(read_columns(self.file.group("contacts"), name)) for name in _COUNTED)
+            patches, overlaps = (row_count(self.file.group("contacts"), name) for name in _COUNTED)
         except NONSENSE as error:
             raise self._damaged(error) from error
         return patches, overlaps

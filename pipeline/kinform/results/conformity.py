@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from kinform.results import schema
 from kinform.results.held import HeldDataset, HeldGroup
 from kinform.results.schema import Form, Last, Length
-from kinform.results.table import DatasetError, missing, read_texts_of
+from kinform.results.table import DatasetError, missing
 
 Check = Callable[[HeldGroup, str], None]
 
@@ -133,22 +134,22 @@ def _check_rows(file: HeldGroup, column: str) -> None:
     table, or_none = schema.ROWS[column]
     places = _whole(file, column)
     if len(places):
-        count = rows_of(file, column, table)
-        _check_between(column, places, -1 if or_none else 0, np.full(len(places), count), table)
+        _check_between(column, places, -1 if or_none else 0, rows_of(file, column, table), table)
 
 
-def _check_between(name: str, places: NDArray[Any], low: int, counts: NDArray[Any], of: str) -> None:
+def _check_between(name: str, places: NDArray[Any], low: int, counts: NDArray[Any] | int, of: str) -> None:
     wrong = np.flatnonzero((places < low) | (places >= counts))
     if len(wrong):
-        raise DatasetError(name, f"row {wrong[0]} holds {places[wrong[0]]}, of {counts[wrong[0]]} in {of}")
+        count = np.broadcast_to(counts, places.shape)[wrong[0]]
+        raise DatasetError(name, f"row {wrong[0]} holds {places[wrong[0]]}, of {count} in {of}")
 
 
 def _check_names(file: HeldGroup, column: str) -> None:
     used = list(_named(file, column))
     if used:
         given = {name for of in schema.NAMES[column] for name in _named(file, of)}
-        wrong = next((name for name in used if name not in given), None)
-        if wrong is not None:
+        if not given.issuperset(used):
+            wrong = next(name for name in used if name not in given)
             raise DatasetError(column, f"names {wrong!r}, which {schema.NAMES[column][0]} has not")
 
 
@@ -166,13 +167,14 @@ def _check_words(file: HeldGroup, column: str) -> None:
         raise DatasetError(column, f"holds {wrong!r}; expected one of {', '.join(words)}")
 
 
-def _named(file: HeldGroup, column: str) -> Iterator[str]:
+def _named(file: HeldGroup, column: str) -> Iterable[str]:
     """The names that a column has, one a row or a list of them."""
-    lists = column in _LISTS
-    for text in _texts(file, column):
-        if not lists:
-            yield text
-            continue
+    texts = _texts(file, column)
+    return _of_lists(column, texts) if column in _LISTS else texts
+
+
+def _of_lists(column: str, texts: Sequence[str]) -> Iterator[str]:
+    for text in texts:
         names = json.loads(text)
         if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
             raise DatasetError(column, "expected lists of names")
@@ -186,7 +188,8 @@ def _texts(file: HeldGroup, column: str) -> Sequence[str]:
         return ()
     if data.dtype.kind != "O":
         raise DatasetError(column, f"holds {_kind(data.dtype)}; expected texts")
-    return [text for text in read_texts_of(data) if text is not None]
+    name, _, label = column.partition(".")
+    return [text for text in file.dataset(name).texts(label) if text is not None]
 
 
 def _whole(file: HeldGroup, column: str) -> NDArray[Any]:
@@ -211,13 +214,29 @@ def _column(file: HeldGroup, column: str) -> NDArray[Any] | None:
     return np.asarray(dataset.data[label]) if label in (dataset.dtype.names or ()) else None
 
 
+@dataclass(frozen=True)
+class _Within:
+    """What whole numbers of an array of arrays may be."""
+
+    lengths: NDArray[Any]
+    """(n,) rows of each item."""
+    counts: NDArray[Any]
+    """(n,) what they stay below."""
+    low: int
+    of: str
+
+
 def _check_within(file: HeldGroup, name: str) -> None:
-    counts, low, of = _WITHIN[name](file)
-    data = file.dataset(name).data
-    if data.size:
-        flat = data.reshape(len(data), -1)
-        _check_between(name, flat.min(axis=1), low, counts, of)
-        _check_between(name, flat.max(axis=1), low, counts, of)
+    within, data = _WITHIN[name](file), file.dataset(name).data
+    if not data.size:
+        return
+    filled = within.lengths > 0
+    flat, counts = data.reshape(-1), within.counts[filled]
+    starts = np.cumsum(np.append(0, within.lengths[filled][:-1])) * (data.size // len(data))
+    if np.minimum.reduceat(flat, starts).min() < within.low or (np.maximum.reduceat(flat, starts) >= counts).any():
+        rows, counts = data.reshape(len(data), -1), np.repeat(within.counts, within.lengths)
+        _check_between(name, rows.min(axis=1), within.low, counts, within.of)
+        _check_between(name, rows.max(axis=1), within.low, counts, within.of)
 
 
 def _lengths(file: HeldGroup, name: str) -> NDArray[Any]:
@@ -225,38 +244,35 @@ def _lengths(file: HeldGroup, name: str) -> NDArray[Any]:
     return np.diff(_whole(file, f"{name}_offset"))
 
 
-def _owners(file: HeldGroup, name: str) -> NDArray[Any]:
-    lengths = _lengths(file, name)
-    return np.repeat(np.arange(len(lengths)), lengths)
+def _corners(file: HeldGroup) -> _Within:
+    faces, vertices = _lengths(file, "assembly/faces"), _lengths(file, "assembly/vertices")
+    return _Within(faces, vertices, 0, "the vertices of its mesh")
 
 
-def _corners(file: HeldGroup) -> tuple[NDArray[Any], int, str]:
-    return _lengths(file, "assembly/vertices")[_owners(file, "assembly/faces")], 0, "the vertices of its mesh"
-
-
-def _labels(file: HeldGroup) -> tuple[NDArray[Any], int, str]:
+def _labels(file: HeldGroup) -> _Within:
     meshes = rows_of(file, "surfaces/labels", "surfaces/meshes")
     counts = np.bincount(_whole(file, "surfaces/surfaces.mesh"), minlength=meshes)
-    return counts[_owners(file, "surfaces/labels")], -1, "the surfaces of its mesh"
+    return _Within(_lengths(file, "surfaces/labels"), counts, -1, "the surfaces of its mesh")
 
 
-def _facets(file: HeldGroup) -> tuple[NDArray[Any], int, str]:
-    meshes = _whole(file, "surfaces/surfaces.mesh")
-    return _lengths(file, "surfaces/labels")[meshes[_owners(file, "surfaces/faces")]], 0, "the facets of its mesh"
+def _facets(file: HeldGroup) -> _Within:
+    counts = _lengths(file, "surfaces/labels")[_whole(file, "surfaces/surfaces.mesh")]
+    return _Within(_lengths(file, "surfaces/faces"), counts, 0, "the facets of its mesh")
 
 
-def _columns_of_bodies(file: HeldGroup) -> tuple[NDArray[Any], int, str]:
+def _columns_of_bodies(file: HeldGroup) -> _Within:
     columns = 6 * rows_of(file, "constraints/indices", "constraints/bodies")
-    return np.full(len(file.dataset("constraints/indices")), columns), 0, "six columns a body"
+    rows = len(file.dataset("constraints/indices"))
+    return _Within(np.array([rows]), np.array([columns]), 0, "six columns a body")
 
 
-_WITHIN: dict[str, Callable[[HeldGroup], tuple[NDArray[Any], int, str]]] = {
+_WITHIN: dict[str, Callable[[HeldGroup], _Within]] = {
     "assembly/faces": _corners,
     "surfaces/labels": _labels,
     "surfaces/faces": _facets,
     "constraints/indices": _columns_of_bodies,
 }
-"""Whole numbers whose limit is not the same for all: the limits, the least, and what they count."""
+"""Whole numbers whose limit is not the same for all."""
 _LISTS = frozenset(
     ("assembly/groups.parts", "joints/bodies.parts", "mobility/redundancies.joints", "mobility/certificates.joints")
 )

@@ -16,6 +16,8 @@ import numpy as np
 from h5py import h5d, h5g, h5o, h5s, h5t
 from numpy.typing import NDArray
 
+from kinform.results.texts import read_texts_of
+
 
 class HeldDataset:
     """A dataset. Fields as h5py's: `shape` is None where there is nothing, not even no rows."""
@@ -46,6 +48,18 @@ class HeldDataset:
             self._made.read(h5s.ALL, h5s.ALL, out, h5t.py_create(self.dtype))
         out.flags.writeable = False
         return out
+
+    @cached_property
+    def _texts(self) -> dict[str, tuple[str | None, ...]]:
+        """Columns that were asked for."""
+        return {}
+
+    def texts(self, column: str = "") -> tuple[str | None, ...]:
+        """The texts of a column of a table, or of a dataset of texts; None: no text. Raises ValueError where they are
+        none."""
+        if column not in self._texts:
+            self._texts[column] = tuple(read_texts_of(self.data[column] if column else self.data))
+        return self._texts[column]
 
 
 class HeldGroup:

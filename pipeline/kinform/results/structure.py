@@ -138,13 +138,18 @@ def _check_dataset(dataset: h5d.DatasetID, place: str, stream: BufferedReader, s
         raise ForeignError(f"{place}, whose data are beyond the end of the file")
     if item.texts:
         stream.seek(offset)
-        _check_texts(stream.read(declared), item, place, size)
+        _check_texts(stream, declared // item.size, item, place, size)
 
 
-def _check_texts(data: bytes, item: _Item, place: str, size: int) -> None:
+def _check_texts(stream: BufferedReader, rows: int, item: _Item, place: str, size: int) -> None:
     """Raise ForeignError where texts of any length are longer, together, than the file, or not in it."""
-    rows = np.frombuffer(data, np.uint8).reshape(-1, item.size)
-    for start in item.texts:
-        texts = np.ascontiguousarray(rows[:, start : start + _TEXT.itemsize]).view(_TEXT)
-        if int(texts["length"].sum(dtype=np.uint64)) > size or int(texts["heap"].max()) > size:
-            raise ForeignError(f"{place} with texts that are longer than the file, or beyond its end")
+    lengths = [0] * len(item.texts)
+    at_once = max(constants.READ_AT_ONCE // item.size, 1)
+    for first in range(0, rows, at_once):
+        count = min(at_once, rows - first)
+        data = np.frombuffer(stream.read(count * item.size), np.uint8).reshape(count, item.size)
+        for k, start in enumerate(item.texts):
+            texts = np.ascontiguousarray(data[:, start : start + _TEXT.itemsize]).view(_TEXT)
+            lengths[k] += int(texts["length"].sum(dtype=np.uint64))
+            if lengths[k] > size or int(texts["heap"].max()) > size:
+                raise ForeignError(f"{place} with texts that are longer than the file, or beyond its end")

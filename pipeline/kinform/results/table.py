@@ -15,8 +15,10 @@ from __future__ import annotations
 
 import json
 import struct
-from collections.abc import Callable, Container, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
+from operator import is_
 from typing import Any
 
 import h5py
@@ -26,12 +28,14 @@ from numpy.typing import NDArray
 from kinform.errors import ResultsError
 from kinform.model.arrays import freeze
 from kinform.results.held import HeldDataset, HeldGroup
+from kinform.results.texts import has_surrogates, stored_text
 
 TEXT = h5py.string_dtype()
 FACETS = "<i4"
 """Numbers of facets, vertices and surfaces of one mesh: most of a file, and fewer than two thousand millions."""
-_NOTHING = "␀"
 _MISSING_NUMBER = 0x7FF8_0000_0000_0000 | 1954
+_IS_NONE = partial(is_, None)
+_DECODER = json.JSONDecoder()
 (_MISSING,) = struct.unpack("<d", struct.pack("<Q", _MISSING_NUMBER))
 
 
@@ -55,39 +59,10 @@ class Column:
     units: tuple[str, ...]
     split: Callable[[Sequence[Any]], Sequence[Any]]
     """The field of all records → one list or array a label."""
-    join: Callable[[Sequence[NDArray[Any]]], list[Any]]
-    """The arrays → the field of all records."""
+    join: Callable[[Sequence[Any]], list[Any]]
+    """The arrays, or texts, of each label → the field of all records."""
     optional: bool = True
     """Whether a record may be without it."""
-
-
-def stored_text(value: str | None) -> str:
-    """The text as a dataset holds it."""
-    if value is None:
-        return _NOTHING
-    if value.startswith(_NOTHING) or "\0" in value or (not value.isascii() and _has_surrogates(value)):
-        return _NOTHING + json.dumps(value)
-    return value
-
-
-def _has_surrogates(value: str) -> bool:
-    return any("\ud800" <= character <= "\udfff" for character in value)
-
-
-def read_texts_of(stored: NDArray[Any]) -> list[str | None]:
-    """The texts that a dataset holds; None: no text."""
-    texts = [v.decode() if isinstance(v, bytes) else v for v in stored.tolist()]
-    return [_text_of(text) if text.startswith(_NOTHING) else text for text in texts]
-
-
-def _text_of(stored: str) -> str | None:
-    """The text that was stored as one that begins with ␀."""
-    if stored == _NOTHING:
-        return None
-    text = json.loads(stored[1:])
-    if not isinstance(text, str):
-        raise ValueError(f"{stored!r} stands for no text")
-    return text
 
 
 def _write_reals(values: Sequence[float | None]) -> NDArray[np.float64]:
@@ -115,15 +90,15 @@ def _write_counts(values: Sequence[int | None]) -> list[int]:
 
 
 def _read_counts(stored: NDArray[np.int64]) -> list[int | None]:
+    if (stored < -1).any():
+        raise ValueError(f"{stored.min()} is no count")
     values: list[int | None] = stored.tolist()
-    if any(value is not None and value < -1 for value in values):
-        raise ValueError(f"{min(stored.tolist())} is no count")
     return [None if value == -1 else value for value in values]
 
 
 def _write_json(value: Any) -> str:
     dumped = json.dumps(value, ensure_ascii=False, sort_keys=True)
-    return json.dumps(value, sort_keys=True) if _has_surrogates(dumped) else dumped
+    return json.dumps(value, sort_keys=True) if has_surrogates(dumped) else dumped
 
 
 def _each(function: Callable[[Any], Any], values: Sequence[Any]) -> list[Any]:
@@ -141,7 +116,7 @@ def _scalar(
 
 def text(field: str, *, optional: bool = True) -> Column:
     """A text, or None."""
-    return _scalar(field, TEXT, "", lambda v: [stored_text(x) for x in v], read_texts_of, optional)
+    return _scalar(field, TEXT, "", lambda v: [stored_text(x) for x in v], list, optional)
 
 
 def integer(field: str, unit: str = "1", *, optional: bool = False) -> Column:
@@ -169,23 +144,23 @@ def texts(field: str, kind: type = str) -> Column:
     return _scalar(
         field, TEXT, "",
         lambda v: _each(lambda x: _write_json(list(x)), [tuple(x) for x in v]),
-        lambda s: _each(lambda x: tuple(_json(x, list, kind)), s.tolist()),
+        lambda s: _each(lambda x: tuple(_json(x, list, kind)), s),
     )  # fmt: skip
 
 
-def _json(stored: bytes | str, kind: type[list[Any]] | type[dict[Any, Any]], of: type = object) -> Any:
+def _json(stored: str | None, kind: type[list[Any]] | type[dict[Any, Any]], of: type = object) -> Any:
     """What a text says as JSON. Raises ValueError where it is of another kind, or its items are."""
-    value = json.loads(stored)
-    if not isinstance(value, kind) or not all(isinstance(item, of) for item in value):
+    if stored is None:
+        raise ValueError("no text is no JSON")
+    value, end = _DECODER.raw_decode(stored)
+    if end != len(stored) or not isinstance(value, kind) or not all(isinstance(item, of) for item in value):
         raise ValueError(f"{stored!r} is no {kind.__name__} of {of.__name__}")
     return value
 
 
 def values(field: str) -> Column:
     """A dict of free-form values, as JSON."""
-    return _scalar(
-        field, TEXT, "", lambda v: [_write_json(x) for x in v], lambda s: [_json(x, dict) for x in s.tolist()]
-    )
+    return _scalar(field, TEXT, "", lambda v: [_write_json(x) for x in v], lambda s: [_json(x, dict) for x in s])
 
 
 def inline(
@@ -193,7 +168,7 @@ def inline(
     inner: Sequence[Column],
     labels: Sequence[str],
     get: Callable[[Any, Column], Any],
-    make: Callable[[list[Any]], Any],
+    make: Callable[[Sequence[Any]], Any],
     *,
     optional: bool,
 ) -> Column:
@@ -207,9 +182,11 @@ def inline(
         held = [[None if record is None else get(record, column) for record in records] for column in inner]
         return [data for column, of_all in zip(inner, held, strict=True) for data in column.split(of_all)]
 
-    def join(stored: Sequence[NDArray[Any]]) -> list[Any]:
+    def join(stored: Sequence[Any]) -> list[Any]:
         held = [c.join(stored[start:end]) for c, start, end in zip(inner, ends[:-1], ends[1:], strict=True)]
-        rows = [list(row) for row in zip(*held, strict=True)]
+        rows = list(zip(*held, strict=True))
+        if not any(map(_lacks, held)):
+            return [make(row) for row in rows]
         needed = [not column.optional for column in inner]
         for row in rows:
             lacking = any(need and value is None for need, value in zip(needed, row, strict=True))
@@ -258,11 +235,22 @@ def write_columns(group: h5py.Group, name: str, columns: Mapping[str, tuple[str,
 
 def read_columns(group: HeldGroup, name: str, labels: Sequence[str] | None = None) -> Any:
     """The table as a structured array, read-only, which has these columns at least."""
+    dataset = _table(group, name)
+    _check_labels(dataset.name, dataset.dtype, labels or ())
+    return dataset.data
+
+
+def row_count(group: HeldGroup, name: str) -> int:
+    """How many rows a table has, without reading it."""
+    return len(_table(group, name))
+
+
+def _table(group: HeldGroup, name: str) -> HeldDataset:
+    """A table of a group. Raises DatasetError where there is none of that name."""
     dataset = _dataset(group, name)
     if dataset.ndim != 1 or not dataset.dtype.names:
         raise DatasetError(dataset.name, "is no table")
-    _check_labels(dataset.name, dataset.dtype, labels or ())
-    return dataset.data
+    return dataset
 
 
 def _dataset(group: HeldGroup, name: str) -> HeldDataset:
@@ -296,18 +284,18 @@ def read_rows(
 ) -> list[dict[str, Any]]:
     """The rows that `write_rows` wrote: field → value. Fields that came `later` are left out where the file lacks
     them."""
-    table = read_columns(group, name)
+    table = _table(group, name)
     labels = set(table.dtype.names or ())
     columns = [column for column in columns if column.field not in later or labels.issuperset(column.labels)]
     fields = [column.field for column in columns]
     if not fields:
-        return [{} for _ in table]
+        return [{} for _ in table.data]
     place = f"{group.name}/{name}"
     held = [_values(place, table, column) for column in columns]
     return [dict(zip(fields, row, strict=True)) for row in zip(*held, strict=True)]
 
 
-def _values(name: str, table: NDArray[Any], column: Column) -> list[Any]:
+def _values(name: str, table: HeldDataset, column: Column) -> list[Any]:
     """What a column holds, of all rows. Raises DatasetError where its kind, or a value, is none of its own."""
     _check_labels(name, table.dtype, column.labels)
     for label, dtype in zip(column.labels, column.dtypes, strict=True):
@@ -315,15 +303,20 @@ def _values(name: str, table: NDArray[Any], column: Column) -> list[Any]:
             fault = f"is of the kind {table.dtype[label]}; expected {np.dtype(dtype)}"
             raise DatasetError(f"{name}.{label}", fault)
     try:
-        held = column.join([table[label] for label in column.labels])
+        held = column.join([table.texts(c) if table.dtype[c].kind == "O" else table.data[c] for c in column.labels])
     except DatasetError:
         raise
     except (ValueError, RecursionError) as error:
         raise DatasetError(f"{name}.{column.labels[0]}", f"makes no sense: {error}") from error
-    if not column.optional and any(value is None for value in held):
+    if not column.optional and _lacks(held):
         place = next(k for k, value in enumerate(held) if value is None)
         raise DatasetError(f"{name}.{column.labels[0]}", f"lacks a value in row {place}")
     return held
+
+
+def _lacks(values: Iterable[Any]) -> bool:
+    """Whether a value is None."""
+    return any(map(_IS_NONE, values))
 
 
 def write_array(group: h5py.Group, name: str, array: NDArray[Any], unit: str, dtype: str = "<f8") -> h5py.Dataset:
@@ -356,10 +349,10 @@ def read_texts(group: HeldGroup, name: str) -> tuple[Any, ...]:
     dataset = _dataset(group, name)
     if dataset.ndim != 1 or dataset.dtype.kind != "O":
         raise DatasetError(dataset.name, "holds no texts")
-    texts = read_texts_of(dataset.data)
-    if any(text is None for text in texts):
+    texts = dataset.texts()
+    if _lacks(texts):
         raise DatasetError(dataset.name, "lacks a text")
-    return tuple(texts)
+    return texts
 
 
 def write_ragged(

@@ -17,6 +17,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import canonical_sign, norm
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.words import counted, quoted
+from kinform.kinematics.part_volumes import volumes
 from kinform.kinematics.partition import constants
 from kinform.kinematics.partition.bodies import partition
 from kinform.kinematics.partition.parting import ROUND, Contact, PartPair, contact_of_pairs, hints_of, joint_twists
@@ -148,16 +149,6 @@ def stated_proposals(
         bodies = [found.placed[PartName(name)].body for name in joint.between]
         first, second = (largest[body] for body in bodies) if bodies[0] != bodies[1] else joint.between
         out.append((replace(joint, between=(first, second)), one))
-    return out
-
-
-def volumes(assembly: Assembly) -> dict[PartName, float]:
-    """m³ of every part with a mesh; that of its box where the mesh is open."""
-    out = {}
-    for part in assembly.parts:
-        if part.mesh is not None:
-            own = part.mesh.health.volume
-            out[part.name] = abs(own) if own else float(np.prod(np.subtract(*part.mesh.placed_box(part.X_WP)[::-1])))
     return out
 
 

@@ -20,7 +20,7 @@ from kinform.reports.page.figures import Figure
 from kinform.reports.page.focus import Focus
 from kinform.reports.page.raster import AXES, View, png, view_of
 from kinform.reports.page.scene import Scene
-from kinform.reports.page.strokes import dashed, polyline, rgb, ring, strokes_of
+from kinform.reports.page.strokes import dashed, polylines, rgb, ring, strokes_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,8 +60,7 @@ class Artist:
         view = _whole_view(figures, signs, width, height)
         image = layer(view, figures)
         paint(image, view, self._red(lambda parts: True), constants.OVERLAP_WEIGHT)
-        for stroke in signs:
-            polyline(image, view.project(stroke)[:, :2], 2.0 * constants.FINER)
+        polylines(image, [view.project(stroke)[:, :2] for stroke in signs], 2.0 * constants.FINER)
         return png(whole_numbers(smaller(image)))
 
     def _whole(self) -> tuple[Shown, list[Array]]:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinform.foundation.algebra.vectors import cross
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Ints
 from kinform.model.kinematics import Joint
 from kinform.reports.constants import ARC_PIECES, MOST_AT_ONCE, SIGNAL_COLOUR
 
@@ -63,25 +64,50 @@ def _head(tip: Array, direction: Array, size: float) -> list[Array]:
     return [np.array([root + side * 0.42 * size * w, tip]) for w in _across(unit) for side in (-1.0, 1.0)]
 
 
-def polyline(image: Image, points: Array, width: float) -> None:
-    """A line through points (n, 2) px of this width, on an image (height, width, 4); a small one at one stroke."""
-    box = _box(image, np.array([points.min(axis=0), points.max(axis=0)]), width)
-    if box is None:
+def polylines(image: Image, lines: Sequence[Array], width: float) -> None:
+    """Lines through points (n, 2) px each, of this width, on an image (height, width, 4); all at once, in portions, for
+    a line by itself takes longer to begin than to draw. One with a place that is no number is not drawn."""
+    lines = [points for points in lines if np.isfinite(points).all()]
+    if not lines:
         return
-    if (len(points) - 1) * box[0].size * box[1].size > MOST_AT_ONCE and len(points) > 2:
-        for pair in zip(points[:-1], points[1:], strict=True):
-            polyline(image, np.array(pair), width)
-        return
-    along, aside, length = _along(box, points[:-1], points[1:])
-    on = (aside < width / 2) & (along > -width / 2) & (along < length + width / 2)
-    _paint(image, box, np.asarray(on.any(axis=0)))
+    starts, ends = (np.concatenate([line[part] for line in lines]) for part in (slice(-1), slice(1, None)))
+    size = np.array([image.shape[1], image.shape[0]])
+    reach = 0.75 * width  # a corner of a piece is half its diagonal away
+    low = np.clip(np.floor(np.minimum(starts, ends) - reach), 0, size).astype(np.int64)
+    high = np.clip(np.ceil(np.maximum(starts, ends) + reach) + 1, low, size).astype(np.int64)
+    over = np.cumsum(np.prod(high - low, axis=1))  # pixels to look at, up to each piece
+    on, begin = np.zeros(image.shape[:2], bool), 0
+    while begin < len(over):
+        done = over[begin - 1] if begin else 0
+        stop = max(begin + 1, int(np.searchsorted(over, done + MOST_AT_ONCE, side="right")))
+        part = slice(begin, stop)
+        _mark(on, starts[part], ends[part], low[part], high[part], width)
+        begin = stop
+    image[on] = _SIGNAL
+
+
+def _mark(on: NDArray[np.bool_], starts: Array, ends: Array, low: Ints, high: Ints, width: float) -> None:
+    """Mark the pixels of pieces between starts and ends (n, 2) px, each within its box from low to high (n, 2)."""
+    columns, rows = (high - low).T
+    count = columns * rows
+    piece = np.repeat(np.arange(len(count)), count)
+    row, column = np.divmod(np.arange(len(piece)) - np.repeat(np.cumsum(count) - count, count), columns[piece])
+    column += low[:, 0][piece]
+    row += low[:, 1][piece]
+    u, v = (ends - starts).T
+    length = np.maximum(np.hypot(u, v), 1e-9)[piece]
+    u, v = u[piece], v[piece]
+    x, y = column - starts[:, 0][piece], row - starts[:, 1][piece]
+    along, aside = (x * u + y * v) / length, np.abs(x * v - y * u) / length
+    meant = (aside < width / 2) & (along > -width / 2) & (along < length + width / 2)
+    on[row[meant], column[meant]] = True
 
 
 def dashed(image: Image, ends: Array, width: float) -> None:
     """A dashed and dotted line between two ends (2, 2) px, as axes are drawn."""
     box = _box(image, ends, width)
     if box is not None:
-        along, aside, length = (item[0] for item in _along(box, ends[:1], ends[1:]))
+        along, aside, length = _along(box, *ends)
         on = (along % 44.0 < 26.0) | ((along % 44.0 > 33.0) & (along % 44.0 < 37.0))
         _paint(image, box, (aside < width / 2) & (along > 0) & (along < length) & on)
 
@@ -114,11 +140,10 @@ def _box(image: Image, points: Array, margin: float) -> Pixels | None:
     return np.arange(left, right)[None, :], np.arange(top, bottom)[:, None]
 
 
-def _along(box: Pixels, starts: Array, ends: Array) -> tuple[Array, Array, Array]:
-    """How far along and aside of each line between starts and ends (n, 2) px each pixel is, (n, rows, columns), and
-    the lines' lengths (n, 1, 1)."""
-    (u, v), (a, b) = (ends - starts).T[:, :, None, None], starts.T[:, :, None, None]
-    length = np.maximum(np.hypot(u, v), 1e-9)
+def _along(box: Pixels, start: Array, end: Array) -> tuple[Array, Array, float]:
+    """How far along and aside of the line from start to end (2,) px each pixel is, (rows, columns), and its length."""
+    (u, v), (a, b) = (end - start).tolist(), start.tolist()
+    length = max(float(np.hypot(u, v)), 1e-9)
     x, y = box[0] - a, box[1] - b
     return (x * u + y * v) / length, np.abs(x * v - y * u) / length, length
 

@@ -15,7 +15,8 @@ from kinform.model.contacts import Patch
 from kinform.model.kinematics import ConstraintMatrix
 from kinform.results.held import HeldGroup
 from kinform.results.layout import Layout, Numbers, Row, Rows, Texts
-from kinform.results.table import TEXT, read_columns, stored_text, write_columns
+from kinform.results.table import TEXT, read_columns, write_columns
+from kinform.results.texts import stored_text
 
 
 class _Origins:

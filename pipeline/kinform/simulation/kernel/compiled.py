@@ -38,6 +38,7 @@ from kinform.simulation.kernel import (
     tables,
     vectors,
 )
+from kinform.simulation.kernel.sparing import no_machine_code, operators_looked_up_once
 
 _MODULES = (vectors, motion, masses, forces, loops, articulated, reduction, equations, crossings, steps, explicit)
 """Functions after those that they call."""
@@ -114,7 +115,8 @@ def compiled_units(*, articulated_bodies: bool) -> types.SimpleNamespace:
     config.OPT = type(config.OPT)(min(config.OPT, 1))
     config.LOOP_VECTORIZE = config.SLP_VECTORIZE = 0
     try:
-        return _compile(numba, articulated_bodies)
+        with operators_looked_up_once():
+            return _compile(numba, articulated_bodies)
     finally:
         for name, value in before.items():
             setattr(config, name, value)
@@ -147,7 +149,8 @@ def _compile(numba: Any, articulated_bodies: bool) -> types.SimpleNamespace:
                 # Without a signature nothing is compiled until a unit asks for it, which none in the cache does.
                 signature = None if cached else tuple(kind for kind, _ in taken)
                 inner = numba.jit(signature, no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)
-                copy.mean(function, inner(copy.of(function, mark)))
+                with no_machine_code():
+                    copy.mean(function, inner(copy.of(function, mark)))
                 continue
             given = kinds[shape.return_annotation]
             signature, symbol = given[0](*(kind for kind, _ in taken)), f"kinform_{name}_{mark}"
