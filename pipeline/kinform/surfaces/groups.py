@@ -54,7 +54,7 @@ class Ragged:
 
     def lengths(self, rows: Ints) -> Ints:
         """Number of items of each of these rows."""
-        return self.starts[rows + 1] - self.starts[rows]
+        return self._lengths.take(rows)
 
     def expand(self, rows: Ints) -> tuple[Ints, Ints]:
         """(position in `rows`, item) for every item of every row asked for, in order."""
