@@ -10,6 +10,16 @@ if TYPE_CHECKING:
 Record = TypeVar("Record", bound="DataclassInstance")
 
 
+def made(record: type[Record], /, **values: Any) -> Record:
+    """A record of this kind with these values in its fields, all of which are to be given: not set one by one, as its
+    constructor does, in a fifth of the time."""
+    if values.keys() != record.__dataclass_fields__.keys():
+        raise TypeError(f"{record.__name__} has the fields {', '.join(record.__dataclass_fields__)}")
+    out = object.__new__(record)
+    vars(out).update(values)
+    return out
+
+
 def altered(record: Record, **values: Any) -> Record:
     """As `dataclasses.replace`, of a record whose fields are what it was given: not made anew field by field, in a
     fifth of the time. What the record has found of itself and kept is not taken along."""

@@ -285,6 +285,9 @@ ABSORPTIONS = 6
 STAGES = 14
 """Rounds in which seeds grow: with doubled layers enough for 4,000 facets in a row."""
 
+PERIODS = (2, 3)
+"""Rounds after which regions are what they were, where they gain and lose the same polygons without end."""
+
 UNSHARED = 0.4
 """Share of a region's polygons that belong to no larger one, above which it stays."""
 

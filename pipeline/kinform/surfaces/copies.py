@@ -9,12 +9,13 @@ from __future__ import annotations
 import hashlib
 import itertools
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinform.foundation.algebra.vectors import canonical_sign
+from kinform.foundation.records import altered
 from kinform.model.arrays import Array, freeze
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
@@ -146,7 +147,7 @@ def _surface_of_copy(surface: Surface, copy: Copy) -> Surface:
     for array in (axis, point):
         freeze(array)
     has_axis = bool(surface.axis.any())
-    return replace(
+    return altered(
         surface,
         axis=axis,
         point=point,

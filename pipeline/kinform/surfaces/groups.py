@@ -54,7 +54,7 @@ class Ragged:
 
     def lengths(self, rows: Ints) -> Ints:
         """Number of items of each of these rows."""
-        return self.starts[rows + 1] - self.starts[rows]
+        return self._lengths.take(rows)
 
     def expand(self, rows: Ints) -> tuple[Ints, Ints]:
         """(position in `rows`, item) for every item of every row asked for, in order."""
@@ -101,7 +101,7 @@ def renumbered(numbers: Ints, count: int) -> tuple[Ints, int]:
 
 def columns_of(table: Array, rows: Ints) -> Array:
     """These rows of a table, in memory column by column: what reads single columns afterwards is twice as fast."""
-    if len(rows) < len(table):
+    if len(rows) < len(table) and not table.flags.f_contiguous:
         return np.asfortranarray(table.take(rows, axis=0))
     return table.T.take(rows, axis=1).T
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.foundation.algebra.vectors import box
+from kinform.foundation.records import made
 from kinform.foundation.sorting import ascending, coarse
 from kinform.model.arrays import Array, Ints, freeze
 from kinform.model.assembly import Mesh
@@ -233,7 +234,8 @@ def _surfaces(
 
 
 def _surface(item: Description, axis: Array, point: Array, area: float, faces: Ints, diagonal: float) -> Surface:
-    return Surface(
+    return made(
+        Surface,
         kind=item.kind,
         axis=axis,
         point=point,

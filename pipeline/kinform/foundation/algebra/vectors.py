@@ -40,6 +40,17 @@ def cross(a: Array, b: Array) -> Array:
     return out
 
 
+def cross_columns(a: Array, b: Array) -> Array:
+    """a × b of the rows of a and b, (n, 3) each, in memory column by column, as they are best too."""
+    out = np.empty((3, len(a)))
+    less = np.empty(len(a))
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        np.multiply(a[:, j], b[:, k], out=out[i])
+        np.multiply(a[:, k], b[:, j], out=less)
+        out[i] -= less
+    return out.T
+
+
 def dot(a: Array, b: Array) -> Array:
     """(n,) inner products of the rows of a and b, (n, 3) each; of many, or of rows that are not stored as such, column
     by column, to the bits of einsum over rows."""

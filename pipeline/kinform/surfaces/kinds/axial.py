@@ -16,6 +16,10 @@ from kinform.surfaces.groups import columns_of
 from kinform.surfaces.kinds.batch import Batch, Params
 
 
+OF_AXIS = 6
+"""The first so many columns of `Params` are those of the axis."""
+
+
 def frames(axis: Array) -> tuple[Array, Array]:
     """Two unit vectors across each axis (N, 3), without branches (Duff and others, Building an orthonormal basis,
     revisited, 2017)."""
@@ -42,7 +46,7 @@ class Cylindrical(NamedTuple):
 
 
 def cylindrical(params: Params, points: Array) -> Cylindrical:
-    """The coordinates of each point (N, 3) about its axis (N, 8).
+    """The coordinates of each point (N, 3) about its axis (N, 6 or more).
 
     Rows of three are columns here: the hottest lines of the package, and broadcasting over rows costs twice that. Of
     few points, steps of numpy cost more than numbers do, so there are as few as can be.
@@ -73,7 +77,7 @@ def azimuths(params: Params, radial: Array) -> Array:
 def angular_widths(batch: Batch, params: Params) -> Array:
     """(pairs,) angle about the axis that each polygon subtends."""
     owner, _ = batch.corners
-    group, (_, rho, radial) = batch.seen(params, cylindrical)
+    group, (_, rho, radial) = batch.seen(params, cylindrical, OF_AXIS)
     count = len(batch.polygon)
     middle, radial = radial[:count], radial[count:]
     cos = dot(radial, columns_of(middle, owner))

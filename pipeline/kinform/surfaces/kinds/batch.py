@@ -57,10 +57,11 @@ class Batch:
             self._parts = [Batch(self.patchwork, self.region[run], self.polygon[run], self.count) for run in runs]
         return self._parts
 
-    def seen(self, params: Params, look: Callable[[Params, Array], Seen]) -> tuple[Ints, Seen]:
+    def seen(self, params: Params, look: Callable[[Params, Array], Seen], used: int = 8) -> tuple[Ints, Seen]:
         """(region of each, what they are there) of the middles of the pairs' polygons, and after them of the corners,
-        about the surfaces (R, 8) of their regions. What was asked for last is kept, also for the pairs that are
-        selected: who asks for the widths of polygons asks next whether they conform, and then for those that do."""
+        about the surfaces (R, 8) of their regions, of which so many columns are used. What was asked for last is kept,
+        also for the pairs that are selected: who asks for the widths of polygons asks next whether they conform, and
+        then for those that do."""
         if self._source is not None:
             source, rows = self._source
             self._source = None
@@ -70,7 +71,7 @@ class Batch:
             owner, vertex = self.corners
             group = np.concatenate([self.region, self.region.take(owner)])
             points = self.patchwork.places(self.polygon, vertex)
-            self._seen = params, look, (group, look(columns_of(params, group), points))
+            self._seen = params, look, (group, look(columns_of(params[:, :used], group), points))
         assert self._seen is not None
         return cast("tuple[Ints, Seen]", self._seen[2])
 

@@ -44,11 +44,12 @@ class Cone(Ruled):
         matrix = group_moments(batch.region, offset.T, count, weight)
         values, vectors = np.linalg.eigh(np.nan_to_num(matrix))
         axis = np.ascontiguousarray(vectors[:, :, 0])
+        circle = values[:, 0] < CIRCLE_OF_NORMALS * values[:, 1]
         region, edge, inner = batch.edges
-        rows = (inner & work.smooth.take(edge)).nonzero()[0]
+        rows = (inner & work.smooth.take(edge) & circle.take(region)).nonzero()[0]
         region, edge = region.take(rows), edge.take(rows)
         params, usable = _taper(batch, axis, region, edge)
-        return params, usable & (values[:, 0] < CIRCLE_OF_NORMALS * values[:, 1])
+        return params, usable & circle
 
     def credible(self, batch: Batch, params: Params, scale: Scales) -> Flags:
         """At least five generators, a sagitta above the tolerance, and a taper that no cylinder has."""
@@ -69,7 +70,7 @@ def _taper(batch: Batch, axis: Array, region: Ints, edge: Ints) -> tuple[Params,
     x, y = frames(axis)
     group = np.repeat(region, 2)
     vertex = work.ends[edge].ravel()
-    middle = group_mean_of(group, [work.vertices[:, k] for k in range(3)], vertex, count)
+    middle = group_mean_of(group, work.columns, vertex, count)
     u, v, t = np.empty((3, len(vertex)))
     for rows in slices(len(vertex), constants.ROWS):
         mine = group[rows]

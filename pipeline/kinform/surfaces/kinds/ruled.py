@@ -25,7 +25,7 @@ from kinform.surfaces.groups import (
     solve_normal,
     sums_of,
 )
-from kinform.surfaces.kinds.axial import Cylindrical, angular_widths, azimuths, cylindrical, frames
+from kinform.surfaces.kinds.axial import OF_AXIS, Cylindrical, angular_widths, azimuths, cylindrical, frames
 from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.kinds.kind import Kind, Moving, Probe, distinct_angles
 from kinform.surfaces.polygons.noise import Scales
@@ -81,10 +81,10 @@ class Ruled(Kind, Protocol):
         """The vertices as the axes of their regions see them."""
         count = len(region)
         if count <= constants.ROWS:
-            return cylindrical(columns_of(params, region), work.at(vertex))
+            return cylindrical(columns_of(params[:, :OF_AXIS], region), work.at(vertex))
         at = Cylindrical(np.empty(count), np.empty(count), np.empty((3, count)).T)
         for rows in slices(count, constants.ROWS):
-            part = cylindrical(columns_of(params, region[rows]), work.at(vertex[rows]))
+            part = cylindrical(columns_of(params[:, :OF_AXIS], region[rows]), work.at(vertex[rows]))
             at.t[rows], at.rho[rows], at.radial[rows] = part
         return at
 
@@ -128,7 +128,7 @@ class Ruled(Kind, Protocol):
 
     def held(self, batch: Batch, params: Params) -> tuple[Ints, Probe]:
         """By their cylindrical coordinates."""
-        group, (t, rho, radial) = batch.seen(params, cylindrical)
+        group, (t, rho, radial) = batch.seen(params, cylindrical, OF_AXIS)
         radius, lean, middles = params[:, 6].take(group), self._lean(params, group), len(batch.polygon)
         distance = rho - radius
         if lean is None:
@@ -145,7 +145,7 @@ class Ruled(Kind, Protocol):
 
     def _distances(self, params: Params, region: Ints, points: Array) -> Array:
         """(N,) signed distances of points from the surfaces of their regions."""
-        at, lean = cylindrical(columns_of(params, region), points), self._lean(params, region)
+        at, lean = cylindrical(columns_of(params[:, :OF_AXIS], region), points), self._lean(params, region)
         distance = at.rho - params[:, 6].take(region)
         if lean is not None:
             cos, sin = lean
@@ -252,7 +252,7 @@ class Ruled(Kind, Protocol):
         region, vertex = self.defining(batch, params, scale.fit)
         if not len(region):
             return np.zeros(count, np.int64), sweep, even
-        mine = columns_of(params, region)
+        mine = columns_of(params[:, :OF_AXIS], region)
         angle = azimuths(mine, cylindrical(mine, batch.patchwork.at(vertex)).radial)
         step = constants.RING_APART * ordered_quantile(batch.size, ordered, 0.75)
         return distinct_angles(region, angle, step, count), sweep, even
@@ -276,7 +276,7 @@ def _along(work: Patchwork, params: Params, region: Ints, edge: Ints) -> Flags:
     if len(cones):
         # regions are in order, and cylinders come before cones
         first = int(region.searchsorted(cones[0]))
-        mine = columns_of(params, region[first:])
+        mine = columns_of(params[:, :OF_AXIS], region[first:])
         radial = cylindrical(mine, work.halfway(edge[first:])).radial
         cos, sin = (f(params[:, 7]).take(region[first:])[:, None] for f in (np.cos, np.sin))
         direction[first:] = cos * mine[:, :3] + sin * radial

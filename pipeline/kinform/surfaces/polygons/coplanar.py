@@ -27,7 +27,7 @@ def coplanar_facets(mesh: Facets, scale: Scale, tolerances: Tolerances) -> tuple
     """Polygon of each facet: coplanar neighbours, checked against drift, then slivers; and the polygons' moments."""
     inner = np.flatnonzero(mesh.inner)
     f0, f1, length = mesh.f0.take(inner), mesh.f1.take(inner), mesh.length.take(inner)
-    base = mesh.at(mesh.ends[:, 0].take(inner))
+    base = mesh.at(mesh.starts(inner))
     thin = mesh.altitude < constants.THIN_NOISES * scale.noise
     strict, flat = _flat_edges(mesh, inner, thin, scale, tolerances)
     label = _linked(f0, f1, flat, len(mesh.faces))
@@ -77,7 +77,7 @@ def _flat_edges(
 ) -> tuple[Flags, Flags]:  # fmt: skip
     """Which inner edges join coplanar facets beyond doubt, and which do as far as noise lets one tell."""
     f0, f1 = mesh.f0.take(inner), mesh.f1.take(inner)
-    base = mesh.at(mesh.ends[:, 0].take(inner))
+    base = mesh.at(mesh.starts(inner))
     beyond0, beyond1 = (mesh.at(vertex) - base for vertex in mesh.opposite(inner))
     normal0, normal1 = columns_of(mesh.normal, f0), columns_of(mesh.normal, f1)
     angle = angles(normal0, normal1)

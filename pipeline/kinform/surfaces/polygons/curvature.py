@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -42,7 +43,7 @@ class Curvature:
     along: Array
     """(P, 3) direction across which the strong one bends: that of a cylinder's generators."""
 
-    @property
+    @cached_property
     def ratio(self) -> Array:
         """|weak| / |strong|: 0 on cylinders and cones, 1 on spheres; 1 where nothing bends."""
         strong = np.abs(self.strong)

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.algebra.vectors import cross_columns, dot
 from kinform.foundation.meshes.edges import edge_table
 from kinform.model.arrays import Array, Flags, Ints
 
@@ -40,7 +40,7 @@ class Facets:
         columns = np.ascontiguousarray(vertices.T)
         first, second, third = (columns.take(faces[:, k], axis=1).T for k in range(3))
         along, back = second - first, third - first
-        across = cross(along, back)
+        across = cross_columns(along, back)
         twice = np.sqrt(dot(across, across))
         beyond = second - third
         longest = np.sqrt(np.maximum(np.maximum(dot(along, along), dot(back, back)), dot(beyond, beyond)))
@@ -59,7 +59,7 @@ class Facets:
             vertices=vertices,
             faces=faces,
             area=twice / 2,
-            normal=np.asfortranarray(across / np.maximum(twice, 1e-300)[:, None]),
+            normal=across / np.maximum(twice, 1e-300)[:, None],
             middle=middle,
             altitude=twice / np.maximum(longest, 1e-300),
             f0=leading // 3,
@@ -79,12 +79,28 @@ class Facets:
 
     def opposite(self, edges: Ints) -> tuple[Ints, Ints]:
         """The vertices of the two facets of each of these inner edges that are not on it."""
+        return self._beyond[0].take(edges), self._beyond[1].take(edges)
+
+    @cached_property
+    def _beyond(self) -> tuple[Ints, Ints]:
         total = self.faces[:, 0] + self.faces[:, 1] + self.faces[:, 2]
-        shared = self.ends[:, 0].take(edges) + self.ends[:, 1].take(edges)
-        return total.take(self.f0.take(edges)) - shared, total.take(self.f1.take(edges)) - shared
+        shared = self.ends[:, 0] + self.ends[:, 1]
+        return total.take(self.f0) - shared, total.take(self.f1) - shared
+
+    def starts(self, edges: Ints) -> Ints:
+        """The first ends of these edges."""
+        return self._ends[0].take(edges)
+
+    def finishes(self, edges: Ints) -> Ints:
+        """The second ends of these edges."""
+        return self._ends[1].take(edges)
+
+    @cached_property
+    def _ends(self) -> Ints:
+        return np.ascontiguousarray(self.ends.T)
 
 
 def angles(n0: Array, n1: Array) -> Array:
     """Angle between unit vectors (n, 3), good for small ones too (rad)."""
-    across = cross(n0, n1)
+    across = cross_columns(n0, n1)
     return np.asarray(np.arctan2(np.sqrt(dot(across, across)), dot(n0, n1)))

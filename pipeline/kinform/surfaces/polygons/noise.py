@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.algebra.vectors import cross_columns, dot
 from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
@@ -87,9 +87,9 @@ def departures(mesh: Facets, edges: Ints) -> Array:
         run = slice(start, start + constants.RUN_OF_EDGES)
         a, b, c, d = (mesh.at(corner) for corner in _corners(mesh, edges[run]))
         u, v, w = b - a, c - a, d - a
-        uv = cross(u, v)
+        uv = cross_columns(u, v)
         squares = np.zeros(len(a))
-        for minor in (uv, cross(u, w), cross(v, w), cross(c - b, d - b)):
+        for minor in (uv, cross_columns(u, w), cross_columns(v, w), cross_columns(c - b, d - b)):
             squares += dot(minor, minor)
         out[run] = -dot(uv, w) / np.sqrt(np.maximum(squares, 1e-300))
     return out
@@ -97,7 +97,7 @@ def departures(mesh: Facets, edges: Ints) -> Array:
 
 def _corners(mesh: Facets, edges: Ints) -> tuple[Ints, Ints, Ints, Ints]:
     """(n,) each: both ends of each edge, and the third vertices of its facets."""
-    return mesh.ends[:, 0].take(edges), mesh.ends[:, 1].take(edges), *mesh.opposite(edges)
+    return mesh.starts(edges), mesh.finishes(edges), *mesh.opposite(edges)
 
 
 def scatter(mesh: Facets, smooth_edge: float, least: float = 0.0) -> float:

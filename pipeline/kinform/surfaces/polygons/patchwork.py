@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.algebra.vectors import cross_columns, dot
 from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
@@ -134,7 +134,7 @@ class Patchwork:
         length, inner = mesh.length.take(keep), mesh.inner.take(keep)
         mean_a, mean_b = columns_of(mean, a), columns_of(mean, b)
         angle = np.where(inner, angles(mean_a, mean_b), np.pi)
-        turn = dot(cross(mean_a, mean_b), mesh.at(ends[:, 1]) - mesh.at(ends[:, 0]))
+        turn = dot(cross_columns(mean_a, mean_b), mesh.at(ends[:, 1]) - mesh.at(ends[:, 0]))
         width = np.minimum(area[a], area[b]) / np.maximum(length, 1e-300)
         flat = inner & ((angle < 2 * tolerances.coplanar) | (width * angle < FLAT_NOISES * scale.noise))
         sign = np.where(flat | ~inner, 0, np.where(turn > 0, 1, -1)).astype(np.int64)

@@ -18,6 +18,7 @@ from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.kinds.kind import Kind
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.regions.candidates import Candidates
+from kinform.surfaces.regions.cycles import Cycles
 from kinform.surfaces.regions.territory import Territory, among
 
 
@@ -109,6 +110,7 @@ def _grow(territory: Territory, surfaces: Candidates, batch: Batch) -> tuple[Bat
     count, params = batch.count, surfaces.params.copy()
     fit = territory.scales_of(batch).fit
     finished = []
+    cycles = Cycles(count)
     batch, number = batch.compact()
     growing = surfaces.of(number)
     for stage in range(constants.STAGES):
@@ -116,15 +118,19 @@ def _grow(territory: Territory, surfaces: Candidates, batch: Batch) -> tuple[Bat
             break
         before = batch.size
         growing = growing.refine(batch, 2).within(fit[number])
-        batch = _drop_shared(growing.kind, _settle(territory, growing, batch))
-        batch = territory.spread(
-            growing, batch, growing.reach(batch), min(constants.FIRST_LAYERS << stage, constants.MOST_LAYERS)
-        )
+        ahead = cycles.ahead(number)
+        if ahead is None:
+            batch = _drop_shared(growing.kind, _settle(territory, growing, batch))
+            layers = min(constants.FIRST_LAYERS << stage, constants.MOST_LAYERS)
+            batch = territory.spread(growing, batch, growing.reach(batch), layers)
+        else:
+            batch = ahead
         params[number] = growing.params
         still = batch.size == before if stage else np.zeros(batch.count, bool)
         finished.append(_keys(batch.where(still), number))
         batch, kept = batch.where(~still).compact()
         growing, number = growing.of(kept), number[kept]
+        cycles.add(batch, number)
     finished.append(_keys(batch, number))
     grown = Batch.of_keys(territory.patchwork, np.sort(np.concatenate(finished)), count)
     return grown, Candidates(surfaces.kind, params, surfaces.side, fit)

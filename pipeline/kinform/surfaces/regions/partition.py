@@ -14,7 +14,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.graphs.components import components
-from kinform.foundation.sorting import distinct
+from kinform.foundation.sorting import distinct, heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.groups import quantile, renumbered
@@ -92,7 +92,10 @@ def partition(work: Patchwork, scales: Scales) -> Partition:
         for region in chosen:
             gained[work.mesh[region.polygons[0]]] += work.area[region.polygons].sum()
         tried |= (gained < constants.WORTH * work.total)[of_edge]
-    last |= ~_ruled(territory)
+    edges = territory.smooth
+    ruled = _ruled(territory, edges.take((~last.take(edges) & (work.sign.take(edges) != 0)).nonzero()[0]))
+    last[:] = True
+    last[ruled] = False
     for _ in range(constants.LAST_ROUNDS):
         regions += _choose(_search(territory, last, partial(_unasked, work, bent, asked)), territory)
     del bent, like, tried, last, asked, before  # large, and needed no longer
@@ -189,7 +192,7 @@ def _search(territory: Territory, tried: Flags, suits: Callable[[Kind, Ints], Fl
     growths: list[Growth] = []
     work = territory.patchwork
     edges = territory.smooth
-    both = [_seeds(work, edges, tried, side) for side in (1, -1)]
+    both = [_seeds(territory, edges, tried, side) for side in (1, -1)]
     seeds = np.concatenate(both)
     if not len(seeds):
         return growths
@@ -231,41 +234,47 @@ def _ruled_together(starts: list[tuple[Kind, Batch, Ints]]) -> list[tuple[Kind, 
     return [(Mixed(CYLINDER, CONE, first), batch, np.concatenate([of_cylinders, of_cones])), *others]
 
 
-def _seeds(work: Patchwork, edges: Ints, tried: Flags, side: int) -> Ints:
+def _seeds(territory: Territory, edges: Ints, tried: Flags, side: int) -> Ints:
     """Those of the smooth edges to start from: the longest in their surroundings, not used before."""
-    sign = work.sign.take(edges)
-    usable = edges.take(np.flatnonzero(sign * side >= 0))
-    start = edges.take(np.flatnonzero((sign == side) & ~tried.take(edges)))
-    rank = np.full(len(work.a), -1)
-    rank[start[np.argsort(work.length[start], kind="stable")]] = np.arange(len(start))
-    best = np.full(work.count, -1)
-    a, b, placed = work.a.take(usable), work.b.take(usable), rank.take(usable)
-    np.maximum.at(best, a, placed)
-    np.maximum.at(best, b, placed)
-    reach = np.maximum(best.take(a), best.take(b))
+    work, links = territory.patchwork, territory.links
+    start = edges.take(np.flatnonzero((work.sign.take(edges) == side) & ~tried.take(edges)))
+    if not len(start):
+        return start
+    rank = np.empty(len(start), np.int64)
+    rank[np.argsort(work.length[start], kind="stable")] = np.arange(len(start))
+    a, b, best = work.a.take(start), work.b.take(start), np.full(work.count, -1)
+    np.maximum.at(best, a, rank)
+    np.maximum.at(best, b, rank)
+    here = (best >= 0).nonzero()[0]
+    owner, edge = links.expand(here)
+    target = work.other(edge, here.take(owner))
+    open_ = territory.free.take(target)
+    open_ &= work.sign.take(edge) != -side
     wider = best.copy()
-    np.maximum.at(wider, a, reach)
-    np.maximum.at(wider, b, reach)
-    foremost: Ints = start[rank[start] >= np.minimum(wider[work.a[start]], wider[work.b[start]])]
-    return foremost
+    reach = np.where(open_, best.take(target), -1)
+    wider[here] = np.maximum(best.take(here), np.maximum.reduceat(reach, heads(owner).nonzero()[0]))
+    return start.take((rank >= np.minimum(wider.take(a), wider.take(b))).nonzero()[0])
 
 
-def _ruled(territory: Territory) -> Flags:
-    """(E,) which smooth edges may be generators: both polygons have another smooth edge along them."""
-    work, edges = territory.patchwork, territory.smooth
-    polygon = np.concatenate([work.a[edges], work.b[edges]])
-    few = np.diff(territory.links.starts)[polygon] <= constants.MOST_LINKS
-    rows = np.flatnonzero(few)
-    owner, edge = territory.links.expand(polygon[rows])
-    mine = edges[rows[owner] % len(edges)] if len(edges) else edge
-    cosine = np.abs(dot(work.along(edge), work.along(mine)))
-    along = (edge != mine) & (cosine >= constants.STRAIGHT["cone"] * work.length[edge] * work.length[mine])
-    along &= territory.free[work.a[edge]] & territory.free[work.b[edge]]
-    lined = np.zeros(len(polygon), bool)
-    lined[rows[owner[along]]] = True
-    out = np.zeros(len(work.a), bool)
-    out[edges[lined.reshape(2, -1).all(axis=0)]] = True
-    return out
+def _ruled(territory: Territory, edges: Ints) -> Ints:
+    """Those of the smooth edges between free polygons that may be generators: both polygons have another smooth edge
+    along them."""
+    work, links = territory.patchwork, territory.links
+    for polygons in (work.a, work.b):
+        polygon = polygons.take(edges)
+        few = (links.lengths(polygon) <= constants.MOST_LINKS).nonzero()[0]
+        owner, edge = links.expand(polygon.take(few))
+        mine = few.take(owner)
+        other = (edge != edges.take(mine)) & territory.free.take(work.other(edge, polygon.take(mine)))
+        rows = other.nonzero()[0]
+        mine, edge = mine.take(rows), edge.take(rows)
+        seed = edges.take(mine)
+        cosine = np.abs(dot(work.along(edge), work.along(seed)))
+        along = cosine >= constants.STRAIGHT["cone"] * work.length.take(edge) * work.length.take(seed)
+        lined = np.zeros(len(edges), bool)
+        lined[mine.take(along.nonzero()[0])] = True
+        edges = edges.take(lined.nonzero()[0])
+    return edges
 
 
 def _around(territory: Territory, seeds: Ints, side: Ints, straightness: float) -> Batch:
