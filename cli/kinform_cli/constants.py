@@ -107,8 +107,8 @@ KEEP_ALIVE = 15.0
 MOST_NAMES = 8
 """Bodies or joints that are listed for a freedom; the JSON has them all. A choice."""
 
-NO_ANGLE = 1e-9
-"""Radians below which a misfit of directions is none."""
+NO_ANGLE = 1e-7
+"""Radians below which a misfit of directions is none: single precision tells no less of a direction."""
 
 NO_SHIFT = 1e-12
 """Share of the largest part below which a misfit of places is none: rounding."""

@@ -39,7 +39,8 @@ class _WithExamples:
         text, self.epilog = self.epilog, None
         told = [(item, item.help) for item in (self, *self.params) if getattr(item, "help", None)]
         for item, help in told:
-            item.help = help.replace("[", r"\[")  # else `[function]` would be read as markup, and be gone
+            # else `[function]` would be read as markup, and be gone
+            item.help = _in_paragraphs(help).replace("[", r"\[")
         try:
             super().format_help(ctx, formatter)  # type: ignore[misc]
         finally:
@@ -48,6 +49,11 @@ class _WithExamples:
                 item.help = help
         if text:
             console.emit(text)
+
+
+def _in_paragraphs(text: str) -> str:
+    """The text without the ends of lines of the source, which typer keeps beside its own."""
+    return re.sub(r"(?<!\n)\n(?![\n \-*])", " ", text)
 
 
 class Command(_WithExamples, TyperCommand):

@@ -55,6 +55,20 @@ def test_one_joint_shows_its_patches_its_gap_and_its_alternatives(
     assert {item["type"] for item in found["alternatives"]} == {"planar", "cylindrical"}
 
 
+def test_a_joint_is_shown_by_the_name_that_its_designer_gave_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = str(tmp_path / "hinge.h5")
+    main(["run", str(FIXTURES / "pairs/revolute_collars/revolute_collars.toml"), "-o", file, "-q"])
+    (joint,) = json.loads(printed(capsys, "show", file, "joints", "-f", "json"))["joints"]
+    (intended,) = json.loads(printed(capsys, "query", file, "--intended", "-f", "json"))["joints"]
+    assert intended["name"] != joint["name"]
+    told = printed(capsys, "show", file, "joints", "--joint", joint["name"])
+    assert printed(capsys, "show", file, "--joint", intended["name"]) == told
+    assert main(["show", file, "--joint", f"{intended['name']}s"]) == 2
+    assert f'did you mean "{intended["name"]}"?' in capsys.readouterr().err
+
+
 def test_another_joint_or_topic_is_refused(results: dict[str, Path], capsys: pytest.CaptureFixture[str]) -> None:
     file = str(results["revolute_collars"])
     assert main(["show", file, "joints", "--joint", "nope"]) == 2

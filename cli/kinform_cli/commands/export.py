@@ -50,14 +50,14 @@ class Target(StrEnum):
 
 def export(
     source: LookedAt,
-    to: Annotated[Target, typer.Option("--to", show_default=False, help="Format to write.")],
+    to: Annotated[Target, option("--to", "FORMAT", f"Format to write: {', '.join(Target)}.")],
     output: Annotated[Path, option("--output -o", "DIR", "Folder to write into; made if missing.")],
     strict: Annotated[
         bool, typer.Option("--strict", help="Write nothing, and exit 2, if the format cannot carry all of the model.")
     ] = False,
     fix: Annotated[
         list[Fix] | None,
-        typer.Option("--fix", help="Put this right in the description that was read: inertia, from the geometry."),
+        option("--fix", "inertia", "Put this right in the description that was read: inertia, from the geometry."),
     ] = None,
 ) -> None:
     """Write the model, or its motion, in the format of another tool.

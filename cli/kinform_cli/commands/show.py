@@ -43,14 +43,17 @@ class Topic(StrEnum):
 
 def show(
     source: LookedAt,
-    topic: Annotated[Topic | None, argument("TOPIC", "What to show; without it an overview.")] = None,
+    topic: Annotated[
+        Topic | None,
+        argument("TOPIC", f"What to show: {', '.join(Topic)}; without it an overview.", show_choices=False),
+    ] = None,
     format: PrintedTable = TableFormat.table,
     joint: Annotated[
         str | None,
         option(
             "--joint",
             "NAME",
-            "With joints: all the evidence of this joint, and what would make it another.",
+            "All the evidence of this joint, by its name here or in the function, and what would make it another.",
             autocompletion=completion.joints,
         ),
     ] = None,
@@ -62,7 +65,7 @@ def show(
     ] = None,
 ) -> None:
     """Show what a results file holds: tables for people, or JSON."""
-    if joint is not None and topic is not Topic.joints:
+    if joint is not None and topic not in (None, Topic.joints):
         raise typer.BadParameter("goes with joints, as in: kinform show F.h5 joints --joint NAME", param_hint="--joint")
     if graph is not None:
         _draw(source, topic, graph)
@@ -90,12 +93,30 @@ def _print_joint(design: Design, joint: str, source: Path, format: TableFormat) 
 
     try:
         with files.needing(source):
+            joint = _derived(design, joint, source)
             if format is TableFormat.json:
                 console.emit(reports.joint_json(design, joint))
             else:
                 console.out(topics.render_joint(design, joint))
     except KeyError as error:
         raise refuse(str(error.args[0]), file=source) from None
+
+
+def _derived(design: Design, name: str, source: Path) -> str:
+    """The name of the derived joint that the function, or kinform, calls so. An error where there is none."""
+    if design.kinematics is None:
+        return name
+    from kinform.foundation.meant import did_you_mean
+    from kinform.function import resolve_joint
+
+    found = resolve_joint(design.assembly, design.kinematics, name)
+    if found.joint is not None:
+        return found.joint.name
+    if found.intended is not None:
+        raise refuse(f"the joint {name!r} of the function is none here: {found.reason}", file=source)
+    intended = [joint.name for joint in design.assembly.function.joints]
+    known = did_you_mean(name, [*intended, *(str(joint.name) for joint in design.kinematics.joints)], "the joints")
+    raise refuse(f"no joint is named {name!r}: {known}", file=source)
 
 
 def _draw(source: Path, topic: Topic | None, path: Path) -> None:

@@ -44,11 +44,12 @@ class UnknownRuleError(KinformError):
 
 
 def explain(code: str) -> str:
-    """Documentation of the rule with this code or name (case does not matter); of the beginning of codes ("KF4") the
-    list of its rules; what a word means that results are told in ("blocked"); UnknownRuleError otherwise."""
+    """Documentation of the rule with this code or name (case does not matter, nor blanks for hyphens); of the beginning
+    of codes ("KF4") the list of its rules; what a word means that results are told in ("blocked"); UnknownRuleError
+    otherwise."""
     wanted = code.strip().casefold()
     for rule in RULES:
-        if wanted in (rule.code.casefold(), rule.name):
+        if wanted == rule.code.casefold() or "-".join(wanted.split()) == rule.name:
             return f"{rule.code} {rule.name} ({rule.severity})\n\n{_text(rule)}\n"
     word = meaning(code)
     if word is not None:
