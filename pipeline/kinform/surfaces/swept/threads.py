@@ -16,7 +16,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical_sign, cross, dot, perpendicular
 from kinform.foundation.graphs.components import components
-from kinform.foundation.sorting import median
+from kinform.foundation.sorting import among, distinct, median
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.describe import Description, standoffs
@@ -245,7 +245,7 @@ def _step(screw: _Screw, change: Array) -> _Screw:
 
 def _solve(work: Patchwork, helices: _Helices, screw: _Screw, scale: Scale) -> tuple[_Screw, Array, float, float]:
     """One robust step: the screw, the covariance factors (5, 5), the scatter and the extent along the axis."""
-    key = np.unique(np.repeat(helices.polyline, 2) * np.int64(len(work.vertices)) + helices.ends.ravel())
+    key = distinct(np.repeat(helices.polyline, 2) * np.int64(len(work.vertices)) + helices.ends.ravel())
     group, vertex = key // len(work.vertices), key % len(work.vertices)
     height = screw.polar(work.vertices[vertex])[0]
     middle = 0.5 * float(height.min() + height.max())
@@ -290,7 +290,7 @@ def _members(work: Patchwork, free: Flags, helices: _Helices, screw: _Screw) -> 
     share, slope = screw.lean(work.centre, work.normal)
     every = np.arange(work.count)
     owner, vertex = work.corners.expand(every)
-    key = np.unique(owner * (total + 1) + line[vertex] + 1)
+    key = distinct(owner * (total + 1) + line[vertex] + 1)
     lines = np.bincount(key // (total + 1), key % (total + 1) > 0, work.count)
     off = np.bincount(owner, line[vertex] < 0, work.count)
     along = _are_edges(work, helices)
@@ -319,7 +319,7 @@ def _are_edges(work: Patchwork, helices: _Helices) -> Flags:
     """(E,) which edges run along the helices."""
     total = np.int64(len(work.vertices))
     edges, along = np.sort(work.ends, axis=1), np.sort(helices.ends, axis=1)
-    return np.isin(edges[:, 0] * total + edges[:, 1], along[:, 0] * total + along[:, 1])
+    return among(edges[:, 0] * total + edges[:, 1], distinct(along[:, 0] * total + along[:, 1]))
 
 
 def _chord(work: Patchwork, helices: _Helices, members: Ints) -> float:
