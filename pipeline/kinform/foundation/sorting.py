@@ -59,6 +59,13 @@ def distinct(keys: Ints) -> Ints:
     return ordered.take(heads(ordered).nonzero()[0])
 
 
+def among(keys: Ints, ordered: Ints) -> Flags:
+    """Whether each key is one of the ordered ones."""
+    if not len(ordered):
+        return np.zeros(len(keys), bool)
+    return np.asarray(ordered.take(ordered.searchsorted(keys), mode="clip") == keys)
+
+
 def occurrences(keys: Ints) -> tuple[Ints, Ints]:
     """The distinct keys, ascending, and how often each occurs."""
     ordered = sorted_keys(keys)

@@ -288,6 +288,9 @@ STAGES = 14
 PERIODS = (2, 3)
 """Rounds after which regions are what they were, where they gain and lose the same polygons without end."""
 
+STEADY = 1e-8
+"""Change of such a region's parameters over a period (rad, diagonals), at most: a two hundredth of the least noise."""
+
 UNSHARED = 0.4
 """Share of a region's polygons that belong to no larger one, above which it stays."""
 

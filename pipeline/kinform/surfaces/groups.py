@@ -56,15 +56,15 @@ class Ragged:
         """Number of items of each of these rows."""
         return self._lengths.take(rows)
 
-    def expand(self, rows: Ints) -> tuple[Ints, Ints]:
-        """(position in `rows`, item) for every item of every row asked for, in order."""
+    def expand(self, rows: Ints, values: Ints | None = None) -> tuple[Ints, Ints]:
+        """(position in `rows`, or value of the row, item) for every item of every row asked for, in order."""
         lengths = self._lengths.take(rows)
         first = self.starts.take(rows)
         first -= lengths.cumsum()
         first += lengths
         at = first.repeat(lengths)
         at += np.arange(len(at))
-        return np.arange(len(rows)).repeat(lengths), self.items.take(at)
+        return (np.arange(len(rows)) if values is None else values).repeat(lengths), self.items.take(at)
 
     @cached_property
     def _lengths(self) -> Ints:

@@ -143,9 +143,10 @@ class Batch:
     def edges(self) -> tuple[Ints, Ints, Flags]:
         """(region, edge, whether both polygons are in the region), each edge once for a region."""
         if self._edges is None:
-            owner, edge = self.patchwork.sides.expand(self.polygon)
             total = np.int64(max(len(self.patchwork.a), 1))
-            key, times = occurrences((self.region * total).take(owner) + edge)
+            base, edge = self.patchwork.sides.expand(self.polygon, self.region * total)
+            base += edge
+            key, times = occurrences(base)
             self._edges = *parted(key, int(total)), times == 2
         return self._edges
 

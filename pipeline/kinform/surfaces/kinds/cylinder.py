@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
-from kinform.foundation.sorting import ascending, occurrences
+from kinform.foundation.sorting import among, ascending, occurrences
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.constants import EQUAL_STEPS, LARGEST, LEAST_POINTS, RIDGES_AGREE, SAGITTA
 from kinform.surfaces.groups import columns_of, group_mean, group_moments, group_range, spheres_of
@@ -58,7 +58,7 @@ class Cylinder(Ruled):
         region, edge = region[inner], edge[inner]
         total = np.int64(work.count)
         key, times = occurrences(np.concatenate([region * total + work.a[edge], region * total + work.b[edge]]))
-        whole = np.isin(batch.keys, key[times >= 2])
+        whole = among(batch.keys, key[times >= 2])
         angle = np.concatenate([self.widths(batch, params)[whole], work.angle[edge]])
         low, high = group_range(np.concatenate([batch.region[whole], region]), angle, count)
         return np.asarray((np.bincount(batch.region[whole], minlength=count) >= 2) & (high < EQUAL_STEPS * low))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.sorting import among
 from kinform.model.arrays import Array, Flags
 from kinform.surfaces.constants import LARGEST_SPHERE, LEAST_POINTS, SAGITTA
 from kinform.surfaces.groups import group_mean, group_sum, spheres_through
@@ -33,7 +34,7 @@ class Sphere(DoublyCurved):
         surrounded, middle_vertex = batch.inner_vertices(3)
         enough = np.bincount(surrounded, minlength=count) >= LEAST_POINTS
         total = np.int64(max(len(work.vertices), 1))
-        use = ~enough[region] | np.isin(region * total + vertex, surrounded * total + middle_vertex)
+        use = ~enough[region] | among(region * total + vertex, surrounded * total + middle_vertex)
         region, vertex = region[use], vertex[use]
         points = work.vertices[vertex]
         middle = group_mean(region, points, count)

@@ -171,7 +171,8 @@ def _peel(mesh: Facets, label: Ints, f0: Ints, f1: Ints, scale: Scale) -> Ints:
         label = components(f0[same], f1[same], len(label))
         whole = np.bincount(label) == 1
         whole[label[first]] = True
-        done = ~np.isin(np.arange(len(member)), open_)
+        done = np.ones(len(member), bool)
+        done[open_] = False
         whole[label[done]] = True
     return label
 

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.sorting import sorted_keys
+from kinform.foundation.sorting import among, sorted_keys
 from kinform.model.arrays import Flags, Ints
-from kinform.surfaces.constants import PERIODS
+from kinform.surfaces.constants import PERIODS, STEADY
 from kinform.surfaces.groups import parted
-from kinform.surfaces.kinds.batch import Batch
-from kinform.surfaces.regions.territory import among
+from kinform.surfaces.kinds.batch import Batch, Params
 
 
 class Cycles:
@@ -24,15 +23,17 @@ class Cycles:
         self._regions = regions
         self._batches: list[Batch] = []
         self._keys: list[Ints] = []
+        self._fits: list[tuple[Ints, Params]] = []
 
-    def add(self, batch: Batch, number: Ints) -> None:
-        """The next round has left this batch, of regions with these numbers (R,), ascending."""
+    def add(self, batch: Batch, number: Ints, params: Params) -> None:
+        """The next round has left this batch, of regions with these numbers (R,), ascending, by these fits."""
         self._batches.append(batch)
         self._keys.append(number[batch.region] * np.int64(batch.patchwork.count) + batch.polygon)
+        self._fits.append((number, params))
 
-    def ahead(self, number: Ints) -> Batch | None:
-        """The batch after the next round, where each of the last regions, which have these numbers (R,), was during one
-        period what it was during the period before; else None."""
+    def ahead(self, number: Ints, params: Params) -> Batch | None:
+        """The batch after the next round by these fits, where each of the last regions, which have these numbers (R,),
+        has had during one period the polygons, and has now the fit, of the period before; else None."""
         if len(self._keys) < 2 * min(PERIODS):
             return None
         work, open_ = self._batches[-1].patchwork, np.zeros(self._regions, bool)
@@ -41,7 +42,10 @@ class Cycles:
         for period in PERIODS:
             if len(self._keys) < 2 * period or not open_.any():
                 continue
+            then, fits = self._fits[-period]
+            moved = np.abs(params - fits[then.searchsorted(number)]).max(axis=1)
             returning = open_ & self._returning(period)
+            returning[number[moved > STEADY]] = False
             keys = self._keys[-period]
             known.append(keys.take(returning.take(keys // work.count).nonzero()[0]))
             if len(known[-1]) == len(keys) and returning.sum() == len(number):

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
-from kinform.foundation.sorting import heads
+from kinform.foundation.sorting import among, heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.kinds.batch import Batch, Params
@@ -19,7 +19,7 @@ from kinform.surfaces.kinds.kind import Kind
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.regions.candidates import Candidates
 from kinform.surfaces.regions.cycles import Cycles
-from kinform.surfaces.regions.territory import Territory, among
+from kinform.surfaces.regions.territory import Territory
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +98,8 @@ def pursue(territory: Territory, kind: Kind, batch: Batch, side: Ints) -> Growth
     surfaces = Candidates(kind.of(origin), params[origin], side[origin], constants.LOOSE * fit).refine(batch, 2)
     batch, surfaces = _grow(territory, surfaces, _settle(territory, surfaces, batch))
     batch, number = batch.compact()
+    if not len(number):
+        return Growth(surfaces.of(number), batch, origin[number])
     kept = surfaces.of(number).refine(batch, 2)
     kept = kept.within(_justify(kept, batch, territory.scales_of(batch)))
     batch = _settle(territory, kept, batch)
@@ -118,7 +120,7 @@ def _grow(territory: Territory, surfaces: Candidates, batch: Batch) -> tuple[Bat
             break
         before = batch.size
         growing = growing.refine(batch, 2).within(fit[number])
-        ahead = cycles.ahead(number)
+        ahead = cycles.ahead(number, growing.params)
         if ahead is None:
             batch = _drop_shared(growing.kind, _settle(territory, growing, batch))
             layers = min(constants.FIRST_LAYERS << stage, constants.MOST_LAYERS)
@@ -130,7 +132,7 @@ def _grow(territory: Territory, surfaces: Candidates, batch: Batch) -> tuple[Bat
         finished.append(_keys(batch.where(still), number))
         batch, kept = batch.where(~still).compact()
         growing, number = growing.of(kept), number[kept]
-        cycles.add(batch, number)
+        cycles.add(batch, number, growing.params)
     finished.append(_keys(batch, number))
     grown = Batch.of_keys(territory.patchwork, np.sort(np.concatenate(finished)), count)
     return grown, Candidates(surfaces.kind, params, surfaces.side, fit)

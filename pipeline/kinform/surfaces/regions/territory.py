@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.foundation.graphs.components import components
-from kinform.foundation.sorting import distinct, heads
+from kinform.foundation.sorting import among, distinct, heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.groups import Ragged, parted
 from kinform.surfaces.kinds.batch import Batch
@@ -55,9 +55,9 @@ class Territory:
         """Keys of the free polygons one smooth link away from those of the `keys`, each once, by region."""
         work = self.patchwork
         region, polygon = parted(keys, work.count)
-        owner, target = self.beside.expand(polygon)
+        base, target = self.beside.expand(polygon, region * np.int64(work.count))
         open_ = self.free.take(target).nonzero()[0]
-        return distinct((region * np.int64(work.count)).take(owner.take(open_)) + target.take(open_))
+        return distinct(base.take(open_) + target.take(open_))
 
     def spread(self, surfaces: Candidates, batch: Batch, reach: Array, layers: int) -> Batch:
         """The batch with up to `layers` layers of conforming neighbours added."""
@@ -98,10 +98,3 @@ class Territory:
         best = np.full(batch.count, -1)
         best[batch.region[head]] = label[head]
         return np.asarray(best[batch.region] == label)
-
-
-def among(keys: Ints, ordered: Ints) -> Flags:
-    """Whether each key is one of the ordered ones."""
-    if not len(ordered):
-        return np.zeros(len(keys), bool)
-    return np.asarray(ordered.take(ordered.searchsorted(keys), mode="clip") == keys)
