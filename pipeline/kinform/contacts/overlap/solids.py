@@ -65,11 +65,17 @@ class SolidStore:
         ]
         return sorted(pieces, key=lambda piece: (-piece.volume, tuple(piece.centroid)))
 
+    def forget(self, digest: str) -> None:
+        """What is known of a mesh that is asked no more."""
+        for role in (0, 1):
+            self.solids.pop((digest, role), None)
+
     def _solid(self, mesh: Mesh, role: int) -> Manifold | None:
         key = (mesh.digest, role)
-        if key not in self.solids:
-            self.solids[key] = _solid(mesh, role)
-        return self.solids[key]
+        try:
+            return self.solids[key]
+        except KeyError:
+            return self.solids.setdefault(key, _solid(mesh, role))
 
 
 def _solid(mesh: Mesh, role: int) -> Manifold | None:
