@@ -270,7 +270,7 @@ one body, and 10 are across a joint. No corpus chose the number, and between 3.5
 
 # overlap
 
-BESIDE_SHARE = 0.25
+BESIDE_SHARE = 0.5
 """Share of its facets up to which only those of a part beside the other are cut with it, closed again, which takes as
 long as to make a manifold of as many."""
 BESIDE_MARGIN = 1e-6

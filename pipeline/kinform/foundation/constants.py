@@ -183,7 +183,7 @@ KEPT_SPANS = 200_000
 
 CROSSED_FEW = 100_000
 """Triangles times triangles up to which all are asked whether they cross; beyond, one in so many that it is this."""
-CROSSED_SOME = 8
+CROSSED_SOME = 64
 """... and no more than one in this many: where nothing crosses, all are asked after them."""
 CULLED_LEAST = 1000
 """Pairs of triangles from which on those that are clearly apart are left out first: nearly all."""
