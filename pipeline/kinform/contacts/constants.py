@@ -234,6 +234,8 @@ SHEET_RINGS = 6
 """Rings of facets about the common box of two parts: as many segments settle a spline."""
 CURVE_SAMPLES = 6
 """Samples a segment, to find where two curves come close."""
+CURVE_CHUNK = 16
+"""Samples that follow each other in one box, whose distance says which need to be compared at all."""
 CURVES_OPPOSED = -0.9
 """Greatest cosine between the tangents of two curves that touch."""
 NEWTON_STEPS = 20
@@ -268,6 +270,11 @@ one body, and 10 are across a joint. No corpus chose the number, and between 3.5
 
 # overlap
 
+BESIDE_SHARE = 0.5
+"""Share of its facets up to which only those of a part beside the other are cut with it, closed again, which takes as
+long as to make a manifold of as many."""
+BESIDE_MARGIN = 1e-6
+"""... with those about their common box, in diagonals of the part: more than rounding."""
 DEPTH_SAMPLES = 400
 """Points at which the depth of one pair's overlap is measured."""
 DEPTH_SAMPLES_LEAST = 16
