@@ -33,6 +33,10 @@ The steps, in the order of `recovery.recover`, which calls them:
    growth, so that a fit over few polygons only has to predict twice as many. Cylinders and cones grow in the same
    rounds (`kinds.mixed`). The largest regions win. What seems to bend both ways only because a neighbour leans away as
    little as its own facets do (a chamfer of 30°) is tried last, as cylinder and cone.
+   Agreement is no evidence where it could not fail. Two rings about one axis lie on a sphere, so the vertices of a
+   sphere have to lie on no second quadric (`kinds.quadrics`); a torus needs five rings; strips between two meridians
+   of a barrel lie on a circle, but their edges go on round the barrel (`regions.across`). A facet of a cylinder or a
+   cone that was cut off has a generator in its plane still; a chamfer, however little it leans, has not.
 8. Which vertices define a surface: those where three of its polygons meet, and ends of ridges along its generators. A
    vertex between two of its polygons and a foreign one may be a cut through a chord (a keyway in a shaft), and counts
    only where it lies on the surface.

@@ -221,6 +221,15 @@ LEAST_TAPER = 2
 LARGEST_SPHERE = 5.0
 """Radius, in diagonals, beyond which a face is no sphere that a joint could use."""
 
+SECOND_QUADRIC = 0.5
+"""Fits by which the vertices of a sphere are off every other quadric in the mean, at least: two rings lie on one to
+the last digits, to a fifth of a fit where vertices scatter; three rings of a cap whose sagitta is just enough are half
+a fit off."""
+
+ONE_PLANE = 1e-4
+"""Variance of vertices across their plane, as a share of that along it, below which they are one ring: any sphere about
+its axis goes through it."""
+
 LARGEST_TORUS = 5.0
 """The same for both radii of a torus."""
 
@@ -303,8 +312,8 @@ ROUNDS = 8
 """Rounds of searching from seeds, at most."""
 
 LAST_ROUNDS = 2
-"""Rounds of searching among what may be generators, without regard to how it bends: the longest come first, and hide
-those beside them until the second."""
+"""Rounds of searching among what may be generators, without regard to how it bends, at least: the longest come first,
+and hide those beside them until the second. More follow as long as they find what is worth it."""
 
 MOST_LINKS = 32
 """Smooth edges of a polygon between two generators, at most."""
@@ -501,6 +510,18 @@ TOUCHING = 3
 
 BENT = 1.0
 """rad: facets of one flank make no greater angle."""
+
+# ---- regions.across
+
+TURNS_ON = (0.03, 0.56)
+"""Angle by which a ridge turns where it goes on round an axis: more than lines of one direction differ, and no more
+than a smooth edge."""
+
+GOES_ON = 2.05
+"""Ratio of lengths up to which the next edge goes on with a ridge: a fillet is longer than the edges of its corners."""
+
+OPEN = 3.1
+"""Angle that strips subtend together, at most, that may run across bands round another axis."""
 
 # ---- swept.sliding
 

@@ -70,7 +70,7 @@ def as_stated(
             pair in assumed or pair in sticks or not (whole or idle(*(some_part[name] for name in pair)))
         ):
             out.append(joint)
-        elif joint is not None:
+        elif joint is not None and not _unknown(joint, patches):
             asides.append(_aside(joint, patches))
     return AsStated(tuple(out), tuple(asides))
 
@@ -144,10 +144,9 @@ def _in_force(
         return joint
     chosen = types.index(joint.type) if joint is not None and joint.type in types else 0
     name, taken = wanted[chosen].name, stated[chosen]
-    if joint is None or not joint.patches:
-        return replace(
-            taken, status="stated", reason=f"the bodies do not touch: '{name}' is taken as stated", motion=""
-        )
+    if joint is None or not joint.patches or _unknown(joint, patches):
+        what = "do not touch" if joint is None or not joint.patches else "touch in no known way"
+        return replace(taken, status="stated", reason=f"the bodies {what}: '{name}' is taken as stated", motion="")
     corners = np.concatenate([patches[k].points for k in joint.patches])
     place = corners.mean(axis=0) if taken.point is None else taken.point
     if joint.status in ("ambiguous", "blocked"):
@@ -174,6 +173,11 @@ def _reach(corners: Array, place: Array) -> float:
     """m: how far a contact reaches, with corners (n, 3) and asked about at a place (3,). One at a point has no size,
     and its distance counts."""
     return max(norm(np.ptp(corners, axis=0)), POINT_REACH * norm(corners.mean(axis=0) - place)) or 1.0
+
+
+def _unknown(joint: Joint, patches: Sequence[Patch]) -> bool:
+    """Whether all that touches does so in no known way."""
+    return bool(joint.patches) and all(patches[k].unknown for k in joint.patches)
 
 
 def _aside(joint: Joint, patches: Sequence[Patch]) -> Aside:

@@ -107,6 +107,11 @@ class Kind(Protocol):
         middles at least."""
         ...
 
+    def cuts(self, batch: Batch, params: Params, pairs: Ints, tolerance: Array) -> Flags:
+        """Which of these pairs' polygons may be facets of their surface that were cut off: each has corners below it by
+        more than the tolerance (n,)."""
+        return np.ones(len(pairs), bool)
+
     def widths(self, batch: Batch, params: Params) -> Array:
         """(pairs,) angle that each polygon subtends along the tessellated direction."""
         ...

@@ -153,6 +153,18 @@ class Ruled(Kind, Protocol):
             distance -= at.t * sin
         return distance
 
+    def cuts(self, batch: Batch, params: Params, pairs: Ints, tolerance: Array) -> Flags:
+        """Those in which a generator lies, as it does in every facet between two: a chamfer leans away from it."""
+        work, polygon = batch.patchwork, batch.polygon.take(pairs)
+        mine, normal = columns_of(params, batch.region.take(pairs)), work.normals(polygon)
+        leaning = dot(normal, mine[:, :3])
+        if self.tapers:
+            radial = cylindrical(mine, work.middles(polygon)).radial
+            leaning = np.cos(mine[:, 7]) * leaning + np.sin(mine[:, 7]) * dot(normal, radial)
+        leaning = np.abs(leaning)
+        straight = leaning <= constants.NORMAL_SLACK + work.slack.take(polygon)
+        return np.asarray(straight | (leaning * np.sqrt(work.area.take(polygon)) <= tolerance))
+
     def widths(self, batch: Batch, params: Params) -> Array:
         """Angle about the axis of each polygon."""
         return batch.widths(params, angular_widths)

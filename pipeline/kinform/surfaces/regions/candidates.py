@@ -83,6 +83,11 @@ class Candidates:
         if self.kind.saddle:
             deep = held.distance <= -limit
         outside = deep[count:]
+        if not self.kind.saddle:
+            cut = np.zeros(count, bool)
+            cut[batch.corners[0].take((held.distance[count:] <= -limit[count:]).nonzero()[0])] = True
+            rows = (cut & fits).nonzero()[0]
+            fits[rows] = self.kind.cuts(batch, self.params, rows, limit.take(rows))
         outside |= held.distance[count:] >= limit[count:]
         fits[batch.corners[0].take(outside.nonzero()[0])] = False
         cosine = dot(held.normal[:count], work.normals(polygon))

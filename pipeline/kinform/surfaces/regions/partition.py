@@ -28,6 +28,7 @@ from kinform.surfaces.kinds.torus import Torus
 from kinform.surfaces.polygons.curvature import Curvature, Links, continues, curvature, links
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
+from kinform.surfaces.regions.across import along
 from kinform.surfaces.regions.chords import Rounds, decimated
 from kinform.surfaces.regions.growth import Growth, absorb, pursue, whole
 from kinform.surfaces.regions.territory import Territory
@@ -88,16 +89,19 @@ def partition(work: Patchwork, scales: Scales) -> Partition:
         if not chosen:
             break
         regions += chosen
-        gained = np.zeros(len(work.total))
-        for region in chosen:
-            gained[work.mesh[region.polygons[0]]] += work.area[region.polygons].sum()
-        tried |= (gained < constants.WORTH * work.total)[of_edge]
+        tried |= (_gained(work, chosen) < constants.WORTH * work.total)[of_edge]
     edges = territory.smooth
     ruled = _ruled(territory, edges.take((~last.take(edges) & (work.sign.take(edges) != 0)).nonzero()[0]))
     last[:] = True
     last[ruled] = False
-    for _ in range(constants.LAST_ROUNDS):
-        regions += _choose(_search(territory, last, partial(_unasked, work, bent, asked)), territory)
+    for number in range(1, constants.ROUNDS):
+        chosen = _choose(_search(territory, last, partial(_unasked, work, bent, asked)), territory)
+        regions += chosen
+        if number < constants.LAST_ROUNDS:
+            continue
+        if not chosen:
+            break
+        last |= (_gained(work, chosen) < constants.WORTH * work.total)[of_edge]
     del bent, like, tried, last, asked, before  # large, and needed no longer
     rounds: Rounds | None = None
     for factor in constants.CHORD_FITS:
@@ -186,6 +190,14 @@ def _choose(growths: list[Growth], territory: Territory) -> list[Region]:
     return chosen
 
 
+def _gained(work: Patchwork, chosen: list[Region]) -> Array:
+    """(M,) area of these regions on each mesh."""
+    gained = np.zeros(len(work.total))
+    for region in chosen:
+        gained[work.mesh[region.polygons[0]]] += work.area[region.polygons].sum()
+    return gained
+
+
 def _search(territory: Territory, tried: Flags, suits: Callable[[Kind, Ints], Flags]) -> list[Growth]:
     """One round of hypotheses from seeds, of all kinds and both sides; the seeds are tried from now on. `suits` says
     which of the seeds (n,) a kind is tried at."""
@@ -206,7 +218,14 @@ def _search(territory: Territory, tried: Flags, suits: Callable[[Kind, Ints], Fl
     for kind, batch, facing in _ruled_together(starts):
         if len(batch.region):
             growths += pursue(territory, kind, batch, facing).each()
-    return growths
+    return [_along_axes(territory, growth, tried) if growth.surfaces.kind is CYLINDER else growth for growth in growths]
+
+
+def _along_axes(territory: Territory, growth: Growth, tried: Flags) -> Growth:
+    """The growth without strips across bands round another axis, whose ridges are tried from now on."""
+    kept, ridges = along(territory, CYLINDER, growth)
+    tried[ridges] = True
+    return kept
 
 
 def _bends(work: Patchwork, bent: Curvature, kind: Kind, seeds: Ints) -> Flags:
