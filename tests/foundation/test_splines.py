@@ -22,6 +22,9 @@ def test_it_is_scipys_spline_with_its_derivatives_inside_and_beyond(count, dimen
             expected = theirs(s, order)
             np.testing.assert_allclose(ours(s, order), expected, rtol=0.0, atol=1e-10 * np.abs(expected).max())
             np.testing.assert_allclose(ours(s[0], order), expected[0], rtol=0.0, atol=1e-10 * np.abs(expected).max())
+            assert ours.with_derivatives(s)[order].tobytes() == ours(s, order).tobytes()
+            one_by_one = [[coordinate[order] for coordinate in ours.place(float(x))] for x in s]
+            np.testing.assert_allclose(one_by_one, ours(s, order), rtol=1e-12, atol=1e-14 * np.abs(expected).max())
 
 
 def test_a_cubic_is_itself():

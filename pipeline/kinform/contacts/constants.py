@@ -234,6 +234,8 @@ SHEET_RINGS = 6
 """Rings of facets about the common box of two parts: as many segments settle a spline."""
 CURVE_SAMPLES = 6
 """Samples a segment, to find where two curves come close."""
+CURVE_CHUNK = 16
+"""Samples that follow each other in one box, whose distance says which need to be compared at all."""
 CURVES_OPPOSED = -0.9
 """Greatest cosine between the tangents of two curves that touch."""
 NEWTON_STEPS = 20

@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from kinform.contacts.constants import CURVE_BEND_LEAST, CYLINDER_EXACT, SEGMENT_LONG, STRIP_HEIGHT
+from kinform.contacts.constants import CURVE_BEND_LEAST, CURVE_SAMPLES, CYLINDER_EXACT, SEGMENT_LONG, STRIP_HEIGHT
 from kinform.contacts.mating.charts import plane_basis
 from kinform.contacts.search.pair_view import PartView
 from kinform.foundation.algebra import splines
@@ -62,9 +62,19 @@ class Curve:
 
     def at(self, s: Array) -> tuple[Array, Array, Array]:
         """Points (n, 2), unit tangents (n, 2) and signed curvatures (n,) (positive: convex material) at s (n,)."""
-        p, d, dd = self.spline(s), self.spline(s, 1), self.spline(s, 2)
+        p, d, dd = self.spline.with_derivatives(s)
         size = np.linalg.norm(d, axis=1)
         return p, d / size[:, None], (d[:, 0] * dd[:, 1] - d[:, 1] * dd[:, 0]) / size**3
+
+    @cached_property
+    def samples(self) -> tuple[Array, Array, Array]:
+        """Parameters (n,) along those segments that come near the other part, and their neighbours; points (n, 2) and
+        unit tangents (n, 2) there."""
+        near = self.near | np.append(self.near[1:], False) | np.append(False, self.near[:-1])
+        inner = self.knots[:-1, None] + np.linspace(0.0, 1.0, CURVE_SAMPLES + 1) * np.diff(self.knots)[:, None]
+        s = np.unique(inner[near])
+        points, tangents, _ = self.at(s)
+        return s, points, tangents
 
     def segment(self, s: float) -> int:
         """The segment that parameter s lies on."""

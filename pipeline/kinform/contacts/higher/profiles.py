@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinform.contacts import constants
+from kinform.contacts.higher.closest_places import closest_places
 from kinform.contacts.higher.outlines import Curve, Sheet, curves, segments
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.mating.charts import plane_basis
@@ -126,35 +127,8 @@ def _sheet(part: PartView, low: Array, high: Array, tolerances: Tolerances) -> S
 
 def _closest(first: Curve, second: Curve, tolerance: float) -> list[_Meeting]:
     """Where two curves are closest, among pairs of points with opposed normals."""
-    s = _sampled(first)
-    p, tangent, _ = first.at(s)
-    t = _sampled(second)
-    q, other, _ = second.at(t)
-    apart = p[:, None] - q[None]
-    facing = np.einsum("ik,jk->ij", tangent, other) < constants.CURVES_OPPOSED
-    distance = np.where(facing, np.einsum("ijk,ijk->ij", apart, apart), np.inf)
-    nearest = distance.argmin(axis=1)
-    away = np.sqrt(distance[np.arange(len(s)), nearest])
-    outward = np.stack([other[nearest, 1], -other[nearest, 0]], axis=1)
-    gap = np.where(np.isfinite(away), np.einsum("ik,ik->i", p - q[nearest], outward), np.inf)
-    padded = np.concatenate([[np.inf], gap, [np.inf]])
-    lowest = np.flatnonzero((padded[1:-1] <= padded[:-2]) & (padded[1:-1] < padded[2:]) & np.isfinite(gap))
-    step = max(float(np.diff(first.knots).max()), float(np.diff(second.knots).max())) / constants.CURVE_SAMPLES
-    out = []
-    for k in lowest:
-        if away[k] > constants.MATING_REACH * tolerance + 2.0 * step:
-            continue
-        met = _refined(first, second, float(s[k]), float(t[nearest[k]]), tolerance)
-        if met is not None:
-            out.append(met)
-    return out
-
-
-def _sampled(curve: Curve) -> Array:
-    """Parameters along those segments that come near the other part, and their neighbours."""
-    near = curve.near | np.append(curve.near[1:], False) | np.append(False, curve.near[:-1])
-    inner = curve.knots[:-1, None] + np.linspace(0.0, 1.0, constants.CURVE_SAMPLES + 1) * np.diff(curve.knots)[:, None]
-    return np.unique(inner[near])
+    met = [_refined(first, second, s, t, tolerance) for s, t in closest_places(first, second, tolerance)]
+    return [meeting for meeting in met if meeting is not None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,25 +162,31 @@ def _parallel_place(first: Curve, second: Curve, s: float, t: float) -> _Place |
 
     From the parameters s and t; None where the Jacobian is singular.
     """
-    ends = (first.knots[-1], second.knots[-1])
+    ends = (float(first.knots[-1]), float(second.knots[-1]))
     for _ in range(constants.NEWTON_STEPS):
-        at = _Place.of(first, second, s, t)
-        speeds = [float(np.linalg.norm(c.spline(x, 1))) for c, x in ((first, s), (second, t))]
-        apart, along = at.p - at.q, float(at.u @ at.w)
-        residual = np.array([float(apart @ at.w), at.turn])
-        left = np.array([-at.w[1], at.w[0]])
-        # d/ds and d/dt of (p − q)·w and of u × w
-        jacobian = np.array([[along, -1.0 + at.lam * float(apart @ left)], [-at.kappa * along, at.lam * along]])
-        if abs(float(np.linalg.det(jacobian))) < 1e-12 * (abs(at.kappa) + abs(at.lam) + 1e-300):
+        (px, py), (ux, uy), kappa, speed = _at(first, s)
+        (qx, qy), (wx, wy), lam, other_speed = _at(second, t)
+        ax, ay, along = px - qx, py - qy, ux * wx + uy * wy
+        # (p − q)·w and u × w, and their derivatives along either curve
+        off, turn = ax * wx + ay * wy, ux * wy - uy * wx
+        a, b, c, d = along, -1.0 + lam * (ay * wx - ax * wy), -kappa * along, lam * along
+        size = a * d - b * c
+        if abs(size) < 1e-12 * (abs(kappa) + abs(lam) + 1e-300):
             return None
-        move = np.linalg.solve(jacobian, -residual)
-        s_new = float(np.clip(s + move[0] / speeds[0], 0.0, ends[0]))
-        t_new = float(np.clip(t + move[1] / speeds[1], 0.0, ends[1]))
+        s_new = min(max(s + (b * turn - d * off) / size / speed, 0.0), ends[0])
+        t_new = min(max(t + (c * off - a * turn) / size / other_speed, 0.0), ends[1])
         still = abs(s_new - s) < 1e-12 * ends[0] and abs(t_new - t) < 1e-12 * ends[1]
         s, t = s_new, t_new
         if still:
             break
     return _Place.of(first, second, s, t)
+
+
+def _at(curve: Curve, s: float) -> tuple[tuple[float, float], tuple[float, float], float, float]:
+    """Point, unit tangent, signed curvature and speed at a parameter, as `Curve.at`."""
+    (x, dx, ddx), (y, dy, ddy) = curve.spline.place(s)
+    speed = math.sqrt(dx * dx + dy * dy) or 1.0
+    return (x, y), (dx / speed, dy / speed), (dx * ddy - dy * ddx) / speed**3, speed
 
 
 def _refined(first: Curve, second: Curve, s: float, t: float, tolerance: float) -> _Meeting | None:

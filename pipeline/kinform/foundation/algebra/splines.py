@@ -6,7 +6,9 @@ assembly.
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -24,15 +26,40 @@ class Cubics:
 
     def __call__(self, s: Array | float, order: int = 0) -> Array:
         """Points (…, d) at the parameters s (…), or their derivatives of the first or second order."""
-        s = np.asarray(s, dtype=float)
-        piece = np.searchsorted(self.knots[1:-1], s, side="right")
-        t = (s - self.knots[piece])[..., None]
-        c3, c2, c1, c0 = self.coefficients[:, piece]
+        c3, c2, c1, c0, t = self._pieces(s)
         if order == 0:
             return np.asarray(((c3 * t + c2) * t + c1) * t + c0)
         if order == 1:
             return np.asarray((3.0 * c3 * t + 2.0 * c2) * t + c1)
         return np.asarray(6.0 * c3 * t + 2.0 * c2)
+
+    def with_derivatives(self, s: Array) -> tuple[Array, Array, Array]:
+        """Points (…, d) at the parameters s (…), and their first and second derivatives."""
+        c3, c2, c1, c0, t = self._pieces(s)
+        return ((c3 * t + c2) * t + c1) * t + c0, (3.0 * c3 * t + 2.0 * c2) * t + c1, 6.0 * c3 * t + 2.0 * c2
+
+    def place(self, s: float) -> list[tuple[float, float, float]]:
+        """Each coordinate at one parameter, with its first and second derivative: as above, for one of many steps."""
+        knots, inner, coefficients = self._numbers
+        piece = bisect_right(inner, s)
+        t = s - knots[piece]
+        return [
+            (((c3 * t + c2) * t + c1) * t + c0, (3.0 * c3 * t + 2.0 * c2) * t + c1, 6.0 * c3 * t + 2.0 * c2)
+            for c3, c2, c1, c0 in coefficients[piece]
+        ]
+
+    def _pieces(self, s: Array | float) -> tuple[Array, Array, Array, Array, Array]:
+        """The coefficients (…, d) that hold at the parameters s (…), and what they hold of (…, 1)."""
+        s = np.asarray(s, dtype=float)
+        piece = np.searchsorted(self.knots[1:-1], s, side="right")
+        c3, c2, c1, c0 = self.coefficients[:, piece]
+        return c3, c2, c1, c0, (s - self.knots[piece])[..., None]
+
+    @cached_property
+    def _numbers(self) -> tuple[list[float], list[float], list[list[list[float]]]]:
+        """Knots, the inner ones, and coefficients by piece and coordinate."""
+        knots: list[float] = self.knots.tolist()
+        return knots, knots[1:-1], self.coefficients.transpose(1, 2, 0).tolist()
 
 
 def through(knots: Array, points: Array) -> Cubics:
