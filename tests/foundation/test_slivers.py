@@ -53,6 +53,24 @@ def test_the_answer_of_a_pair_does_not_hang_on_the_others_nor_on_their_order(see
     assert {(rows[i], columns[j]) for i, j in some} == {(i, j) for i, j in every if i in rows and j in columns}
 
 
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 10**6), st.sampled_from([1e-6, 1e-3, 1.0, 1e4]), st.booleans())
+def test_none_that_meets_is_taken_for_clearly_apart(seed, size, on_a_lattice):
+    """On a lattice most triangles touch, share edges or lie in one plane; slivers have hardly a normal."""
+    rng = np.random.default_rng(seed)
+    first, second = scene(seed)
+    if on_a_lattice:
+        first, second = rng.integers(0, 4, (2, 30, 3, 3)).astype(float) + rng.normal(size=3)
+    with pytest.MonkeyPatch.context() as patched:
+        answers = []
+        for least in (0, 10**9):
+            patched.setattr(slivers, "MET_MOST", 10**9)
+            patched.setattr(slivers, "CULLED_LEAST", least)
+            answers.append(pairs(size * first, size * second))
+    assert answers[0] == answers[1]
+    assert answers[0]
+
+
 FLAT = np.array([[[0, 0, 0], [4, 0, 0], [0, 4, 0]]], dtype=float)
 
 

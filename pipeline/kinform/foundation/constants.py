@@ -183,8 +183,14 @@ KEPT_SPANS = 200_000
 
 CROSSED_FEW = 100_000
 """Triangles times triangles up to which all are asked whether they cross; beyond, one in so many that it is this."""
-CROSSED_SOME = 8
+CROSSED_SOME = 64
 """... and no more than one in this many: where nothing crosses, all are asked after them."""
+CULLED_LEAST = 1000
+"""Pairs of triangles from which on those that are clearly apart are left out first: nearly all."""
+CLEARLY_APART = 1e-9
+"""Share of their coordinates by which they are then apart at least: far more than rounding, ..."""
+CLEARLY_ROUNDED = 1e-12
+"""... also that of the normal of a needle, in powers of its longest edge."""
 MET_FEW = 1000
 """Pairs of triangles up to which all directions but the normals are asked at once."""
 MET_MOST = 10

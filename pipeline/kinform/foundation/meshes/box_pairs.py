@@ -48,8 +48,9 @@ def _compared(first: Boxes, second: Boxes) -> tuple[Ints, Ints]:
     (low, high), (low_other, high_other) = (
         [np.ascontiguousarray(side.T) for side in boxes] for boxes in (first, second)
     )
+    along = np.empty_like(meets)
     for axis in range(3):
-        meets &= low[axis][:, None] <= high_other[axis]
-        meets &= low_other[axis] <= high[axis][:, None]
+        meets &= np.less_equal(low[axis][:, None], high_other[axis], out=along)
+        meets &= np.less_equal(low_other[axis], high[axis][:, None], out=along)
     one, two = np.divmod(np.flatnonzero(meets), np.int64(max(meets.shape[1], 1)))
     return one, two

@@ -11,7 +11,7 @@ import numpy as np
 
 from kinform.foundation.constants import AS_NEAR, CLOSEST_MOST, CLOSEST_ROUNDING, CLOSEST_SOME
 from kinform.foundation.meshes.box_pairs import meeting_boxes
-from kinform.foundation.meshes.boxes import triangle_boxes
+from kinform.foundation.meshes.boxes import meeting_box, triangle_boxes
 from kinform.foundation.meshes.near import Nearest
 from kinform.model.arrays import Array, Flags, Ints
 
@@ -23,7 +23,12 @@ def closest_facets(points: Array, corners: Array) -> tuple[Array, Ints] | None:
         return np.zeros(0), np.zeros(0, np.int64)
     some = corners[:: len(points) * len(corners) // CLOSEST_SOME + 1, 0]
     reach = (1.0 + AS_NEAR) * Nearest(some).away(points)[:, None]
-    candidates = meeting_boxes((points - reach, points + reach), triangle_boxes(corners))
+    rounding = CLOSEST_ROUNDING * float(np.abs(corners).max())
+    least, most = points - reach, points + reach
+    low, high = triangle_boxes(corners)
+    beside = np.flatnonzero(meeting_box(low, high, least.min(axis=0), most.max(axis=0)))
+    corners = corners.take(beside, axis=0)
+    candidates = meeting_boxes((least, most), (low.take(beside, axis=0), high.take(beside, axis=0)))
     if candidates is None or len(candidates[0]) > CLOSEST_MOST:
         return None
     point, facet = candidates
@@ -33,10 +38,9 @@ def closest_facets(points: Array, corners: Array) -> tuple[Array, Ints] | None:
     # the box of a corner touches that of its facet, so that every point has candidates, in their order
     starts = np.searchsorted(point, np.arange(len(points)))
     distance = np.minimum.reduceat(away, starts)
-    rounding = CLOSEST_ROUNDING * float(np.abs(corners).max())
     as_near = np.flatnonzero(away <= ((1.0 + AS_NEAR) * distance + rounding).take(point))
     first = as_near[np.searchsorted(point[as_near], np.arange(len(points)))]
-    return distance, facet[first]
+    return distance, beside[facet[first]]
 
 
 def _from_origin(triangles: Array) -> Array:

@@ -11,7 +11,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.constants import CROSSED_FEW, CROSSED_SOME, MET_FEW, MET_MOST
+from kinform.foundation.constants import (
+    CLEARLY_APART,
+    CLEARLY_ROUNDED,
+    CROSSED_FEW,
+    CROSSED_SOME,
+    CULLED_LEAST,
+    MET_FEW,
+    MET_MOST,
+)
 from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import facet_boxes, meeting_box, triangle_boxes
 from kinform.model.arrays import Array, Flags, Ints
@@ -32,10 +40,10 @@ def meeting(slivers: Array, corners: Array) -> tuple[Ints, Ints] | None:
     if candidates is None or len(candidates[0]) > MET_MOST * (len(slivers) + len(corners)):
         return None
     sliver, facet = candidates
-    first, second = (
-        np.ascontiguousarray(triangles.transpose(1, 2, 0)).take(chosen, axis=2)
-        for triangles, chosen in ((slivers, sliver), (corners, facet))
-    )
+    both = [np.ascontiguousarray(triangles.transpose(1, 2, 0)) for triangles in (slivers, corners)]
+    if len(sliver) > CULLED_LEAST:
+        sliver, facet = _not_clearly_apart(both[0], both[1], sliver, facet)
+    first, second = (triangles.take(chosen, axis=2) for triangles, chosen in zip(both, (sliver, facet), strict=True))
     origin = first[0].copy()
     first -= origin
     second -= origin
@@ -46,6 +54,59 @@ def meeting(slivers: Array, corners: Array) -> tuple[Ints, Ints] | None:
         kept = np.flatnonzero(~_apart(directions(*triangles[2:]), *triangles[:2]))
         met, triangles = met[kept], [array.take(kept, axis=-1) for array in triangles]
     return sliver[met], facet[met]
+
+
+def _not_clearly_apart(first: Array, second: Array, one: Ints, two: Ints) -> tuple[Ints, Ints]:
+    """Those of pairs of triangles `one` (c,) of (3, 3, n) and `two` (c,) of (3, 3, m) that neither lie on one side of
+    the plane of the other nor beyond one of its edges, by more than rounding: all that meet among them.
+
+    What is asked of a triangle is computed once for all of its pairs, which leaves few to be asked exactly.
+    """
+    origin = first[0, :, :1]
+    first, second = first - origin, second - origin
+    size = max(float(np.abs(first).max()), float(np.abs(second).max()))
+    for some in (_planes, _borders):
+        for mine, other, turned in ((second, first, False), (first, second, True)):
+            owner, asked = (one, two) if turned else (two, one)
+            kept = ~_beyond(some(mine, size), owner, [corner.take(asked, axis=1) for corner in other])
+            one, two = one[kept], two[kept]
+    return one, two
+
+
+_Sides = list[tuple[Array, Array]]
+"""Directions (3, n), and how far along them (n,) triangles reach at most, rounding included."""
+
+
+def _beyond(sides: _Sides, owner: Ints, corners: list[Array]) -> Flags:
+    """(c,) whether all corners, (3, c) each, lie beyond a side of the triangle that is their `owner` (c,)."""
+    out = np.zeros(len(owner), dtype=bool)
+    for axis, reach in sides:
+        x, y, z = axis.take(owner, axis=1)
+        one, two, three = (_along(x, y, z, corner) for corner in corners)
+        out |= np.minimum(np.minimum(one, two), three) > reach.take(owner)
+    return out
+
+
+def _planes(triangles: Array, size: float) -> _Sides:
+    """Both sides of the planes of triangles (3, 3, n); `size` bounds all coordinates."""
+    edges = _edges(triangles)
+    normal, long = _cross(edges[0], edges[1]), np.abs(edges).max(axis=(0, 1))
+    spare = size * (CLEARLY_APART * np.abs(normal).max(axis=0) + CLEARLY_ROUNDED * long**2)
+    x, y, z = normal
+    offset = _along(x, y, z, triangles[0])
+    return [(normal, offset + spare), (-normal, spare - offset)]
+
+
+def _borders(triangles: Array, size: float) -> _Sides:
+    """What lies across each edge in the plane of its triangle."""
+    edges = _edges(triangles)
+    normal, long = _cross(edges[0], edges[1]), np.abs(edges).max(axis=(0, 1))
+    out = []
+    for edge, corner in zip(edges, triangles, strict=True):
+        x, y, z = across = _cross(edge, normal)
+        spare = size * (CLEARLY_APART * np.abs(across).max(axis=0) + CLEARLY_ROUNDED * long**3)
+        out.append((across, _along(x, y, z, corner) + spare))
+    return out
 
 
 def crossing(first: Array, second: Array) -> bool | None:
