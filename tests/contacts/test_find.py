@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import importlib
 from functools import cache
 
 import numpy as np
@@ -13,6 +14,9 @@ from support.analytic_solids import MM, assembly, box_loop, extrusion, pose, rou
 
 from kinform.contacts import find
 from kinform.contacts.search.candidates import candidate_pairs
+
+# the package gives the function of the same name in its place
+stage = importlib.import_module("kinform.contacts.find")
 
 
 @cache
@@ -140,3 +144,30 @@ def test_the_broad_phase_keeps_exactly_the_pairs_whose_boxes_come_within_the_tol
     found = candidate_pairs(design)
     assert found == expected
     assert list(found) == sorted(found)
+
+
+def test_what_is_known_of_a_mesh_is_dropped_after_its_last_pair(monkeypatch):
+    """Along a row of cubes no two of which are alike, named at random, no more than three are known at a time."""
+    names = np.random.default_rng(5).permutation(list("abcdefghij"))
+    cubes = [extrusion(box_loop(0, 0, 10 * MM, 10 * MM), z0=0.0, z1=(10 + k) * MM) for k in range(10)]
+    made = assembly(
+        {
+            name: (cube, pose(translation=(10 * MM * k, 0, 0)))
+            for k, (name, cube) in enumerate(zip(names, cubes, strict=True))
+        }
+    )
+    known, of_pair = [], stage.pair_contacts
+
+    def counted(parts, surfaces, store, solids, *rest):
+        found = of_pair(parts, surfaces, store, solids, *rest)
+        known.append((len(store.indices), len(solids.solids)))
+        return found
+
+    before = find(*made)
+    monkeypatch.setattr(stage, "pair_contacts", counted)
+    assert same(before, find(*made))
+    assert list(before.candidates) == sorted(before.candidates)
+    assert len(known) == len(before.candidates) == 9
+    assert max(known)[0] <= 3
+    monkeypatch.setattr(stage, "_by_neighbours", lambda pairs: pairs[::-1])
+    assert same(before, find(*made))

@@ -7,8 +7,7 @@ from hypothesis import strategies as st
 from support.analytic_solids import MM, extrusion, flat_loop
 
 from kinform.foundation.meshes import rings
-from kinform.foundation.meshes.edges import shared_edges
-from kinform.foundation.meshes.rings import rings_of
+from kinform.foundation.meshes.index import MeshIndex
 
 
 def prism(sides, radius=10.0, squeeze=1.0, phase=0.1, centre=(0.0, 0.0)):
@@ -18,7 +17,7 @@ def prism(sides, radius=10.0, squeeze=1.0, phase=0.1, centre=(0.0, 0.0)):
 
 
 def found(mesh, surfaces):
-    return rings_of(mesh, surfaces, shared_edges(mesh.faces, len(mesh.vertices), by_corner=True))
+    return MeshIndex(mesh).rings(surfaces)
 
 
 @pytest.mark.parametrize("sides", [3, 5, 6, 8, 11, 17])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import defaultdict, deque
 from collections.abc import Iterable
 from dataclasses import replace
 
@@ -21,17 +21,29 @@ from kinform.model.surfaces import MeshSurfaces
 
 
 class _Work:
-    """What a worker needs for any pair; meshes are indexed when first met."""
+    """What a worker needs for any pair; meshes are indexed when first met, and forgotten after the last pair that
+    needs them."""
 
-    def __init__(self, assembly: Assembly, surfaces: dict[str, MeshSurfaces], tolerance: dict[Pair, float]):
+    def __init__(
+        self, assembly: Assembly, surfaces: dict[str, MeshSurfaces], tolerance: dict[Pair, float], wanted: list[Pair]
+    ):
         self.assembly, self.surfaces, self.tolerance = assembly, surfaces, tolerance
         self.parts = {part.name: part for part in assembly.parts}
         self.store, self.solids = MeshStore(), SolidStore()
+        self.order = _by_neighbours(wanted)
+        self.number = {pair: number for number, pair in enumerate(self.order)}
+        self.last: dict[str, int] = {}
+        """Digest of a mesh → number of the last pair that needs it."""
+        for number, pair in enumerate(self.order):
+            self.last.update((mesh.digest, number) for name in pair if (mesh := self.parts[name].mesh) is not None)
 
     def contacts(self, pair: Pair) -> PairContacts:
-        """Of two parts."""
+        """Of two parts; those of earlier pairs, in `order`, are done or have what they need."""
         parts = self.parts[pair[0]], self.parts[pair[1]]
-        tolerances = self.assembly.tolerances
+        tolerances, number = self.assembly.tolerances, self.number[pair]
+        for digest in [known for known in list(self.store.indices) if self.last[known] < number]:
+            self.store.forget(digest)
+            self.solids.forget(digest)
         return pair_contacts(parts, self.surfaces, self.store, self.solids, self.tolerance[pair], tolerances)
 
     def is_little(self, pairs: list[Pair]) -> bool:
@@ -59,10 +71,10 @@ def find(
     tolerance = candidate_pairs(assembly)
     reused = {p for p in reuse.candidates if p in reuse_pairs and p in tolerance} if reuse is not None else set()
     wanted = [pair for pair in tolerance if pair not in reused]
-    work = _Work(assembly, surfaces, tolerance)
+    work = _Work(assembly, surfaces, tolerance, wanted)
     name = lambda pair: f"contacts of {pair[0]} and {pair[1]}"
-    computed = map_in_processes(work.contacts, wanted, jobs, progress, name, little=work.is_little(wanted))
-    done: dict[Pair, PairContacts] = dict(zip(wanted, computed, strict=True))
+    computed = map_in_processes(work.contacts, work.order, jobs, progress, name, little=work.is_little(wanted))
+    done: dict[Pair, PairContacts] = dict(zip(work.order, computed, strict=True))
     if reuse is not None:
         done |= _earlier_contacts(reuse, reused)
     contacts = Contacts(
@@ -73,6 +85,23 @@ def find(
     )
     earlier = {} if reuse is None else _earlier_suggestions(reuse, contacts, reused)
     return replace(contacts, suggestions=suggest(assembly, surfaces, contacts, earlier))
+
+
+def _by_neighbours(pairs: list[Pair]) -> list[Pair]:
+    """The pairs in an order in which those of a part follow each other closely, so that few meshes are needed at a
+    time: parts are numbered in breadth, from neighbour to neighbour, and pairs come by the later of theirs."""
+    neighbours = _neighbours(pairs)
+    rank: dict[PartName, int] = {}
+    for start in neighbours:
+        queue = deque([] if start in rank else [start])
+        rank.setdefault(start, len(rank))
+        while queue:
+            for first, second in sorted(neighbours[name := queue.popleft()]):
+                other = second if first == name else first
+                if other not in rank:
+                    rank[other] = len(rank)
+                    queue.append(other)
+    return sorted(pairs, key=lambda pair: sorted((rank[name] for name in pair), reverse=True))
 
 
 def _earlier_suggestions(reuse: Contacts, contacts: Contacts, reused: set[Pair]) -> dict[Pair, list[Suggestion]]:

@@ -17,11 +17,12 @@ from kinform.contacts import constants
 from kinform.contacts.higher.beside import Beside, beside
 from kinform.contacts.higher.circles import Rim, rims_of
 from kinform.contacts.higher.nearest import dips_of, evened, nearest
-from kinform.contacts.higher.sharp import ConvexEdges, convex_edges, on_surface
+from kinform.contacts.higher.sharp import ConvexEdges, convex_edges_of_first, on_surface
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.pair_view import NearSurfaces, PairView
 from kinform.foundation.algebra.vectors import cross
-from kinform.model.arrays import Array, Ints
+from kinform.foundation.meshes.boxes import meeting_box
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 
@@ -61,14 +62,12 @@ def seats(pair: PairView, patches: list[Patch]) -> list[Patch]:
     what guides it, as countersunk screws and valves do."""
     mated = tuple(np.array(sorted({patch.surfaces[k] for patch in patches}), dtype=np.int64) for k in (0, 1))
     free = [_SEATED[side.kinds] & ~np.isin(side.ids, ids) for side, ids in zip(pair.near, mated, strict=True)]
-    if not any(of.any() for of in free):
-        return []
-    convex = convex_edges(pair)
-    if convex is None:
-        return []
     out = []
-    for view, first, edges, rows in ((pair, True, convex[0], free[1]), (pair.swapped, False, convex[1], free[0])):
-        for touch in _of_view(view, edges, np.flatnonzero(rows)):
+    for view, first, seated in ((pair, True, free[1]), (pair.swapped, False, free[0])):
+        rows = np.flatnonzero(seated)
+        rows = rows[_beside_any(view, rows)]
+        edges = convex_edges_of_first(view) if len(rows) else None
+        for touch in _of_view(view, edges, rows) if edges is not None else []:
             if touch.spacing and len(touch.places) == constants.BALL_BORE_SAMPLES and touch.rim.closed:
                 out.append(_patch(pair, touch, first))
     return out
@@ -93,6 +92,15 @@ def _boxes(view: PairView, rows: Ints) -> tuple[Array, Array]:
     near = view.near[1]
     margin = (constants.TOUCH * view.tolerance + near.slacks[rows])[:, None]
     return near.lows[rows] - margin, near.highs[rows] + margin
+
+
+def _beside_any(view: PairView, rows: Ints) -> Flags:
+    """(n,) which of these near surfaces of the second part have any near facet of the first beside them."""
+    own = view.near[0]
+    if not len(own.ids):
+        return np.zeros(len(rows), dtype=bool)
+    low, high = _boxes(view, rows)
+    return meeting_box(low, high, own.lows.min(axis=0), own.highs.max(axis=0))
 
 
 def _touches(view: PairView, rim: Rim, row: int) -> list[_Touch]:

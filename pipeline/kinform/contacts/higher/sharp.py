@@ -30,10 +30,14 @@ class ConvexEdges:
 
 def convex_edges(pair: PairView) -> tuple[ConvexEdges, ConvexEdges] | None:
     """Those of a and of b in their common box; None where there is no such box."""
+    both = convex_edges_of_first(pair), convex_edges_of_first(pair.swapped)
+    return None if both[0] is None or both[1] is None else (both[0], both[1])
+
+
+def convex_edges_of_first(pair: PairView) -> ConvexEdges | None:
+    """Those of a."""
     box = pair.common_box()
-    if box is None:
-        return None
-    return _convex(pair.a, near_facets(pair.a, *box)[0]), _convex(pair.b, near_facets(pair.b, *box)[0])
+    return None if box is None else _convex(pair.a, near_facets(pair.a, *box)[0])
 
 
 def _convex(part: PartView, facets: Ints) -> ConvexEdges:

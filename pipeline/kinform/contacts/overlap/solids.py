@@ -50,6 +50,8 @@ class SolidStore:
 
     def overlap(self, a: PartView, b: PartView, least: float) -> list[Piece] | None:
         """Pieces of the overlap of more than `least` (m³), largest first; None where a mesh is not a manifold."""
+        if not (_bounds_volume(a.index.mesh) and _bounds_volume(b.index.mesh)):
+            return None
         home, guest, roles = (a, b, (0, 1)) if a.at_home else (b, a, (1, 0))
         first, second = self._solid(home.index.mesh, roles[0]), self._solid(guest.index.mesh, roles[1])
         if first is None or second is None:
@@ -65,17 +67,25 @@ class SolidStore:
         ]
         return sorted(pieces, key=lambda piece: (-piece.volume, tuple(piece.centroid)))
 
+    def forget(self, digest: str) -> None:
+        """What is known of a mesh that is asked no more."""
+        for role in (0, 1):
+            self.solids.pop((digest, role), None)
+
     def _solid(self, mesh: Mesh, role: int) -> Manifold | None:
         key = (mesh.digest, role)
-        if key not in self.solids:
-            self.solids[key] = _solid(mesh, role)
-        return self.solids[key]
+        try:
+            return self.solids[key]
+        except KeyError:
+            return self.solids.setdefault(key, _solid(mesh, role))
+
+
+def _bounds_volume(mesh: Mesh) -> bool:
+    return mesh.health.watertight and mesh.health.manifold_status == "NoError"
 
 
 def _solid(mesh: Mesh, role: int) -> Manifold | None:
     """The mesh as a manifold whose facets remember their number; inside-out meshes are turned."""
-    if not mesh.health.watertight or mesh.health.manifold_status != "NoError":
-        return None
     middle, scale = _scaling(mesh)
     faces = mesh.faces if mesh.health.volume >= 0.0 else mesh.faces[:, ::-1]
     solid = Manifold(

@@ -174,7 +174,7 @@ class MeshIndex:
     def rings(self, surfaces: MeshSurfaces) -> tuple[Ring, ...]:
         """Rings of flats, which may be meant as round."""
         if self._rings is None:
-            self._rings = rings_of(self.mesh, surfaces, self.edges)
+            self._rings = rings_of(self.mesh, surfaces, self.edges, self.borders(surfaces))
         return self._rings
 
     @property
@@ -307,6 +307,11 @@ class MeshStore:
 
     def index(self, mesh: Mesh) -> MeshIndex:
         """The index of a mesh; meshes of one digest share it."""
-        if mesh.digest not in self.indices:
-            self.indices[mesh.digest] = MeshIndex(mesh)
-        return self.indices[mesh.digest]
+        known = self.indices.get(mesh.digest)
+        if known is None:
+            known = self.indices[mesh.digest] = MeshIndex(mesh)
+        return known
+
+    def forget(self, digest: str) -> None:
+        """What is known of a mesh that is asked no more."""
+        self.indices.pop(digest, None)

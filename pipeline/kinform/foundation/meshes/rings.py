@@ -68,11 +68,11 @@ class _Ridges:
         return _Ridges(*(getattr(self, name)[rows] for name in self.__dataclass_fields__))
 
 
-def rings_of(mesh: Mesh, surfaces: MeshSurfaces, edges: SharedEdges) -> tuple[Ring, ...]:
-    """The rings among the planes of a mesh with these shared edges (by corner), by direction, sense and lowest
-    facet."""
+def rings_of(mesh: Mesh, surfaces: MeshSurfaces, edges: SharedEdges, borders: Ints) -> tuple[Ring, ...]:
+    """The rings among the planes of a mesh with these shared edges (by corner), and surfaces (k, 2) that share some, by
+    direction, sense and lowest facet."""
     plane = np.array([surface.kind == "plane" for surface in surfaces.surfaces], dtype=bool)
-    if plane.sum() < constants.RING_SIDES:
+    if plane.sum() < constants.RING_SIDES or not _any_bent(surfaces, borders, plane):
         return ()
     piece, ridges = _ridges(mesh, surfaces, edges, plane)
     family = _families(ridges)
@@ -90,6 +90,20 @@ def rings_of(mesh: Mesh, surfaces: MeshSurfaces, edges: SharedEdges) -> tuple[Ri
     return tuple(ring for ring in found if ring is not None)
 
 
+def _bent(sine: Array, cosine: Array) -> Flags:
+    """(n,) whether planes turn by an angle of that sine and cosine as flats of a ring do."""
+    angle = np.arctan2(sine, cosine)
+    return np.asarray((angle > constants.RING_TURN[0]) & (angle < constants.RING_TURN[1]))
+
+
+def _any_bent(surfaces: MeshSurfaces, borders: Ints, plane: Flags) -> bool:
+    """Whether any planes among the surfaces that share edges do."""
+    first, second = borders[plane[borders].all(axis=1)].T
+    axes = np.array([surface.axis for surface in surfaces.surfaces]).reshape(-1, 3)
+    one, two = axes[first], axes[second]
+    return bool(_bent(np.linalg.norm(cross(one, two), axis=1), dot(one, two)).any())
+
+
 def _ridges(mesh: Mesh, surfaces: MeshSurfaces, edges: SharedEdges, plane: Flags) -> tuple[Ints, _Ridges]:
     """(F,) connected piece of its plane of each facet, and the ridges between pieces."""
     labels, vertices = surfaces.labels, mesh.vertices
@@ -105,8 +119,7 @@ def _ridges(mesh: Mesh, surfaces: MeshSurfaces, edges: SharedEdges, plane: Flags
     one, two = axes[labels[first]], axes[labels[second]]
     across, along = cross(one, two), edges.along(vertices)
     sine, length = np.linalg.norm(across, axis=1), np.linalg.norm(along, axis=1)
-    angle = np.arctan2(sine, dot(one, two))
-    bent = (angle > constants.RING_TURN[0]) & (angle < constants.RING_TURN[1])
+    bent = _bent(sine, dot(one, two))
     direction = across / np.maximum(sine, 1e-300)[:, None]
     straight = np.abs(dot(along, direction)) > np.cos(constants.RING_ASKEW) * length
     ridges = _Ridges(
