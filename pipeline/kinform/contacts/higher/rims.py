@@ -63,8 +63,8 @@ def seats(pair: PairView, patches: list[Patch]) -> list[Patch]:
     mated = tuple(np.array(sorted({patch.surfaces[k] for patch in patches}), dtype=np.int64) for k in (0, 1))
     free = [_SEATED[side.kinds] & ~np.isin(side.ids, ids) for side, ids in zip(pair.near, mated, strict=True)]
     out = []
-    for view, first, rows in ((pair, True, free[1]), (pair.swapped, False, free[0])):
-        rows = np.flatnonzero(rows)
+    for view, first, seated in ((pair, True, free[1]), (pair.swapped, False, free[0])):
+        rows = np.flatnonzero(seated)
         rows = rows[_beside_any(view, rows)]
         edges = convex_edges_of_first(view) if len(rows) else None
         for touch in _of_view(view, edges, rows) if edges is not None else []:

@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 import numpy as np
 from manifold3d import Error, Manifold, Mesh64
 
-from kinform.contacts.overlap.closed_beside import closed_beside
 from kinform.contacts.search.pair_view import PartView
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.model.arrays import Array, Ints
@@ -54,10 +53,7 @@ class SolidStore:
         if not (_bounds_volume(a.index.mesh) and _bounds_volume(b.index.mesh)):
             return None
         home, guest, roles = (a, b, (0, 1)) if a.at_home else (b, a, (1, 0))
-        first, second = (
-            self._beside(part, other, role) or self._solid(part.index.mesh, role)
-            for part, other, role in ((home, guest, roles[0]), (guest, home, roles[1]))
-        )
+        first, second = self._solid(home.index.mesh, roles[0]), self._solid(guest.index.mesh, roles[1])
         if first is None or second is None:
             return None
         middle, scale = _scaling(home.index.mesh)
@@ -76,12 +72,6 @@ class SolidStore:
         for role in (0, 1):
             self.solids.pop((digest, role), None)
 
-    def _beside(self, part: PartView, other: PartView, role: int) -> Manifold | None:
-        """What of the part lies beside the other, closed; None where that is no less."""
-        mesh = part.index.mesh
-        closed = closed_beside(part, other)
-        return None if closed is None else _manifold(mesh, *closed, role)
-
     def _solid(self, mesh: Mesh, role: int) -> Manifold | None:
         key = (mesh.digest, role)
         try:
@@ -95,22 +85,16 @@ def _bounds_volume(mesh: Mesh) -> bool:
 
 
 def _solid(mesh: Mesh, role: int) -> Manifold | None:
-    """The mesh as a manifold whose facets remember their number."""
-    return _manifold(mesh, mesh.vertices, mesh.faces, np.arange(len(mesh.faces)), role)
-
-
-def _manifold(mesh: Mesh, vertices: Array, faces: Ints, numbers: Ints, role: int) -> Manifold | None:
-    """Faces (n, 3) with these numbers (n,) over vertices (V, 3) m as a manifold, with the scaling of the mesh that they
-    are of; those of an inside-out mesh are turned."""
+    """The mesh as a manifold whose facets remember their number; inside-out meshes are turned."""
     middle, scale = _scaling(mesh)
-    faces = faces if mesh.health.volume >= 0.0 else faces[:, ::-1]
+    faces = mesh.faces if mesh.health.volume >= 0.0 else mesh.faces[:, ::-1]
     solid = Manifold(
         Mesh64(
-            np.ascontiguousarray((vertices - middle) / scale),
+            np.ascontiguousarray((mesh.vertices - middle) / scale),
             np.ascontiguousarray(faces, dtype=np.uint64),
             run_index=np.array([0, 3 * len(faces)], dtype=np.uint64),
             run_original_id=np.array([role], dtype=np.uint32),
-            face_id=np.ascontiguousarray(numbers, dtype=np.uint64),
+            face_id=np.arange(len(faces), dtype=np.uint64),
         )
     )
     return solid if solid.status() == Error.NoError and not solid.is_empty() else None

@@ -92,7 +92,8 @@ def _planes(triangles: Array, size: float) -> _Sides:
     edges = _edges(triangles)
     normal, long = _cross(edges[0], edges[1]), np.abs(edges).max(axis=(0, 1))
     spare = size * (CLEARLY_APART * np.abs(normal).max(axis=0) + CLEARLY_ROUNDED * long**2)
-    offset = _along(*normal, triangles[0])
+    x, y, z = normal
+    offset = _along(x, y, z, triangles[0])
     return [(normal, offset + spare), (-normal, spare - offset)]
 
 
@@ -102,9 +103,9 @@ def _borders(triangles: Array, size: float) -> _Sides:
     normal, long = _cross(edges[0], edges[1]), np.abs(edges).max(axis=(0, 1))
     out = []
     for edge, corner in zip(edges, triangles, strict=True):
-        across = _cross(edge, normal)
+        x, y, z = across = _cross(edge, normal)
         spare = size * (CLEARLY_APART * np.abs(across).max(axis=0) + CLEARLY_ROUNDED * long**3)
-        out.append((across, _along(*across, corner) + spare))
+        out.append((across, _along(x, y, z, corner) + spare))
     return out
 
 
