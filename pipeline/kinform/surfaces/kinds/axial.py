@@ -15,7 +15,6 @@ from kinform.surfaces.constants import ON_AXIS
 from kinform.surfaces.groups import columns_of
 from kinform.surfaces.kinds.batch import Batch, Params
 
-
 OF_AXIS = 6
 """The first so many columns of `Params` are those of the axis."""
 

@@ -70,7 +70,7 @@ def _taper(batch: Batch, axis: Array, region: Ints, edge: Ints) -> tuple[Params,
     x, y = frames(axis)
     group = np.repeat(region, 2)
     vertex = work.ends[edge].ravel()
-    middle = group_mean_of(group, work.columns, vertex, count)
+    middle = group_mean_of(group, list(work.columns), vertex, count)
     u, v, t = np.empty((3, len(vertex)))
     for rows in slices(len(vertex), constants.ROWS):
         mine = group[rows]

@@ -96,8 +96,8 @@ class Facets:
         return self._ends[1].take(edges)
 
     @cached_property
-    def _ends(self) -> Ints:
-        return np.ascontiguousarray(self.ends.T)
+    def _ends(self) -> tuple[Ints, Ints]:
+        return np.ascontiguousarray(self.ends[:, 0]), np.ascontiguousarray(self.ends[:, 1])
 
 
 def angles(n0: Array, n1: Array) -> Array:

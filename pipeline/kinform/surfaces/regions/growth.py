@@ -98,6 +98,8 @@ def pursue(territory: Territory, kind: Kind, batch: Batch, side: Ints) -> Growth
     surfaces = Candidates(kind.of(origin), params[origin], side[origin], constants.LOOSE * fit).refine(batch, 2)
     batch, surfaces = _grow(territory, surfaces, _settle(territory, surfaces, batch))
     batch, number = batch.compact()
+    if not len(number):
+        return Growth(surfaces.of(number), batch, origin[number])
     kept = surfaces.of(number).refine(batch, 2)
     kept = kept.within(_justify(kept, batch, territory.scales_of(batch)))
     batch = _settle(territory, kept, batch)

@@ -190,7 +190,6 @@ def _search(territory: Territory, tried: Flags, suits: Callable[[Kind, Ints], Fl
     """One round of hypotheses from seeds, of all kinds and both sides; the seeds are tried from now on. `suits` says
     which of the seeds (n,) a kind is tried at."""
     growths: list[Growth] = []
-    work = territory.patchwork
     edges = territory.smooth
     both = [_seeds(territory, edges, tried, side) for side in (1, -1)]
     seeds = np.concatenate(both)
@@ -253,7 +252,8 @@ def _seeds(territory: Territory, edges: Ints, tried: Flags, side: int) -> Ints:
     wider = best.copy()
     reach = np.where(open_, best.take(target), -1)
     wider[here] = np.maximum(best.take(here), np.maximum.reduceat(reach, heads(owner).nonzero()[0]))
-    return start.take((rank >= np.minimum(wider.take(a), wider.take(b))).nonzero()[0])
+    foremost: Ints = start.take((rank >= np.minimum(wider.take(a), wider.take(b))).nonzero()[0])
+    return foremost
 
 
 def _ruled(territory: Territory, edges: Ints) -> Ints:

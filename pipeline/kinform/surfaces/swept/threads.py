@@ -10,7 +10,7 @@ what is left (see `lines`); a least squares over the polylines then gives axis a
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -71,10 +71,11 @@ def threads(work: Patchwork, loose: Flags, about: Sequence[Line], scale: Scale) 
     if int(free.sum()) < constants.THREAD_POLYGONS:
         return out
     edges = _beside(work, free)
-    for axis, point in _with_helices(work, edges, about, scale):
+    for (axis, point), level in _with_helices(work, edges, about, scale):
         if int(free.sum()) < constants.THREAD_POLYGONS:
             break
-        thread = _about(work, free, edges, axis, point, scale)
+        beside = level.take(among(level, edges).nonzero()[0]) if out else level
+        thread = _about(work, free, edges, beside, _Screw(axis, point, 0.0), scale)
         if thread is not None:
             out.append(thread)
             free[thread.polygons] = False
@@ -88,15 +89,15 @@ def _beside(work: Patchwork, free: Flags) -> Ints:
 
 
 def _about(
-    work: Patchwork, free: Flags, edges: Ints, axis: Array, point: Array, scale: Scale
+    work: Patchwork, free: Flags, edges: Ints, level: Ints, start: _Screw, scale: Scale
 ) -> Description | None:  # fmt: skip
-    """The thread about a line, if there is one, among free polygons, whose edges these are."""
+    """The thread about a line, if there is one, among free polygons, whose edges these are; those that may be level are
+    known."""
     if len(edges) < constants.THREAD_POLYGONS:
         return None
-    start = _Screw(axis, point, 0.0)
     best: tuple[float, _Screw, Ints] | None = None
-    for advance in _advances(work, edges, start, scale):
-        screw = _refine(work, edges, _Screw(axis, point, advance), scale)
+    for advance in _advances(work, level, start, scale):
+        screw = _refine(work, edges, replace(start, advance=advance), scale)
         if screw is None:
             continue
         helices = _helices(work, edges, screw, scale)
@@ -112,10 +113,10 @@ def _about(
     return _description(work, edges, best[1], best[2], scale)
 
 
-def _with_helices(work: Patchwork, edges: Ints, about: Sequence[Line], scale: Scale) -> list[Line]:
-    """Those of the lines about which edges may turn enough for `_advances`: bounds from lengths need no angles, are had
-    of all lines at once, and leave few."""
-    out: list[Line] = []
+def _with_helices(work: Patchwork, edges: Ints, about: Sequence[Line], scale: Scale) -> list[tuple[Line, Ints]]:
+    """Those of the lines about which edges may turn enough for `_advances`, each with edges that may be level there:
+    bounds from lengths need no angles, are had of all lines at once, and leave few."""
+    out: list[tuple[Line, Ints]] = []
     enough = (1.0 - constants.PLAINLY) * 2 * np.pi * constants.TURNED
     shown = (1.0 - constants.PLAINLY) * constants.ADVANCE_NOISES / constants.ADVANCE_SHOWS * scale.noise
     for run in slices(len(about), max(constants.ROWS // len(work.vertices), 1)):
@@ -130,7 +131,7 @@ def _with_helices(work: Patchwork, edges: Ints, about: Sequence[Line], scale: Sc
         turn = np.minimum(constants.ARC * across / np.maximum(np.sqrt(one * other), 1e-300), constants.HELIX_STEP)
         flat = (1.0 - constants.PLAINLY) * rise < constants.STEEP[1] * turn * (one + other) / 2
         turned = np.bincount(line, np.where(flat & (rise > shown), turn, 0.0), len(some))
-        out += [some[k] for k in np.flatnonzero(turned >= enough).tolist()]
+        out += [(some[k], edge[line == k]) for k in np.flatnonzero(turned >= enough).tolist()]
     return out
 
 
@@ -177,9 +178,7 @@ def _slopes(
 
 
 def _advances(work: Patchwork, edges: Ints, start: _Screw, scale: Scale) -> list[float]:
-    """Advances that many edges have in common, the most turned first."""
-    distance = _distances(work, [(start.axis, start.point)])[0]
-    edges = edges.take(_level(work, edges, distance, constants.WIDE[0], scale).nonzero()[0])
+    """Advances that many of the edges, which may be level, have in common, the most turned first."""
     advance, doubt, turn, usable = _slopes(work, work.ends[edges], start, scale, constants.WIDE[0])
     rows = np.flatnonzero(usable & (doubt < constants.ADVANCE_SHOWS * np.abs(advance)))
     out: list[float] = []
