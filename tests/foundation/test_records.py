@@ -1,4 +1,4 @@
-"""An altered record is the one that `dataclasses.replace` makes."""
+"""An altered record is the one that `dataclasses.replace` makes, and one made at once that of its constructor."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kinform.foundation.records import altered
+from kinform.foundation.records import altered, made
 
 
 @dataclass(frozen=True)
@@ -29,11 +29,11 @@ values = st.fixed_dictionaries({}, optional={"width": st.floats(allow_nan=False)
 @given(values)
 def test_it_has_the_values_that_are_given_and_the_others_as_they_were(changes: dict) -> None:
     box = _Box(1.5, "a", [1, 2])
-    made = altered(box, **changes)
-    assert type(made) is _Box
-    assert made == replace(box, **changes)
-    assert made.inside is box.inside
-    assert list(vars(made)) == [f.name for f in fields(box)]
+    other = altered(box, **changes)
+    assert type(other) is _Box
+    assert other == replace(box, **changes)
+    assert other.inside is box.inside
+    assert list(vars(other)) == [f.name for f in fields(box)]
     assert box == _Box(1.5, "a", [1, 2])
 
 
@@ -48,3 +48,19 @@ def test_it_is_frozen_and_has_no_other_fields() -> None:
         altered(_Box(1.0), width=2.0).width = 3.0  # type: ignore[misc]
     with pytest.raises(TypeError, match="no field height"):
         altered(_Box(1.0), height=2.0)
+
+
+def test_one_made_at_once_is_that_of_its_constructor() -> None:
+    inside = [3]
+    box = made(_Box, width=2.0, name="b", inside=inside)
+    assert box == _Box(2.0, "b", [3])
+    assert box.inside is inside
+    assert box.doubled == 4.0
+    with pytest.raises(AttributeError):
+        box.width = 3.0  # type: ignore[misc]
+
+
+@pytest.mark.parametrize("given", [{"width": 1.0}, {"width": 1.0, "name": "", "inside": [], "height": 2.0}])
+def test_all_fields_and_no_others_are_given(given: dict) -> None:
+    with pytest.raises(TypeError, match="width, name, inside"):
+        made(_Box, **given)

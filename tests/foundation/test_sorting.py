@@ -11,6 +11,7 @@ from kinform.foundation.sorting import (
     DIGIT,
     FEW_BITS,
     MANY,
+    among,
     ascending,
     distinct,
     median,
@@ -54,3 +55,9 @@ def test_distinct_keys_how_often_each_occurs_and_which_is_which(numbers):
     those, places = numbered(keys, (1 << 40) + 1)
     assert those.tolist() == wanted.tolist()
     assert places.tolist() == inverse.tolist()
+
+
+@given(st.lists(st.integers(0, 30), max_size=40), st.sets(st.integers(0, 30)))
+def test_keys_are_found_among_ordered_ones(keys, ordered):
+    found = among(np.array(keys, np.int64), np.array(sorted(ordered), np.int64))
+    assert found.tolist() == [key in ordered for key in keys]

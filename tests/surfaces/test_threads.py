@@ -11,9 +11,9 @@ from support.meshes import kinds, of_manifold
 from support.solids import block
 
 from kinform.model.tolerances import Tolerances
-from kinform.surfaces import recover
+from kinform.surfaces import constants, recover
 from kinform.surfaces.recovery import _Start
-from kinform.surfaces.swept.threads import _advances, _Screw, _with_helices
+from kinform.surfaces.swept.threads import _advances, _distances, _level, _Screw, _with_helices
 
 
 def posed(seed):
@@ -102,11 +102,15 @@ def test_no_line_that_suggests_an_advance_is_left_out(lead, segments):
         axis = pose[:3, 2] + far * draw.normal(size=3)
         place = (pose[:3, 3] - start.centre) / start.diagonal + far * draw.normal(size=3)
         about.append((axis / np.linalg.norm(axis), place))
-    edges = np.arange(len(start.work.a))
-    kept = {id(axis) for axis, _ in _with_helices(start.work, edges, about, start.scale)}
-    suggests = {
-        id(axis) for axis, place in about if _advances(start.work, edges, _Screw(axis, place, 0.0), start.scale)
-    }
+    work, scale, edges = start.work, start.scale, np.arange(len(start.work.a))
+    kept = {id(line): level for line, level in _with_helices(work, edges, about, scale)}
+    suggests = set()
+    for line in about:
+        level = edges[_level(work, edges, _distances(work, [line])[0], constants.WIDE[0], scale)]
+        if id(line) in kept:
+            assert kept[id(line)].tolist() == level.tolist()
+        if _advances(work, level, _Screw(*line, 0.0), scale):
+            suggests.add(id(line))
     assert 12 <= len(suggests)
-    assert suggests <= kept
+    assert suggests <= kept.keys()
     assert len(kept) < len(about)
