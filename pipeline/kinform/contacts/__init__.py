@@ -14,8 +14,9 @@ part, gaps and areas. 5. Surfaces without a chart are compared by their facets (
 profiles (`mating.threads`). Where parts share no surface, `higher` looks for points and lines: balls, rollers and
 rings (`rounds`, `tapers`, `rings`), edges on planes (`edges`), sharp rims on balls, cones, bores and rings (`rims`),
 cams and teeth by their outlines (`profiles`); beside shared surfaces, only rims that stand all round in a seat.
-6. `overlap` measures how solids go into each other, deeper than chord errors and mates explain. `fastening` reads the
-patches for hints that parts are one body, which nobody has to believe.
+Where nothing of all this is there and the meshes come as near as parts that touch do, the place is a patch of a contact
+that is not known (`higher.unknown`). 6. `overlap` measures how solids go into each other, deeper than chord errors and
+mates explain. `fastening` reads the patches for hints that parts are one body, which nobody has to believe.
 
 An example, `fixtures/pairs/cylindrical_gap_015`: a shaft of 10 mm radius in a bore of 10.15 mm. Their boxes meet; the
 tolerance is 0.5 mm. The mate of the shaft's cylinder (124 facets) with the bore's has a gap of 0.15 mm, three times

@@ -180,6 +180,9 @@ TOUCH = 0.12
 CAPTIVE = 0.42
 """Within this a pin in a slot, a ball in a groove or a tooth between two that has as much play on either side counts
 as held by both."""
+NEAREST_SLACK = 1e-6
+"""Share of their size by which facets that are as near to a place as the nearest may be farther off: in corners and
+along edges there are several."""
 ZONE = 0.01
 """Bounds the zone of a point or a line whose area is stated."""
 OPPOSITE_COSINE = -0.999

@@ -12,6 +12,7 @@ from kinform.contacts.higher.points_and_lines import higher_pairs, pins_in_slots
 from kinform.contacts.higher.profiles import profile_contacts
 from kinform.contacts.higher.rims import rim_contacts, seats
 from kinform.contacts.higher.sharp import convex_edges
+from kinform.contacts.higher.unknown import unknown_touches
 from kinform.contacts.mating.analytic import analytic_mates
 from kinform.contacts.mating.coarse import rounded
 from kinform.contacts.mating.enclosing import enclosing_patches
@@ -73,6 +74,8 @@ def pair_contacts(
     patches = [_of_scattered(pair, patch, alone) for patch in patches]
     patches.sort(key=_place_in_list)
     interference = find_interference(pair, patches, solids)
+    if not patches and interference is None:
+        patches = unknown_touches(pair)
     least = NARROW_SHARE * sum(patch.area for patch in patches)
     if patches:
         narrow = [patch for patch in mated if patch.narrow and patch.area >= least]

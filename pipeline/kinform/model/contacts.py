@@ -68,6 +68,9 @@ class Patch:
     narrow: bool = False
     """True: the overlap is narrower than the lenses that two outlines of facets make of one edge, so that it is not
     known whether these faces touch. Found beside other patches only."""
+    unknown: bool = False
+    """True: the parts come this near, and no kind of contact that is known says how they touch: a point where they are
+    nearest. Found where nothing else is. It holds nothing for sure, and says that nothing is free for sure."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,7 +2,8 @@
 
 The connection is followed from the ground (without a known ground: from the largest cluster). Where the
 function intends a joint between the cluster and the rest, KF401 reports it as missing and this rule
-does not repeat it.
+does not repeat it. Parts that overlap (KF201) touch. Where parts come as near each other as parts that touch do, and no
+contact that is known says how (KF209), the rule is inconclusive: it denies nothing that it does not know.
 
 Why it matters: a part that nothing holds has six freedoms. Usually its pose is wrong, a part between is
 missing, or the clearance is wider than the contact tolerance.
@@ -18,37 +19,51 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Findings, Rule
+from kinform.consistency.outcome import Outcome, settled
+from kinform.consistency.rule import Rule
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.words import quoted
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
+from kinform.model.findings import Finding
 
 
-def check(context: Context) -> Findings:
+def check(context: Context) -> Outcome:
     """Clusters of parts that are not connected with the ground."""
-    clusters = _clusters(context.assembly, context.contacts)
+    apart = _apart(context, unknown=True)
+    sure = {name for cluster in apart for name in cluster}
+    doubtful = [cluster for cluster in _apart(context, unknown=False) if not sure.issuperset(cluster)]
+    doubt = (
+        f"{quoted([cluster[0] for cluster in doubtful])}: no contact that is known, but see KF209" if doubtful else ""
+    )
+    return settled([_finding(context, cluster) for cluster in apart], doubt)
+
+
+def _apart(context: Context, *, unknown: bool) -> list[tuple[str, ...]]:
+    """The clusters that are not connected, contact of no known kind taken for one or not."""
+    clusters = _clusters(context.assembly, context.contacts, unknown=unknown)
     home = _home(context, clusters)
-    for cluster in clusters:
-        if cluster == home or _intended(context.assembly, cluster):
-            continue
-        alone = len(cluster) == 1
-        part = context.assembly.part(cluster[0])
-        yield RULE.finding(
-            cluster,
-            f"{quoted(cluster)} {'touches' if alone else 'touch'} "
-            f"{'no other part' if alone else 'each other, but no other part'}",
-            found="no surface within the contact tolerance of another part",
-            intended="contact with the rest of the assembly",
-            place=part.X_WP[:3, 3] if part.mesh is None else _middle(context.assembly, cluster[0]),
-            declared=part.source,
-            remedy="Check the pose, add the part that is missing between, or join it by [[group]] or [[assume]].",
-        )
+    return [cluster for cluster in clusters if cluster != home and not _intended(context.assembly, cluster)]
 
 
-def _clusters(assembly: Assembly, contacts: Contacts) -> list[tuple[str, ...]]:
-    """Parts connected by patches, groups, assumptions, and stick bodies by their intended joints."""
+def _finding(context: Context, cluster: tuple[str, ...]) -> Finding:
+    alone = len(cluster) == 1
+    part = context.assembly.part(cluster[0])
+    return RULE.finding(
+        cluster,
+        f"{quoted(cluster)} {'touches' if alone else 'touch'} "
+        f"{'no other part' if alone else 'each other, but no other part'}",
+        found="no contact that is known, and no point that comes as near another part as parts that touch do",
+        intended="contact with the rest of the assembly",
+        place=part.X_WP[:3, 3] if part.mesh is None else _middle(context.assembly, cluster[0]),
+        declared=part.source,
+        remedy="Check the pose, add the part that is missing between, or join it by [[group]] or [[assume]].",
+    )
+
+
+def _clusters(assembly: Assembly, contacts: Contacts, *, unknown: bool) -> list[tuple[str, ...]]:
+    """Parts connected by patches, overlaps, groups, assumptions, and stick bodies by their intended joints."""
     index = {str(part.name): k for k, part in enumerate(assembly.parts)}
     sets = UnionFind(len(index))
 
@@ -57,7 +72,10 @@ def _clusters(assembly: Assembly, contacts: Contacts) -> list[tuple[str, ...]]:
             sets.union(index[names[0]], index[other])
 
     for patch in contacts.patches:
-        join(patch.parts)
+        if unknown or not patch.unknown:
+            join(patch.parts)
+    for overlap in contacts.interferences:
+        join(overlap.parts)
     for group in assembly.groups:
         join(group.parts)
     pairs = [a.between for a in assembly.assumptions if not a.ignore]

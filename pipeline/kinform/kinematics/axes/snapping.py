@@ -176,7 +176,7 @@ def _coaxial(bundle: Sequence[_Axis], direction: Array) -> list[list[_Axis]]:
 
     def excess(group: Sequence[_Axis]) -> list[float]:
         mean = _mean_foot(group, direction)
-        return [norm(a.foot(direction) - mean) / a.most_distance for a in group]
+        return [norm(a.foot(direction) - mean) / max(a.most_distance, 1e-300) for a in group]
 
     return _cluster(bundle, coaxial, excess, _within(feet, 2.0 * float(most.max())))
 

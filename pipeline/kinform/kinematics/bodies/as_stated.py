@@ -70,7 +70,7 @@ def as_stated(
             pair in assumed or pair in sticks or not (whole or idle(*(some_part[name] for name in pair)))
         ):
             out.append(joint)
-        elif joint is not None:
+        elif joint is not None and not _unknown(joint, patches):
             asides.append(_aside(joint, patches))
     return AsStated(tuple(out), tuple(asides))
 
@@ -124,10 +124,9 @@ def _in_force(
         return joint
     chosen = types.index(joint.type) if joint is not None and joint.type in types else 0
     name, taken = wanted[chosen].name, stated[chosen]
-    if joint is None or not joint.patches:
-        return replace(
-            taken, status="stated", reason=f"the bodies do not touch: '{name}' is taken as stated", motion=""
-        )
+    if joint is None or not joint.patches or _unknown(joint, patches):
+        what = "do not touch" if joint is None or not joint.patches else "touch in no known way"
+        return replace(taken, status="stated", reason=f"the bodies {what}: '{name}' is taken as stated", motion="")
     corners = np.concatenate([patches[k].points for k in joint.patches])
     place = corners.mean(axis=0) if taken.point is None else taken.point
     if joint.status in ("ambiguous", "blocked"):
@@ -148,6 +147,11 @@ def _in_force(
         singular_values=joint.singular_values,
         readings=(replace(reading_of(replace(joint, blockers=()), ""), cause=cause),),
     )
+
+
+def _unknown(joint: Joint, patches: Sequence[Patch]) -> bool:
+    """Whether all that touches does so in no known way."""
+    return bool(joint.patches) and all(patches[k].unknown for k in joint.patches)
 
 
 def _aside(joint: Joint, patches: Sequence[Patch]) -> Aside:

@@ -79,6 +79,10 @@ def decide_all(pairs: Pairs, merger: Merger, *, fusing: bool = True) -> dict[Pai
             a, b = of_part[patch.parts[0]], of_part[patch.parts[1]]
             if a != b and not nothing(*patch.parts):
                 touching[(a, b) if a < b else (b, a)].append((index, patch, a > b))
+        for pair, members in touching.items():
+            # what is known decides; what is not known leaves in doubt only what nothing else says
+            known = [member for member in members if not member[1].unknown]
+            touching[pair] = known or members
         keys = {pair: tuple(-1 - i if turned else i for i, _, turned in touching[pair]) for pair in sorted(touching)}
         new = {key: pair for pair, key in keys.items() if key not in known_answers}
         decided = pairs.decide([(touching[pair], [of_name[n] for n in pair]) for pair in new.values()])

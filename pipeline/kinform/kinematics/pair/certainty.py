@@ -1,10 +1,10 @@
 """How sure the answer of a decision is: what in the evidence makes it doubtful, in words.
 
-A doubtful answer is `ambiguous`, never silently one or the other. The doubts: a singular value between free
-and held; facets of no known surface, lines and points that alone hold something (where they touch next is
-not known); scraps of surfaces that alone do (`scraps`); axes that nearly agree, which a designer means as one; touches
-too small or too far apart to be meant; an axis that the fits hardly know (`uncertainty`); and faces that may be end
-stops (`stops`).
+A doubtful answer is `ambiguous`, never silently one or the other. The doubts: a singular value between free and held;
+contact of no known kind; facets of no known surface, lines and points that alone hold something (where they touch next
+is not known); scraps of surfaces that alone do (`scraps`); axes that nearly agree, which a designer means as one;
+touches too small or too far apart to be meant; an axis that the fits hardly know (`uncertainty`); and faces that may be
+end stops (`stops`).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from math import sqrt
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, perpendicular, sine
-from kinform.foundation.words import counted
+from kinform.foundation.words import counted, quoted
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.pair.freedoms import freedoms, freedoms_beyond
@@ -58,6 +58,13 @@ def certainty(
     """How sure the freedoms `basis` (6, k) are, with singular values (6,), found among `twists` (6, n) of which
     `preserved` (items, n) says what each patch preserves."""
     count = basis.shape[1]
+    if all(item.patch.unknown for item in evidence.items):
+        least = min((item.patch for item in evidence.items), key=lambda patch: patch.gap)
+        return Certainty(
+            "ambiguous",
+            f"{quoted(least.parts)} come within {1e3 * max(least.gap, 0.0):.2g} mm of each other, in a way that is no "
+            "contact that kinform knows: what it holds is not known",
+        )
     if count < 6 and values[count] < tolerances.held:
         return Certainty(
             "ambiguous",

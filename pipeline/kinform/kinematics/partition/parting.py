@@ -104,7 +104,7 @@ def contact_of_pairs(patches: Sequence[Patch]) -> dict[PartPair, Contact]:
     """All contact of each pair of parts, sorted by their names."""
     between: dict[PartPair, list[Patch]] = {}
     for patch in patches:
-        if not patch.narrow:
+        if not (patch.narrow or patch.unknown):
             between.setdefault(patch.parts, []).append(patch)
     return {pair: Contact.of(between[pair]) for pair in sorted(between)}
 
