@@ -260,7 +260,8 @@ def test_a_rim_touches_within_what_counts_as_touch(name, sense):
     for share, touching in ((0.8, True), (1.2, False)):
         first, second = make(64)
         lifted = first.translate((0, 0, sense * share * touch / -directions[0, 2]))
-        patches = placed((lifted, second), False, np.eye(4))[1].patches
+        found = placed((lifted, second), False, np.eye(4))[1].patches
+        patches = [patch for patch in found if not patch.unknown]  # chords of facets leave that in doubt
         assert bool(patches) == touching
         for patch in patches:
             assert patch.gap == pytest.approx(sense * share * touch * MM, rel=0.02)

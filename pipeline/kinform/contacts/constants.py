@@ -273,11 +273,6 @@ one body, and 10 are across a joint. No corpus chose the number, and between 3.5
 
 # overlap
 
-BESIDE_SHARE = 0.5
-"""Share of its facets up to which only those of a part beside the other are cut with it, closed again, which takes as
-long as to make a manifold of as many."""
-BESIDE_MARGIN = 1e-6
-"""... with those about their common box, in diagonals of the part: more than rounding."""
 DEPTH_SAMPLES = 400
 """Points at which the depth of one pair's overlap is measured."""
 DEPTH_SAMPLES_LEAST = 16
