@@ -151,6 +151,9 @@ MODEL_SHARED = 8.0
 MEETING_MARGIN = 1e-6
 """Facets whose swept profiles come no nearer than this never meet."""
 
+CHUNK = 64
+"""Facets that lie together and are asked as one whether any of them can meet any of others."""
+
 # driving/meeting_spans: where along a motion facets can meet
 
 DIVIDED_TO = 0.02
@@ -161,7 +164,7 @@ DIVIDED_AT_ONCE = 2
 """Times that they are divided into four before they are asked."""
 DIVIDED_MOST = 60_000
 """Pieces of a part at most."""
-PROFILE_CELLS = 250
+PROFILE_CELLS = 60
 """Profiles of one surface that are the same to so many parts of where both parts are, are taken together."""
 TESTED_MOST = 20_000_000
 """Groups of one part times those of the other, up to which they are asked."""
@@ -169,6 +172,8 @@ SPANS_MOST = 4_000_000
 """Spans of pairs of groups in all."""
 PLACES = 8192
 """Spans begin and end at so many places of a turn, or of the length of the longer part."""
+SECTORS = 64
+"""Of the motion, for each of which it is known which facets can meet in it."""
 TESTED_TOGETHER = 64
 """Groups of one that are asked at once."""
 

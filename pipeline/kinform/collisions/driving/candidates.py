@@ -18,7 +18,7 @@ from kinform.collisions.constants import (
 )
 from kinform.collisions.driving.meeting_spans import Spans, meeting_spans
 from kinform.collisions.driving.swept_profiles import Meeting, Profile, meeting
-from kinform.collisions.pair.advancement import First, Search, first_crossing
+from kinform.collisions.pair.advancement import First, Near, Search, first_crossing
 from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.distance_bounds import Apart, Counted, Wholes
 from kinform.collisions.pair.mate_surfaces import Kept
@@ -84,6 +84,10 @@ class Candidate:
         if self._modelled > all_facets:
             return self.anywhere
         facets = self._meeting.within(*sorted((sign * begin, sign * end)))
+        return self._shared(facets, all_facets)
+
+    def _shared(self, facets: tuple[Ints, Ints], all_facets: int) -> PairTest | None:
+        """With some facets, and some more where these have been asked for."""
         count = len(facets[0]) + len(facets[1])
         if not (len(facets[0]) and len(facets[1])):
             return None
@@ -93,6 +97,17 @@ class Candidate:
         self._modelled += count if count <= MODEL_MOST * all_facets else all_facets + 1
         return self.anywhere if self._modelled > all_facets else self._test(facets)
 
+    def _met(self, sign: int, begin: float, end: float) -> PairTest:
+        """With the facets that can meet there other than along mates."""
+        test, spans = self.anywhere, self._spans
+        assert test is not None and spans is not None
+        all_facets = sum(map(len, test.facets))
+        if self._modelled > all_facets:
+            return test
+        counted = spans.facets(*sorted((sign * begin, sign * end)))
+        first, second = (side[some] for side, some in zip(test.facets, counted, strict=True))
+        return self._shared((first, second), all_facets) or test.some((first, second))
+
     @cached_property
     def anywhere(self) -> PairTest | None:
         """With the facets that can meet; None where none can."""
@@ -101,7 +116,8 @@ class Candidate:
     def _test(self, facets: tuple[Ints, Ints]) -> PairTest | None:
         if not (len(facets[0]) and len(facets[1])):
             return None
-        test = PairTest(self._shapes, *self.names, facets, self.mates)
+        known = self.__dict__.get("anywhere")
+        test = PairTest(self._shapes, *self.names, facets, self.mates) if known is None else known.some(facets)
         self._tests.append(test)
         return test
 
@@ -117,9 +133,18 @@ class Candidate:
         if test is None:
             return None
         course = self.course(sign, test.facets)
-        if self._spans is not None:
-            course = replace(course, meets=self._spans.towards(sign))
-        return None if course.apart(start, end) else Search(test, course, start, end, self.fine)
+        if self._spans is None:
+            return Search(test, course, start, end, self.fine)
+        course = replace(course, meets=self._spans.towards(sign))
+        if course.apart(start, end):
+            return None
+        near = Near(lambda begin, end: self._met(sign, begin, end), self.window)
+        return Search(test, course, start, end, self.fine, near)
+
+    @property
+    def told(self) -> bool:
+        """Whether it is known where facets can meet other than along mates."""
+        return self._spans is not None
 
     @cached_property
     def _spans(self) -> Spans | None:
@@ -176,15 +201,18 @@ class Approach:
             return self._through(self._window, reach)
         following, short = self._wholes.step(self._candidate.course(self._sign), self.s, reach)
         if short:
-            self._open()
+            self._open(reach)
         else:
             self.s = following
         return None
 
-    def _open(self) -> None:
+    def _open(self, reach: float) -> None:
         """The window that begins where it is; where nothing can meet in it, it goes on behind."""
         until = self.s + self._candidate.window
         mating = self.s <= self._start and self._candidate.mates
+        if mating and self._candidate.told:
+            self._follow(self.s, reach)
+            return
         test = self._candidate.anywhere if mating else self._candidate.between(self._sign, self.s, until)
         if test is None:
             self.s = until

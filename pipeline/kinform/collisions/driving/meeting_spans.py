@@ -23,6 +23,7 @@ from kinform.collisions.constants import (
     DIVIDED_TO,
     PLACES,
     PROFILE_CELLS,
+    SECTORS,
     SPANS_MOST,
     TESTED_MOST,
     TESTED_TOGETHER,
@@ -39,11 +40,11 @@ keep, do so on a mate."""
 class Spans:
     """Places of a motion, disjoint and ascending, at which something can meet; of a turn within (0, 2π)."""
 
-    def __init__(self, low: Array, high: Array, turning: bool):
-        self.low, self.high, self._turning = low, high, turning
+    def __init__(self, low: Array, high: Array, turning: bool, sectors: tuple[Sectors, Sectors]):
+        self.low, self.high, self._turning, self._sectors = low, high, turning, sectors
 
     @classmethod
-    def of(cls, low: Array, high: Array, turning: bool, step: float) -> Spans:
+    def of(cls, low: Array, high: Array, turning: bool, step: float, sectors: tuple[Sectors, Sectors]) -> Spans:
         """Of spans in any order, some larger: they begin and end at multiples of `step`, so that it does not matter how
         finely facets were divided or taken together."""
         first = np.floor(low / step).astype(np.int64)
@@ -56,7 +57,12 @@ class Spans:
             over = last[last > around] - around
             first, last = np.append(first, np.zeros(len(over), np.int64)), np.append(np.minimum(last, around), over)
         begins, ends = _covered(first, last)
-        return cls(np.asarray(step * begins), np.asarray(step * ends), turning)
+        return cls(np.asarray(step * begins), np.asarray(step * ends), turning, sectors)
+
+    def facets(self, begin: float, end: float) -> tuple[Ints, Ints]:
+        """Those of both parts that can meet others between two places, as they were counted."""
+        first, second = (side.facets(begin, end) for side in self._sectors)
+        return first, second
 
     def towards(self, sign: int) -> Callable[[float], tuple[bool, float]]:
         """Whether something can meet at s ≥ 0 of a motion to one side, and up to where that stays so."""
@@ -73,12 +79,45 @@ class Spans:
         return at
 
 
+class Sectors:
+    """In which of some equal sectors of the motion the facets of one part can meet others."""
+
+    def __init__(self, groups: _Groups, group: Ints, low: Array, high: Array, turning: bool):
+        """Of the spans (m,) of its groups."""
+        self._groups, self._turning = groups, turning
+        self._origin = 0.0 if turning else float(low.min(initial=np.inf))
+        whole = TURN if turning else float(high.max(initial=-np.inf)) - self._origin
+        self._step = whole / SECTORS
+        first, last = (np.floor((side - self._origin) / self._step).astype(np.int64) for side in (low, high))
+        if turning:
+            last = np.minimum(last - first, SECTORS - 1)
+            first %= SECTORS
+            last += first
+        # counted in at the one and out behind the other, of a turn once more round
+        columns = 2 * SECTORS + 1
+        count = len(groups.low)
+        change = np.bincount(group * columns + first, minlength=count * columns)
+        change -= np.bincount(group * columns + last + 1, minlength=count * columns)
+        met = np.cumsum(change.reshape(count, columns), axis=1) > 0
+        self._met = met[:, :SECTORS] | met[:, SECTORS : 2 * SECTORS]
+
+    def facets(self, begin: float, end: float) -> Ints:
+        """Those that can meet others between two places, ascending."""
+        first, last = (math.floor((s - self._origin) / self._step) for s in (begin, end))
+        if self._turning:
+            columns = np.arange(first, min(last, first + SECTORS - 1) + 1) % SECTORS
+        else:
+            columns = np.arange(max(first, 0), min(last, SECTORS - 1) + 1)
+        return self._groups.facets(np.asarray(self._met[:, columns].any(axis=1)))
+
+
 @dataclass(frozen=True, eq=False)
 class Pieces:
     """Pieces of facets, of `surface` (n,) each, by their corners (n, 3, 3): across the axis and along it."""
 
     corners: Array
     surface: Ints
+    facet: Ints
     low: Array
     high: Array
     """(n, 2) boxes of what they keep: radius and height, or shadow."""
@@ -87,23 +126,23 @@ class Pieces:
     """(n,) rad about the axis, or m along it, that they span; all round where they are on the axis."""
 
     @classmethod
-    def of(cls, corners: Array, surface: Ints, turning: bool, margin: float) -> Pieces:
+    def of(cls, corners: Array, surface: Ints, facet: Ints, turning: bool, margin: float) -> Pieces:
         """Of corners (n, 3, 3)."""
         flat, height = corners[..., :2], corners[..., 2]
         bottom, top = triangle_boxes(height)
         if not turning:
             low, high = triangle_boxes(flat)
-            return cls(corners, surface, low - margin, high + margin, bottom - margin, top + margin)
+            return cls(corners, surface, facet, low - margin, high + margin, bottom - margin, top + margin)
         radius = nearest(flat)
         low = np.stack([radius, bottom], axis=1)
         high = np.stack([triangle_boxes(np.hypot(flat[..., 0], flat[..., 1]))[1], top], axis=1)
         start, stop = spanned(flat, radius, margin)
-        return cls(corners, surface, low - margin, high + margin, start, stop)
+        return cls(corners, surface, facet, low - margin, high + margin, start, stop)
 
     def some(self, chosen: Flags) -> Pieces:
         """Some of them."""
         low, high, start, stop = (values[chosen] for values in (self.low, self.high, self.start, self.stop))
-        return Pieces(self.corners[chosen], self.surface[chosen], low, high, start, stop)
+        return Pieces(self.corners[chosen], self.surface[chosen], self.facet[chosen], low, high, start, stop)
 
     def divided(self, wide: Flags, turning: bool, margin: float) -> Pieces:
         """Wide ones in four."""
@@ -112,9 +151,11 @@ class Pieces:
         a, b, c = (self.corners[wide, k] for k in range(3))
         ab, bc, ca = 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)
         four = [np.stack(three, axis=1) for three in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
-        new, old = Pieces.of(np.concatenate(four), np.tile(self.surface[wide], 4), turning, margin), self.some(~wide)
+        surface, facet = (np.tile(side[wide], 4) for side in (self.surface, self.facet))
+        new, old = Pieces.of(np.concatenate(four), surface, facet, turning, margin), self.some(~wide)
         return Pieces(
             np.concatenate([old.corners, new.corners]), np.append(old.surface, new.surface),
+            np.append(old.facet, new.facet),
             np.concatenate([old.low, new.low]), np.concatenate([old.high, new.high]),
             np.append(old.start, new.start), np.append(old.stop, new.stop),
         )  # fmt: skip
@@ -141,6 +182,10 @@ class _Groups:
         self.high = np.maximum.reduceat(pieces.high[self._order], self._starts)
         self.surface = pieces.surface[self._order[self._starts]]
 
+    def facets(self, chosen: Flags) -> Ints:
+        """Facets of which some groups (k,) have pieces, ascending."""
+        return np.unique(self._pieces.facet[chosen[self.of]])
+
     def spans(self) -> tuple[Array, Array, Ints, Ints]:
         """Where the spans (k,) of all groups start and stop, disjoint in each; the first of each group, and how many it
         has."""
@@ -156,7 +201,7 @@ class _Groups:
 def meeting_spans(parts: Sequence[tuple[Array, Ints]], turning: bool, margin: float, along: Along) -> Spans | None:
     """Where facets of two parts, each by corners (n, 3, 3), across the axis and along it, and surfaces (n,), can meet
     when the second turns or slides; nearer than `margin` (m) is met. None: they are too many to be told."""
-    sides = [Pieces.of(corners, surfaces, turning, margin) for corners, surfaces in parts]
+    sides = [Pieces.of(corners, surfaces, np.arange(len(corners)), turning, margin) for corners, surfaces in parts]
     whole = TURN if turning else max(margin, *(float(np.ptp(side.corners[..., 2])) for side in sides))
     origin = np.maximum(*(side.low.min(axis=0) for side in sides))
     cell = np.maximum(np.minimum(*(side.high.max(axis=0) for side in sides)) - origin, margin) / PROFILE_CELLS
@@ -217,7 +262,10 @@ def _overlapping(first: _Groups, second: _Groups, margin: float, along: Along) -
 def _united(first: _Groups, second: _Groups, pairs: Ints, turning: bool, step: float) -> Spans | None:
     """Where the spans of pairs of groups overlap."""
     if not len(pairs):
-        return Spans(np.zeros(0), np.zeros(0), turning)
+        none = np.zeros(0)
+        nowhere = np.zeros(0, dtype=np.int64)
+        sectors = [Sectors(side, nowhere, none, none, True) for side in (first, second)]
+        return Spans(none, none, turning, (sectors[0], sectors[1]))
     (start_a, stop_a, at_a, count_a), (start_b, stop_b, at_b, count_b) = first.spans(), second.spans()
     i, j = pairs.T
     count = count_a[i] * count_b[j]
@@ -226,7 +274,9 @@ def _united(first: _Groups, second: _Groups, pairs: Ints, turning: bool, step: f
     pair = np.repeat(np.arange(len(pairs)), count)
     rank = np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
     a, b = at_a[i[pair]] + rank // count_b[j[pair]], at_b[j[pair]] + rank % count_b[j[pair]]
-    return Spans.of(start_a[a] - stop_b[b], stop_a[a] - start_b[b], turning, step)
+    low, high = start_a[a] - stop_b[b], stop_a[a] - start_b[b]
+    sectors = [Sectors(side, pairs[pair, k], low, high, turning) for k, side in enumerate((first, second))]
+    return Spans.of(low, high, turning, step, (sectors[0], sectors[1]))
 
 
 def _covered(first: Ints, last: Ints) -> tuple[Ints, Ints]:

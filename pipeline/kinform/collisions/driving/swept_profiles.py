@@ -12,9 +12,9 @@ from functools import cached_property
 
 import numpy as np
 
-from kinform.collisions.constants import LEVEL
+from kinform.collisions.constants import CHUNK, LEVEL
 from kinform.foundation.algebra.vectors import cross, perpendicular
-from kinform.foundation.meshes.boxes import bounds, facet_boxes
+from kinform.foundation.meshes.boxes import along_curve, bounds, facet_boxes
 from kinform.foundation.meshes.proximity import near_boxes
 from kinform.model.arrays import Array, Ints
 
@@ -157,8 +157,14 @@ class Meeting:
             return self.facets
         (start, stop), (first, last) = self._along
         sides, owners = [], []
-        for (low, high), (from_, to) in zip(self.kept, ((start, stop), (first + begin, last + end)), strict=True):
+        for some, (low, high), (from_, to) in zip(
+            self._possible(begin, end), self.kept, ((start, stop), (first + begin, last + end)), strict=True
+        ):
+            if some is not None:
+                from_, to = from_[some], to[some]
             owner, from_, to = _cut(from_, to) if self.turning else (np.arange(len(from_)), from_, to)
+            if some is not None:
+                owner = some[owner]
             sides.append(
                 (
                     np.column_stack([low[owner, :2], self.unit * from_]),
@@ -168,6 +174,49 @@ class Meeting:
             owners.append(owner)
         chosen = _near(sides[0], sides[1], self.margin)
         return self._some(0, owners[0][chosen[0]]), self._some(1, owners[1][chosen[1]])
+
+    def _possible(self, begin: float, end: float) -> tuple[Ints | None, Ints | None]:
+        """Places of the facets of both that lie together with some that can meet some there; None: any may."""
+        if max(map(len, self.facets)) <= CHUNK:
+            return None, None
+        low, high, pairs, orders = self._together
+        meet = low <= end
+        meet &= high >= begin
+        if self.turning:
+            # a whole number of turns from there
+            meet = np.floor((high - begin) / TURN) * TURN >= low - end
+        chosen = pairs[meet]
+        out = []
+        for k, order in enumerate(orders):
+            flags = np.zeros(len(order), dtype=bool)
+            flags[chosen[:, k]] = True
+            some = order[flags].ravel()
+            out.append(some[some >= 0])
+        return out[0], out[1]
+
+    @cached_property
+    def _together(self) -> tuple[Array, Array, Ints, tuple[Ints, Ints]]:
+        """Chunks of facets of both that lie together: from where to where of the motion (m,) pairs of them (m, 2) can
+        meet, and the places of the facets (c, CHUNK) of each, −1 where there is none."""
+        assert self._along is not None
+        orders, boxes = [], []
+        for (low, high), (from_, to) in zip(self.kept, self._along, strict=True):
+            low = np.column_stack([low[:, :2], self.unit * from_])
+            high = np.column_stack([high[:, :2], self.unit * to])
+            order = along_curve(low, high)
+            starts = np.arange(0, len(order), CHUNK)
+            boxes.append((np.minimum.reduceat(low[order], starts), np.maximum.reduceat(high[order], starts)))
+            padded = np.full(len(starts) * CHUNK, -1)
+            padded[: len(order)] = order
+            orders.append(padded.reshape(-1, CHUNK))
+        (low, high), (from_, to) = boxes
+        meets = np.ones((len(low), len(from_)), dtype=bool)
+        for axis in range(2):
+            meets &= low[:, axis, None] <= to[:, axis] + self.margin
+            meets &= high[:, axis, None] >= from_[:, axis] - self.margin
+        i, j = np.nonzero(meets)
+        begins, ends = (low[i, 2] - to[j, 2]) / self.unit, (high[i, 2] - from_[j, 2]) / self.unit
+        return begins, ends, np.stack([i, j], axis=1), (orders[0], orders[1])
 
     def _some(self, side: int, chosen: Ints) -> Ints:
         """Facets of one part by their places, ascending, each once."""

@@ -7,7 +7,7 @@ a resolution. What happens within the resolution, free at both ends, is a graze 
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from functools import cached_property, partial
 
@@ -49,11 +49,21 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
     return NOTHING if test.empty else Search(test, course, start, end, fine).until(end, end)
 
 
+@dataclass(frozen=True, eq=False)
+class Near:
+    """Facets that can meet on a piece of the way."""
+
+    between: Callable[[float, float], PairTest]
+    """The pair with these, between two parameters."""
+    window: float
+    """The length of a piece."""
+
+
 class _State:
     """A pair at one displacement; `touching`: whether it is likely to touch there."""
 
     def __init__(self, test: PairTest, D: Array, touching: bool):
-        self._test, self._D = test, D
+        self.test, self._D = test, D
         # to ask for what touches costs no more than to ask how far apart it is
         known = test.hits(D) if touching else None
         self.distance = 0.0 if known is not None and len(known) else self._found[0]
@@ -63,7 +73,7 @@ class _State:
 
     @cached_property
     def _found(self) -> tuple[float, tuple[int, int]]:
-        return self._test.distance(self._D)
+        return self.test.distance(self._D)
 
     @property
     def nearest(self) -> tuple[int, int]:
@@ -73,20 +83,23 @@ class _State:
     @cached_property
     def hits(self) -> Ints:
         """(n, 2) facets that touch or cross."""
-        return self._test.hits(self._D)
+        return self.test.hits(self._D)
 
     @cached_property
     def crossing(self) -> Crossing:
         """What crosses; where facets are apart there is nothing."""
-        return NONE if self.distance > 0.0 else self._test.crossing(self._D, self.hits)
+        return NONE if self.distance > 0.0 else self.test.crossing(self._D, self.hits)
 
 
 class Search:
     """The first crossing of a pair on a course from `start` up to at most `end`, looked for piece by piece, to within
     `fine`."""
 
-    def __init__(self, test: PairTest, course: Course, start: float, end: float, fine: float):
-        self.test, self.course = test, course
+    def __init__(self, test: PairTest, course: Course, start: float, end: float, fine: float, near: Near | None = None):
+        """`near`: where it is known which facets can meet other than along mates on a piece of the way."""
+        self.test, self.course, self._near = test, course, near
+        self._piece: tuple[float, float, PairTest] | None = None
+        """From where to where what meets is asked of some facets only."""
         self._fine = fine
         self._resolution = max(
             constants.RESOLUTION * test.size, (course.travel(end) - course.travel(start)) / constants.WORK * 2.0
@@ -104,12 +117,14 @@ class Search:
         self._inside: Inside | None = None
         self._start = self._apart = self._left = start
         """From where on it is looked for; since where the parts have not overlapped; up to where it was looked for."""
+        self._cover(start, end if near is None else min(start + near.window, end))
         self.begin(start)
 
     def until(self, limit: float, end: float) -> First:
         """What is met up to `limit`, from where it was looked for last; points that come in are looked for a little
         further, up to `end`."""
         fine, resolution, left, stack = self._fine, self._resolution, self._left, [limit]
+        self._cover(left, limit)
         while stack:
             right = stack[-1]
             if self.course.meets is not None:
@@ -156,6 +171,8 @@ class Search:
 
     def begin(self, start: float) -> None:
         """What crosses at the start is no stop as long as it is no deeper than chord errors, and else not known."""
+        if self.course.meets is not None and not self.course.meets(start)[0]:
+            return
         crossing = self.state(start).crossing
         self.since = dict.fromkeys(crossing.shared)
         self.overlaps = bool(crossing) and (self.test.overlapping or self.too_deep(start))
@@ -164,9 +181,25 @@ class Search:
     def state(self, s: float) -> _State:
         if s not in self._known:
             self.tried += 1
-            self._known[s] = _State(self.test, self.course.displacement(s), self._touching)
+            self._known[s] = _State(self._asked(s), self.course.displacement(s), self._touching)
             self._touching = self._known[s].distance <= 0.0
         return self._known[s]
+
+    def _cover(self, begin: float, end: float) -> None:
+        """Ask from here to there what can meet there, in one piece."""
+        if self._near is None:
+            return
+        test = self._near.between(begin, end)
+        here = self._known.get(begin)
+        self._known = {begin: here} if here is not None and here.test is test else {}
+        self._piece = begin, end, test
+
+    def _asked(self, s: float) -> PairTest:
+        """The pair with the facets that count at s, or as far as they can meet there."""
+        if self._near is None or self._piece is None:
+            return self.test
+        begin, end, test = self._piece
+        return test if begin <= s <= end else self._near.between(s, s)
 
     def through(self, left: float, right: float) -> bool:
         """Whether faces that are parallel may have passed through each other, crossing nowhere."""
@@ -175,20 +208,20 @@ class Search:
             return False
         least = constants.CROSSING_LEAST * self.test.size
         if before.distance > least:
-            low, high = self._heights(left, right, before.nearest)
+            low, high = self._heights(left, right, before)
             return low > least >= high
         # in touch, nearly: which facets are opposite is as well told by what is near afterwards
-        heights = [self._heights(left, right, state.nearest) for state in (before, after) if state.distance > 0.0]
+        heights = [self._heights(left, right, state) for state in (before, after) if state.distance > 0.0]
         return any(low > least >= high or (abs(low) <= least and high < -least) for low, high in heights)
 
-    def _heights(self, left: float, right: float, nearest: tuple[int, int]) -> tuple[float, float]:
-        low, high = (self.test.height(self.course.displacement(s), nearest) for s in (left, right))
+    def _heights(self, left: float, right: float, state: _State) -> tuple[float, float]:
+        low, high = (state.test.height(self.course.displacement(s), state.nearest) for s in (left, right))
         return low, high
 
     def goes_in(self, s: float, end: float, step: float, fine: float) -> bool:
         """Whether the faces that pass each other at s are inside the parts a step later; where parts are thin,
         sooner."""
-        nearest = self.state(s).nearest
+        test, nearest = self.state(s).test, self.state(s).nearest
         begun = self.course.travel(s)
         for share in constants.BEHIND_FACE:
             further = self.course.when(begun + share * step, s, end)
@@ -196,11 +229,7 @@ class Search:
             if further - s < constants.BEHIND_LEAST * fine:
                 return False
             D = self.course.displacement(further)
-            if (
-                self.test.faces(D, *nearest)
-                if share < 1.0
-                else self.test.inside(D, *nearest, constants.BEHIND_DEPTH * way)
-            ):
+            if test.faces(D, *nearest) if share < 1.0 else test.inside(D, *nearest, constants.BEHIND_DEPTH * way):
                 return True
         return False
 
@@ -235,13 +264,13 @@ class Search:
 
     def flat(self, left: float, right: float, fine: float) -> First:
         """Where faces meet flat: one passes through the other between `left` and `right`."""
-        f, g = self.state(left).nearest
-        left, right = narrowed(left, right, constants.REFINED * fine, partial(self._behind, (f, g)))
-        place = self.test.middle(self.course.displacement(right), f, g)
+        state = self.state(left)
+        left, right = narrowed(left, right, constants.REFINED * fine, partial(self._behind, state))
+        place = state.test.middle(self.course.displacement(right), *state.nearest)
         return First(left, right, (self.test.X_WA @ np.append(place, 1.0))[:3], before=self.before)
 
-    def _behind(self, nearest: tuple[int, int], s: float) -> bool:
-        height = self.test.height(self.course.displacement(s), nearest)
+    def _behind(self, state: _State, s: float) -> bool:
+        height = state.test.height(self.course.displacement(s), state.nearest)
         return height <= constants.CROSSING_LEAST * self.test.size
 
     def pass_(self, left: float, right: float) -> float:
@@ -311,13 +340,17 @@ class Search:
     def _begun(self, left: float, right: float, fine: float, pairs: Collection[SurfacePair]) -> First:
         """Where pairs of surfaces begin to cross between `left` and `right`.
 
-        Of the facets that cross at `right` the first is found; where others cross before that, they take their place.
-        What is found does not hang on the steps in which it was come near to.
+        Of the facets that cross at `right` the first is found; where others cross before that, they take their place,
+        also those of surfaces that have parted again at `right`. What is found does not hang on the steps in which it
+        was come near to.
         """
+        before = self.state(left).crossing.shared.keys()
         for to in (fine, constants.REFINED * fine):
             for _ in range(constants.FIRST_TRIED):
-                hits = self.test.of_surfaces(self.state(right).hits, pairs)
-                low, high = narrowed(left, right, to, partial(self._cross, hits))
+                state = self.state(right)
+                hits = state.test.of_surfaces(state.hits, pairs)
+                low, high = narrowed(left, right, to, partial(self._cross, state.test, hits))
+                pairs = frozenset(pairs) | (self.state(low).crossing.shared.keys() - before)
                 if low <= left or not self._crosses(pairs, low):
                     left, right = low, high
                     break
@@ -326,8 +359,8 @@ class Search:
                 left, right = narrowed(left, right, to, partial(self._crosses, pairs))
         return self._hit(left, right)
 
-    def _cross(self, hits: Ints, s: float) -> bool:
-        return bool(self.test.crossing(self.course.displacement(s), hits))
+    def _cross(self, test: PairTest, hits: Ints, s: float) -> bool:
+        return bool(test.crossing(self.course.displacement(s), hits))
 
     def _hit(self, left: float, right: float) -> First:
         at = np.append(self.state(right).crossing.segments().mean(axis=(0, 1)), 1.0)

@@ -54,7 +54,9 @@ NONE = Crossing({}, 0.0)
 class PairTest:
     """Parts `names`, with the facets that a motion may bring together; poses are of the second in the first."""
 
-    def __init__(self, shapes: Shapes, first: str, second: str, facets: tuple[Ints, Ints], mates: Sequence[Patch]):
+    def __init__(
+        self, shapes: Shapes, first: str, second: str, facets: tuple[Ints, Ints], mates: Sequence[Patch] | Mates
+    ):
         """`facets` of each part count; `mates` are the patches by which the two mate."""
         self.names = (first, second)
         self._shapes = shapes
@@ -65,19 +67,28 @@ class PairTest:
         self._X_AW = np.asarray(np.linalg.inv(self.X_WA))
         self._meshes = (shapes.mesh(first), shapes.mesh(second))
         self._surfaces = (shapes.surfaces_of(first), shapes.surfaces_of(second))
-        near = (shapes.borders(first), shapes.borders(second)) if mates else ([], [])
-        self.mates = Mates(first, mates, self._surfaces[0], near, self.size)
+        if not isinstance(mates, Mates):
+            near = (shapes.borders(first), shapes.borders(second)) if mates else ([], [])
+            mates = Mates(first, mates, self._surfaces[0], near, self.size)
+        self.mates = mates
         self.scrape = shapes.allowed(first, second).length
         """m: less deep, parts scrape, as mates may."""
         self.loose = max([self.scrape, *self.mates.slacks])
         """m: less deep, points of one may be in the other though the parts only mate."""
         self._passages: Passages | None = None
         self.empty = not (len(facets[0]) and len(facets[1]))
-        if not self.empty:
-            with at_work_on(*self.names):
-                self._objects = tuple(
-                    fcl.CollisionObject(shapes.model(n, f)) for n, f in zip(self.names, facets, strict=True)
-                )
+
+    def some(self, facets: tuple[Ints, Ints]) -> PairTest:
+        """The same with some of the facets."""
+        return PairTest(self._shapes, *self.names, facets, self.mates)
+
+    @cached_property
+    def _objects(self) -> tuple[fcl.CollisionObject, fcl.CollisionObject]:
+        with at_work_on(*self.names):
+            first, second = (
+                fcl.CollisionObject(self._shapes.model(n, f)) for n, f in zip(self.names, self.facets, strict=True)
+            )
+        return first, second
 
     @property
     def part_names(self) -> tuple[PartName, PartName]:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.collisions.constants import DRIFT, EVEN
-from kinform.foundation.algebra.vectors import cross, perpendicular
+from kinform.foundation.algebra.vectors import cross, perpendiculars
 from kinform.foundation.sorting import ascending, heads
 from kinform.model.arrays import Array, Flags
 from kinform.model.assembly import Mesh
@@ -81,13 +81,11 @@ class OwnMotions:
 
     def __init__(self, mesh: Mesh, surfaces: MeshSurfaces):
         self._extent = _extents(mesh, surfaces)
-        motions = _own_motions(surfaces.surfaces)
-        counts = np.array([len(kept) for kept in motions], dtype=np.int64)
-        self._bases: list[tuple[NDArray[np.int64], Array]] = []
-        for count in sorted(set(counts[counts > 0].tolist())):
-            members = np.flatnonzero(counts == count)
-            twists = self._at(np.stack([motions[n] for n in members]), members)
-            self._bases.append((members, np.linalg.qr(np.swapaxes(twists, 1, 2))[0]))
+        self._bases = [
+            (members, np.linalg.qr(np.swapaxes(self._at(twists, members), 1, 2))[0])
+            for members, twists in _own_motions(surfaces.surfaces)
+            if len(members)
+        ]
 
     def slippage(self, twists: Array) -> Slippage:
         """Of unit twists (k, 6) (ω; v at the part's origin)."""
@@ -113,31 +111,27 @@ class OwnMotions:
         )
 
 
-def _own_motions(surfaces: Sequence[Surface]) -> list[Array]:
-    """(m, 6) each, twists that map a whole surface onto itself; of a plane of facets without area none are known."""
+def _own_motions(surfaces: Sequence[Surface]) -> list[tuple[NDArray[np.int64], Array]]:
+    """Surfaces (n,), and of each (n, m, 6) twists that map it onto itself, by their number m; of a plane of facets
+    without area none are known."""
     if not surfaces:
         return []
     axes, points = (np.array([getattr(surface, name) for surface in surfaces]) for name in ("axis", "point"))
     turns, slides = np.hstack([axes, cross(points, axes)]), np.hstack([np.zeros_like(axes), axes])
-    return [_of_kind(*each) for each in zip(surfaces, turns, slides, strict=True)]
-
-
-def _of_kind(surface: Surface, turn: Array, slide: Array) -> Array:
-    """(m, 6) such twists, by the turn and the slide along its axis."""
-    if surface.kind == "plane":
-        if not surface.axis.any():
-            return np.zeros((0, 6))
-        twists = np.zeros((3, 6))
-        twists[0], twists[1:, 3:] = turn, perpendicular(surface.axis)
-        return twists
-    if surface.kind == "cylinder":
-        return np.stack([turn, slide])
-    if surface.kind == "sphere":
-        return np.hstack([np.eye(3), cross(np.broadcast_to(surface.point, (3, 3)), np.eye(3))])
-    if surface.kind in ("cone", "torus", "revolution"):
-        return turn[None]
-    if surface.kind == "extrusion":
-        return slide[None]
-    if surface.kind == "helicoid":
-        return (turn + surface.pitch / (2.0 * np.pi) * slide)[None]
-    return np.zeros((0, 6))
+    kinds = np.array([surface.kind for surface in surfaces])
+    planes = np.flatnonzero((kinds == "plane") & axes.any(axis=1))
+    flat = np.zeros((len(planes), 3, 6))
+    flat[:, 0], flat[:, 1:, 3:] = turns[planes], np.stack(perpendiculars(axes[planes]), axis=1)
+    spheres = np.flatnonzero(kinds == "sphere")
+    about = np.broadcast_to(np.eye(3), (len(spheres), 3, 3))
+    round_ = np.concatenate([about, cross(np.broadcast_to(points[spheres, None], about.shape), about)], axis=2)
+    cylinders = np.flatnonzero(kinds == "cylinder")
+    single = np.flatnonzero(np.isin(kinds, ("cone", "torus", "revolution", "extrusion", "helicoid")))
+    pitch = np.array([surfaces[n].pitch if kinds[n] == "helicoid" else 0.0 for n in single.tolist()])
+    one = np.where((kinds[single] == "extrusion")[:, None], slides[single], turns[single])
+    one = one + (pitch / (2.0 * np.pi))[:, None] * slides[single]
+    return [
+        (np.append(planes, spheres), np.concatenate([flat, round_])),
+        (cylinders, np.stack([turns[cylinders], slides[cylinders]], axis=1)),
+        (single, one[:, None]),
+    ]

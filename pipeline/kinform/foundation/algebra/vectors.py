@@ -104,6 +104,14 @@ def perpendicular(axis: Array) -> tuple[Array, Array]:
     return u, np.array([y * c - z * b, z * a - x * c, x * b - y * a])
 
 
+def perpendiculars(axes: Array) -> tuple[Array, Array]:
+    """The same of many unit axes (n, 3): (n, 3) each."""
+    unit = np.eye(3)[np.abs(axes).argmin(axis=1)]
+    u = cross(unit, axes)
+    u /= np.sqrt(dot(u, u))[:, None]
+    return u, cross(axes, u)
+
+
 def sine(a: Array, b: Array) -> float:
     """Of the angle between two unit vectors (3,)."""
     x, y, z = a.tolist()
