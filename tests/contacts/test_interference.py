@@ -9,10 +9,8 @@ from functools import cache
 import numpy as np
 import pytest
 from support.analytic_solids import MM, assembly, box_loop, extrusion, pose, round_loop, turned
-from support.solids import ball, block, derived, random_pose
 
 from kinform.contacts import find
-from kinform.contacts.overlap import solids as solid_store
 
 
 @cache
@@ -124,40 +122,3 @@ def test_surfaces_without_a_solid_have_contacts_and_no_interference():
     found = find(hollow, surfaces)
     assert found.patches
     assert found.interferences == ()
-
-
-def bar():
-    """80 mm along x, in small facets all over."""
-    return block(80, 10, 6).refine(20)
-
-
-@pytest.mark.parametrize("at", [(41.0, 2.0, 1.0), (-39.0, 4.0, -2.0), (38.0, 7.0, 4.0), (30.0, 0.0, 0.0)])
-@pytest.mark.parametrize("seed", [None, 3])
-def test_what_lies_beside_a_part_is_cut_as_the_whole_is(at, seed, monkeypatch):
-    X = np.eye(4) if seed is None else random_pose(np.random.default_rng(seed))
-    solids = {"a": bar(), "b": ball(5.0, 24).translate(at)}
-    cut, known = [], solid_store.closed_beside
-    monkeypatch.setattr(solid_store, "closed_beside", lambda *parts: cut.append(known(*parts)) or cut[-1])
-    (some,) = derived(X, **solids)[1].interferences
-    closed = [found for found in cut if found is not None]
-    assert closed
-    for vertices, faces, numbers in closed:
-        # every edge is run through once either way
-        edges = np.concatenate([faces[:, :2], faces[:, 1:], faces[:, [2, 0]]]).tolist()
-        assert sorted(edges) == sorted([end, start] for start, end in edges)
-        assert len(set(map(tuple, edges))) == len(edges)
-        assert len(numbers) == len(faces) < 0.5 * solids["a"].num_tri()
-        assert len(vertices) == faces.max() + 1
-    monkeypatch.setattr(solid_store, "closed_beside", lambda *parts: None)
-    (every,) = derived(X, **solids)[1].interferences
-    assert (some.volume, some.depth) == pytest.approx((every.volume, every.depth), rel=1e-9)
-    np.testing.assert_allclose(some.place, every.place, atol=1e-12)
-    assert some.mated == every.mated
-
-
-def test_what_lies_beside_all_of_a_part_is_cut_whole(monkeypatch):
-    cut, known = [], solid_store.closed_beside
-    monkeypatch.setattr(solid_store, "closed_beside", lambda *parts: cut.append(known(*parts)) or cut[-1])
-    (found,) = derived(a=bar(), b=block(70, 4, 4).translate((0, 0, 3)))[1].interferences
-    assert cut[0] is None
-    assert found.volume == pytest.approx(70 * 4 * 2 * MM**3, rel=1e-9)

@@ -48,11 +48,6 @@ def distances_from(point: Array, corners: Array) -> Array:
     return _from_origin(np.ascontiguousarray((corners - point).transpose(1, 2, 0)))
 
 
-def distances_from(point: Array, corners: Array) -> Array:
-    """(m,) distances of a point (3,) from triangles (m, 3, 3), one unit of length."""
-    return _from_origin(np.ascontiguousarray((corners - point).transpose(1, 2, 0)))
-
-
 def _from_origin(triangles: Array) -> Array:
     """(k,) distances of the origin from triangles (3, 3, k): corner, coordinate, triangle."""
     sides = triangles[[1, 2, 0]] - triangles
