@@ -168,7 +168,7 @@ XML_BYTES = 64 * 1024 * 1024
 PACKAGE_LEVELS = 4
 """Folders, from that of a description upwards, in which its package is looked for where nothing names it."""
 
-SHEAR = 1e-9
+REFERENCE_SHEAR = 1e-9
 """Cosine of the angle between the axes of a scaled mesh up to which it is not sheared: printed quaternions have twelve
 digits."""
 
@@ -201,6 +201,10 @@ and its volume is 0.07 % too small."""
 
 XACRO_FILES = 500
 """Files of a package that are looked through for the names of others, at most."""
+
+LOOP_GAP = 1e-4
+"""Metres, and radians times ten, by which the two ends of a loop that an MJCF closes may miss each other in its pose:
+sites are printed to four or more digits. What is further apart is closed in another pose than that of the meshes."""
 
 AXIS_LENGTH = 1e-9
 """Length of a joint's axis below which it is none: axes are unit vectors, up to digits."""
