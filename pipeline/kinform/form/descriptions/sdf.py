@@ -20,7 +20,7 @@ from kinform.form.descriptions.poses import place
 from kinform.form.descriptions.robot import Limits, Link, Ratio, Robot, RobotJoint
 from kinform.form.descriptions.sdf_frames import MODEL, WORLD, Frame, Frames
 from kinform.form.descriptions.sdf_links import Links
-from kinform.form.descriptions.sdf_models import Model, Models
+from kinform.form.descriptions.sdf_models import Model, Models, version_of
 from kinform.form.descriptions.sdf_text import whole_text
 from kinform.form.descriptions.sdf_values import Values
 from kinform.form.descriptions.tree import Count, distinct
@@ -38,6 +38,8 @@ _MODEL = ("link", "joint", "frame", "model", "include", "pose", "static", "self_
           "enable_wind")  # fmt: skip
 _JOINT = ("parent", "child", "pose", "axis", "axis2", "thread_pitch", "screw_thread_pitch", "gearbox_ratio",
           "gearbox_reference_body")  # fmt: skip
+_IN_WORLD = ("model", "include", "frame", "physics", "gravity", "light", "scene", "gui", "atmosphere", "audio", "wind",
+             "magnetic_field", "spherical_coordinates")  # fmt: skip
 _ROOT = ("model", "include", "world", "frame")
 
 
@@ -76,6 +78,8 @@ class _Reader:
         self.models.collect(root, path)
         for model in self.models.models:
             self._state(model)
+        for world in xml.children(root, "world"):
+            self._state_world(Model(WORLD, world, path.parent, version_of(root), static=False))
         if not self.links.stated and not len(xml.problems):
             xml.complain(root, "has no link in a model", "add a <model> with links")
         if len(xml.problems):
@@ -110,25 +114,36 @@ class _Reader:
             tag = tag_of(child)
             if tag not in _MODEL:
                 self.left.add(f"<{tag}> of models")
-            if tag not in ("link", "joint"):
-                continue
-            name = self.values.name(child)
-            if name is None:
-                continue
-            full = model.scope + name
-            known: dict[str, tuple[Model, Element]] = self.links.stated if tag == "link" else self.stated
-            if full in known:
-                first = self.xml.at(known[full][1]).line
-                message = f"two {tag}s are named {in_quotes(full)}: the first is at line {first}"
-                self.xml.complain(child, message, "rename one of them")
-                continue
-            known[full] = model, child
-            X, relative = self.values.pose(child)
-            if tag == "link":
-                self.frames.add(full, Frame(model.scope, relative or MODEL, X, child))
-            else:
-                below = self.values.text(child, "child") or ""
-                self.frames.add(full, Frame(model.scope, relative or below, X, child, below))
+            if tag in ("link", "joint"):
+                self._note(model, child)
+
+    def _state_world(self, world: Model) -> None:
+        """Note the joints between models, and what is in a world besides."""
+        for child in self.xml.children(world.element):
+            tag = tag_of(child)
+            if tag == "joint":
+                self._note(world, child)
+            elif tag not in _IN_WORLD:
+                self.left.add(f"<{tag}> of worlds")
+
+    def _note(self, model: Model, element: Element) -> None:
+        tag, name = tag_of(element), self.values.name(element)
+        if name is None:
+            return
+        full = model.scope + name
+        known: dict[str, tuple[Model, Element]] = self.links.stated if tag == "link" else self.stated
+        if full in known:
+            first = self.xml.at(known[full][1]).line
+            message = f"two {tag}s are named {in_quotes(full)}: the first is at line {first}"
+            self.xml.complain(element, message, "rename one of them")
+            return
+        known[full] = model, element
+        X, relative = self.values.pose(element)
+        if tag == "link":
+            self.frames.add(full, Frame(model.scope, relative or MODEL, X, element))
+        else:
+            below = self.values.text(element, "child") or ""
+            self.frames.add(full, Frame(model.scope, relative or below, X, element, below))
 
     def _hold(self, links: dict[str, Link]) -> None:
         """Static models are fixed to the world."""
