@@ -249,6 +249,14 @@ def test_several_models_of_a_world_keep_their_names_apart(tmp_path):
     assert {round(p.X_WP[0, 3], 9) for p in assembly.parts} == {1.0, 2.0}
 
 
+def test_a_limit_that_stands_for_none_is_none(tmp_path):
+    axis = "<axis><xyz>0 0 1</xyz><limit><lower>-1e16</lower><upper>{}</upper></limit></axis>"
+    text = '<sdf version="1.6"><model name="m">' + link("a") + link("b") + "{}</model></sdf>"
+    for upper, expected in (("1e16", None), ("1.5", (-np.inf, 1.5))):
+        (found,) = load(tmp_path, text.format(joint("j", "a", "b", axis=axis.format(upper)))).function.joints
+        assert found.range == expected
+
+
 def test_joints_of_a_world_join_its_models(tmp_path):
     model = '<model name="{}"><pose>{} 0.2 0 0.1 0.2 0.3</pose>' + link("a") + "</model>"
     between = (

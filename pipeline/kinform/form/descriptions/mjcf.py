@@ -24,7 +24,7 @@ from kinform.form.descriptions.mjcf_defaults import Compiler, Defaults, Includes
 from kinform.form.descriptions.mjcf_replicas import Replicas
 from kinform.form.descriptions.mjcf_shapes import Shapes
 from kinform.form.descriptions.poses import place
-from kinform.form.descriptions.robot import Limits, Link, Ratio, Robot, RobotJoint, Shape
+from kinform.form.descriptions.robot import Limits, Link, Ratio, Robot, RobotJoint, Shape, bounded
 from kinform.form.descriptions.tree import Count, distinct
 from kinform.form.problems import Problems
 from kinform.foundation.meant import did_you_mean, in_quotes
@@ -329,7 +329,7 @@ class _Reader:
         lower, upper = (self.compiler.radians(v) if kind == "revolute" else v for v in values)
         ref = self._angle(element, said, "ref", kind)
         if lower < upper:
-            return lower - ref, upper - ref
+            return bounded(lower - ref, upper - ref)
         self.left.notes.append(f"joint {in_quotes(name)}: its range {said['range']} is not ascending: taken as none")
         return None
 

@@ -13,11 +13,11 @@ from pathlib import Path
 
 import numpy as np
 
-from kinform.form.constants import AXIS_LENGTH
+from kinform.form.constants import AXIS_LENGTH, NO_BOUND
 from kinform.form.descriptions.elements import Element, Xml, parse_xml, tag_of
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.poses import place
-from kinform.form.descriptions.robot import Limits, Link, Ratio, Robot, RobotJoint
+from kinform.form.descriptions.robot import Limits, Link, Ratio, Robot, RobotJoint, bounded
 from kinform.form.descriptions.sdf_frames import MODEL, WORLD, Frame, Frames
 from kinform.form.descriptions.sdf_links import Links
 from kinform.form.descriptions.sdf_models import Model, Models, version_of
@@ -208,8 +208,8 @@ class _Reader:
             point=None if kind in ("fixed", "prismatic") else place(X, (0.0, 0.0, 0.0)),
             pitch=pitch,
             range=self._range(axis, what) if one and stated != "continuous" else None,
-            effort=_bound(values.number(limit, "effort", -1.0)) if one else None,
-            speed=_bound(values.number(limit, "velocity", -1.0)) if one else None,
+            effort=_bound(values.number(limit, "effort", -1.0), NO_BOUND) if one else None,
+            speed=_bound(values.number(limit, "velocity", -1.0), NO_BOUND) if one else None,
             damping=_bound(values.number(dynamics, "damping", 0.0)) if one else None,
             stiffness=_bound(values.number(dynamics, "spring_stiffness", 0.0)) if one else None,
             rest=values.finite(dynamics, "spring_reference", 0.0) if one else 0.0,
@@ -281,10 +281,8 @@ class _Reader:
         lower, upper = (
             self.values.number(limit, key, bound) for key, bound in (("lower", -math.inf), ("upper", math.inf))
         )
-        if math.isinf(lower) and math.isinf(upper):
-            return None
         if lower < upper:
-            return lower, upper
+            return bounded(lower, upper)
         words = "are both 0" if lower == upper == 0.0 else f"{lower:g} and {upper:g} are not ascending"
         self.left.notes.append(f"{what}: its limits {words}: taken as without range")
         return None
@@ -310,9 +308,9 @@ class _Reader:
         return Ratio((name, leader), ratio, self.xml.at(mimic))
 
 
-def _bound(value: float) -> float | None:
-    """A positive finite bound; SDF has negative and infinite ones for none."""
-    return value if 0.0 < value < math.inf else None
+def _bound(value: float, most: float = math.inf) -> float | None:
+    """A positive bound below the most that is one; SDF has negative and infinite ones for none."""
+    return value if 0.0 < value < most else None
 
 
 def _renamed(joint: RobotJoint, world: str) -> RobotJoint:
