@@ -7,7 +7,7 @@ import json
 import math
 
 import pytest
-from generators.solids import box, join
+from generators.solids import Solid, box, join
 from support.manifests import manifest
 
 from kinform import stages
@@ -144,3 +144,68 @@ def test_a_part_that_moved_is_told_alike_by_its_pose_and_by_its_mesh(tmp_path):
     # the middle is 40 mm from the axis
     assert cause.message == f"turned 2° about z, its middle moved {80 * math.sin(math.radians(1)):.4g} mm"
     assert compare_designs(one, one).causes == ()
+
+
+def test_what_follows_from_a_part_is_told_of_it_by_whatever_name_the_function_has(tmp_path):
+    guide = (
+        '[[group]]\nname = "carriage"\nparts = ["slider", "knob"]\n[function]\nmobility = 1\n[[function.joint]]\n'
+        'name = "guide"\nbetween = ["rail", "carriage"]\ntype = "prismatic"\naxis = [1, 0, 0]\n'
+    )
+    rail = join(box(-60, 60, -15, 15, -5, 0), box(-60, 60, -15, -10, -1, 10), box(-60, 60, 10, 15, -1, 10))
+    parts = {"rail": rail, "slider": box(-20, 25, -10, 10, 0, 8), "knob": box(-5, 5, -5, 5, 8, 20)}
+    (tmp_path / "a").mkdir()
+    (tmp_path / "b").mkdir()
+    one = derived(manifest(tmp_path / "a", parts, guide))
+    narrow = {**parts, "slider": box(-20, 25, -6, 6, 0, 8)}
+    found = compare_designs(one, derived(manifest(tmp_path / "b", narrow, guide)))
+    assert {change.subject[0] for change in found.changes} >= {"KF301", "KF414", "carriage~rail"}
+    assert all(group.causes for group in found.groups)
+    del parts["knob"]
+    (tmp_path / "c").mkdir()
+    bare = derived(manifest(tmp_path / "c", parts, guide.replace(', "knob"', "")))
+    found = compare_designs(one, bare)
+    (group,) = (g for g in found.groups if any(c.kind == "body-parts" for c in g.changes))
+    assert [cause.message for cause in group.causes] == ["is gone"]
+
+
+def test_equal_parts_with_other_names_in_their_places_are_renamed(tmp_path):
+    block = box(0, 60, 0, 20, 0, 10)
+    made = []
+    for k, names in enumerate((("pin_1", "pin_2"), ("dowel_a", "dowel_b"))):
+        folder = tmp_path / str(k)
+        folder.mkdir()
+        pins = {name: box(10 + 30 * i, 16 + 30 * i, 5, 11, 10, 25) for i, name in enumerate(names)}
+        path = manifest(folder, {"block": block, **pins}, "")
+        one = path.read_text().replace(f"{names[1]}.stl", f'{names[0]}.stl"\nposition = [30, 0, 0]\n#')
+        path.write_text(one)
+        made.append(derived(path))
+    found = compare_designs(*made)
+    assert {(c.before, c.after) for c in found.changes if c.kind == "part-renamed"} == {
+        ("pin_1", "dowel_a"), ("pin_2", "dowel_b"),
+    }  # fmt: skip
+    assert found.causes == () and {c.kind for c in found.changes} == {"part-renamed"}
+
+
+def test_other_facets_are_no_other_shape_and_another_frame_no_motion(tmp_path):
+    coarse = box(-20, 25, -10, 10, 0, 8)
+    fine = join(box(-20, 3, -10, 10, 0, 8), box(3, 25, -10, 10, 0, 8), box(1, 5, -3, 3, 2, 5))
+    longer = box(-20, 27, -10, 10, 0, 8)
+    seen = {}
+    for name, solid, place in (
+        ("was", coarse, ""),
+        ("fine", Solid(fine.manifold.refine(2), fine.volume), ""),
+        ("longer elsewhere", longer.at(-100.0, 0.0, 0.0), "position = [100, 0, 0]\n"),
+        ("longer and moved", longer, "position = [100, 0, 0]\n"),
+    ):
+        (tmp_path / name).mkdir()
+        seen[name] = derived(manifest(tmp_path / name, {"block": solid}, "", more=place))
+    told = {
+        name: [(cause.kind, cause.message) for cause in compare_designs(seen["was"], design).causes]
+        for name, design in seen.items()
+    }
+    assert told["was"] == []
+    assert told["fine"] == [("part-facets", "has other facets of the same shape")]
+    ((kind, message),) = told["longer elsewhere"]
+    assert kind == "part-shape" and message.startswith("has another shape: volume +4.4 %, 2 mm longer along x")
+    assert [kind for kind, _ in told["longer and moved"]] == ["part-moved", "part-shape"]
+    assert told["longer and moved"][0][1] == "moved 100 mm along x"

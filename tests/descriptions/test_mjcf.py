@@ -283,3 +283,81 @@ def test_all_worlds_are_seen(tmp_path):
     worlds = '<worldbody><geom name="{}" size="1"/></worldbody>'
     text = f"<mujoco>{worlds.format('a')}{worlds.format('b')}</mujoco>"
     assert [str(part.name) for part in form.load(write(tmp_path, text)).parts] == ["a", "b"]
+
+
+PAIR = """<mujoco><default><equality active="{on}"/><general forcerange="-3 3"/></default><worldbody>
+<body name="a"><geom size="0.1"/><site name="s" pos="0 0 0.1"/>
+<body name="b" pos="0 0 0.5"><joint name="turn"/><geom size="0.1"/><site name="t" pos="{x} 0 -0.4" euler="0 {y} 0"/>
+<body name="c"><joint name="ball" type="ball" range="0 30"/><geom size="0.1"/></body></body></body></worldbody>
+<equality>{closing}</equality><actuator>{actuators}</actuator></mujoco>
+"""
+
+
+def paired(tmp_path, on="true", x=0.0, y=0.0, closing="", actuators=""):
+    return form.load(write(tmp_path, PAIR.format(on=on, x=x, y=y, closing=closing, actuators=actuators)))
+
+
+SITES = '<{} name="loop" site1="s" site2="t"/>'
+RELATIVE = '<weld name="loop" body1="a" body2="b" relpose="0 0 {} {} 0 0 0"/>'
+
+
+@pytest.mark.parametrize(
+    "closing,x,y,type,gap",
+    [
+        (SITES.format("connect"), 0.0, 0.0, "spherical", None),
+        (SITES.format("connect"), 0.0, 20.0, "spherical", None),
+        (SITES.format("connect"), 0.00005, 0.0, "spherical", None),
+        (SITES.format("connect"), 0.003, 0.0, None, "3 mm"),
+        (SITES.format("weld"), 0.0, 0.0, "fixed", None),
+        (SITES.format("weld"), 0.0, 2.0, None, "2°"),
+        (RELATIVE.format(0.5, 1), 0.0, 0.0, "fixed", None),
+        (RELATIVE.format(0.7, 1), 0.0, 0.0, None, "200 mm"),
+        (RELATIVE.format(0.7, 0), 0.0, 0.0, "fixed", None),
+    ],
+)
+def test_a_loop_that_is_open_in_the_pose_of_the_file_is_said_and_no_joint(tmp_path, closing, x, y, type, gap):
+    assembly = paired(tmp_path, x=x, y=y, closing=closing)
+    assert [joint.type for joint in assembly.function.joints if joint.name == "loop"] == [type][: type is not None]
+    assert any(f"is open by {gap}" in note for note in assembly.notes) == (gap is not None)
+
+
+def test_a_loop_that_its_class_switches_off_is_none(tmp_path):
+    weld = '<weld name="loop" body1="a" body2="b"/>'
+    joints = {on: paired(tmp_path, on, closing=weld).function.joints for on in ("true", "false")}
+    assert {on: any(j.name == "loop" for j in found) for on, found in joints.items()} == {"true": True, "false": False}
+
+
+def test_what_is_stated_of_a_ball_is_said_not_to_be_carried(tmp_path):
+    assert any("range of ball joints" in note for note in paired(tmp_path).notes)
+
+
+@pytest.mark.parametrize(
+    "actuators,limit",
+    [
+        ('<motor joint="turn"/>', 3.0),
+        ('<position joint="turn" forcerange="-5 4" gear="2"/>', 10.0),
+        ('<position joint="turn"/><velocity joint="turn" forcerange="-1 1"/>', 4.0),
+        ('<position joint="turn"/><motor joint="turn" forcelimited="false"/>', None),
+    ],
+)
+def test_actuators_of_a_joint_add_up_and_share_the_defaults_of_all(tmp_path, actuators, limit):
+    said = [r.values["limit"] for r in paired(tmp_path, actuators=actuators).function.requirements]
+    assert said == ([] if limit is None else [limit])
+
+
+def test_files_are_found_beside_the_file_that_includes_them_where_they_are_not_beside_the_first(tmp_path):
+    below = tmp_path / "parts"
+    (below / "deep").mkdir(parents=True)
+    body = '<worldbody><body name="a"><geom type="mesh" mesh="{}"/></body></worldbody></mujoco>'
+    top = write(tmp_path, '<mujoco><include file="parts/one.xml"/></mujoco>')
+    (below / "one.xml").write_text('<mujoco><include file="deep/two.xml"/></mujoco>')
+    (below / "deep" / "two.xml").write_text('<mujoco><asset><mesh file="own.obj"/></asset>' + body.format("own"))
+    (below / "deep" / "own.obj").write_text(ring(10.0, 30.0, 60.0))
+    part = form.load(top).part("own")
+    assert np.ptp(part.mesh.vertices[:, 2]) == pytest.approx(60.0)
+    (tmp_path / "own.obj").write_text(ring(10.0, 30.0, 20.0))  # as MuJoCo has it, this one comes first
+    assert np.ptp(form.load(top).part("own").mesh.vertices[:, 2]) == pytest.approx(20.0)
+    mujoco = pytest.importorskip("mujoco")
+    first = mujoco.MjModel.from_xml_path(str(top)).body_mass[1]
+    (tmp_path / "own.obj").unlink()
+    assert mujoco.MjModel.from_xml_path(str(top)).body_mass[1] == pytest.approx(3.0 * first)

@@ -10,6 +10,7 @@ from tests.support.validators import package
 import kinform
 from kinform import form
 from kinform.errors import InputError
+from kinform.form.descriptions.poses import rpy
 from kinform.form.sources import Reading
 
 BOX = "<geometry><box><size>0.1 0.2 0.3</size></box></geometry>"
@@ -246,6 +247,36 @@ def test_several_models_of_a_world_keep_their_names_apart(tmp_path):
     assert {g.name for g in assembly.groups} == {"m::a", "n::a"}
     assert assembly.ground == "m::a"
     assert {round(p.X_WP[0, 3], 9) for p in assembly.parts} == {1.0, 2.0}
+
+
+def test_a_limit_that_stands_for_none_is_none(tmp_path):
+    axis = "<axis><xyz>0 0 1</xyz><limit><lower>-1e16</lower><upper>{}</upper></limit></axis>"
+    text = '<sdf version="1.6"><model name="m">' + link("a") + link("b") + "{}</model></sdf>"
+    for upper, expected in (("1e16", None), ("1.5", (-np.inf, 1.5))):
+        (found,) = load(tmp_path, text.format(joint("j", "a", "b", axis=axis.format(upper)))).function.joints
+        assert found.range == expected
+
+
+def test_joints_of_a_world_join_its_models(tmp_path):
+    model = '<model name="{}"><pose>{} 0.2 0 0.1 0.2 0.3</pose>' + link("a") + "</model>"
+    between = (
+        '<joint name="hinge" type="revolute"><pose relative_to="m">0 0 0.1 0 0.4 0</pose><parent>m::a</parent>'
+        '<child>n::a</child><axis><xyz expressed_in="n::__model__">0 1 0</xyz></axis></joint><state world_name="w"/>'
+    )
+    text = f'<sdf version="1.11"><world name="w">{model.format("m", 1)}{model.format("n", 2)}{between}</world></sdf>'
+    assembly = load(tmp_path, text)
+    assert {joint.name: joint.between for joint in assembly.function.joints} == {"hinge": ("m::a", "n::a")}
+    assert any("not carried: <state> of worlds" in note for note in assembly.notes)
+    R = rpy((0.1, 0.2, 0.3))
+    (hinge,) = assembly.function.joints
+    assert np.allclose(hinge.axis, R[:, 1]) and np.allclose(hinge.point, [1.0, 0.2, 0.0] + 0.1 * R[:, 2])
+    fixed = text.replace('"revolute"', '"fixed"').partition("<axis>")[0] + text.partition("</axis>")[2]
+    assert [joint.type for joint in load(tmp_path, fixed).function.joints] == ["fixed"]
+    drake(tmp_path / "a.sdf")  # it takes no other type there
+    bad = text.replace("<child>n::a</child>", "<child>n::b</child>")
+    with pytest.raises(InputError) as error:
+        load(tmp_path, bad)
+    assert '"n::b"' in str(error.value)
 
 
 def test_what_is_not_carried_is_listed_once(tmp_path):

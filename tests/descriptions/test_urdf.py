@@ -162,3 +162,28 @@ def test_a_prefix_that_nobody_declares_is_accepted(tmp_path):
     ball = '<link name="b"/><drake:joint name="b" type="ball"><parent link="arm"/><child link="b"/></drake:joint>'
     joints = form.load(write(tmp_path, urdf(more=ball))).function.joints
     assert [j.type for j in joints if j.name == "b"] == ["spherical"]
+
+
+LIMITED = """<robot name="r"><link name="a"/><link name="b"/><joint name="j" type="{type}"><parent link="a"/>
+<child link="b"/>
+<axis xyz="0 0 1"/><limit lower="{lower}" upper="{upper}" effort="{effort}" velocity="2"/></joint></robot>"""
+
+
+@pytest.mark.parametrize("type", ["revolute", "prismatic"])
+@pytest.mark.parametrize(
+    "lower,upper,range",
+    [
+        ("-1", "2", (-1.0, 2.0)),
+        ("-1e9", "1e9", None),
+        ("-1e16", "0.5", (-math.inf, 0.5)),
+        ("0", "1e12", (0.0, math.inf)),
+        ("-9e8", "1", (-9e8, 1.0)),
+    ],
+)
+def test_a_limit_that_stands_for_none_is_none(tmp_path, type, lower, upper, range):
+    text = LIMITED.format(type=type, lower=lower, upper=upper, effort="1e9" if range is None else "5")
+    function = form.load(write(tmp_path, text)).function
+    (joint,) = function.joints
+    assert joint.range == (None if range is None else pytest.approx(range))
+    limits = sorted(requirement.values["limit"] for requirement in function.requirements)
+    assert limits == ([2.0] if range is None else [2.0, 5.0])

@@ -79,3 +79,30 @@ def test_urdf_written_from_another_format_has_both(robot, tmp_path):
             assert limit is None
         else:
             assert (float(limit.get("effort")), float(limit.get("velocity"))) == (effort, speed)
+
+
+OVERLAP = """<robot name="arm"><link name="base"><visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual></link>
+<link name="upper"><visual><origin xyz="{x} 0 0"/><geometry><box size="{size}"/></geometry></visual></link>
+<joint name="turn" type="{type}"><parent link="base"/><child link="upper"/><axis xyz="{axis}"/>
+<limit lower="-1" upper="1.5" effort="1" velocity="1"/></joint></robot>"""
+BOX, SMALL = "0.1 0.1 0.1", "0.05 0.05 0.05"
+
+
+@pytest.mark.parametrize(
+    "x,size,type,axis,expected",
+    [
+        (0.05, BOX, "revolute", "0 0 1", (-1.0, 1.5)),
+        (0.0, BOX, "revolute", "0 0 1", (-1.0, 1.5)),
+        (0.0, BOX, "prismatic", "0 1 0", (-1.0, 1.5)),
+        (0.2, SMALL, "prismatic", "1 0 0", (-0.125, 1.5)),
+    ],
+    ids=["flush", "twice", "twice on a slide", "a true stop"],
+)
+def test_what_overlaps_as_it_is_drawn_is_no_limit(tmp_path, x, size, type, axis, expected):
+    text = OVERLAP.format(x=x, size=size, type=type, axis=axis)
+    design = kinform.run(write(tmp_path, text)).design
+    made = export(design, "sdf")
+    (text,) = (made.files[name].decode() for name in made.files if name.endswith(".sdf"))
+    (joint,) = (item for item in ElementTree.fromstring(text).iter("joint") if item.get("type") != "fixed")
+    found = [number(joint, f"axis/limit/{side}") for side in ("lower", "upper")]
+    assert found == pytest.approx(expected, abs=1e-4)

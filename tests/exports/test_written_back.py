@@ -179,6 +179,23 @@ def test_plain_paths_of_meshes_are_seen_from_the_new_place(tmp_path):
     assert [m.get("filename") for m in root.iter("mesh")] == ["../robot/meshes/a.stl", "package://robot/meshes/a.stl"]
 
 
+def test_an_export_over_an_earlier_one_is_the_same_and_includes_leave_no_trace(tmp_path):
+    (tmp_path / "parts").mkdir()
+    trimesh.creation.box((20.0, 20.0, 200.0)).export(tmp_path / "parts" / "bar.stl")
+    inside = MJCF[MJCF.index("<mujoco") :].replace('meshdir="parts" ', "")
+    written(tmp_path / "parts", inside, "arm.xml")
+    written(tmp_path, '<mujoco><include file="parts/arm.xml"/></mujoco>', "arm.xml")
+    ran_here("run", "arm.xml", "-o", "arm.h5", "-q", cwd=tmp_path)
+    texts = []
+    for _ in range(2):
+        ran_here("export", "arm.h5", "--to", "mjcf", "-o", "out", cwd=tmp_path)
+        texts.append((tmp_path / "out" / "arm.xml").read_text())
+    assert texts[0] == texts[1] and "xmlns" not in texts[0]
+    mujoco = pytest.importorskip("mujoco")
+    models = [mujoco.MjModel.from_xml_path(str(tmp_path / name)) for name in ("arm.xml", "out/arm.xml")]
+    assert np.array_equal(models[0].body_mass, models[1].body_mass) and models[1].nmesh == 1
+
+
 def test_the_command_finds_the_description_and_refuses_to_fix_what_is_none(tmp_path):
     written(tmp_path, walker(torso={"inertia_factor": 2.0}).text())
     assert ran_here("import", "walker.urdf", "-o", "w.h5", cwd=tmp_path).returncode == 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 from enum import StrEnum
 from pathlib import Path
@@ -92,10 +93,19 @@ def export(
 
 def source_folder(design: Design, source: Path, output: Path) -> str | None:
     """The folder of the description that a design was read from, as seen from the output; None where it is not found
-    below the output, the results file or the working folder."""
+    below the output, the results file or the working folder. A file in the output is it only where it is as it was
+    read: else it is what was written there before."""
     for description in design.assembly.descriptions:
         for top in (output, source.parent, Path()):
             path = top / description.file
-            if not description.prefix and path.is_file():
-                return Path(os.path.relpath(path.parent.resolve(), output.resolve())).as_posix()
+            if description.prefix or not path.is_file():
+                continue
+            if path.parent.resolve() == output.resolve() and not _is_as_read(path, design, description.file):
+                continue
+            return Path(os.path.relpath(path.parent.resolve(), output.resolve())).as_posix()
     return None
+
+
+def _is_as_read(path: Path, design: Design, name: str) -> bool:
+    """Whether a file has the content that it had when the design was read from it."""
+    return hashlib.sha256(path.read_bytes()).hexdigest() == design.fingerprints.files.get(name)

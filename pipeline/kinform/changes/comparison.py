@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from kinform.changes.behaviours import Snapshot, snapshot
-from kinform.changes.causes import Cause, Consequences, causes_of, grouped
+from kinform.changes.causes import Cause, Consequences, causes_of, grouped, renames
 from kinform.changes.change import Change, Measure, freedoms_changed, quoted, signed
 from kinform.changes.joints import joint_changes
 from kinform.changes.masses import mass_changes
@@ -48,13 +48,16 @@ class Comparison:
         return 2 if self.missing or not self.compared else 0
 
 
-def compare(before: Snapshot, after: Snapshot, tolerance: Tolerance | None = None) -> Comparison:
-    """What of `before` is otherwise in `after`, beyond the tolerance."""
+def compare(
+    before: Snapshot, after: Snapshot, tolerance: Tolerance | None = None, other: Mapping[str, str] | None = None
+) -> Comparison:
+    """What of `before` is otherwise in `after`, beyond the tolerance; `other` has the names that parts have now, by
+    those that they had, where these are known."""
     within = Tolerance() if tolerance is None else tolerance
     old, new = ({name for name in PARTS if getattr(side, name) is not None} for side in (before, after))
     both = [name for name in PARTS if name in old & new]
     missing = [(name, "not computed " + ("before" if name in new else "after")) for name in PARTS if name in old ^ new]
-    other = new_names(before, after)
+    other = new_names(before, after) if other is None else other
     before = with_names(before, other)
     now = same_bodies(before, after)
     measure = Measure(within, after.units)
@@ -75,9 +78,11 @@ def compare(before: Snapshot, after: Snapshot, tolerance: Tolerance | None = Non
 def compare_designs(before: Design, after: Design, tolerance: Tolerance | None = None) -> Comparison:
     """As `compare`, of two designs: with what was done to the parts, and what follows from it."""
     old, new = snapshot(before), snapshot(after)
-    found = compare(old, new, tolerance)
-    causes = causes_of(before, after, old, new)
-    return replace(found, causes=causes, groups=tuple(grouped(found.changes, causes, old, new)) if causes else ())
+    other = renames(before, after, old, new)
+    found = compare(old, new, tolerance, other)
+    causes = causes_of(before, after, other)
+    groups = grouped(found.changes, causes, (before, after), (old, new), other) if causes else ()
+    return replace(found, causes=causes, groups=tuple(groups))
 
 
 def _bodies(before: Snapshot, after: Snapshot, now: Mapping[str, str], other: Mapping[str, str]) -> Iterator[Change]:

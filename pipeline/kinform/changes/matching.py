@@ -13,11 +13,13 @@ from dataclasses import replace
 from kinform.changes.behaviours import Snapshot
 
 
-def new_names(before: Snapshot, after: Snapshot) -> dict[str, str]:
-    """By part that is gone: the new part that alone has its mesh, where no other part that is gone has that mesh."""
+def new_names(before: Snapshot, after: Snapshot, known: Mapping[str, str] | None = None) -> dict[str, str]:
+    """By part that is gone: the new part that alone has its mesh, where no other part that is gone has that mesh.
+    `known`: parts that have been found already, and are left out."""
+    found = {} if known is None else known
     old, new = ({part for _, parts in side.bodies or () for part in parts} for side in (before, after))
-    gone = [(digest, part) for part, digest in before.shapes if part in old - new]
-    fresh = [(digest, part) for part, digest in after.shapes if part in new - old]
+    gone = [(digest, part) for part, digest in before.shapes if part in old - new - set(found)]
+    fresh = [(digest, part) for part, digest in after.shapes if part in new - old - set(found.values())]
     of_gone, of_fresh = Counter(digest for digest, _ in gone), Counter(digest for digest, _ in fresh)
     there = dict(fresh)
     return {part: there[digest] for digest, part in gone if of_gone[digest] == of_fresh[digest] == 1}

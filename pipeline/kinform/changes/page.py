@@ -90,7 +90,7 @@ def _drawn(comparison: Comparison, before: Design, after: Design) -> tuple[dict[
         elif "part-moved" in of:
             entries.append((str(part.name), part, "moved", "", of["part-moved"]))
         else:
-            entries.append((str(part.name), part, "other material" if of else "as it was", "", None))
+            entries.append((str(part.name), part, "other material" if "part-material" in of else "as it was", "", None))
     entries += [(name, old[name], "gone", "before", None) for name, of in causes.items() if of[0].kind == "part-gone"]
     blob = Blob()
     shapes = {p.mesh.digest: p.mesh for _, p, _, _, _ in entries if p.mesh is not None}

@@ -275,6 +275,9 @@ one body, and 10 are across a joint. No corpus chose the number, and between 3.5
 
 DEPTH_SAMPLES = 400
 """Points at which the depth of one pair's overlap is measured."""
+SURELY_INSIDE = 0.75
+"""How often the facets of an open mesh go round a point that counts as inside: of a round gap in them, as wide as it is
+deep, less is seen, and what lies nearer to the gap has no depth that is known."""
 DEPTH_SAMPLES_LEAST = 16
 """The same of one piece of it, at least."""
 BESIDE_DEEPEST = 100

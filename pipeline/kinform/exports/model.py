@@ -15,6 +15,7 @@ from kinform.behaviour import Behaviour, Component, JointComponent, RigidBody, S
 from kinform.behaviour.components import Bushing, GasSpring, Gear, SpringDamper
 from kinform.behaviour.shafts import DcMotor, EndStop, Friction
 from kinform.behaviour.signals import STEADY
+from kinform.consistency.constants import DRAWN_SLIDE, DRAWN_TURN
 from kinform.design import Design
 from kinform.errors import StageError
 from kinform.foundation.algebra.spatial import quaternions
@@ -241,20 +242,25 @@ def _ranges(
     assembly: Assembly, kinematics: Kinematics, joints: tuple[JointComponent, ...]
 ) -> dict[str, tuple[float, float]]:
     """Ranges that the geometry leaves; a side that it leaves open, or that is not known, as the function states it.
-    What a robot description states is a limit, beyond which it does not go though its parts could."""
+    What a robot description states is a limit, beyond which it does not go though its parts could. Of a joint that
+    contact does not hold, what meets where it is drawn ends no range: it overlaps, or touches, from the start."""
     single = {joint.subject for joint in joints if joint.kind.rates == 1}
     out: dict[str, tuple[float, float]] = {}
     for name, (low, high) in stated_ranges(assembly, kinematics):
         if name in single:
             out[name] = (float(low), float(high))
-    said = {joint.name for description in assembly.descriptions for joint in description.joints}
-    named = (resolve_joint(assembly, kinematics, name).joint for name in sorted(said))
+    described = {joint.name for description in assembly.descriptions for joint in description.joints}
+    named = (resolve_joint(assembly, kinematics, name).joint for name in sorted(described))
     limited = {joint.name for joint in named if joint is not None}
     for joint in kinematics.joints:
         if joint.name in single and joint.range_status in ("found", "unbounded"):
             stated_low, stated_high = out.get(joint.name, (-np.inf, np.inf))
-            low = stated_low if joint.range_lower is None else joint.range_lower
-            high = stated_high if joint.range_upper is None else joint.range_upper
+            wide = stated_high - stated_low if np.isfinite(stated_high - stated_low) else 0.0
+            near = DRAWN_TURN if joint.type != "prismatic" else DRAWN_SLIDE * wide
+            low, high = (
+                said if end is None or (joint.status == "stated" and abs(end) <= near) else end
+                for end, said in ((joint.range_lower, stated_low), (joint.range_upper, stated_high))
+            )
             if joint.name in limited:
                 low, high = max(low, stated_low), min(high, stated_high)
             out[joint.name] = (float(low), float(high))

@@ -202,6 +202,14 @@ and its volume is 0.07 % too small."""
 XACRO_FILES = 500
 """Files of a package that are looked through for the names of others, at most."""
 
+NO_BOUND = 1e9
+"""rad, m, N·m, N from which on a limit says that there is none: formats that want a limit get numbers such as this, and
+files of Gazebo have 1e16. The circumference of the earth is 4e7 m."""
+
+LOOP_GAP = 1e-4
+"""Metres, and radians times ten, by which the two ends of a loop that an MJCF closes may miss each other in its pose:
+sites are printed to four or more digits. What is further apart is closed in another pose than that of the meshes."""
+
 AXIS_LENGTH = 1e-9
 """Length of a joint's axis below which it is none: axes are unit vectors, up to digits."""
 

@@ -206,6 +206,9 @@ CLOSEST_SOME = 60_000
 CLOSEST_MOST = 1_000_000
 """Points times the facets near each up to which all are measured: 0.1 s, and 0.2 GB."""
 
+SEEN_AT_ONCE = 500_000
+"""Points times the facets whose solid angles are had at once: 0.1 GB."""
+
 # --- alike ------------------------------------------------------------------------------------------------------------
 
 HASHES = 12

@@ -17,6 +17,7 @@ from kinform.contacts.overlap.solids import Piece, SolidStore
 from kinform.contacts.presses import beyond_press
 from kinform.contacts.search.pair_view import PairView, PartView
 from kinform.foundation.meshes.boxes import middles
+from kinform.foundation.meshes.parity import winding
 from kinform.model.arrays import Array, Flags, Ints, freeze
 from kinform.model.contacts import Interference, Patch
 
@@ -140,7 +141,17 @@ def _holds(outer: PartView, inner: PartView) -> bool:
         return False
     inside = middles(inner.vertices.take(inner.faces[shells], axis=0))
     inside = inside[((inside > outer.low) & (inside < outer.high)).all(axis=1)]
-    return bool(len(inside)) and bool(outer.index.contains(outer.to_part(inside)).any())
+    return bool(len(inside)) and bool(_contains(outer, inside).any())
+
+
+def _contains(part: PartView, points: Array) -> Flags:
+    """(n,) whether points (n, 3) are inside of a part; of an open mesh, whose gaps rays pass through, only those that
+    are by far."""
+    there = part.to_part(points)
+    out = part.index.contains(there)
+    if not part.index.mesh.health.watertight and out.any():
+        out[out] = np.abs(winding(part.index.mesh, there[out])) > constants.SURELY_INSIDE
+    return out
 
 
 def _measured(owner: PartView, other: PartView, points: Array, facets: Ints, first: bool) -> _Samples:
@@ -267,7 +278,7 @@ def _inside(owner: PartView, other: PartView) -> tuple[Array, Ints]:
     within = np.nonzero(((points > other.low) & (points < other.high)).all(axis=1))[0]
     chosen = within[:: max(1, math.ceil(len(within) / constants.DEPTH_SAMPLES))]
     points, facets = points[chosen], facets[chosen]
-    inside = other.index.contains(other.to_part(points))
+    inside = _contains(other, points)
     return points[inside], facets[inside].astype(np.int64)
 
 

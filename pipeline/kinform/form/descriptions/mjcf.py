@@ -17,13 +17,14 @@ from lxml import etree
 from kinform.form.constants import AXIS_LENGTH
 from kinform.form.descriptions.elements import FILE, Element, Xml, parse_xml, tag_of, xml_text
 from kinform.form.descriptions.meshes import MeshFiles
+from kinform.form.descriptions.mjcf_actuators import efforts
 from kinform.form.descriptions.mjcf_attach import Budget, Content, Models, attached
 from kinform.form.descriptions.mjcf_closures import closures, ratios
 from kinform.form.descriptions.mjcf_defaults import Compiler, Defaults, Includes
 from kinform.form.descriptions.mjcf_replicas import Replicas
 from kinform.form.descriptions.mjcf_shapes import Shapes
 from kinform.form.descriptions.poses import place
-from kinform.form.descriptions.robot import Limits, Link, Ratio, Robot, RobotJoint, Shape
+from kinform.form.descriptions.robot import Limits, Link, Ratio, Robot, RobotJoint, Shape, bounded
 from kinform.form.descriptions.tree import Count, distinct
 from kinform.form.problems import Problems
 from kinform.foundation.meant import did_you_mean, in_quotes
@@ -61,8 +62,10 @@ def _opened(
         return None, root, False
     includes = Includes(path, xml, meshes)
     includes.expand(root)
+    compiler = Compiler.of(xml, root)
+    includes.find_meshes(root, compiler.folder)
     budget.files += includes.files
-    changed = Replicas(xml, Compiler.of(xml, root)).expand(root) or bool(includes.files)
+    changed = Replicas(xml, compiler).expand(root) or bool(includes.files)
     return _Reader(xml, meshes, root, path, budget), root, changed
 
 
@@ -84,6 +87,7 @@ def _whole(root: Element, data: bytes, changed: bool) -> str:
         return xml_text(data)
     for element in root.iter():
         element.attrib.pop(FILE, None)
+    etree.cleanup_namespaces(root)  # MuJoCo refuses what declares one
     return str(etree.tostring(root, encoding="unicode"))
 
 
@@ -106,7 +110,7 @@ class _Reader:
         self.ratios: list[Ratio] = []
         self.sites: dict[str, tuple[str, Array]] = {}
         self.free_link, self.free_joint = distinct({WORLD}), distinct(set())
-        self.efforts = dict(self._efforts(root))
+        self.efforts = efforts(xml, root, self.defaults, self.compiler)
 
     def robot(self, root: Element, name: str) -> Robot | None:
         """All of the description; None after noting why there is none."""
@@ -141,8 +145,8 @@ class _Reader:
         self.links[WORLD] = Link(WORLD, np.eye(4), xml.at(worlds[0]))
         for world in worlds:
             self._inside(world, WORLD, np.eye(4), world.get("childclass"))
-        self.loops += closures(xml, root, self.links, self.sites, self.left)
-        self.ratios += ratios(xml, root, self.joints, self.left)
+        self.loops += closures(xml, root, self.links, self.sites, self.defaults, self.left)
+        self.ratios += ratios(xml, root, self.joints, self.defaults, self.left)
         return Content(self.links, self.joints, tuple(self.loops), tuple(self.ratios), self.sites, self.above)
 
     def _leave_out_world(self, loops: list[RobotJoint]) -> None:
@@ -193,6 +197,8 @@ class _Reader:
             self.xml.complain(element, message, "rename one of them")
         name = self.free_link(stated or f"body {len(self.links)}")
         at = self.xml.at(element)
+        if element.get("mocap", "false") == "true":
+            self.left.add("mocap of bodies, which are taken as fixed")
         inertial = self.xml.child(element, "inertial")
         if self.compiler.from_geometry:
             inertial = None
@@ -276,6 +282,9 @@ class _Reader:
             if said.get(key, "0").split() not in (["0"], ["0.0"], []):
                 self.left.add(f"{key} of joints")
         moves_one = kind in ("revolute", "prismatic")
+        for key in () if moves_one else ("range", "damping", "stiffness"):
+            if any(self.xml.numbers(element, said.get(key, ""), key, None) or ()):
+                self.left.add(f"{key} of ball joints")
         self.joints[name] = RobotJoint(
             name=name, type=kind, between=(above, below), at=xml.at(element),
             axis=X[:3, :3] @ (axis / np.linalg.norm(axis)) if kind != "spherical" else None,
@@ -320,18 +329,9 @@ class _Reader:
         lower, upper = (self.compiler.radians(v) if kind == "revolute" else v for v in values)
         ref = self._angle(element, said, "ref", kind)
         if lower < upper:
-            return lower - ref, upper - ref
+            return bounded(lower - ref, upper - ref)
         self.left.notes.append(f"joint {in_quotes(name)}: its range {said['range']} is not ascending: taken as none")
         return None
-
-    def _efforts(self, root: Element) -> Iterator[tuple[str, float]]:
-        for group in self.xml.children(root, "actuator"):
-            for element in self.xml.children(group):
-                said = self.defaults.said(element, None)
-                force = self.xml.numbers(element, said.get("forcerange", ""), "forcerange", None) or ()
-                gear = self.xml.numbers(element, said.get("gear", "1"), "gear", None) or (1.0,)
-                if "joint" in said and len(force) == 2 and max(map(abs, force)) > 0.0:
-                    yield said["joint"].replace("/", "_"), max(map(abs, force)) * abs(gear[0])
 
     def _effort(self, element: Element, said: Mapping[str, str], name: str) -> float | None:
         own = self.xml.numbers(element, said.get("actuatorfrcrange", ""), "actuatorfrcrange", None) or ()

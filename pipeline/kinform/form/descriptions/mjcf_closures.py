@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from kinform.form.constants import AXIS_LENGTH
+from kinform.form.constants import AXIS_LENGTH, LOOP_GAP
 from kinform.form.descriptions.elements import Element, Xml, tag_of
-from kinform.form.descriptions.poses import place
+from kinform.form.descriptions.mjcf_defaults import Defaults
+from kinform.form.descriptions.poses import place, pose, quaternion
 from kinform.form.descriptions.robot import Link, Ratio, RobotJoint
 from kinform.form.descriptions.tree import Count
 from kinform.foundation.meant import did_you_mean, in_quotes
@@ -17,25 +19,33 @@ from kinform.model.arrays import Array
 _WORLD = "world"
 
 
-def _active(xml: Xml, root: Element, *tags: str) -> Iterator[Element]:
+def _active(xml: Xml, root: Element, defaults: Defaults, *tags: str) -> Iterator[Element]:
     for group in xml.children(root, "equality"):
         for element in xml.children(group, *tags):
-            if element.get("active", "true") != "false":
+            if defaults.said(element, None, "equality").get("active", "true") != "false":
                 yield element
 
 
 def closures(
-    xml: Xml, root: Element, links: Mapping[str, Link], sites: Mapping[str, tuple[str, Array]], left: Count
+    xml: Xml,
+    root: Element,
+    links: Mapping[str, Link],
+    sites: Mapping[str, tuple[str, Array]],
+    defaults: Defaults,
+    left: Count,
 ) -> list[RobotJoint]:
-    """Joints that `<connect>` and `<weld>` make: a ball at one point, a hinge through two, else fixed."""
+    """Joints that `<connect>` and `<weld>` make: a ball at one point, a hinge through two, else fixed. What they close
+    in another pose than that of the file is none: what holds there is not known here."""
     between: dict[tuple[str, str], list[tuple[Element, Array | None]]] = {}
-    for element in _active(xml, root):
+    for element in _active(xml, root, defaults):
         if tag_of(element) not in ("connect", "weld"):
             if tag_of(element) != "joint":
                 left.add(f"<{tag_of(element)}> of <equality>")
             continue
         ends = _ends(xml, element, links, sites)
-        if ends is not None and ends[0] != ends[1]:
+        if ends is not None and (open_by := _open_by(xml, element, links, sites)) is not None:
+            left.add(f"<{tag_of(element)}> that is open by {open_by} in the pose of the file")
+        elif ends is not None and ends[0] != ends[1]:
             point = None if tag_of(element) == "weld" else ends[2]
             key = (ends[0], ends[1]) if ends[0] < ends[1] else (ends[1], ends[0])
             between.setdefault(key, []).append((element, point))
@@ -77,9 +87,32 @@ def _ends(
     return first, second, place(links[first].X_FL, xml.vector(element, "anchor", (0.0, 0.0, 0.0)))
 
 
-def ratios(xml: Xml, root: Element, joints: Mapping[str, RobotJoint], left: Count) -> Iterator[Ratio]:
+def _open_by(
+    xml: Xml, element: Element, links: Mapping[str, Link], sites: Mapping[str, tuple[str, Array]]
+) -> str | None:
+    """By how much the two sides miss each other, in words; None where they meet, as one anchor always does."""
+    welds = tag_of(element) == "weld"
+    if element.get("site1") is not None:
+        first, second = sites[element.get("site1")][1], sites[element.get("site2")][1]
+    else:
+        stated = xml.vector(element, "relpose", (0.0,) * 7) if welds else (0.0,) * 7
+        if not any(stated[3:]):  # no pose is stated: that of the file
+            return None
+        ends = [links[(element.get(key) or _WORLD).replace("/", "_")].X_FL for key in ("body1", "body2")]
+        first, second = ends[0] @ pose(quaternion(stated[3:]), stated[:3]), ends[1]
+    gap = float(np.linalg.norm(first[:3, 3] - second[:3, 3]))
+    cosine = 0.5 * (float(np.trace(first[:3, :3].T @ second[:3, :3])) - 1.0) if welds else 1.0
+    angle = math.acos(min(max(cosine, -1.0), 1.0))
+    if gap > LOOP_GAP:
+        return f"{1e3 * gap:.3g} mm"
+    return f"{math.degrees(angle):.3g}°" if angle > 10.0 * LOOP_GAP else None
+
+
+def ratios(
+    xml: Xml, root: Element, joints: Mapping[str, RobotJoint], defaults: Defaults, left: Count
+) -> Iterator[Ratio]:
     """`<joint>` of `<equality>`, where it is linear in the other joint and goes through zero."""
-    for element in _active(xml, root, "joint"):
+    for element in _active(xml, root, defaults, "joint"):
         first, second = ((element.get(key) or "").replace("/", "_") for key in ("joint1", "joint2"))
         polynomial = (*(xml.numbers(element, element.get("polycoef", "0 1 0 0 0"), "polycoef", None) or ()), 0.0, 0.0)
         for name in (first, second):

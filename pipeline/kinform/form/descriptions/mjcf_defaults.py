@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,11 +19,13 @@ from kinform.model.arrays import Array
 
 
 class Includes:
-    """Puts the elements of included files in the place of `<include>`; each file at most once, as MuJoCo has it."""
+    """Puts the elements of included files in the place of `<include>`; each file at most once, as MuJoCo has it. What
+    they name is looked for beside the description first, then beside themselves."""
 
     def __init__(self, path: Path, xml: Xml, meshes: MeshFiles):
         self._xml, self._meshes = xml, meshes
         self._top, self._seen = path, {path.resolve()}
+        self._shown = {xml.file: path}
         self.files: list[Path] = []
 
     def expand(self, element: Element) -> None:
@@ -33,10 +36,25 @@ class Includes:
             elif isinstance(child.tag, str):
                 self.expand(child)
 
+    def find_meshes(self, root: Element, folder: str) -> None:
+        """Meshes of included files that are not where those of the description are, but beside the file that names
+        them, as seen from the folder of meshes."""
+        for element in (e for assets in self._xml.children(root, "asset") for e in self._xml.children(assets, "mesh")):
+            name, here = (element.get("file") or "").replace("\\", "/"), Path(self._xml.at(element).file).parent
+            beside = os.path.relpath(here, Path(self._xml.file).parent)
+            below = self._top.parent / folder
+            if name and "://" not in name and beside != "." and not (below / name).is_file():
+                path = Path(beside) / name
+                if (below / path).is_file():
+                    element.set("file", path.as_posix())
+
     def _include(self, element: Element) -> None:
         name = element.get("file") or ""
         path = self._top.parent / name
         shown = Path(self._xml.file).parent / name
+        from_file = self._xml.at(element).file
+        if name and not path.is_file() and (self._shown[from_file].parent / name).is_file():
+            path, shown = self._shown[from_file].parent / name, Path(from_file).parent / name
         above = element.getparent()
         place = above.index(element)
         if not path.resolve().is_relative_to(self._meshes.home.resolve()):
@@ -49,6 +67,7 @@ class Includes:
         else:
             self._seen.add(path.resolve())
             self.files.append(path)
+            self._shown[shown.as_posix()] = path
             root = parse_xml(path.read_bytes(), shown.as_posix(), self._xml.problems)
             for k, child in enumerate([] if root is None else list(root)):
                 child.set(FILE, shown.as_posix())
@@ -62,6 +81,11 @@ class Includes:
 
 ORIENTATIONS = ("quat", "euler", "axisangle", "xyaxes", "zaxis")
 """Attributes that state a rotation, of which an element has one."""
+
+
+ACTUATOR = "general"
+ACTUATORS = ("general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle", "adhesion")
+"""Actuators, which have one default among them."""
 
 
 @dataclass(frozen=True)
@@ -155,19 +179,21 @@ class Defaults:
         own = {kind: dict(said) for kind, said in above.items()}
         own = {kind: dict(said) for kind, said in self._of.get(name, {}).items()} | own
         for child in self._xml.children(element):
-            if tag_of(child) != "default":
-                own[tag_of(child)] = _over(own.get(tag_of(child), {}), child.attrib)
+            kind = ACTUATOR if tag_of(child) in ACTUATORS else tag_of(child)
+            if kind != "default":
+                own[kind] = _over(own.get(kind, {}), child.attrib)
         self._of[name] = own
         for child in self._xml.children(element, "default"):
             self._read(child, child.get("class") or name, own)
 
-    def said(self, element: Element, inherited: str | None) -> dict[str, str]:
-        """The attributes of an element over those of its class, which is that of the body where it names none."""
+    def said(self, element: Element, inherited: str | None, kind: str | None = None) -> dict[str, str]:
+        """The attributes of an element over those of its class, which is that of the body where it names none; `kind`
+        is what the class calls such elements, if not by their tag."""
         name = element.get("class") or inherited or "main"
         if name not in self._of:
             self._xml.complain(element, f"there is no default class {in_quotes(name)}", "define it, or correct it")
             name = "main"
-        return _over(self._of[name].get(tag_of(element), {}), element.attrib)
+        return _over(self._of[name].get(kind or tag_of(element), {}), element.attrib)
 
 
 def _over(below: Mapping[str, str], said: Mapping[str, str]) -> dict[str, str]:

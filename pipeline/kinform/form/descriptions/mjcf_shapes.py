@@ -80,6 +80,8 @@ class Shapes:
     def _geom(self, element: Element, said: Mapping[str, str], link: str, X: Array) -> tuple[Shape | None, bool]:
         xml = self._xml
         kind = said.get("type", "mesh" if "mesh" in said else "sphere")
+        if "mesh" in said and "type" not in said:
+            self._left.add("sphere fitted to the mesh of a geom without type, which is taken as it is")
         seen = said.get("contype", "1").strip() == "0" and said.get("conaffinity", "1").strip() == "0"
         X_FG = X @ self._compiler.pose(xml, element, said)
         name = (said.get("name") or "").replace("/", "_") or None

@@ -6,9 +6,11 @@ The frame F is that of the description: of its root link, or of its world. A rea
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from kinform.form.constants import NO_BOUND
 from kinform.model.arrays import Array
 
 
@@ -80,6 +82,12 @@ class Limits:
     bounds: tuple[float, float] | None = None
     effort: float | None = None
     speed: float | None = None
+
+
+def bounded(lower: float, upper: float) -> tuple[float, float] | None:
+    """The range of two limits, infinite on a side where a number stands for no limit; None where that is both."""
+    ends = (-math.inf if lower <= -NO_BOUND else lower), (math.inf if upper >= NO_BOUND else upper)
+    return None if all(map(math.isinf, ends)) else ends
 
 
 @dataclass(frozen=True, eq=False)

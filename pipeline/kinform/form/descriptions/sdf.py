@@ -13,14 +13,14 @@ from pathlib import Path
 
 import numpy as np
 
-from kinform.form.constants import AXIS_LENGTH
+from kinform.form.constants import AXIS_LENGTH, NO_BOUND
 from kinform.form.descriptions.elements import Element, Xml, parse_xml, tag_of
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.poses import place
-from kinform.form.descriptions.robot import Limits, Link, Ratio, Robot, RobotJoint
+from kinform.form.descriptions.robot import Limits, Link, Ratio, Robot, RobotJoint, bounded
 from kinform.form.descriptions.sdf_frames import MODEL, WORLD, Frame, Frames
 from kinform.form.descriptions.sdf_links import Links
-from kinform.form.descriptions.sdf_models import Model, Models
+from kinform.form.descriptions.sdf_models import Model, Models, version_of
 from kinform.form.descriptions.sdf_text import whole_text
 from kinform.form.descriptions.sdf_values import Values
 from kinform.form.descriptions.tree import Count, distinct
@@ -38,6 +38,8 @@ _MODEL = ("link", "joint", "frame", "model", "include", "pose", "static", "self_
           "enable_wind")  # fmt: skip
 _JOINT = ("parent", "child", "pose", "axis", "axis2", "thread_pitch", "screw_thread_pitch", "gearbox_ratio",
           "gearbox_reference_body")  # fmt: skip
+_IN_WORLD = ("model", "include", "frame", "physics", "gravity", "light", "scene", "gui", "atmosphere", "audio", "wind",
+             "magnetic_field", "spherical_coordinates")  # fmt: skip
 _ROOT = ("model", "include", "world", "frame")
 
 
@@ -76,6 +78,8 @@ class _Reader:
         self.models.collect(root, path)
         for model in self.models.models:
             self._state(model)
+        for world in xml.children(root, "world"):
+            self._state_world(Model(WORLD, world, path.parent, version_of(root), static=False))
         if not self.links.stated and not len(xml.problems):
             xml.complain(root, "has no link in a model", "add a <model> with links")
         if len(xml.problems):
@@ -110,25 +114,36 @@ class _Reader:
             tag = tag_of(child)
             if tag not in _MODEL:
                 self.left.add(f"<{tag}> of models")
-            if tag not in ("link", "joint"):
-                continue
-            name = self.values.name(child)
-            if name is None:
-                continue
-            full = model.scope + name
-            known: dict[str, tuple[Model, Element]] = self.links.stated if tag == "link" else self.stated
-            if full in known:
-                first = self.xml.at(known[full][1]).line
-                message = f"two {tag}s are named {in_quotes(full)}: the first is at line {first}"
-                self.xml.complain(child, message, "rename one of them")
-                continue
-            known[full] = model, child
-            X, relative = self.values.pose(child)
-            if tag == "link":
-                self.frames.add(full, Frame(model.scope, relative or MODEL, X, child))
-            else:
-                below = self.values.text(child, "child") or ""
-                self.frames.add(full, Frame(model.scope, relative or below, X, child, below))
+            if tag in ("link", "joint"):
+                self._note(model, child)
+
+    def _state_world(self, world: Model) -> None:
+        """Note the joints between models, and what is in a world besides."""
+        for child in self.xml.children(world.element):
+            tag = tag_of(child)
+            if tag == "joint":
+                self._note(world, child)
+            elif tag not in _IN_WORLD:
+                self.left.add(f"<{tag}> of worlds")
+
+    def _note(self, model: Model, element: Element) -> None:
+        tag, name = tag_of(element), self.values.name(element)
+        if name is None:
+            return
+        full = model.scope + name
+        known: dict[str, tuple[Model, Element]] = self.links.stated if tag == "link" else self.stated
+        if full in known:
+            first = self.xml.at(known[full][1]).line
+            message = f"two {tag}s are named {in_quotes(full)}: the first is at line {first}"
+            self.xml.complain(element, message, "rename one of them")
+            return
+        known[full] = model, element
+        X, relative = self.values.pose(element)
+        if tag == "link":
+            self.frames.add(full, Frame(model.scope, relative or MODEL, X, element))
+        else:
+            below = self.values.text(element, "child") or ""
+            self.frames.add(full, Frame(model.scope, relative or below, X, element, below))
 
     def _hold(self, links: dict[str, Link]) -> None:
         """Static models are fixed to the world."""
@@ -193,8 +208,8 @@ class _Reader:
             point=None if kind in ("fixed", "prismatic") else place(X, (0.0, 0.0, 0.0)),
             pitch=pitch,
             range=self._range(axis, what) if one and stated != "continuous" else None,
-            effort=_bound(values.number(limit, "effort", -1.0)) if one else None,
-            speed=_bound(values.number(limit, "velocity", -1.0)) if one else None,
+            effort=_bound(values.number(limit, "effort", -1.0), NO_BOUND) if one else None,
+            speed=_bound(values.number(limit, "velocity", -1.0), NO_BOUND) if one else None,
             damping=_bound(values.number(dynamics, "damping", 0.0)) if one else None,
             stiffness=_bound(values.number(dynamics, "spring_stiffness", 0.0)) if one else None,
             rest=values.finite(dynamics, "spring_reference", 0.0) if one else 0.0,
@@ -266,10 +281,8 @@ class _Reader:
         lower, upper = (
             self.values.number(limit, key, bound) for key, bound in (("lower", -math.inf), ("upper", math.inf))
         )
-        if math.isinf(lower) and math.isinf(upper):
-            return None
         if lower < upper:
-            return lower, upper
+            return bounded(lower, upper)
         words = "are both 0" if lower == upper == 0.0 else f"{lower:g} and {upper:g} are not ascending"
         self.left.notes.append(f"{what}: its limits {words}: taken as without range")
         return None
@@ -295,9 +308,9 @@ class _Reader:
         return Ratio((name, leader), ratio, self.xml.at(mimic))
 
 
-def _bound(value: float) -> float | None:
-    """A positive finite bound; SDF has negative and infinite ones for none."""
-    return value if 0.0 < value < math.inf else None
+def _bound(value: float, most: float = math.inf) -> float | None:
+    """A positive bound below the most that is one; SDF has negative and infinite ones for none."""
+    return value if 0.0 < value < most else None
 
 
 def _renamed(joint: RobotJoint, world: str) -> RobotJoint:

@@ -48,6 +48,7 @@ def whole_text(root: Element, data: bytes, includes: Sequence[Included]) -> str:
         _put_in(included)
     for element in root.iter():
         element.attrib.pop(FILE, None)
+    etree.cleanup_namespaces(root)
     return str(etree.tostring(root, encoding="unicode"))
 
 

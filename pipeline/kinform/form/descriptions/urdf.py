@@ -12,12 +12,23 @@ from pathlib import Path
 
 import numpy as np
 
-from kinform.form.constants import AXIS_LENGTH
+from kinform.form.constants import AXIS_LENGTH, NO_BOUND
 from kinform.form.descriptions.elements import Element, Xml, colour_of, parse_xml, tag_of, xml_text
 from kinform.form.descriptions.inertials import placed, symmetric
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.poses import place, pose, rpy
-from kinform.form.descriptions.robot import Inertial, Limits, Link, Ratio, Robot, RobotJoint, Shape, Solid, Stated
+from kinform.form.descriptions.robot import (
+    Inertial,
+    Limits,
+    Link,
+    Ratio,
+    Robot,
+    RobotJoint,
+    Shape,
+    Solid,
+    Stated,
+    bounded,
+)
 from kinform.form.descriptions.tree import Count, Edge, Tree, tree_of
 from kinform.form.problems import Problems
 from kinform.foundation.meant import did_you_mean, in_quotes
@@ -292,14 +303,15 @@ class _Reader:
             return None
         lower, upper = (self.xml.number(limit, key, 0.0) or 0.0 for key in ("lower", "upper"))
         if lower < upper:
-            return lower, upper
+            return bounded(lower, upper)
         words = "are both 0" if lower == upper == 0.0 else f"{lower:g} and {upper:g} are not ascending"
         self.left.notes.append(f"{what}: its limits {words}: taken as without range")
         return None
 
     def _positive(self, element: Element | None, key: str) -> float | None:
         value = self.xml.number(element, key)
-        return value if value is not None and 0.0 < value < math.inf else None
+        most = NO_BOUND if key in ("effort", "velocity") else math.inf
+        return value if value is not None and 0.0 < value < most else None
 
     def _ratios(self, joints: dict[str, Element], made: set[str]) -> list[Ratio]:
         out = []

@@ -1,10 +1,14 @@
-"""Parity of rays: through how many facets a point leaves a mesh, less those that it enters through."""
+"""Parity of rays: through how many facets a point leaves a mesh, less those that it enters through.
+
+A facet that a file has twice is one: counted twice, it would make an inside of all that lies before it.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, perpendicular
+from kinform.foundation.constants import SEEN_AT_ONCE
 from kinform.foundation.meshes.boxes import FlatBoxes, facet_boxes
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
@@ -19,8 +23,9 @@ class Ray:
         self._frame = np.stack([u, cross(ray, u), ray])
         vertices = mesh.vertices @ self._frame.T
         self._columns = np.ascontiguousarray(vertices.T)
-        self._corners = np.ascontiguousarray(mesh.faces.T)
-        self._boxes = FlatBoxes(*facet_boxes(vertices[:, :2], mesh.faces))
+        faces = once(mesh.faces) if mesh.health.duplicate_facets else mesh.faces
+        self._corners = np.ascontiguousarray(faces.T)
+        self._boxes = FlatBoxes(*facet_boxes(vertices[:, :2], faces))
 
     def crossings(self, points: Array) -> Array:
         """(n,) facets that the ray from each point (n, 3) leaves through, less those that it enters through."""
@@ -40,3 +45,28 @@ class Ray:
         """(k,) each: where one corner of facets (k,) lies from points, along some axes of the frame."""
         vertices = self._corners[corner][facets]
         return [self._columns[axis][vertices] - seen[which, axis] for axis in axes]
+
+
+def winding(mesh: Mesh, points: Array) -> Array:
+    """(n,) how often the facets go round points (n, 3): 1 inside of a closed mesh, 0 outside, and between the two
+    beside what is missing of an open one, ½ in the middle of a gap. Each facet by the solid angle that it is seen under
+    (Van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30, 1983)."""
+    corners = mesh.vertices[once(mesh.faces)]
+    out = np.zeros(len(points))
+    some = max(1, SEEN_AT_ONCE // max(len(corners), 1))
+    for start in range(0, len(points), some):
+        seen = (corners[None] - points[start : start + some, None, None]).transpose(2, 3, 0, 1)
+        a, b, c = seen
+        la, lb, lc = np.sqrt((seen**2).sum(axis=1))
+        ab, bc, ca = (a * b).sum(axis=0), (b * c).sum(axis=0), (c * a).sum(axis=0)
+        above = (a * np.stack([b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]])).sum(0)
+        angles = np.arctan2(above, la * lb * lc + ab * lc + bc * la + ca * lb)
+        out[start : start + some] = angles.sum(axis=1) / (2.0 * np.pi)
+    return out
+
+
+def once(faces: Ints) -> Ints:
+    """Facets (m, 3) without those that are there already, the same way round."""
+    begun = np.take_along_axis(faces, (faces.argmin(axis=1)[:, None] + np.arange(3)) % 3, axis=1)
+    _, first = np.unique(begun, axis=0, return_index=True)
+    return np.ascontiguousarray(faces[np.sort(first)])
