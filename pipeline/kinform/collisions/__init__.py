@@ -27,5 +27,5 @@ from kinform.collisions.run_collisions import along
 
 __all__ = ["CODE_VERSION", "along", "ranges"]
 
-CODE_VERSION: int = 16
+CODE_VERSION: int = 17
 """Raised when the same input would give other ranges or collisions."""

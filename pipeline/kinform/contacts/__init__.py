@@ -31,5 +31,5 @@ from kinform.contacts.find import find
 
 __all__ = ["CODE_VERSION", "find"]
 
-CODE_VERSION: int = 23
+CODE_VERSION: int = 24
 """Raised when the same input would give other contacts."""
