@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import gc
 import os
 import shutil
 import subprocess
@@ -43,6 +44,7 @@ def small_disk(tmp_path, monkeypatch):
         yield folder
     finally:
         monkeypatch.chdir(tmp_path)
+        gc.collect()  # a design that is read as it is looked at keeps its file open as long as it is there
         subprocess.run(["umount", str(folder)], check=True)
 
 

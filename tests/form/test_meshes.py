@@ -15,7 +15,7 @@ from kinform.form import init_manifest, load, load_meshes
 from kinform.form.meshes.health import build_mesh
 from kinform.form.meshes.obj import parse_obj
 from kinform.form.meshes.raw import MeshError, RawMesh
-from kinform.form.meshes.stl import parse_ascii, parse_binary
+from kinform.form.meshes.stl import parse_ascii, parse_binary, read_stl
 from kinform.foundation.meshes.boxes import bounds
 
 CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
@@ -198,3 +198,29 @@ def test_bounds_are_the_least_and_greatest_of_columns(count):
     points = np.random.default_rng(count).normal(size=(count, 3)).astype(np.float32)
     low, high = bounds(points)
     assert np.array_equal(low, points.min(axis=0)) and np.array_equal(high, points.max(axis=0))
+
+
+@pytest.mark.parametrize(
+    ("begins", "said"),
+    [
+        (b"# made by a modeller\n\n# again\nmtllib a.mtl\n", "an OBJ file"),
+        (b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "an OBJ file"),
+        (b"ply\nformat binary_little_endian 1.0\n", "a PLY file"),
+        (b"COFF\n8 6 12\n", "an OFF file"),
+        (b"ISO-10303-21;\nHEADER;\n", "a STEP file"),
+        (b"glTF\x02\0\0\0", "a GLB file"),
+        (b"PK\x03\x04\x14\0", "a 3MF file"),
+        (b"<html><body>not found</body></html>\n", 'text that does not begin with "solid"'),
+    ],
+)
+def test_a_file_of_another_kind_named_stl_is_told_for_what_it_is(begins, said):
+    for data in (begins, begins + b" " * 200 + begins * 20):
+        with pytest.raises(MeshError) as caught:
+            read_stl(data)
+        assert said in caught.value.faults[0].message
+
+
+def test_binary_stl_whose_header_is_any_text_is_read():
+    for head in (b"v 1 2 3\nf 1 2 3\n", b"ply\n", b"# exported by a modeller\n"):
+        data = binary(CUBE[SIDES])
+        assert read_stl(head.ljust(80) + data[80:]).faces.shape == (12, 3)

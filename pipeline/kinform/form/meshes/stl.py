@@ -24,6 +24,16 @@ from kinform.foundation.words import counted
 _HEADER = 84
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _SOLID = re.compile(rb"^[ \t]*(end)?solid\b[ \t]*([^\n]*)$", re.MULTILINE | re.IGNORECASE)
+_UNPRINTABLE = re.compile(rb"[\x00-\x08\x0e-\x1f\x7f]")
+_OTHERS = (
+    (re.compile(rb"ply\s"), "a PLY file", ".ply"),
+    (re.compile(rb"(ST|C|N|4|n)*OFF\s"), "an OFF file", ".off"),
+    (re.compile(rb"ISO-10303-21"), "a STEP file", ".step"),
+    (re.compile(rb"glTF"), "a GLB file", ".glb"),
+    (re.compile(rb"PK\x03\x04"), "a 3MF file (or another ZIP archive)", ".3mf"),
+    (re.compile(rb"(#[^\n]*\n\s*)*(v|vn|vt|f|o|g|s|mtllib|usemtl)[ \t]+\S"), "an OBJ file", ".obj"),
+)
+"""How files of other formats begin, that are found under the name of an STL file."""
 _TOKENS = 21
 _WORDS = {
     0: b"facet", 1: b"normal", 5: b"outer", 6: b"loop", 7: b"vertex", 11: b"vertex", 15: b"vertex",
@@ -43,7 +53,18 @@ def read_stl(data: bytes) -> RawMesh:
         return parse_binary(data)
     if _is_text(head):
         return parse_ascii(data)
-    raise MeshError([_wrong_size(size, count)])
+    raise MeshError([_of_another_kind(head) or _wrong_size(size, count)])
+
+
+def _of_another_kind(head: bytes) -> Fault | None:
+    """What is wrong where the file begins as those of another format do, or is text; None where it may be binary."""
+    start = head.lstrip(b"\xef\xbb\xbf \t\r\n")
+    for begins, kind, ending in _OTHERS:
+        if begins.match(start):
+            return Fault(f"is no STL file: it begins as {kind} does", f"name it {ending}, or export it as STL")
+    if start and not _UNPRINTABLE.search(start):
+        return Fault('is no STL file: it is text that does not begin with "solid"', REEXPORT)
+    return None
 
 
 def _is_text(head: bytes) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import lru_cache
+from weakref import WeakKeyDictionary
 
 from kinform.design import Design
 from kinform.model.function import IntendedJoint
@@ -45,9 +45,19 @@ class _Names:
     wanted: dict[str, IntendedJoint]
 
 
-@lru_cache(maxsize=1)
+_KNOWN: WeakKeyDictionary[Design, _Names] = WeakKeyDictionary()
+"""Of the designs that are looked at: one that is read as it is looked at keeps its file open as long as it is there."""
+
+
 def _names(design: Design) -> _Names:
     """Looked up once for all that findings name."""
+    known = _KNOWN.get(design)
+    if known is None:
+        known = _KNOWN[design] = _collected(design)
+    return known
+
+
+def _collected(design: Design) -> _Names:
     assembly, kinematics = design.assembly, design.kinematics
     bodies = () if kinematics is None else kinematics.bodies
     joints = () if kinematics is None else kinematics.joints
