@@ -2,7 +2,8 @@
 
 typer (0.29) converts each value by an adapter of pydantic: to import pydantic and to make the adapters takes 0.07 s,
 half of all that a command takes to start. What is as plain as this is taken as it is; typer converts whatever else, and
-words what is wrong. Older typers have no adapters, and are left as they are.
+words what is wrong. Older typers have no adapters, and of newer ones it is not known what they have inside: they are
+left as they are.
 """
 
 from __future__ import annotations
@@ -12,6 +13,10 @@ from enum import Enum
 from pathlib import Path
 from typing import Any, get_args, get_origin
 
+import typer
+
+_KNOWN = "0.29."
+"""Versions of typer whose adapters are as this expects them."""
 _UNLESS = ("exists", "resolve_path", "writable", "parser")
 """What an option says that asks more of its value."""
 
@@ -39,6 +44,8 @@ class _Converted:
 
 def take_as_is(parameter: Any) -> None:
     """Let a parameter of typer take what is plain as it is."""
+    if not typer.__version__.startswith(_KNOWN):
+        return
     if getattr(parameter, "_runtime_param", parameter) is None and hasattr(parameter, "type_descriptor"):
         parameter._runtime_param = _Converted(parameter)
 

@@ -51,6 +51,12 @@ def test_values_and_errors_are_those_of_typer(arguments: list[str]) -> None:
     assert _taken(Command, arguments) == _taken(typer.core.TyperCommand, arguments)
 
 
+def test_a_typer_that_is_not_known_is_left_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(typer, "__version__", "0.30.0")
+    for arguments in GIVEN:
+        assert _taken(Command, arguments) == _taken(typer.core.TyperCommand, arguments)
+
+
 def test_looking_at_results_imports_no_pydantic(tmp_path: Path) -> None:
     code = (
         "import sys\n"
