@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from collections.abc import Callable
 from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
 import typer
-from support.command_line import Ran, environment
+from support.command_line import Ran, modules_after
 
 from kinform import __version__
 from kinform_cli.app import COMMANDS as REGISTERED
@@ -40,27 +38,14 @@ def test_version_is_that_of_the_package(kinform: Callable[..., Ran]) -> None:
 
 @pytest.mark.parametrize("arguments", [["--version"], ["--help"], ["run", "--help"]], ids=" ".join)
 def test_nothing_heavy_is_imported_to_answer(arguments: list[str]) -> None:
-    code = (
-        "import sys\n"
-        "from kinform_cli.main import main\n"
-        f"assert main({arguments!r}) == 0\n"
-        "print(*sorted({name.split('.')[0] for name in sys.modules}), file=sys.stderr)\n"
-    )
-    ran = subprocess.run([sys.executable, "-c", code], env=environment(), capture_output=True, text=True, check=True)
-    imported = set(ran.stderr.split())
+    imported = {name.split(".")[0] for name in modules_after(arguments)}
     assert "typer" in imported
     assert not imported & (HEAVY - {"pydantic"})
 
 
 def test_a_command_imports_the_module_of_no_other() -> None:
-    code = (
-        "import sys\n"
-        "from kinform_cli.main import main\n"
-        "assert main(['schema', '--help']) == 0\n"
-        "print(*sorted(name for name in sys.modules if name.startswith('kinform_cli.commands.')), file=sys.stderr)\n"
-    )
-    ran = subprocess.run([sys.executable, "-c", code], env=environment(), capture_output=True, text=True, check=True)
-    assert ran.stderr.split() == ["kinform_cli.commands.schema"]
+    commands = [name for name in modules_after(["schema", "--help"]) if name.startswith("kinform_cli.commands.")]
+    assert commands == ["kinform_cli.commands.schema"]
 
 
 @pytest.mark.parametrize("command", COMMANDS)

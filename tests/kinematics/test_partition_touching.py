@@ -83,3 +83,16 @@ def test_a_rod_that_touches_a_ball_at_a_point_goes_with_what_guides_it(seed, sca
     (of_ball,) = [one for one in K.joints if one.bodies == ("hip", "motor")]
     assert (of_ball.type, of_ball.status) == ("spherical", "stated")
     assert [(one.cause, one.freedoms) for one in of_ball.readings] == [("end", 5)]  # the point is left in one sense
+
+
+@pytest.mark.parametrize(("seed", "scale"), POSES)
+@pytest.mark.parametrize("kind", ["planar", "spherical"])
+def test_a_cradle_that_a_pin_can_leave_sideways_forbids_what_it_does_not_turn_about(seed, scale, kind):
+    """An arc of less than half a bore, between collars: that the pin may be lifted out of it makes it no plane."""
+    cradle = box(-20, 20, -20, -4, 0, 10) - rod(8, -1, 11, 64)
+    pin = rod(8, -4, 14, 64) + rod(12, -4, 0, 64) + rod(12, 10, 14, 64)
+    K = derived(
+        {"cradle": cradle, "pin": pin}, [("turn", ("cradle", "pin"), kind, (0, 0, 5), (0, 0, 1))], pose(seed), scale
+    )
+    (found,) = K.joints
+    assert (found.type, found.status) == ("revolute", "determined")

@@ -38,3 +38,15 @@ def environment(**extra: str) -> dict[str, str]:
 
 
 KINFORM = Path(sys.executable).with_name("kinform")
+
+
+def modules_after(arguments: list[str], returncode: int = 0) -> list[str]:
+    """What is imported, sorted, once a command has ended in a process of its own, as it should."""
+    code = (
+        "import sys\n"
+        "from kinform_cli.main import main\n"
+        f"assert main({arguments!r}) == {returncode}\n"
+        "print(*sorted(sys.modules), file=sys.stderr)\n"
+    )
+    ran = subprocess.run([sys.executable, "-c", code], env=environment(), capture_output=True, text=True, check=True)
+    return ran.stderr.splitlines()[-1].split()

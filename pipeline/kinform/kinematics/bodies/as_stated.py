@@ -98,36 +98,18 @@ def _at(twists: Array, place: Array) -> Array:
 
 
 def opens(patches: Sequence[Patch], motions: Array, first: Collection[PartName]) -> bool:
-    """Whether some of these motions (k, 6) of the second body leaves all contact that they do not slide along: with
-    one motion, in one of its senses; `first` are the parts of the first body."""
+    """Whether these motions (k, 6) of the second body, in one sense, leave all contact that they do not slide along:
+    one motion, or several of which the contact opposes one combination, as a point does; `first` are the parts of the
+    first body."""
     rows = []
     for patch in patches:
         side = 1.0 if patch.parts[0] in first else -1.0
         speeds = motions[:, None, 3:] + cross(motions[:, None, :3], patch.points[None])
-        across = side * np.einsum("kni,ni->kn", speeds, patch.normals)
+        across = side * np.einsum("kni,ni->nk", speeds, patch.normals)
         pace = np.linalg.norm(speeds, axis=2).max(axis=1, initial=0.0)
-        across = np.where(np.abs(across) > ADMITTED * pace[:, None], across, 0.0)
-        rows.append(across.T[np.any(across != 0.0, axis=0)])
+        rows.append(across[np.any(np.abs(across) > ADMITTED * pace, axis=1)])
     found = np.concatenate(rows)
-    found = found / np.linalg.norm(found, axis=1)[:, None]
-    return len(found) == 0 or _leaving(found) > ADMITTED
-
-
-def _leaving(rows: Array) -> float:
-    """How fast a motion x (k,), |x| at most 1 in each component, opens the slowest of these unit rows (n, k) at most:
-    max t, rows·x ≥ t."""
-    from scipy.optimize import linprog
-
-    if rows.shape[1] == 1:
-        return 1.0 if len(set(np.sign(rows[:, 0]))) == 1 else -1.0
-    solved = linprog(
-        np.r_[np.zeros(rows.shape[1]), -1.0],
-        A_ub=np.c_[-rows, np.ones(len(rows))],
-        b_ub=np.zeros(len(rows)),
-        bounds=[(-1.0, 1.0)] * rows.shape[1] + [(0.0, None)],
-        method="highs",
-    )
-    return float(solved.x[-1]) if solved.status == 0 else -1.0
+    return len(found) == 0 or len(set(np.sign(found @ found[0]))) == 1
 
 
 def _in_force(
@@ -153,7 +135,9 @@ def _in_force(
         cause, why = "doubt", "contact leaves it undecided"
     elif leaves_free(joint.twists, taken.twists, place, _reach(corners, place)):
         cause, why = "contact", "contact leaves it free and does not hold it"
-    elif len(taken.twists) and opens([patches[k] for k in joint.patches], taken.twists, first):
+    elif (len(taken.twists) == 1 or joint.freedoms == 5) and opens(
+        [patches[k] for k in joint.patches], taken.twists, first
+    ):
         cause, why = "end", "contact leaves it free in one sense, as an end stop does, and does not hold it"
     else:
         return joint
