@@ -106,6 +106,13 @@ JOININGS = 2
 PEELS = 60
 """Planes taken off a cluster before the rest of it falls into its facets."""
 
+PEELS_SEEN = 8
+"""Planes of a cluster after which it is asked whether planes make it up."""
+
+PEELED = 0.1
+"""Share of a cluster that the rest of the planes would take if all were as large as the largest of those, at least:
+what is less is curved."""
+
 PEEL_STEPS = 3
 """Fits of each plane: to the facet, then to what lies in its plane."""
 

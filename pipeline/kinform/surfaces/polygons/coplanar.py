@@ -12,10 +12,11 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import dot, normalised
 from kinform.foundation.graphs.components import components
+from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import constants
-from kinform.surfaces.groups import columns_of, group_mean, group_sum, sums_of
+from kinform.surfaces.groups import columns_of, group_mean, group_sum, slices, sums_of
 from kinform.surfaces.polygons.facets import Facets, angles
 from kinform.surfaces.polygons.noise import Scale, departures
 
@@ -139,42 +140,58 @@ def moments(mesh: Facets, polygon: Ints) -> Moments:
 
 def _peel(mesh: Facets, label: Ints, f0: Ints, f1: Ints, scale: Scale) -> Ints:
     """Labels of clusters that scattered vertices let run on into their neighbours, one plane after the other
-    taken off from the largest facet of each; `f0`, `f1` are the links between facets."""
-    corners = mesh.vertices[mesh.faces]
+    taken off from the largest facet of each, as long as planes make a cluster up; `f0`, `f1` are the links between
+    facets."""
     label = np.unique(label, return_inverse=True)[1].astype(np.int64)
     whole = np.zeros(int(label.max()) + 1, bool)
-    for _ in range(constants.PEELS):
-        count = len(whole)
+    most = np.zeros(len(label), np.int64)
+    for number in range(1, constants.PEELS + 1):
         open_ = np.flatnonzero(~whole[label])
         if not len(open_):
             break
-        order = open_[np.lexsort((open_, -mesh.area[open_], label[open_]))]
-        first = order[np.r_[True, label[order][1:] != label[order][:-1]]]
-        normal, point, reach = np.zeros((count, 3)), np.zeros((count, 3)), np.ones(count)
-        normal[label[first]], point[label[first]] = mesh.normal[first], corners[first].mean(axis=1)
-        reach[label[first]] = np.maximum(mesh.altitude[first], 1e-300)
-        mine, group = corners[open_], label[open_]
-        for step in range(constants.PEEL_STEPS):
-            offset = mine - point[group][:, None, :]
-            height = np.abs(np.einsum("ijk,ik->ij", offset, normal[group]))
-            allowed = scale.noise + 0.0 * height
-            if step == 0:
-                far = np.sqrt(np.einsum("ijk,ijk->ij", offset, offset))
-                allowed = scale.noise * (1 + far / reach[group][:, None])
-            on = (height < allowed).all(axis=1) & (dot(mesh.normal[open_], normal[group]) > constants.FACING)
-            fitted, centre, _ = fit_planes(np.repeat(group[on], 3), mine[on].reshape(-1, 3), normal)
-            normal, point = fitted, np.where(np.bincount(group[on], minlength=count)[:, None] > 0, centre, point)
+        order = open_[np.lexsort((-mesh.area[open_], label[open_]))]
+        first = order[heads(label[order])]
+        group = np.searchsorted(label[first], label[open_])
+        on = open_[_in_planes(mesh, first, open_, group, scale)]
         member = np.zeros(len(label), bool)
-        member[open_[on]] = True
-        member[first] = True
+        member[on] = member[first] = True
         same = (label[f0] == label[f1]) & (member[f0] == member[f1])
         label = components(f0[same], f1[same], len(label))
-        whole = np.bincount(label) == 1
+        size = np.bincount(label)
+        most[open_] = np.maximum(most[open_], size[label[first]][group])
+        whole = size == 1
         whole[label[first]] = True
         done = np.ones(len(member), bool)
         done[open_] = False
         whole[label[done]] = True
+        if number % constants.PEELS_SEEN == 0:
+            vain = most * (constants.PEELS - number) < constants.PEELED * size[label]
+            whole[label[vain]] = True
+            most[:] = 0
     return label
+
+
+def _in_planes(mesh: Facets, first: Ints, facets: Ints, group: Ints, scale: Scale) -> Flags:
+    """Which of the facets lie in the plane of their group, which is fitted to what lies in that of its facet `first`."""
+    normal, point = mesh.normal[first], mesh.vertices[mesh.faces[first]].mean(axis=1)
+    reach = np.maximum(mesh.altitude[first], 1e-300)
+    on: Flags = np.empty(len(facets), bool)
+    for step in range(constants.PEEL_STEPS):
+        for rows in slices(len(facets), constants.ROWS):
+            mine, faces = group[rows], facets[rows]
+            offset = mesh.vertices[mesh.faces[faces]] - point[mine][:, None, :]
+            height = np.abs(np.einsum("ijk,ik->ij", offset, normal[mine]))
+            allowed: float | Array = scale.noise
+            if step == 0:
+                far = np.sqrt(np.einsum("ijk,ijk->ij", offset, offset))
+                allowed = scale.noise * (1 + far / reach[mine][:, None])
+            facing = dot(mesh.normal[faces], normal[mine]) > constants.FACING
+            on[rows] = (height < allowed).all(axis=1) & facing
+        fitting = group[on]
+        corners = mesh.vertices[mesh.faces[facets[on]]].reshape(-1, 3)
+        normal, centre, _ = fit_planes(np.repeat(fitting, 3), corners, normal)
+        point = np.where(np.bincount(fitting, minlength=len(first))[:, None] > 0, centre, point)
+    return on
 
 
 def fit_planes(group: Ints, points: Array, outward: Array) -> tuple[Array, Array, Array]:
