@@ -172,7 +172,7 @@ def _peel(mesh: Facets, label: Ints, f0: Ints, f1: Ints, scale: Scale) -> Ints:
 
 
 def _in_planes(mesh: Facets, first: Ints, facets: Ints, group: Ints, scale: Scale) -> Flags:
-    """Which of the facets lie in the plane of their group, which is fitted to what lies in that of its facet `first`."""
+    """Which of the facets are in the plane of their group, fitted to what is in that of the facet `first` of each."""
     normal, point = mesh.normal[first], mesh.vertices[mesh.faces[first]].mean(axis=1)
     reach = np.maximum(mesh.altitude[first], 1e-300)
     on: Flags = np.empty(len(facets), bool)
