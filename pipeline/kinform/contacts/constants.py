@@ -284,6 +284,10 @@ BESIDE_DEEPEST = 100
 """Points beside the deepest one that are measured too."""
 EXACT_OVERLAP = 0.02
 """An overlap below this is none: rounding of coordinates."""
+THINNER = 0.25
+"""Share of what counts as an overlap by which a solid is made thinner to see that it shares nothing with another. No
+depth is more than that then, and no ball that both share is larger, so that sheets of the overlap are half of what
+counts at most: twice their volume by their area is less than twice the radius of that ball."""
 SHELL_INSET = 0.98
 """Points just inside the corners of a facet are at this share of the way to them from its middle."""
 PARTING_STEPS = 60

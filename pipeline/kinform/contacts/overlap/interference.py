@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.contacts import constants
-from kinform.contacts.overlap.solids import Piece, SolidStore
+from kinform.contacts.overlap.shrunk import are_within
+from kinform.contacts.overlap.solids import Piece, SolidStore, bounds_volume
 from kinform.contacts.presses import beyond_press
 from kinform.contacts.search.pair_view import PairView, PartView
 from kinform.foundation.meshes.boxes import middles
@@ -74,13 +75,16 @@ def find_interference(pair: PairView, patches: list[Patch], solids: SolidStore) 
     least = constants.EXACT_OVERLAP * pair.tolerance
     if not (a.part.solid and b.part.solid) or not _meet(a, b, patches, least):
         return None
+    closed = bounds_volume(a.index.mesh) and bounds_volume(b.index.mesh)
+    if closed and are_within(a, b, constants.THINNER * least):
+        return None
     allowance = _Allowance(
         chords=(_chords(a), _chords(b)),
         mates={p.surfaces: p for p in patches if not p.one_sided},
         floor=least,
         tolerance=pair.tolerance,
     )
-    pieces = solids.overlap(a, b, allowance.floor**3)
+    pieces = solids.overlap(a, b, allowance.floor**3) if closed else None
     if pieces is None:
         return _by_facets(a, b, allowance)
     return _by_volume(a, b, pieces, allowance)

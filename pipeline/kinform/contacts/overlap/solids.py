@@ -49,9 +49,8 @@ class SolidStore:
     solids: dict[tuple[str, int], Manifold | None] = field(default_factory=dict)
 
     def overlap(self, a: PartView, b: PartView, least: float) -> list[Piece] | None:
-        """Pieces of the overlap of more than `least` (m³), largest first; None where a mesh is not a manifold."""
-        if not (_bounds_volume(a.index.mesh) and _bounds_volume(b.index.mesh)):
-            return None
+        """Pieces of the overlap of two meshes that bound volumes, of more than `least` (m³), largest first; None where
+        manifold3d does not take one."""
         home, guest, roles = (a, b, (0, 1)) if a.at_home else (b, a, (1, 0))
         first, second = self._solid(home.index.mesh, roles[0]), self._solid(guest.index.mesh, roles[1])
         if first is None or second is None:
@@ -80,7 +79,8 @@ class SolidStore:
             return self.solids.setdefault(key, _solid(mesh, role))
 
 
-def _bounds_volume(mesh: Mesh) -> bool:
+def bounds_volume(mesh: Mesh) -> bool:
+    """Whether a cut can be made of it."""
     return mesh.health.watertight and mesh.health.manifold_status == "NoError"
 
 

@@ -180,6 +180,9 @@ class MeshIndex:
     @property
     def shells(self) -> Ints:
         """The lowest facet of each connected shell of the mesh."""
+        if self._shells is None and self.mesh.health.shells == 1:
+            # what hangs together by edges does by vertices
+            self._shells = np.zeros(1, np.int64)
         if self._shells is None:
             faces, count = self.mesh.faces, len(self.mesh.vertices)
             edges = np.concatenate([faces[:, :2], faces[:, 1:]])
