@@ -181,6 +181,8 @@ KEPT_SPANS = 200_000
 
 # meshes/slivers
 
+MET_AT_ONCE = 100_000
+"""Triangles of which a model is made at a time, a kilobyte each, to ask whether they meet a mesh."""
 CROSSED_FEW = 100_000
 """Triangles times triangles up to which all are asked whether they cross; beyond, one in so many that it is this."""
 CROSSED_SOME = 64

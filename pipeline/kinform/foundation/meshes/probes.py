@@ -18,7 +18,7 @@ import numpy as np
 
 from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.algebra.vectors import cross, dot
-from kinform.foundation.constants import HITS_A_PROBE, SLIVER_WIDTH, STEEP_LEAST
+from kinform.foundation.constants import HITS_A_PROBE, MET_AT_ONCE, SLIVER_WIDTH, STEEP_LEAST
 from kinform.foundation.meshes.boxes import facet_boxes, triangle_boxes
 from kinform.foundation.meshes.closest import closest_facets
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, fcl_pose, partial_model, point_model
@@ -161,6 +161,20 @@ class Region:
         placed = fcl.CollisionObject(other._beside(self, inverse(X_SO)), fcl_pose(X_SO))
         base = fcl.CollisionObject(self._beside(other, X_SO))
         return bool(fcl.collide(base, placed, request, fcl.CollisionResult()))
+
+    def meets(self, triangles: Array) -> bool:
+        """Whether any triangles (n, 3, 3) of the part frame meet these facets; of many, as `crosses`."""
+        if self.empty or not len(triangles):
+            return False
+        whole = self.facets is not None or not self.index.is_large
+        mine = fcl.CollisionObject(self.bvh if whole else self.index.model_near(*triangle_boxes(triangles))[0])
+        request = fcl.CollisionRequest(num_max_contacts=1, enable_contact=False)
+        for start in range(0, len(triangles), MET_AT_ONCE):
+            corners = triangles[start : start + MET_AT_ONCE].reshape(-1, 3)
+            other = fcl.CollisionObject(fcl_model(corners, np.arange(len(corners)).reshape(-1, 3)))
+            if fcl.collide(mine, other, request, fcl.CollisionResult()):
+                return True
+        return False
 
     def _corners(self) -> Array:
         """(n, 3, 3) m of the facets."""
