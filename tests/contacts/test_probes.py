@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from support.analytic_solids import MM, box_loop, extrusion, revolution, round_loop
 
-from kinform.foundation.meshes import box_pairs
+from kinform.foundation.meshes import box_pairs, probes
 from kinform.foundation.meshes.index import MeshIndex
+from kinform.foundation.meshes.slivers import crossing
 
 
 @cache
@@ -76,3 +77,20 @@ def test_points_inside_a_solid_are_told_from_points_in_its_cavities():
     within = (radius > 5) & (radius < 20) & (height > 0) & (height < 10)
     sharp = (np.abs(radius - 5) > 0.1) & (np.abs(radius - 20) > 0.1)
     np.testing.assert_array_equal(tube.contains(points)[sharp], within[sharp])
+
+
+def test_a_mesh_meets_triangles_exactly_where_a_few_of_them_do(monkeypatch):
+    rng = np.random.default_rng(8)
+    middle = rng.uniform([-52 * MM, -52 * MM, -8 * MM], [52 * MM, 52 * MM, 3 * MM], (400, 1, 3))
+    triangles = middle + rng.normal(scale=1.5 * MM, size=(400, 3, 3))
+    for region in (plate().whole(), plate().region(np.arange(0, len(plate().mesh.faces), 2))):
+        each = [region.meets(triangle[None]) for triangle in triangles]
+        hit = [crossing(triangle[None], region._corners()) for triangle in triangles]
+        assert each == hit
+        assert 20 < sum(each) < 380
+        first = each.index(True)
+        monkeypatch.setattr(probes, "MET_AT_ONCE", 3)
+        assert region.meets(triangles[~np.array(each)]) is False
+        assert region.meets(np.concatenate([triangles[~np.array(each)], triangles[first : first + 1]]))
+        assert not region.meets(triangles[:0])
+        monkeypatch.undo()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from support.analytic_solids import MM, assembly, box_loop, extrusion, flat_loop, pose, turned
+from support.analytic_solids import MM, assembly, box_loop, extrusion, flat_loop, pose, revolution, turned
 
 from kinform.contacts import constants, find
 from kinform.contacts.overlap import interference
@@ -86,3 +86,21 @@ def test_a_shell_within_another_solid_is_found(cuts):
     inner = prism(box_loop(4, 4, 6, 6), 6.0, z0=4.0)
     assert len(overlaps(cube, inner)) == 1
     assert len(overlaps(inner, cube)) == 1
+
+
+def ball_and_socket(count):
+    half = np.linspace(-np.pi / 2, np.pi / 2, count // 2 + 1)
+    arc = np.stack([10 * MM * np.cos(half), 10 * MM * np.sin(half)], axis=1)
+    arc[[0, -1], 0] = 0.0
+    lower = arc[: count // 4 + 1]
+    cup = np.concatenate([[[0.0, -14 * MM], [14 * MM, -14 * MM], [14 * MM, 0.0]], lower[::-1]])
+    sphere = ("sphere", 0.0, 10 * MM)
+    ball = revolution(arc, count, arcs=dict.fromkeys(range(len(arc) - 1), sphere))
+    return ball, revolution(cup, count, arcs=dict.fromkeys(range(3, len(cup) - 1), sphere))
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.37])
+def test_a_ball_of_many_facets_that_lies_in_its_socket_is_not_cut(turn, cuts):
+    ball, socket = ball_and_socket(160)
+    assert overlaps(socket, ball, pose(turned((0, 0, 1), turn * 360.0 / 160))) == ()
+    assert len(cuts) == (turn > 0.0)  # then their edges cross, and lenses are left of it, less deep than chords

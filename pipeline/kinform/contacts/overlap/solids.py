@@ -14,6 +14,8 @@ from manifold3d import Error, Manifold, Mesh64
 
 from kinform.contacts.search.pair_view import PartView
 from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.graphs.components import components
+from kinform.foundation.sorting import ascending, heads
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 
@@ -59,11 +61,7 @@ class SolidStore:
         guest_middle, guest_scale = _scaling(guest.index.mesh)
         R, p = guest.X_FP[:3, :3], guest.X_FP[:3, 3]
         place = np.concatenate([R * guest_scale, (R @ guest_middle + p - middle)[:, None]], axis=1) / scale
-        pieces = [
-            _piece(piece, middle, scale)
-            for piece in (first ^ second.transform(place)).decompose()
-            if not piece.is_empty() and piece.volume() * scale**3 > 0.5 * least
-        ]
+        pieces = _pieces(first ^ second.transform(place), 0.5 * least / scale**3, middle, scale)
         return sorted(pieces, key=lambda piece: (-piece.volume, tuple(piece.centroid)))
 
     def forget(self, digest: str) -> None:
@@ -100,17 +98,30 @@ def _solid(mesh: Mesh, role: int) -> Manifold | None:
     return solid if solid.status() == Error.NoError and not solid.is_empty() else None
 
 
-def _piece(solid: Manifold, middle: Array, scale: float) -> Piece:
-    """A connected piece in the frame of the pair, from one that is centred on `middle` (3,) and scaled."""
+def _pieces(solid: Manifold, least: float, middle: Array, scale: float) -> list[Piece]:
+    """The connected pieces, of more than `least`, in the frame of the pair, of a solid that is centred on `middle` (3,)
+    and scaled. manifold3d's own `decompose` goes through all of it for each of them."""
     mesh = solid.to_mesh64()
-    corners = np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts, dtype=np.int64)]
-    starts = np.asarray(mesh.run_index, dtype=np.int64) // 3
-    owners = np.asarray(mesh.run_original_id, dtype=np.int64)
-    part = np.repeat(owners, np.diff(starts))
+    vertices, faces = np.asarray(mesh.vert_properties)[:, :3], np.asarray(mesh.tri_verts, dtype=np.int64)
+    if not len(faces):
+        return []
+    owners, runs = (np.asarray(column, dtype=np.int64) for column in (mesh.run_original_id, mesh.run_index))
+    part, facet = np.repeat(owners, np.diff(runs // 3)), np.asarray(mesh.face_id, dtype=np.int64)
+    piece = components(faces[:, :2].ravel(), faces[:, 1:].ravel(), len(vertices))[faces[:, 0]]
+    order = ascending(piece, len(faces))
+    corners, part, facet = vertices[faces[order]], part[order], facet[order]
+    ends = [*heads(piece[order]).nonzero()[0].tolist(), len(faces)]
+    a, b, c = (corners[:, k] - corners[0, 0] for k in range(3))
+    large = np.add.reduceat(dot(a, cross(b, c)) / 6.0, ends[:-1]) > least
+    every = [slice(ends[k], ends[k + 1]) for k in np.flatnonzero(large)]
+    return [_piece(corners[rows], part[rows], facet[rows], middle, scale) for rows in every]
+
+
+def _piece(corners: Array, part: Ints, facet: Ints, middle: Array, scale: float) -> Piece:
+    """A connected piece in the frame of the pair, of its facets' corners (t, 3, 3), parts and numbers (t,)."""
     # Facets in an order of their own, so that sums do not depend on how manifold3d went about it.
     order = np.lexsort(tuple(corners.reshape(len(corners), 9).T[::-1]))
-    corners, part = corners[order], part[order]
-    facet = np.asarray(mesh.face_id, dtype=np.int64)[order]
+    corners, part, facet = corners[order], part[order], facet[order]
     origin = corners.reshape(-1, 3).mean(axis=0)
     a, b, c = (corners[:, k] - origin for k in range(3))
     volumes = dot(a, cross(b, c)) / 6.0
