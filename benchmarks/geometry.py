@@ -10,7 +10,8 @@ said so. Each robot and each size is measured in a process of its own:
 - contacts of many small parts: pins in the bores of one plate, and bars bolted to each other, all as files of their
   own;
 - contacts of two blocks that meet in a wavy face, from four sizes, with the exponent of the growth; `--large` adds the
-  size of 5.4 million facets, and its memory.
+  size of 5.4 million facets, and its memory;
+- the same of a ball in its socket and of a shaft in its bore, with the same facets, and turned against each other.
 """
 
 from __future__ import annotations
@@ -22,7 +23,8 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -43,6 +45,8 @@ CONTACTS = {"so100": 3.0, "dog": 1.0, "sigmaban2019": 1.0}
 """Aims of contacts, in bare FCL trees."""
 WAVY = (60_000, 180_000, 540_000, 1_620_000)
 """Facets of the two blocks together."""
+SEGMENTS = (128, 224, 400, 700)
+"""Facets round a ball and a shaft."""
 LARGE = 5_400_000
 
 
@@ -147,6 +151,13 @@ def of_small_parts(quick: bool) -> Iterator[Row]:
         yield Row(f"contacts of a chain of {5 * links} bars, pins, bolts", each, PAIR, "ms a pair", words, found["MB"])
 
 
+def write(path: Path, points: Any, faces: Any) -> None:
+    """A binary STL of points (n, 3) and faces (m, 3)."""
+    record = np.zeros(len(faces), np.dtype([("n", "<3f4"), ("v", "<9f4"), ("a", "<u2")]))
+    record["v"] = points[faces].reshape(-1, 9)
+    path.write_bytes(b"\0" * 80 + np.uint32(len(faces)).tobytes() + record.tobytes())
+
+
 def wavy_blocks(folder: Path, facets: int) -> Path:
     """Two blocks that meet in one wavy face: each has a grid on that face and a grid on the other side."""
     side = round(np.sqrt(facets / 8)) + 1
@@ -162,32 +173,62 @@ def wavy_blocks(folder: Path, facets: int) -> Path:
     for name, high, low in (("lower", face, np.full_like(face, -10.0)), ("upper", np.full_like(face, 10.0), face)):
         points = np.concatenate([np.stack([x, y, z], 2).reshape(-1, 3) for z in (high, low)])
         faces = np.concatenate([up, up[:, ::-1] + lower, walls])
-        record = np.zeros(len(faces), np.dtype([("n", "<3f4"), ("v", "<9f4"), ("a", "<u2")]))
-        record["v"] = points[faces].reshape(-1, 9)
-        (folder / f"{name}.stl").write_bytes(b"\0" * 80 + np.uint32(len(faces)).tobytes() + record.tobytes())
+        write(folder / f"{name}.stl", points, faces)
         lines += ["[[part]]", f'name = "{name}"', f'mesh = "{name}.stl"']
     (folder / "waves.toml").write_text("\n".join(lines) + "\n")
     return folder / "waves.toml"
 
 
-def of_growth(quick: bool, large: bool) -> Iterator[Row]:
-    sizes = [facets // 10 if quick else facets for facets in WAVY] + [LARGE] * large
+def seated(folder: Path, kind: str, segments: int, turned: float) -> Path:
+    """A ball in its socket or a shaft in its bore, with so many facets round; `turned` in facets against each other."""
+    from manifold3d import Manifold
+
+    if kind == "ball":
+        inner, block = Manifold.sphere(20.0, segments), Manifold.cube((60, 60, 30), True).translate((0, 0, -15))
+    else:
+        inner = Manifold.cylinder(50.0, 10.0, 10.0, segments, True).refine(8)
+        block = Manifold.cube((40, 40, 30), True)
+    lines = ["schema = 1", "[assembly]", f'name = "{kind}"', 'units = "mm"']
+    for name, solid in ((kind, inner.rotate((0, 0, 360.0 * turned / segments))), ("block", block - inner)):
+        mesh = solid.to_mesh64()
+        faces = np.asarray(mesh.tri_verts, dtype=np.int64)
+        write(folder / f"{name}.stl", np.asarray(mesh.vert_properties)[:, :3], faces)
+        lines += ["[[part]]", f'name = "{name}"', f'mesh = "{name}.stl"']
+    (folder / f"{kind}.toml").write_text("\n".join(lines) + "\n")
+    return folder / f"{kind}.toml"
+
+
+def growing(what: str, makes: Iterable[Callable[[Path], Path]]) -> Iterator[Row]:
+    """A row for each size, and those of the growth."""
     seen = []
-    for facets in sizes:
+    for make in makes:
         with tempfile.TemporaryDirectory() as folder:
-            seen.append(measured(wavy_blocks(Path(folder), facets), 1))
+            seen.append(measured(make(Path(folder)), 1))
         found = seen[-1]
         words = f"surfaces {found['surfaces']:.2f} s, import {found['import']:.2f} s, FCL trees {found['fcl']:.2f} s"
-        what = f"contacts of two wavy blocks, {found['facets']:,.0f} facets"
-        yield Row(what, found["contacts"], None, "s", words, found["MB"])
+        yield Row(
+            f"contacts of {what}, {found['facets']:,.0f} facets", found["contacts"], None, "s", words, found["MB"]
+        )
     many = np.log([found["facets"] for found in seen])
     for stage, aim in (("import", None), ("surfaces", None), ("contacts", EXPONENT)):
         power = float(np.polyfit(many, np.log([found[stage] for found in seen]), 1)[0])
-        yield Row(f"two wavy blocks: {stage} grow with facets to the power", power, aim, "")
+        yield Row(f"{what}: {stage} grow with facets to the power", power, aim, "")
     power = float(np.polyfit(many, np.log([found["MB"] for found in seen]), 1)[0])
-    yield Row("two wavy blocks: memory grows with facets to the power", power, None, "")
-    if large:
-        yield Row(f"two wavy blocks of {LARGE:,} facets: memory", seen[-1]["MB"], LARGE_MB, "MB")
+    yield Row(f"{what}: memory grows with facets to the power", power, None, "", "", seen[-1]["MB"])
+
+
+def of_growth(quick: bool, large: bool) -> Iterator[Row]:
+    sizes = [facets // 10 if quick else facets for facets in WAVY] + [LARGE] * large
+    row = None
+    for row in growing("two wavy blocks", [partial(wavy_blocks, facets=facets) for facets in sizes]):
+        yield row
+    if large and row is not None:
+        yield Row(f"two wavy blocks of {LARGE:,} facets: memory", row.megabytes, LARGE_MB, "MB")
+    for kind, where in (("ball", "its socket"), ("shaft", "its bore")):
+        for turned in (0.0, 0.37):
+            what = f"a {kind} in {where}{', turned' if turned else ''}"
+            counts = [segments // 4 * 2 if quick else segments for segments in SEGMENTS]
+            yield from growing(what, [partial(seated, kind=kind, segments=n, turned=turned) for n in counts])
 
 
 def rows(quick: bool, robots: Path | None = None, large: bool | None = None) -> Iterator[Row]:
