@@ -229,6 +229,23 @@ def curves(part: PartView, pieces: Segments, near: Flags, smooth_edge: float) ->
     return out
 
 
+def may_curve(part: PartView, pieces: Segments, smooth_edge: float) -> bool:
+    """Whether any of the smooth curves that segments make may be no exact one: most outlines are straight and round,
+    which the turns from segment to segment tell sooner than the curves do."""
+    count = len(pieces.points)
+    leaving, entering = np.full(count, -1), np.full(count, -1)
+    leaving[pieces.start], entering[pieces.end] = np.arange(len(pieces.start)), np.arange(len(pieces.start))
+    through = (np.bincount(pieces.start, minlength=count) == 1) & (np.bincount(pieces.end, minlength=count) == 1)
+    exact = _circular(part, pieces.labels)
+    through &= ~(exact[entering] | exact[leaving])
+    steps = pieces.points[pieces.end] - pieces.points[pieces.start]
+    one, two = steps[entering[through]], steps[leaving[through]]
+    turn = np.abs(np.arctan2(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0], dot(one, two)))
+    # for rounding; and a closed curve that is nowhere cut overlaps itself, and turns there twice
+    spare = 1.0 + 1e-6
+    return bool(2.0 * spare * turn[turn < spare * smooth_edge].sum() >= CURVE_BEND_LEAST)
+
+
 def _chains(start: Ints, end: Ints, count: int, near: Flags) -> list[Ints]:
     """Segments in order along unbranched runs that have one flagged in `near`; a closed run begins anywhere."""
     out_of, into = np.bincount(start, minlength=count), np.bincount(end, minlength=count)
