@@ -201,6 +201,8 @@ LINE_SAMPLES = 9
 """Samples along an edge, and along the line in which outlines meet."""
 EDGE_RISE = math.sin(math.radians(3.0))
 """Faces beside an edge rise at least this steeply; flatter ones lie on the plane badly."""
+NEARLY = 1.001
+"""Share of a limit within which it is looked closer whether it is kept: far more than rounding."""
 EDGES_MOST = 64
 """More edges and corners than these on one plane are a rough surface."""
 RIM_UNEVEN = 0.02
