@@ -46,6 +46,16 @@ def test_a_slide_that_lies_on_all_sides_of_its_slot_is_not_cut(cuts):
     assert not cuts
 
 
+def test_a_plug_that_fills_its_hole_is_not_cut(cuts):
+    hole, plug = box_loop(3, 3, 7, 7), prism(box_loop(3, 3, 7, 7))
+    outer = box_loop(0, 0, 10, 10)
+    plate = extrusion((outer[0] * MM, outer[1]), [(hole[0] * MM, hole[1])], z1=8 * MM)
+    assert overlaps(plate, plug) == overlaps(plug, plate) == ()
+    assert not cuts
+    (found,) = overlaps(prism(outer), plug)
+    assert found.volume == pytest.approx(4 * 4 * 8 * MM**3)
+
+
 @pytest.mark.parametrize("share", [0.0, 0.2, 0.24, 0.26, 0.5, 0.9, 1.1, 2.0, 10.0])
 @pytest.mark.parametrize("towards", [(0, -1, 0), (1, 0, 0), (0.6, 0, 0.8), (0.48, -0.6, 0.64)])
 def test_what_is_said_without_a_cut_is_what_the_cut_says(share, towards, cuts, monkeypatch):

@@ -201,6 +201,8 @@ LINE_SAMPLES = 9
 """Samples along an edge, and along the line in which outlines meet."""
 EDGE_RISE = math.sin(math.radians(3.0))
 """Faces beside an edge rise at least this steeply; flatter ones lie on the plane badly."""
+NEARLY = 1.001
+"""Share of a limit within which it is looked closer whether it is kept: far more than rounding."""
 EDGES_MOST = 64
 """More edges and corners than these on one plane are a rough surface."""
 RIM_UNEVEN = 0.02
@@ -286,8 +288,10 @@ EXACT_OVERLAP = 0.02
 """An overlap below this is none: rounding of coordinates."""
 THINNER = 0.25
 """Share of what counts as an overlap by which a solid is made thinner to see that it shares nothing with another. No
-depth is more than that then, and no ball that both share is larger, so that sheets of the overlap are half of what
-counts at most: twice their volume by their area is less than twice the radius of that ball."""
+depth is more than that then, and no ball that both share is larger, so that pieces of the overlap are no thicker than
+half of what counts: their volume is no more than their area by the radius of that ball."""
+SHELL_TRIED = 16
+"""Facets of a shell of which one that is not at the surface of another solid tells whether the shell is in it."""
 SHELL_INSET = 0.98
 """Points just inside the corners of a facet are at this share of the way to them from its middle."""
 PARTING_STEPS = 60

@@ -75,9 +75,11 @@ CROSSING_SHARE = 0.02
 # meshes/box_pairs
 
 BOXES_MATRIX = 600_000
-"""Boxes times boxes up to which all are compared: 1 ms; a grid takes from 0.5 ms to 4."""
+"""Boxes times boxes up to which all are compared, however many of either kind there are."""
 BOXES_COMPARED = 1_500_000
-"""The same where a grid does not part them: 3 ms, in which FCL makes a tree of several hundred facets."""
+"""The same where there are not very many of either: 1 ms; a grid takes from 0.5 ms to 4."""
+BOXES_EXACT = 20_000
+"""The same up to which they are compared as they are: steps of a scale take 0.04 ms to be made."""
 BOXES_MOST = 50_000
 """Boxes of either kind up to which a grid is made of them."""
 BESIDE_MOST = 100_000

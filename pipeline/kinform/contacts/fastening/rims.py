@@ -44,16 +44,15 @@ def _borders(mesh: Mesh, plane: Surface, others: Sequence[Surface]) -> list[tupl
     on_plane = np.zeros(len(mesh.vertices), dtype=np.bool_)
     on_plane[mesh.faces[plane.faces]] = True
     inside = np.sort(_keys(edge_ends(mesh.faces[plane.faces]), mesh))
-    out = []
-    for other in others:
-        corners = mesh.faces[other.faces]
-        ends = edge_ends(corners[on_plane[corners].sum(axis=1) >= 2])
-        keys = _keys(ends, mesh)
-        place = np.minimum(np.searchsorted(inside, keys), len(inside) - 1)
-        shared = inside[place] == keys
-        if shared.any():
-            out.append((other, ends[shared]))
-    return out
+    owner = np.repeat(np.arange(len(others)), [len(other.faces) for other in others])
+    one, two, three = corners = mesh.faces[np.concatenate([other.faces for other in others])].T
+    beside = np.flatnonzero(on_plane[one].astype(np.int8) + on_plane[two] + on_plane[three] >= 2)
+    ends, owner = edge_ends(corners.T[beside]), np.repeat(owner[beside], 3)
+    keys = _keys(ends, mesh)
+    place = np.minimum(np.searchsorted(inside, keys), len(inside) - 1)
+    shared = inside[place] == keys
+    ends, owner = ends[shared], owner[shared]
+    return [(others[k], ends[owner == k]) for k in np.unique(owner).tolist()]
 
 
 def _keys(edges: Ints, mesh: Mesh) -> Ints:

@@ -172,9 +172,10 @@ def _axis(pair: Pair, planes: list[Patch], scene: _Scene, tolerance: float) -> l
     near, normal = constants.AXES_COAXIAL * tolerance, planes[0].axis
     coaxial: list[tuple[Array, float, float]] = []
     for patch in planes:
-        rims = [scene.rims(name, index) for name, index in zip(pair, patch.surfaces, strict=True)]
-        for centre, radius in rims[0]:
-            for other, size in rims[1]:
+        rims = scene.rims(pair[0], patch.surfaces[0])
+        others = scene.rims(pair[1], patch.surfaces[1]) if rims else []
+        for centre, radius in rims:
+            for other, size in others:
                 if aside(centre, other, normal) <= near:
                     coaxial.append((centre, radius, size))
     if coaxial:

@@ -48,7 +48,8 @@ def edge_contacts(
         planes = view.near[1]
         large = planes.areas >= constants.GIVER_AREA * pair.tolerance**2
         sharp = edges.where(edges.cosine < math.cos(pair.tolerances.smooth_edge))
-        for row in np.flatnonzero((planes.kinds == KINDS.index("plane")) & large):
+        rows = np.flatnonzero((planes.kinds == KINDS.index("plane")) & large)
+        for row in rows[_reached(view, sharp, rows)]:
             touches = _standing(view, sharp, int(row))
             out += [
                 _patch(pair, touch, first)
@@ -56,6 +57,14 @@ def edge_contacts(
                 if (touch.surfaces if first else touch.surfaces[::-1]) not in met
             ]
     return out
+
+
+def _reached(view: PairView, edges: ConvexEdges, rows: Ints) -> Flags:
+    """(n,) which of these planes of the second part are touched by an end of an edge of the first at all, or nearly."""
+    planes, ends = view.near[1], view.a.vertices[np.unique(edges.ends)]
+    axes, points = planes.axes[rows], planes.points[rows]
+    height = np.abs(ends @ axes.T - dot(axes, points))
+    return np.asarray((height <= constants.NEARLY * constants.TOUCH * view.tolerance).any(axis=0))
 
 
 def _bends(sharp: PartView, edges: ConvexEdges, k: int, tolerances: Tolerances) -> bool:
@@ -131,9 +140,12 @@ def _rises(sharp: PartView, edges: ConvexEdges, height: Array) -> Flags:
 
 def _lowest(sharp: PartView, corners: Ints, height: Array, slope: float) -> Flags:
     """Whether everything around each corner rises from it, at least at this slope; rims rise slowly."""
-    out = np.zeros(len(corners), dtype=bool)
+    out, beside = np.zeros(len(corners), dtype=bool), np.zeros(len(sharp.vertices), dtype=bool)
+    beside[corners] = True
+    one, two, three = sharp.faces.T
+    faces = sharp.faces[beside[one] | beside[two] | beside[three]]
     for k, vertex in enumerate(corners):
-        around = np.setdiff1d(sharp.faces[(sharp.faces == vertex).any(axis=1)], [vertex])
+        around = np.setdiff1d(faces[(faces == vertex).any(axis=1)], [vertex])
         away = np.linalg.norm(sharp.vertices[around] - sharp.vertices[vertex], axis=1)
         out[k] = bool((height[around] - height[vertex] > slope * away).all())
     return out

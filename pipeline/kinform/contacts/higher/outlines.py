@@ -118,13 +118,19 @@ class Segments:
 
 @dataclass(frozen=True, eq=False)
 class Sheet:
-    """Facets of a part (ascending), and pairs (k, 2) of them that meet in a smooth edge: a bent or a flat one."""
+    """Facets of a part (ascending), and pairs (2, k) of them that meet in a smooth edge: a bent or a flat one."""
 
     facets: Ints
     normals: Array
     """(n, 3) unit, in the frame of the pair; zero of facets without area."""
     bends: Ints
+    """Both ways round."""
     flats: Ints
+
+    @cached_property
+    def solid(self) -> Flags:
+        """(n,) facets that have an area."""
+        return np.asarray(self.normals.any(axis=1))
 
     @staticmethod
     def of(part: PartView, facets: Ints, flat: float, smooth: float) -> Sheet:
@@ -133,7 +139,8 @@ class Sheet:
         pairs = shared_edges(part.faces[facets], len(part.vertices), by_corner=True).facets
         cosine = dot(normals[pairs[:, 0]], normals[pairs[:, 1]])
         bent = cosine < math.cos(flat)
-        return Sheet(facets, normals, facets[pairs[bent & (cosine > math.cos(smooth))]], facets[pairs[~bent]])
+        bends, flats = (facets[pairs[which]].T for which in (bent & (cosine > math.cos(smooth)), ~bent))
+        return Sheet(facets, normals, np.concatenate([bends, bends[::-1]], axis=1), np.ascontiguousarray(flats))
 
 
 def segments(part: PartView, sheet: Sheet, direction: Array, alignment: float, grain: float) -> Segments | None:
@@ -141,21 +148,24 @@ def segments(part: PartView, sheet: Sheet, direction: Array, alignment: float, g
     that bends along it too; ends nearer to each other than `grain` (m) are one."""
     upright = np.zeros(len(part.faces), dtype=bool)
     facets = sheet.facets
-    upright[facets] = np.abs(sheet.normals @ direction) < math.sin(alignment)
-    upright[facets] &= sheet.normals.any(axis=1)
-    if not upright.any():
+    along = (np.abs(sheet.normals @ direction) < math.sin(alignment)) & sheet.solid
+    if not along.any():
         return None
-    inner, outer = np.concatenate([sheet.bends, sheet.bends[:, ::-1]]).T
-    leaves = upright[inner] & ~upright[outer]
+    upright[facets] = along
+    inner, outer = sheet.bends
+    leaves = upright.take(inner)
+    leaves &= ~upright.take(outer)
     inner, outer = inner[leaves], outer[leaves]
     heights = [np.ptp(part.vertices.take(part.faces[side], axis=0) @ direction, axis=1) for side in (inner, outer)]
     upright[inner[heights[1] > STRIP_HEIGHT * heights[0]]] = False
-    facets = facets[upright[facets]]
+    facets = facets[upright.take(facets)]
     if not len(facets):
         return None
     plane = plane_basis(direction)
-    face = _faces(len(part.faces), facets, sheet.flats[upright[sheet.flats].all(axis=1)])
-    lead = facets[np.unique(face, return_index=True)[1]]
+    one, two = sheet.flats
+    face = _faces(len(part.faces), facets, sheet.flats[:, upright.take(one) & upright.take(two)])
+    # faces are numbered by their first facets
+    lead = facets[heads(np.maximum.accumulate(face))]
     normals = part.normals(lead) @ plane.T
     along = np.stack([-normals[:, 1], normals[:, 0]], axis=1)
     corners = part.vertices.take(part.faces[facets], axis=0)
@@ -202,7 +212,7 @@ def _faces(count: int, facets: Ints, flats: Ints) -> Ints:
     vertices on chords, which booleans leave, do not count."""
     place = np.zeros(count, dtype=np.int64)
     place[facets] = np.arange(len(facets))
-    one, two = place[flats].T if len(flats) else (np.zeros(0, np.int64), np.zeros(0, np.int64))
+    one, two = place.take(flats)
     return components(one, two, len(facets))
 
 
@@ -215,10 +225,10 @@ def _merged(points: Array, grain: float) -> tuple[Ints, Array]:
         np.minimum.at(leader, pairs.max(axis=1), pairs.min(axis=1))
     while (leader[leader] != leader).any():
         leader = leader[leader]
-    unique, back = np.unique(leader, return_inverse=True)
+    leads = leader == np.arange(len(points))
     ids = np.empty(len(points), dtype=np.int64)
-    ids[order] = back
-    return ids, points[order][unique]
+    ids[order] = (np.cumsum(leads) - 1).take(leader)
+    return ids, points[order[leads]]
 
 
 def curves(part: PartView, pieces: Segments, near: Flags, smooth_edge: float) -> list[Curve]:
@@ -227,6 +237,23 @@ def curves(part: PartView, pieces: Segments, near: Flags, smooth_edge: float) ->
     for chain in _chains(pieces.start, pieces.end, len(pieces.points), near):
         out += _cut(part, pieces, chain, near, smooth_edge)
     return out
+
+
+def may_curve(part: PartView, pieces: Segments, smooth_edge: float) -> bool:
+    """Whether any of the smooth curves that segments make may be no exact one: most outlines are straight and round,
+    which the turns from segment to segment tell sooner than the curves do."""
+    count = len(pieces.points)
+    leaving, entering = np.full(count, -1), np.full(count, -1)
+    leaving[pieces.start], entering[pieces.end] = np.arange(len(pieces.start)), np.arange(len(pieces.start))
+    through = (np.bincount(pieces.start, minlength=count) == 1) & (np.bincount(pieces.end, minlength=count) == 1)
+    exact = _circular(part, pieces.labels)
+    through &= ~(exact[entering] | exact[leaving])
+    steps = pieces.points[pieces.end] - pieces.points[pieces.start]
+    one, two = steps[entering[through]], steps[leaving[through]]
+    turn = np.abs(np.arctan2(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0], dot(one, two)))
+    # for rounding; and a closed curve that is nowhere cut overlaps itself, and turns there twice
+    spare = 1.0 + 1e-6
+    return bool(2.0 * spare * turn[turn < spare * smooth_edge].sum() >= CURVE_BEND_LEAST)
 
 
 def _chains(start: Ints, end: Ints, count: int, near: Flags) -> list[Ints]:

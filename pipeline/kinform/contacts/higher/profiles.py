@@ -15,7 +15,7 @@ import numpy as np
 
 from kinform.contacts import constants
 from kinform.contacts.higher.closest_places import closest_places
-from kinform.contacts.higher.outlines import Curve, Sheet, curves, segments
+from kinform.contacts.higher.outlines import Curve, Sheet, curves, may_curve, segments
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.mating.charts import plane_basis
 from kinform.contacts.search.pair_view import NearSurfaces, PairView, PartView, near_facets
@@ -94,6 +94,8 @@ def _meetings(pair: PairView, sheets: list[Sheet], direction: Array) -> list[_Me
         if pieces is None:
             return []
         cut.append(pieces)
+    if not any(may_curve(part, pieces, tolerances.smooth_edge) for part, pieces in zip(pair.parts, cut, strict=True)):
+        return []
     near = near_boxes(*cut[0].boxes(), *cut[1].boxes(), limit)
     first = curves(pair.a, cut[0], near[0], tolerances.smooth_edge)
     second = curves(pair.b, cut[1], near[1], tolerances.smooth_edge)

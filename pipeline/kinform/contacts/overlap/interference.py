@@ -16,7 +16,7 @@ from kinform.contacts import constants
 from kinform.contacts.overlap.shrunk import are_within
 from kinform.contacts.overlap.solids import Piece, SolidStore, bounds_volume
 from kinform.contacts.presses import beyond_press
-from kinform.contacts.search.pair_view import PairView, PartView
+from kinform.contacts.search.pair_view import PairView, PartView, near_facets
 from kinform.foundation.meshes.boxes import middles
 from kinform.foundation.meshes.parity import winding
 from kinform.model.arrays import Array, Flags, Ints, freeze
@@ -31,6 +31,10 @@ class _Samples:
     depth: Array
     surfaces: Ints
     """(n, 2) of the first and the second part."""
+
+    def where(self, rows: Flags) -> _Samples:
+        """Some of them."""
+        return _Samples(self.points[rows], self.depth[rows], self.surfaces[rows])
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,10 +155,14 @@ def _holds(outer: PartView, inner: PartView) -> bool:
 def _contains(part: PartView, points: Array) -> Flags:
     """(n,) whether points (n, 3) are inside of a part; of an open mesh, whose gaps rays pass through, only those that
     are by far."""
-    there = part.to_part(points)
-    out = part.index.contains(there)
+    return _surely(part, points, part.index.contains(part.to_part(points)))
+
+
+def _surely(part: PartView, points: Array, crossed: Flags) -> Flags:
+    """(n,) which of some points (n, 3), that are inside of a part by counting crossings, are so for sure."""
+    out = crossed.copy()
     if not part.index.mesh.health.watertight and out.any():
-        out[out] = np.abs(winding(part.index.mesh, there[out])) > constants.SURELY_INSIDE
+        out[out] = np.abs(winding(part.index.mesh, part.to_part(points[out]))) > constants.SURELY_INSIDE
     return out
 
 
@@ -259,13 +267,20 @@ def _by_volume(a: PartView, b: PartView, pieces: list[Piece], allowance: _Allowa
 
 def _by_facets(a: PartView, b: PartView, allowance: _Allowance) -> Interference | None:
     """Overlap of meshes that bound no volume: points of either inside the other, by counting crossings."""
-    samples = []
-    for owner, other, first in ((a, b, True), (b, a, False)):
-        points, facets = _inside(owner, other)
-        samples.append(_measured(owner, other, points, facets, first))
-    joined = _joined(samples)
-    if not len(joined.points):
+    sides = ((a, b, True), (b, a, False))
+    every = [_measured(owner, other, *_crossed(owner, other), first) for owner, other, first in sides]
+    # what goes round a point is asked of those first that would count: mostly none of them is inside
+    counts = [samples.depth > allowance.chords_of(samples) for samples in every]
+    inside = [
+        _surely(other, samples.points, some) for (_, other, _), samples, some in zip(sides, every, counts, strict=True)
+    ]
+    if not any(some.any() for some in inside):
         return None
+    inside = [
+        sure | _surely(other, samples.points, ~some)
+        for (_, other, _), samples, some, sure in zip(sides, every, counts, inside, strict=True)
+    ]
+    joined = _joined([samples.where(sure) for samples, sure in zip(every, inside, strict=True)])
     deep, mated = allowance.unexplained(joined)
     if not deep.any():
         return None
@@ -274,15 +289,15 @@ def _by_facets(a: PartView, b: PartView, allowance: _Allowance) -> Interference 
     return _interference(a, b, math.nan, depth, place, mated, "facets")
 
 
-def _inside(owner: PartView, other: PartView) -> tuple[Array, Ints]:
-    """Points on the owner's facets that are inside the other part, and their facets."""
-    corners = owner.vertices.take(owner.faces, axis=0)
-    points = _within(corners, middles(corners))
-    facets = np.concatenate([np.arange(len(corners)), np.repeat(np.arange(len(corners)), 3)])
+def _crossed(owner: PartView, other: PartView) -> tuple[Array, Ints]:
+    """Points on the owner's facets that are inside the other part by counting crossings, and their facets."""
+    near, _, _ = near_facets(owner, other.low, other.high)
+    corners = owner.vertices.take(owner.faces[near], axis=0)
+    points, facets = _within(corners, middles(corners)), np.concatenate([near, np.repeat(near, 3)])
     within = np.nonzero(((points > other.low) & (points < other.high)).all(axis=1))[0]
     chosen = within[:: max(1, math.ceil(len(within) / constants.DEPTH_SAMPLES))]
     points, facets = points[chosen], facets[chosen]
-    inside = _contains(other, points)
+    inside = other.index.contains(other.to_part(points))
     return points[inside], facets[inside].astype(np.int64)
 
 

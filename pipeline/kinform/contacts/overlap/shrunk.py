@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.contacts import constants
 from kinform.contacts.search.pair_view import PartView
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.meshes.boxes import facet_boxes, meeting_box, middles
@@ -37,17 +38,21 @@ def are_within(a: PartView, b: PartView, least: float) -> bool:
 def _outside(inner: PartView, outer: PartView, least: float) -> bool:
     """Whether it is sure that no shell of `inner` is inside `outer` unless their facets cross, also where those of one
     are moved by up to `least` (m)."""
-    shells, spare = inner.index.shells, 2.0 * least
+    tried, spare = inner.index.shells, 2.0 * least
     low, high = outer.low - spare, outer.high + spare
-    if len(shells) == 1 and ((inner.low < low) | (inner.high > high)).any():
-        return True
-    points = middles(inner.vertices.take(inner.faces[shells], axis=0))
+    one = len(tried) == 1
+    if one:
+        if ((inner.low < low) | (inner.high > high)).any():
+            return True
+        tried = np.arange(0, len(inner.faces), -(-len(inner.faces) // constants.SHELL_TRIED))
+    points = middles(inner.vertices.take(inner.faces[tried], axis=0))
     points = points[((points > low) & (points < high)).all(axis=1)]
-    if not len(points):
+    if not len(points) or (one and len(points) < len(tried)):
         return True
-    if (outer.depths(points)[0] <= spare).any():
+    clear = outer.depths(points)[0] > spare
+    if not (clear.any() if one else clear.all()):
         return False
-    return not outer.index.contains(outer.to_part(points)).any()
+    return not outer.index.contains(outer.to_part(points[clear])).any()
 
 
 def _beside(part: PartView, low: Array, high: Array) -> Ints:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
+from typing import Any
 
-from kinform.foundation.constants import BESIDE_MOST, BOXES_COMPARED, BOXES_MATRIX, BOXES_MOST
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.foundation.constants import BESIDE_MOST, BOXES_COMPARED, BOXES_EXACT, BOXES_MATRIX, BOXES_MOST
 from kinform.foundation.meshes.boxes import FlatBoxes
 from kinform.model.arrays import Array, Ints
 
@@ -17,14 +20,15 @@ def meeting_boxes(first: Boxes, second: Boxes) -> tuple[Ints, Ints] | None:
     is quicker.
 
     Few are all compared. Of more, the second are listed by the cells of a grid across the two coordinates along which
-    boxes are smallest beside the whole, grown by what the largest of the first reach from their middles; where that
-    leaves too many, as large facets do, they may still be few enough to be all compared.
+    boxes are smallest beside the whole, grown by what the largest of the first reach from their middles.
     """
     count, others = len(first[0]), len(second[0])
     if count * others <= BOXES_MATRIX:
         return _compared(first, second)
     if max(count, others) > BOXES_MOST:
         return None
+    if count * others <= BOXES_COMPARED:
+        return _compared(first, second)
     (low, high), (low_other, high_other) = first, second
     whole = np.maximum(high.max(axis=0), high_other.max(axis=0)) - np.minimum(low.min(axis=0), low_other.min(axis=0))
     share = whole / np.maximum((high - low).mean(axis=0) + (high_other - low_other).mean(axis=0), 1e-300)
@@ -33,8 +37,13 @@ def meeting_boxes(first: Boxes, second: Boxes) -> tuple[Ints, Ints] | None:
     middles = 0.5 * (low + high)
     listed = FlatBoxes(low_other[:, axes] - reach, high_other[:, axes] + reach)
     if listed.listed_at(middles[:, axes]) > BESIDE_MOST:
-        return _compared(first, second) if count * others <= BOXES_COMPARED else None
-    one, two = listed.around(middles[:, axes])
+        return None
+    return _that_meet(first, second, *listed.around(middles[:, axes]))
+
+
+def _that_meet(first: Boxes, second: Boxes, one: Ints, two: Ints) -> tuple[Ints, Ints]:
+    """Those pairs of boxes `one` (k,) of the first and `two` (k,) of the second that meet."""
+    (low, high), (low_other, high_other) = first, second
     for axis in range(3):
         meets = low[:, axis].take(one) <= high_other[:, axis].take(two)
         meets &= low_other[:, axis].take(two) <= high[:, axis].take(one)
@@ -43,11 +52,22 @@ def meeting_boxes(first: Boxes, second: Boxes) -> tuple[Ints, Ints] | None:
 
 
 def _compared(first: Boxes, second: Boxes) -> tuple[Ints, Ints]:
-    """The same, of few."""
-    meets = np.ones((len(first[0]), len(second[0])), dtype=bool)
-    (low, high), (low_other, high_other) = (
-        [np.ascontiguousarray(side.T) for side in boxes] for boxes in (first, second)
-    )
+    """The same as `meeting_boxes`, of few: numpy compares small integers six times as fast as floating numbers, and
+    boxes that meet do so in steps of a scale, too."""
+    columns = [np.ascontiguousarray(side.T) for side in (*first, *second)]
+    if len(first[0]) * len(second[0]) <= BOXES_EXACT:
+        return _all_compared(columns)
+    least = np.minimum(columns[0].min(axis=1), columns[2].min(axis=1))
+    most = np.maximum(columns[1].max(axis=1), columns[3].max(axis=1))
+    step = ((2**16 - 1) / np.maximum(most - least, 1e-290))[:, None]
+    rough = [((column - least[:, None]) * step).astype(np.uint16) for column in columns]
+    return _that_meet(first, second, *_all_compared(rough))
+
+
+def _all_compared(columns: list[NDArray[Any]]) -> tuple[Ints, Ints]:
+    """Pairs that meet, of boxes by lower and upper corners, (3, n) each, of the first and (3, m) of the second."""
+    low, high, low_other, high_other = columns
+    meets = np.ones((low.shape[1], low_other.shape[1]), dtype=bool)
     along = np.empty_like(meets)
     for axis in range(3):
         meets &= np.less_equal(low[axis][:, None], high_other[axis], out=along)

@@ -109,9 +109,14 @@ class EdgeTable:
         follows = np.ones(len(self.half_edges), dtype=bool)
         follows[self.starts] = False
         at = np.flatnonzero(follows)
-        first, second = self.half_edges[at - 1], self.half_edges[at]
-        forward = self.forward[first]
-        return SharedEdges(first, second, self.ends[first], forward, forward != self.forward[second])
+        first, second = self.half_edges.take(at - 1), self.half_edges.take(at)
+        starts, following = _starts_and_ends(self.faces)
+        start, end = starts.take(first), following.take(first)
+        ends = np.empty((len(at), 2), start.dtype)
+        np.minimum(start, end, out=ends[:, 0])
+        np.maximum(start, end, out=ends[:, 1])
+        # facets of one edge run along it from the one end or the other
+        return SharedEdges(first, second, ends, start < end, start != starts.take(second))
 
 
 def edge_ends(faces: Ints) -> Ints:

@@ -36,18 +36,22 @@ def near_boxes(low_a: Array, high_a: Array, low_b: Array, high_b: Array, margin:
 
 def _cells(low: Array, high: Array, origin: Array, size: Array, counts: Ints) -> tuple[Ints, Ints]:
     """First and last cell (n, 3) of each box, inside the grid."""
-    first = np.floor((low - origin) / size * counts)
-    last = np.floor((high - origin) / size * counts)
-    top = counts - 1
-    return np.clip(first, 0, top).astype(np.int64), np.clip(last, 0, top).astype(np.int64)
+    cells = np.concatenate([low, high], dtype=np.float64)
+    cells -= origin
+    cells /= size
+    cells *= counts
+    np.floor(cells, out=cells)
+    np.maximum(cells, 0, out=cells)
+    np.minimum(cells, counts - 1, out=cells)
+    both = cells.astype(np.int64)
+    return both[: len(low)], both[len(low) :]
 
 
 def _grid(first: Ints, last: Ints, counts: Ints) -> Array:
     """Sums of occupied cells from the origin, one larger than the grid along each axis."""
     shape = counts + 1
     flat, sign = _corners(first, last, shape)
-    weights = np.broadcast_to(sign[:, None], flat.shape)
-    cells = np.bincount(flat.ravel(), weights.ravel(), int(shape.prod())).reshape(tuple(shape))
+    cells = np.bincount(flat.ravel(), np.repeat(sign, len(first)), int(shape.prod())).reshape(tuple(shape))
     for axis in range(3):
         np.cumsum(cells, axis=axis, out=cells)
     summed = np.zeros(tuple(shape))
