@@ -14,6 +14,7 @@ import numpy as np
 from kinform.foundation.constants import (
     CLEARLY_APART,
     CLEARLY_ROUNDED,
+    CLEARLY_STEEP,
     CROSSED_FEW,
     CROSSED_SOME,
     CULLED_LEAST,
@@ -40,20 +41,92 @@ def meeting(slivers: Array, corners: Array) -> tuple[Ints, Ints] | None:
     if candidates is None or len(candidates[0]) > MET_MOST * (len(slivers) + len(corners)):
         return None
     sliver, facet = candidates
+    if not len(sliver):
+        return candidates
     both = [np.ascontiguousarray(triangles.transpose(1, 2, 0)) for triangles in (slivers, corners)]
     if len(sliver) > CULLED_LEAST:
         sliver, facet = _not_clearly_apart(both[0], both[1], sliver, facet)
-    first, second = (triangles.take(chosen, axis=2) for triangles, chosen in zip(both, (sliver, facet), strict=True))
+        if not len(sliver):
+            return sliver, facet
+    apart, met = _told(both[0], both[1], sliver, facet)
+    asked = np.flatnonzero(~(apart | met))
+    if len(asked):
+        met[asked[_not_parted(both[0].take(sliver[asked], axis=2), both[1].take(facet[asked], axis=2))]] = True
+    return sliver[met], facet[met]
+
+
+def _not_parted(first: Array, second: Array) -> Ints:
+    """Which of pairs of triangles (3, 3, c) none of the directions parts, ascending."""
     origin = first[0].copy()
     first -= origin
     second -= origin
     edges = _edges(first), _edges(second)
     normals = [_cross(sides[0], sides[1]) for sides in edges]
-    triangles, met = [first, second, *edges, *normals], np.arange(len(sliver))
-    for directions in _MANY if len(sliver) > MET_FEW else _FEW:
+    triangles, met = [first, second, *edges, *normals], np.arange(first.shape[2])
+    for directions in _MANY if len(met) > MET_FEW else _FEW:
         kept = np.flatnonzero(~_apart(directions(*triangles[2:]), *triangles[:2]))
-        met, triangles = met[kept], [array.take(kept, axis=-1) for array in triangles]
-    return sliver[met], facet[met]
+        met = met[kept]
+        if not len(met):
+            break
+        triangles = [array.take(kept, axis=-1) for array in triangles]
+    return met
+
+
+def _told(first: Array, second: Array, one: Ints, two: Ints) -> tuple[Flags, Flags]:
+    """Which of pairs of triangles `one` (c,) of (3, 3, n) and `two` (c,) of (3, 3, m) are clearly apart, by the plane
+    of the second or across one of its edges, and which clearly meet, as the first edge of the one steeply passes into
+    the other: by more than rounding, so that all directions together say the same. That is most of them."""
+    origin = first[0, :, :1]
+    first, second = first - origin, second - origin
+    size = max(float(np.abs(first).max()), float(np.abs(second).max()))
+    first = first.take(one, axis=2)
+    gathered = second.shape[2] > len(two)
+    axes, reach, spare, square = _sides(second.take(two, axis=2) if gathered else second, size)
+    if not gathered:
+        # what is asked of a triangle is computed once for all of its pairs
+        axes, reach, spare, square = (table.take(two, axis=-1) for table in (axes, reach, spare, square))
+    place = axes[0] * first[:, 0, None]
+    place += axes[1] * first[:, 1, None]
+    place += axes[2] * first[:, 2, None]
+    place -= reach
+    begin, end, third = place
+    apart = np.logical_or.reduce(np.minimum(np.minimum(begin, end), third) > spare)
+    apart |= np.maximum(np.maximum(begin[0], end[0]), third[0]) < -spare[0]
+    along, edge = end - begin, first[1] - first[0]
+    edge *= edge
+    rise = along[0]
+    met = begin[0] * end[0] < 0.0
+    met &= np.minimum(np.abs(begin[0]), np.abs(end[0])) > spare[0]
+    met &= rise * rise > (edge[0] + edge[1] + edge[2]) * square
+    through = begin[1:] - (begin[0] / np.where(met, rise, 1.0)) * along[1:]
+    met &= np.logical_and.reduce(through < -spare[1:])
+    return apart, met
+
+
+def _sides(triangles: Array, size: float) -> tuple[Array, Array, Array, Array]:
+    """Of triangles (3, 3, n) the normal and what lies across each edge (3, 4, n), how far along these they reach
+    (4, n), what is more than rounding there (4, n), `size` being the bound of all coordinates, and the square (n,) of
+    what is steep along the normal."""
+    edges = _edges(triangles)
+    axes = np.empty((3, 4, triangles.shape[2]))
+    normal = axes[:, 0]
+    normal[:] = _cross(edges[0], edges[1])
+    axes[:, 1:] = _cross(edges.transpose(1, 0, 2), normal[:, None])
+    corners = triangles.take(_BORDERED, axis=0)
+    reach = axes[0] * corners[:, 0]
+    reach += axes[1] * corners[:, 1]
+    reach += axes[2] * corners[:, 2]
+    long = np.abs(edges).max(axis=(0, 1))
+    rounded = size * CLEARLY_ROUNDED * long * long
+    spare = size * CLEARLY_APART * np.abs(axes).max(axis=0)
+    spare[0] += rounded
+    spare[1:] += rounded * long
+    square = CLEARLY_STEEP**2 * (normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2])
+    return axes, reach, spare, square
+
+
+_BORDERED = np.array([0, 0, 1, 2])
+"""A corner on the plane of a triangle, and on each of its edges."""
 
 
 def _not_clearly_apart(first: Array, second: Array, one: Ints, two: Ints) -> tuple[Ints, Ints]:
@@ -65,47 +138,40 @@ def _not_clearly_apart(first: Array, second: Array, one: Ints, two: Ints) -> tup
     origin = first[0, :, :1]
     first, second = first - origin, second - origin
     size = max(float(np.abs(first).max()), float(np.abs(second).max()))
-    for some in (_planes, _borders):
+    for beyond in (_beyond_plane, _beyond_border):
         for mine, other, turned in ((second, first, False), (first, second, True)):
             owner, asked = (one, two) if turned else (two, one)
-            kept = ~_beyond(some(mine, size), owner, [corner.take(asked, axis=1) for corner in other])
+            kept = ~beyond(mine, size, owner, [corner.take(asked, axis=1) for corner in other])
             one, two = one[kept], two[kept]
     return one, two
 
 
-_Sides = list[tuple[Array, Array]]
-"""Directions (3, n), and how far along them (n,) triangles reach at most, rounding included."""
-
-
-def _beyond(sides: _Sides, owner: Ints, corners: list[Array]) -> Flags:
-    """(c,) whether all corners, (3, c) each, lie beyond a side of the triangle that is their `owner` (c,)."""
-    out = np.zeros(len(owner), dtype=bool)
-    for axis, reach in sides:
-        x, y, z = axis.take(owner, axis=1)
-        one, two, three = (_along(x, y, z, corner) for corner in corners)
-        out |= np.minimum(np.minimum(one, two), three) > reach.take(owner)
-    return out
-
-
-def _planes(triangles: Array, size: float) -> _Sides:
-    """Both sides of the planes of triangles (3, 3, n); `size` bounds all coordinates."""
+def _beyond_plane(triangles: Array, size: float, owner: Ints, corners: list[Array]) -> Flags:
+    """(c,) whether all corners, (3, c) each, lie on one side of the plane of their `owner` (c,) of triangles (3, 3, n);
+    `size` bounds all coordinates."""
     edges = _edges(triangles)
     normal, long = _cross(edges[0], edges[1]), np.abs(edges).max(axis=(0, 1))
     spare = size * (CLEARLY_APART * np.abs(normal).max(axis=0) + CLEARLY_ROUNDED * long**2)
     x, y, z = normal
     offset = _along(x, y, z, triangles[0])
-    return [(normal, offset + spare), (-normal, spare - offset)]
+    x, y, z = normal.take(owner, axis=1)
+    one, two, three = (_along(x, y, z, corner) for corner in corners)
+    out = np.minimum(np.minimum(one, two), three) > (offset + spare).take(owner)
+    out |= np.maximum(np.maximum(one, two), three) < (offset - spare).take(owner)
+    return np.asarray(out)
 
 
-def _borders(triangles: Array, size: float) -> _Sides:
-    """What lies across each edge in the plane of its triangle."""
-    edges = _edges(triangles)
+def _beyond_border(triangles: Array, size: float, owner: Ints, corners: list[Array]) -> Flags:
+    """(c,) whether they all lie beyond one of its edges, in the plane of the triangle."""
+    edges, out = _edges(triangles), np.zeros(len(owner), dtype=bool)
     normal, long = _cross(edges[0], edges[1]), np.abs(edges).max(axis=(0, 1))
-    out = []
     for edge, corner in zip(edges, triangles, strict=True):
         x, y, z = across = _cross(edge, normal)
         spare = size * (CLEARLY_APART * np.abs(across).max(axis=0) + CLEARLY_ROUNDED * long**3)
-        out.append((across, _along(x, y, z, corner) + spare))
+        reach = _along(x, y, z, corner) + spare
+        x, y, z = across.take(owner, axis=1)
+        one, two, three = (_along(x, y, z, place) for place in corners)
+        out |= np.minimum(np.minimum(one, two), three) > reach.take(owner)
     return out
 
 
