@@ -7,6 +7,7 @@ uncertainties.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -49,7 +50,14 @@ class Mate:
 
     def gaps(self, points: Array) -> Array:
         """(n,) m signed gaps at points (n, 3)."""
+        if not self.slopes:
+            return np.full(len(points), self.gap + 0.0)
         return np.asarray(self.gap + (points - self.point) @ self.gradient)
+
+    @cached_property
+    def slopes(self) -> bool:
+        """Whether the gap differs from point to point."""
+        return bool(self.gradient.any())
 
 
 def radial_limit(play: float, radius: float) -> float:

@@ -19,8 +19,9 @@ from numpy.typing import NDArray
 
 from kinform.contacts import constants
 from kinform.contacts.mating.charts import Chart
+from kinform.foundation.algebra.vectors import lengths
 from kinform.foundation.meshes.boxes import meeting_box, middles, triangle_boxes
-from kinform.foundation.sorting import numbered
+from kinform.foundation.sorting import heads, numbered
 from kinform.model.arrays import Array, Flags, Ints
 
 
@@ -33,8 +34,11 @@ def _signed(corners: Array) -> Array:
 def _means(points: Array, weights: Array, group: Ints, count: int) -> tuple[Array, Array]:
     """Weighted mean (count, 2) and total weight (count,) of the points of each group."""
     total = np.bincount(group, weights=weights, minlength=count)
-    sums = [np.bincount(group, weights=weights * points[:, k], minlength=count) for k in range(2)]
-    return np.stack(sums, axis=1) / np.where(total > 0.0, total, 1.0)[:, None], np.asarray(total, np.float64)
+    sums = np.empty((count, 2))
+    for k in range(2):
+        sums[:, k] = np.bincount(group, weights=weights * points[:, k], minlength=count)
+    sums /= np.where(total > 0.0, total, 1.0)[:, None]
+    return sums, np.asarray(total, np.float64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,10 +70,9 @@ class Cells:
         """(bins, 2) m: for each bin the centroid, of its triangles, that is nearest to its mean."""
         centroids = self.centroids
         mean, _ = _means(centroids, self.areas, self.bins, int(self.bins.max()) + 1)
-        off = np.linalg.norm(centroids - mean[self.bins], axis=1)
+        off = lengths(centroids - mean[self.bins])
         order = np.lexsort((off, self.bins))
-        _, first = np.unique(self.bins[order], return_index=True)
-        return np.asarray(centroids[order[first]])
+        return np.asarray(centroids[order[heads(self.bins[order])]])
 
     def kept(self, triangles: Flags) -> Cells:
         """Only the flagged triangles (k,), their bins renumbered, and the rim that they touch."""
@@ -84,31 +87,35 @@ class Cells:
 
     def _keys(self, points: Array) -> NDArray[np.complex128]:
         """One number a point (n, 2), the same for points that are one."""
-        grid = np.round(points / (constants.POINT_SAME * self.unit))
-        return np.asarray(grid[:, 0] + 1j * grid[:, 1])
+        grid = np.ascontiguousarray(points / (constants.POINT_SAME * self.unit))
+        return np.rint(grid, out=grid).view(np.complex128)[:, 0]
 
     def quadrature(self) -> tuple[Array, Array]:
         """Points (n, 2) m and the area (n,) m² each stands for: bins in order, then the rim."""
         count = int(self.bins.max()) + 1
         corners = self.corners.reshape(-1, 2)
         shares = np.repeat(self.areas / 12.0, 3)
-        rim_keys, rim_first = np.unique(self._keys(self.rim), return_index=True)
-        keys = self._keys(corners)
-        at = np.minimum(np.searchsorted(rim_keys, keys), max(len(rim_keys) - 1, 0))
+        keys, every = self._keys(corners), self._keys(self.rim)
+        order = every.argsort(kind="stable")
+        rim_first = order[heads(every[order])]
+        rim_keys = every[rim_first]
+        at = np.minimum(rim_keys.searchsorted(keys), max(len(rim_keys) - 1, 0))
         on_rim = rim_keys[at] == keys if len(rim_keys) else np.zeros(len(keys), dtype=bool)
         rim_shares = np.bincount(at[on_rim], weights=shares[on_rim], minlength=len(rim_keys))
-        inner, inner_shares = corners[~on_rim], shares[~on_rim]
-        points = np.concatenate([self.centroids, inner])
-        weights = np.concatenate([0.75 * self.areas, inner_shares])
-        mean, total = _means(points, weights, np.concatenate([self.bins, np.repeat(self.bins, 3)[~on_rim]]), count)
+        inner = np.flatnonzero(~on_rim)
+        points = np.concatenate([self.centroids, corners.take(inner, axis=0)])
+        weights = np.concatenate([0.75 * self.areas, shares[inner]])
+        mean, total = _means(points, weights, np.concatenate([self.bins, self.bins[inner // 3]]), count)
         return np.concatenate([mean, self.rim[rim_first]]), np.concatenate([total, rim_shares])
 
 
 def _region(flat: Array, unit: float) -> CrossSection:
     """The union of triangles (n, 3, 2), in units of `unit` (m)."""
     signed = _signed(flat)
-    flat = np.where((signed < 0.0)[:, None, None], flat[:, ::-1], flat) / unit
-    flat = np.ascontiguousarray(flat[np.abs(signed) > 1e-12 * unit * unit])
+    turned = signed < 0.0
+    flat = (np.where(turned[:, None, None], flat[:, ::-1], flat) if turned.any() else flat) / unit
+    large = np.abs(signed) > 1e-12 * unit * unit
+    flat = np.ascontiguousarray(flat if large.all() else flat[large])
     return CrossSection(_outline(flat) if len(flat) > constants.MANY_TRIANGLES else list(flat), FillRule.Positive)
 
 
@@ -173,12 +180,14 @@ def _simple_loops(points: Array, leaving: Ints, reaching: Ints) -> list[Array]:
 def _perimeter(polygons: list[Array]) -> float:
     """m of all outlines."""
     edges = [np.concatenate([p[:1] - p[-1:], p[1:] - p[:-1]]) for p in polygons]
-    return float(sum(np.linalg.norm(along, axis=1).sum() for along in edges))
+    return float(sum(lengths(along).sum() for along in edges))
 
 
 def _resampled(polygon: Array, step: Array) -> Array:
     """The polygon (n, 2) with points added so that no edge is longer than `step` (2,) in any coordinate."""
     ends = np.concatenate([polygon[1:], polygon[:1]])
+    if step[0] == step[1] == math.inf:
+        return np.asarray(polygon + 0.0 * (ends - polygon))
     counts = np.maximum(np.ceil((np.abs(ends - polygon) / step).max(axis=1) - 1e-9), 1).astype(np.int64)
     rows = np.repeat(np.arange(len(polygon)), counts)
     first = np.repeat(np.cumsum(counts) - counts, counts)
@@ -187,24 +196,32 @@ def _resampled(polygon: Array, step: Array) -> Array:
 
 
 def _split(corners: Array, size: Array) -> Array:
-    """Halve triangles at their longest edge, in units of `size` (2,), until no edge is longer than it."""
+    """Halve triangles (2, 3, n), coordinate by corner, at their longest edge, in units of `size` (2,), until no edge is
+    longer than it."""
     small: list[Array] = []
     while True:
-        edges = (corners - corners[:, _TURNS[1]]) / size
+        edges = corners - corners[:, _NEXT]
+        edges /= size[:, None, None]
         edges *= edges
-        length = np.sqrt(edges[..., 0] + edges[..., 1])
-        large = (length > 1.0).any(axis=1)
+        length = np.sqrt(edges[0] + edges[1])
+        large = np.logical_or.reduce(length > 1.0)
         rows = np.flatnonzero(large)
         if not len(rows):
-            return np.concatenate([*small, corners]) if small else corners
-        small.append(corners[~large])
-        turned = corners[rows[:, None], _TURNS[length[rows].argmax(axis=1)]]
-        corners = np.concatenate([turned, turned])
-        corners[: len(rows), 1] = corners[len(rows) :, 0] = 0.5 * (turned[:, 0] + turned[:, 1])
+            return np.concatenate([*small, corners], axis=2) if small else corners
+        if len(rows) < len(large):
+            small.append(corners[:, :, ~large])
+            corners, length = corners[:, :, rows], length[:, rows]
+        corner, every = length.argmax(axis=0), np.arange(len(rows))
+        begin, end, third = corners[:, corner, every], corners[:, _NEXT[corner], every], corners[:, corner - 1, every]
+        corners = np.empty((2, 3, 2 * len(rows)))
+        corners[:, 0, : len(rows)] = begin
+        corners[:, 1, : len(rows)] = corners[:, 0, len(rows) :] = 0.5 * (begin + end)
+        corners[:, 1, len(rows) :] = end
+        corners[:, 2, : len(rows)] = corners[:, 2, len(rows) :] = third
 
 
-_TURNS = np.array([[0, 1, 2], [1, 2, 0], [2, 0, 1]])
-"""Corners of a triangle in their order, from each of them on."""
+_NEXT = np.array([1, 2, 0])
+"""The corner of a triangle that follows on each."""
 
 
 def _overlap(chart: Chart, first: Array, second: Array, unit: float) -> CrossSection | None:
@@ -212,14 +229,15 @@ def _overlap(chart: Chart, first: Array, second: Array, unit: float) -> CrossSec
     flat_a, flat_b = chart.flatten(first), chart.flatten(second)
     if not len(flat_a) or not len(flat_b):
         return None
-    low = np.maximum(flat_a.min(axis=(0, 1)), flat_b.min(axis=(0, 1)))
-    high = np.minimum(flat_a.max(axis=(0, 1)), flat_b.max(axis=(0, 1)))
+    boxes = [triangle_boxes(flat) for flat in (flat_a, flat_b)]
+    low = np.maximum(*(lower.min(axis=0) for lower, _ in boxes))
+    high = np.minimum(*(upper.max(axis=0) for _, upper in boxes))
     if (low >= high).any():
         return None
     sides = []
-    for flat in (flat_a, flat_b):
-        within = meeting_box(*triangle_boxes(flat), low, high)
-        sides.append(_region(flat[within], unit))
+    for flat, box in zip((flat_a, flat_b), boxes, strict=True):
+        within = meeting_box(*box, low, high)
+        sides.append(_region(flat if within.all() else flat[within], unit))
     region = sides[0] ^ sides[1]
     window = chart.window()
     return region if window is None else region ^ CrossSection([window / unit], FillRule.Positive)
@@ -270,11 +288,19 @@ def overlay(chart: Chart, first: Array, second: Array, tolerance: float, thin: f
     corners = np.concatenate(triangles)
     area = float(np.abs(_signed(corners)).sum())
     size = np.minimum(step, math.sqrt(area / constants.PATCH_BINS))
-    corners = _split(corners, size)
-    corners = corners[np.abs(_signed(corners)) > 0.0]
+    corners = _split(np.ascontiguousarray(corners.T), size)
+    held = _signed(corners.T) != 0.0
+    if not held.all():
+        corners = corners[:, :, held]
     # Bins are counted from the region's own corner, so that they move with it.
-    place = np.floor((middles(corners) - corners.min(axis=(0, 1))) / size).astype(np.int64)
-    across, along = (place.max(axis=0) + 1).tolist()
-    _, bins = numbered(place[:, 0] * along + place[:, 1], across * along)
+    place = corners[:, 0] + corners[:, 1]
+    place += corners[:, 2]
+    place /= 3.0
+    place -= corners.reshape(2, -1).min(axis=1)[:, None]
+    place /= size[:, None]
+    cells = np.floor(place, out=place).astype(np.int64)
+    across, along = (cells.max(axis=1) + 1).tolist()
+    _, bins = numbered(cells[0] * along + cells[1], across * along)
     rim = _rim([polygon for polygons in pieces for polygon in polygons], flat)
-    return Cells(corners * tolerance, bins, rim * tolerance, tolerance, narrow)
+    corners = np.ascontiguousarray((corners * tolerance).T)
+    return Cells(corners, bins, rim * tolerance, tolerance, narrow)

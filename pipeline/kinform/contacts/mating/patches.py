@@ -66,6 +66,8 @@ def _cells(pair: PairView, mate: Mate) -> Cells | None:
     cells = overlay(mate.chart, first, second, pair.tolerance, mate.thin)
     if cells is None:
         return None
+    if not mate.slopes:
+        return cells if abs(mate.gap) <= mate.limit else None
     within = np.abs(mate.gaps(mate.chart.lift(cells.centroids))) <= mate.limit
     if within.all():
         return cells
