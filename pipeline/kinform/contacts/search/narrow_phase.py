@@ -17,6 +17,7 @@ from kinform.contacts.constants import BETWEEN_MARGIN, BETWEEN_SHARE, FACING_LEA
 from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.meshes.probes import Hits
+from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 
 
@@ -36,7 +37,7 @@ class Probes:
     @staticmethod
     def of(points: Array, normals: Array, gaps: Array, reach: Array, surfaces: SurfacePair) -> Probes:
         """Probes of one surface of either part."""
-        return Probes(points, normals, gaps, reach, np.tile(np.array(surfaces.ids), (len(points), 1)))
+        return Probes(points, normals, gaps, reach, np.full((len(points), 2), surfaces.ids))
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,32 +58,39 @@ class Verdict:
 
 def _nearest(hits: Hits, wanted: Flags, expected: Array, count: int) -> Ints:
     """For each probe the wanted hit nearest to where it is expected, or −1."""
-    rows = np.nonzero(wanted)[0]
-    off = np.abs(hits.along[rows] - expected[hits.probe[rows]])
-    rows = rows[np.lexsort((rows, off, hits.probe[rows]))]
-    probe, first = np.unique(hits.probe[rows], return_index=True)
+    rows = np.flatnonzero(wanted)
+    probe = hits.probe.take(rows)
+    first = heads(probe)
+    if not first.all():
+        off = np.abs(hits.along[rows] - expected[probe])
+        order = np.lexsort((rows, off, probe))
+        rows, probe = rows[order][first], probe[first]
     chosen = np.full(count, -1, dtype=np.int64)
-    chosen[probe] = rows[first]
+    chosen[probe] = rows
     return chosen
 
 
 def _blocked(hits: Hits, wanted: Flags, low: Array, high: Array) -> Flags:
     """Probes between whose two facets another facet lies."""
-    between = ~wanted & (hits.along > low[hits.probe]) & (hits.along < high[hits.probe])
     blocked = np.zeros(len(low), dtype=bool)
-    blocked[hits.probe[between]] = True
+    others = np.flatnonzero(~wanted)
+    if len(others):
+        probe, along = hits.probe[others], hits.along[others]
+        blocked[probe[(along > low[probe]) & (along < high[probe])]] = True
     return blocked
 
 
 def verify(pair: PairView, sets: list[Probes], facing: float = FACING_LEAST) -> Verdict:
     """Cast sets of probes (one at least) against both parts, all together; `facing` is the least cosine between a facet
     and the probe."""
-    probes = Probes(*(np.concatenate([getattr(p, f.name) for p in sets]) for f in fields(Probes)))
+    probes = sets[0]
+    if len(sets) > 1:
+        probes = Probes(*(np.concatenate([getattr(p, f.name) for p in sets]) for f in fields(Probes)))
     count = len(probes.points)
     chosen, on_surface, all_hits = [], [], []
     for part, side, sense in ((pair.a, 0, 1.0), (pair.b, 1, -1.0)):
         hits = part.region.cast(part.to_part(probes.points), part.turn_to_part(probes.normals), probes.reach)
-        wanted = part.surfaces.labels[hits.facet] == probes.surfaces[hits.probe, side]
+        wanted = part.surfaces.labels.take(hits.facet) == probes.surfaces[:, side].take(hits.probe)
         chosen.append(_nearest(hits, wanted & (sense * hits.facing > facing), -0.5 * sense * probes.gaps, count))
         on_surface.append(wanted)
         all_hits.append(hits)

@@ -44,6 +44,7 @@ class MeshIndex:
         self._about: Flags | None = None
         self._local: fcl.BVHModel | None = None
         self._spans: Array | None = None
+        self._normals: Array | None = None
         self._edges: SharedEdges | None = None
         self._borders: Ints | None = None
         self._shells: Ints | None = None
@@ -64,7 +65,7 @@ class MeshIndex:
         return (
             _spans(self.mesh.vertices.take(self.mesh.faces[facets], axis=0))
             if self._spans is None
-            else self._spans[facets]
+            else self._spans.take(facets, axis=0)
         )
 
     def areas(self, facets: Ints) -> Array:
@@ -74,9 +75,9 @@ class MeshIndex:
 
     def normals(self, facets: Ints) -> Array:
         """(n, 3) unit, outward, part frame; zero for facets without area."""
-        spans = self.spans(facets)
-        length = np.sqrt(dot(spans, spans))
-        return np.asarray(spans / np.where(length > 0.0, length, 1.0)[:, None])
+        if self._normals is None and len(self.mesh.faces) <= KEPT_SPANS:
+            self._normals = _normals(self.spans(np.arange(len(self.mesh.faces))))
+        return _normals(self.spans(facets)) if self._normals is None else self._normals.take(facets, axis=0)
 
     @property
     def boxes(self) -> FacetBoxes:
@@ -246,6 +247,12 @@ class MeshIndex:
 def _spans(corners: Array) -> Array:
     """(n, 3) of facets (n, 3, 3)."""
     return cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+
+
+def _normals(spans: Array) -> Array:
+    """(n, 3) of spans (n, 3) of facets."""
+    length = np.sqrt(dot(spans, spans))
+    return np.asarray(spans / np.where(length > 0.0, length, 1.0)[:, None])
 
 
 def _balls(mesh: Mesh) -> list[tuple[Nearest, float]]:

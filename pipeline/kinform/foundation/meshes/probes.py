@@ -17,7 +17,7 @@ import fcl
 import numpy as np
 
 from kinform.foundation.algebra.displacements import inverse
-from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.algebra.vectors import cross, dot, lengths
 from kinform.foundation.constants import HITS_A_PROBE, SLIVER_WIDTH, STEEP_LEAST
 from kinform.foundation.meshes.boxes import facet_boxes, triangle_boxes
 from kinform.foundation.meshes.closest import closest_facets
@@ -50,6 +50,9 @@ class Facets(Protocol):
     def normals(self, facets: Ints) -> Array:
         """(n, 3) unit, outward, part frame."""
         ...
+
+
+_UNITS = np.eye(3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,28 +99,31 @@ class Region:
         empty = np.zeros(0)
         if len(points) == 0 or self.empty:
             return Hits(empty.astype(np.int64), empty.astype(np.int64), empty, empty)
-        least = np.eye(3)[np.argmin(np.abs(directions), axis=1)]
-        across = cross(directions, least)
-        across *= (width * reach / np.linalg.norm(across, axis=1))[:, None]
-        tip = points + reach[:, None] * directions
-        slivers = np.stack([points - reach[:, None] * directions, tip + across, tip - across], axis=1)
+        across = cross(directions, _UNITS.take(np.abs(directions).argmin(axis=1), axis=0))
+        across *= (width * reach / lengths(across))[:, None]
+        arms = reach[:, None] * directions
+        tip, slivers = points + arms, np.empty((len(points), 3, 3))
+        np.subtract(points, arms, out=slivers[:, 0])
+        np.add(tip, across, out=slivers[:, 1])
+        np.subtract(tip, across, out=slivers[:, 2])
         probe, facet = self._meeting(slivers)
         normal = self.index.normals(facet)
-        facing = dot(normal, directions[probe])
-        height = dot(normal, mesh.vertices[mesh.faces[facet, 0]] - points[probe])
+        facing = dot(normal, directions.take(probe, axis=0))
+        height = dot(normal, mesh.vertices.take(mesh.faces[:, 0].take(facet), axis=0) - points.take(probe, axis=0))
         steep = np.abs(facing) > STEEP_LEAST
-        along = np.where(steep, height / np.where(steep, facing, 1.0), 0.0)
-        return Hits(probe, facet, np.clip(along, -reach[probe], reach[probe]), facing)
+        along = height / facing if steep.all() else np.where(steep, height / np.where(steep, facing, 1.0), 0.0)
+        far = reach.take(probe)
+        return Hits(probe, facet, np.minimum(np.maximum(along, -far), far), facing)
 
     def _meeting(self, slivers: Array) -> tuple[Ints, Ints]:
         """Slivers (n, 3, 3) and the facets that they meet, by sliver, then by facet."""
         mesh = self.index.mesh
-        own = np.arange(len(mesh.faces)) if self.facets is None else self.facets
-        faces = mesh.faces if self.facets is None else mesh.faces[own]
+        faces = mesh.faces if self.facets is None else mesh.faces.take(self.facets, axis=0)
         near = beside(slivers, mesh.vertices, faces)
-        met = meeting(slivers, mesh.vertices.take(faces[near], axis=0))
+        met = meeting(slivers, mesh.vertices.take(faces.take(near, axis=0), axis=0))
         if met is not None:
-            return met[0], own[near[met[1]]]
+            facets = near.take(met[1])
+            return met[0], facets if self.facets is None else self.facets.take(facets)
         probe_model = fcl_model(slivers.reshape(-1, 3), np.arange(3 * len(slivers)).reshape(-1, 3))
         # Contact points stay off: they cost, come several to a facet, and depend on FCL's own tolerance.
         most = HITS_A_PROBE * (len(slivers) + 16)
