@@ -100,7 +100,7 @@ def _meet(a: PartView, b: PartView, patches: list[Patch], least: float) -> bool:
     low, high = np.maximum(a.low, b.low), np.minimum(a.high, b.high)
     if (high - low).min() < least:
         return False
-    X_AF = np.linalg.inv(a.X_FP)
+    X_AF = np.eye(4) if a.at_home else np.linalg.inv(a.X_FP)
 
     def crosses(move: Array) -> bool:
         X_FB = b.X_FP.copy()

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -199,11 +200,7 @@ def _near_surfaces(placed: PartView, beside: _Boxed, low: Array, high: Array) ->
         ids=ids.astype(np.int64),
         lows=np.minimum.reduceat(low_f, starts) if len(ids) else empty,
         highs=np.maximum.reduceat(high_f, starts) if len(ids) else empty,
-        facets=tuple(
-            near[start:end] for start, end in zip(starts.tolist(), [*starts[1:].tolist(), len(near)], strict=True)
-        )
-        if len(ids)
-        else (),
+        facets=tuple(near[start:end] for start, end in pairwise([*starts.tolist(), len(near)])) if len(ids) else (),
     )
 
 

@@ -47,6 +47,7 @@ class MeshIndex:
         self._normals: Array | None = None
         self._edges: SharedEdges | None = None
         self._borders: Ints | None = None
+        self._neighbours: dict[int, frozenset[int]] = {}
         self._shells: Ints | None = None
         self._boxes: FacetBoxes | None = None
         self._rays: dict[int, Ray] = {}
@@ -166,11 +167,14 @@ class MeshIndex:
             self._borders = np.stack(np.divmod(keys, count), axis=1)
         return self._borders
 
-    def neighbours(self, surfaces: MeshSurfaces, surface: int) -> list[int]:
-        """Surfaces that share an edge with this one, ascending."""
-        borders = self.borders(surfaces)
-        first, last = np.searchsorted(borders[:, 0], [surface, surface + 1])
-        return [int(k) for k in borders[first:last, 1]]
+    def neighbours(self, surfaces: MeshSurfaces, surface: int) -> frozenset[int]:
+        """Surfaces that share an edge with this one."""
+        known = self._neighbours.get(surface)
+        if known is None:
+            borders = self.borders(surfaces)
+            first, last = borders[:, 0].searchsorted([surface, surface + 1])
+            known = self._neighbours[surface] = frozenset(borders[first:last, 1].tolist())
+        return known
 
     def rings(self, surfaces: MeshSurfaces) -> tuple[Ring, ...]:
         """Rings of flats, which may be meant as round."""
