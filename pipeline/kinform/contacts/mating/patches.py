@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.contacts import constants
+from kinform.contacts.mating.cells import Cells, probed, quadratures
 from kinform.contacts.mating.mate import Mate
-from kinform.contacts.mating.overlay import Cells, overlay
+from kinform.contacts.mating.overlay import overlays
 from kinform.contacts.search.narrow_phase import Probes, verify
 from kinform.contacts.search.pair_view import PairView
 from kinform.model.arrays import Array, freeze
@@ -18,27 +19,30 @@ from kinform.model.contacts import Patch
 
 def mated_patches(pair: PairView, mates: list[Mate]) -> list[Patch]:
     """The patches of those mates that really touch, in the frame of the pair."""
-    laid, probes = [], []
-    for mate in mates:
-        cells = _cells(pair, mate)
-        if cells is not None:
-            laid.append((mate, cells))
-            probes.append(_probes(mate, cells, pair.tolerance))
+    cells = _cells(pair, mates)
+    laid = [(mate, own) for mate, own in zip(mates, cells, strict=True) if own is not None]
     if not laid:
         return []
-    verdict = verify(pair, probes)
-    patches = []
-    for (mate, cells), holds, gaps in zip(laid, verdict.holds, verdict.gaps, strict=True):
+    verdict = verify(pair, _probes(laid, pair.tolerance))
+    touching = []
+    for (mate, own), holds, gaps in zip(laid, verdict.holds, verdict.gaps, strict=True):
         if mate.corners is not None:
             holds = holds & (np.abs(gaps) <= mate.limit)
         if not holds.any():
             continue
-        kept = cells if holds.all() else cells.kept(holds[cells.bins])
+        whole = bool(holds.all())
+        kept, there = (own, gaps) if whole else (own.kept(holds[own.bins]), gaps[holds])
         if mate.corners is None:
-            patches.append(_patch(pair, mate, kept, None))
-        elif _rests(mate, kept, gaps[holds], pair.tolerance):
-            patches.append(_patch(pair, mate, kept, gaps[holds]))
-    return patches
+            touching.append((mate, kept, None))
+        elif _rests(mate, kept, there, pair.tolerance):
+            touching.append((mate, kept, there))
+    if not touching:
+        return []
+    weighed = quadratures([kept for _, kept, _ in touching])
+    return [
+        _patch(pair, mate, kept.narrow, gaps, flat, weights)
+        for (mate, kept, gaps), (flat, weights) in zip(touching, weighed, strict=True)
+    ]
 
 
 def _rests(mate: Mate, cells: Cells, gaps: Array, tolerance: float) -> bool:
@@ -57,15 +61,21 @@ def _rests(mate: Mate, cells: Cells, gaps: Array, tolerance: float) -> bool:
     return area >= constants.PATCH_AREA * tolerance**2 and (mate.kind == "other" or scatter <= allowed)
 
 
-def _cells(pair: PairView, mate: Mate) -> Cells | None:
-    """Overlap of the mate's two surfaces where their gap is within its limit."""
-    first, second = mate.corners or (
-        part.vertices.take(part.faces[facets], axis=0)
-        for part, facets in zip(pair.parts, mate.surfaces.facets, strict=True)
-    )
-    cells = overlay(mate.chart, first, second, pair.tolerance, mate.thin)
-    if cells is None:
-        return None
+def _cells(pair: PairView, mates: list[Mate]) -> list[Cells | None]:
+    """Overlap of each mate's two surfaces where their gap is within its limit."""
+    asked = []
+    for mate in mates:
+        first, second = mate.corners or (
+            part.vertices.take(part.faces.take(facets, axis=0), axis=0)
+            for part, facets in zip(pair.parts, mate.surfaces.facets, strict=True)
+        )
+        asked.append((mate.chart, first, second, pair.tolerance, mate.thin))
+    every = overlays(asked)
+    return [cells and _within(mate, cells) for mate, cells in zip(mates, every, strict=True)]
+
+
+def _within(mate: Mate, cells: Cells) -> Cells | None:
+    """What of the cells is where the gap is within the limit."""
     if not mate.slopes:
         return cells if abs(mate.gap) <= mate.limit else None
     within = np.abs(mate.gaps(mate.chart.lift(cells.centroids))) <= mate.limit
@@ -74,12 +84,15 @@ def _cells(pair: PairView, mate: Mate) -> Cells | None:
     return cells.kept(within) if within.any() else None
 
 
-def _probes(mate: Mate, cells: Cells, tolerance: float) -> Probes:
-    """One a bin, on the surface half-way between the two."""
-    points = mate.chart.lift(cells.probes())
-    gaps = mate.gaps(points)
-    reach = 0.5 * np.abs(gaps) + mate.slack + constants.PROBE_SPARE * tolerance
-    return Probes.of(points, mate.sign * mate.chart.normals(points), gaps, reach, mate.surfaces)
+def _probes(laid: list[tuple[Mate, Cells]], tolerance: float) -> list[Probes]:
+    """One a bin of each mate, on the surface half-way between the two."""
+    out = []
+    for (mate, _), flat in zip(laid, probed([cells for _, cells in laid]), strict=True):
+        points = mate.chart.lift(flat)
+        gaps = mate.gaps(points)
+        reach = 0.5 * np.abs(gaps) + mate.slack + constants.PROBE_SPARE * tolerance
+        out.append(Probes.of(points, mate.sign * mate.chart.normals(points), gaps, reach, mate.surfaces))
+    return out
 
 
 def classify_fit(gaps: Array, chord: float, uncertainty: float, tolerance: float) -> str:
@@ -99,9 +112,9 @@ def classify_fit(gaps: Array, chord: float, uncertainty: float, tolerance: float
     return "transition"
 
 
-def _patch(pair: PairView, mate: Mate, cells: Cells, measured: Array | None) -> Patch:
-    """A patch from the cells that hold; `measured` gaps of the bins where the mate does not know them."""
-    flat, weights = cells.quadrature()
+def _patch(pair: PairView, mate: Mate, narrow: bool, measured: Array | None, flat: Array, weights: Array) -> Patch:
+    """A patch of points (n, 2) in the mate's chart and the areas (n,) that they stand for; `measured` gaps of the bins,
+    the first of them, where the mate does not know them."""
     points = mate.chart.lift(flat)
     gaps = mate.gaps(points)
     if measured is not None:
@@ -138,7 +151,7 @@ def _patch(pair: PairView, mate: Mate, cells: Cells, measured: Array | None) -> 
         chord=chord,
         fit=classify_fit(gaps, chord, mate.uncertainty[1], pair.tolerance),
         tolerance=mate.limit / constants.MATING_REACH,
-        narrow=cells.narrow,
+        narrow=narrow,
     )
 
 
