@@ -78,7 +78,7 @@ def test_what_clearly_meets_is_what_no_direction_parts(seed, size, off):
     rng = np.random.default_rng(seed)
     first, second = rng.integers(0, 4, (2, 30, 3, 3)) + off * rng.normal(size=(2, 30, 3, 3)) + rng.normal(size=3)
     first[:15, 2] = first[:15, 1] + 1e-6 * rng.normal(size=(15, 3))
-    answers, nothing = [], lambda first, second, one, two: (np.zeros(len(one), bool), np.zeros(len(one), bool))
+    answers, nothing = [], lambda first, second, one, two, size: (np.zeros(len(one), bool), np.zeros(len(one), bool))
     for told in (slivers._told, nothing):
         with pytest.MonkeyPatch.context() as patched:
             patched.setattr(slivers, "MET_MOST", 10**9)

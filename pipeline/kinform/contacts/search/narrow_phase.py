@@ -16,7 +16,7 @@ import numpy as np
 from kinform.contacts.constants import BETWEEN_MARGIN, BETWEEN_SHARE, FACING_LEAST
 from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.foundation.algebra.vectors import dot
-from kinform.foundation.meshes.probes import Hits
+from kinform.foundation.meshes.probes import Cast, Hits, cast_all
 from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 
@@ -88,8 +88,11 @@ def verify(pair: PairView, sets: list[Probes], facing: float = FACING_LEAST) -> 
         probes = Probes(*(np.concatenate([getattr(p, f.name) for p in sets]) for f in fields(Probes)))
     count = len(probes.points)
     chosen, on_surface, all_hits = [], [], []
-    for part, side, sense in ((pair.a, 0, 1.0), (pair.b, 1, -1.0)):
-        hits = part.region.cast(part.to_part(probes.points), part.turn_to_part(probes.normals), probes.reach)
+    casts = [
+        Cast(part.region, part.to_part(probes.points), part.turn_to_part(probes.normals), probes.reach)
+        for part in pair.parts
+    ]
+    for part, hits, side, sense in zip(pair.parts, cast_all(casts), (0, 1), (1.0, -1.0), strict=True):
         wanted = part.surfaces.labels.take(hits.facet) == probes.surfaces[:, side].take(hits.probe)
         chosen.append(_nearest(hits, wanted & (sense * hits.facing > facing), -0.5 * sense * probes.gaps, count))
         on_surface.append(wanted)

@@ -9,6 +9,8 @@ long rows several times faster than through rows of three.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from kinform.foundation.constants import (
@@ -23,6 +25,7 @@ from kinform.foundation.constants import (
 )
 from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import facet_boxes, meeting_box, triangle_boxes
+from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 
 
@@ -34,25 +37,69 @@ def beside(slivers: Array, vertices: Array, faces: Ints) -> Ints:
     return np.flatnonzero(meeting_box(low_f, high_f, low, high))
 
 
-def meeting(slivers: Array, corners: Array) -> tuple[Ints, Ints] | None:
-    """(k,) each: slivers (n, 3, 3) and facets (m, 3, 3) that meet, by sliver, then by facet; one unit of length. None
-    where too many are near each other to ask about all."""
-    candidates = meeting_boxes(triangle_boxes(slivers), triangle_boxes(corners))
-    if candidates is None or len(candidates[0]) > MET_MOST * (len(slivers) + len(corners)):
+Met = tuple[Ints, Ints]
+"""(k,) each: slivers and facets that meet, by sliver, then by facet."""
+
+
+def meeting(slivers: Array, corners: Array) -> Met | None:
+    """Those of slivers (n, 3, 3) and facets (m, 3, 3) that meet; one unit of length. None where too many are near each
+    other to ask about all."""
+    return meetings([(slivers, corners)])[0]
+
+
+def meetings(asked: Sequence[tuple[Array, Array]]) -> list[Met | None]:
+    """The same of several sets of slivers with their facets, each in a frame of its own: all at once where they are
+    few, for numpy takes as long to begin as it takes to go through a few hundred of them."""
+    out = [_beside_boxes(*one) for one in asked]
+    left = [k for k, near in enumerate(out) if near is not None and len(near[0])]
+    if not left:
+        return out
+    firsts, seconds, ones, twos, sizes = [], [], [], [], []
+    begin = [0, 0]
+    for k in left:
+        (slivers, corners), (one, two) = asked[k], out[k]  # type: ignore[misc]
+        if len(corners) > len(two):
+            corners, two = corners.take(two, axis=0), np.arange(len(two))
+        firsts.append(slivers)
+        seconds.append(corners)
+        ones.append(one + begin[0])
+        twos.append(two + begin[1])
+        begin = [begin[0] + len(slivers), begin[1] + len(corners)]
+    origin = np.array([slivers[0, 0] for slivers in firsts])
+    owners = [np.repeat(np.arange(len(left)), [len(t) for t in triangles]) for triangles in (firsts, seconds)]
+    first, second = (
+        np.ascontiguousarray((t[0] if len(t) == 1 else np.concatenate(t)).transpose(1, 2, 0)) for t in (firsts, seconds)
+    )
+    moved = [t - origin.take(owner, axis=0).T for t, owner in zip((first, second), owners, strict=True)]
+    sizes = [
+        np.maximum.reduceat(np.abs(t).max(axis=(0, 1)), heads(o).nonzero()[0])
+        for t, o in zip(moved, owners, strict=True)
+    ]
+    size = np.maximum(*sizes).take(owners[1])
+    one, two = np.concatenate(ones), np.concatenate(twos)
+    apart, met = _told(*moved, one, two, size)
+    unsure = np.flatnonzero(~(apart | met))
+    if len(unsure):
+        met[unsure[_not_parted(first.take(one[unsure], axis=2), second.take(two[unsure], axis=2))]] = True
+    end = 0
+    for k in left:
+        near = out[k]
+        assert near is not None
+        begin_, end = end, end + len(near[0])
+        kept = met[begin_:end].nonzero()[0]
+        out[k] = near[0].take(kept), near[1].take(kept)
+    return out
+
+
+def _beside_boxes(slivers: Array, corners: Array) -> Met | None:
+    """Those that may meet, by their boxes, and of many also by their planes and edges; None as above."""
+    near = meeting_boxes(triangle_boxes(slivers), triangle_boxes(corners))
+    if near is None or len(near[0]) > MET_MOST * (len(slivers) + len(corners)):
         return None
-    sliver, facet = candidates
-    if not len(sliver):
-        return candidates
-    both = [np.ascontiguousarray(triangles.transpose(1, 2, 0)) for triangles in (slivers, corners)]
-    if len(sliver) > CULLED_LEAST:
-        sliver, facet = _not_clearly_apart(both[0], both[1], sliver, facet)
-        if not len(sliver):
-            return sliver, facet
-    apart, met = _told(both[0], both[1], sliver, facet)
-    asked = np.flatnonzero(~(apart | met))
-    if len(asked):
-        met[asked[_not_parted(both[0].take(sliver[asked], axis=2), both[1].take(facet[asked], axis=2))]] = True
-    return sliver[met], facet[met]
+    if len(near[0]) <= CULLED_LEAST:
+        return near
+    first, second = (np.ascontiguousarray(triangles.transpose(1, 2, 0)) for triangles in (slivers, corners))
+    return _not_clearly_apart(first, second, *near)
 
 
 def _not_parted(first: Array, second: Array) -> Ints:
@@ -72,19 +119,14 @@ def _not_parted(first: Array, second: Array) -> Ints:
     return met
 
 
-def _told(first: Array, second: Array, one: Ints, two: Ints) -> tuple[Flags, Flags]:
+def _told(first: Array, second: Array, one: Ints, two: Ints, size: Array) -> tuple[Flags, Flags]:
     """Which of pairs of triangles `one` (c,) of (3, 3, n) and `two` (c,) of (3, 3, m) are clearly apart, by the plane
     of the second or across one of its edges, and which clearly meet, as the first edge of the one steeply passes into
-    the other: by more than rounding, so that all directions together say the same. That is most of them."""
-    origin = first[0, :, :1]
-    first, second = first - origin, second - origin
-    size = max(float(np.abs(first).max()), float(np.abs(second).max()))
+    the other: by more than rounding, so that all directions together say the same. That is most of them. `size` (m,)
+    bounds all coordinates of what each of the second is asked with."""
     first = first.take(one, axis=2)
-    gathered = second.shape[2] > len(two)
-    axes, reach, spare, square = _sides(second.take(two, axis=2) if gathered else second, size)
-    if not gathered:
-        # what is asked of a triangle is computed once for all of its pairs
-        axes, reach, spare, square = (table.take(two, axis=-1) for table in (axes, reach, spare, square))
+    # what is asked of a triangle is computed once for all of its pairs
+    axes, reach, spare, square = (table.take(two, axis=-1) for table in _sides(second, size))
     place = axes[0] * first[:, 0, None]
     place += axes[1] * first[:, 1, None]
     place += axes[2] * first[:, 2, None]
@@ -103,10 +145,10 @@ def _told(first: Array, second: Array, one: Ints, two: Ints) -> tuple[Flags, Fla
     return apart, met
 
 
-def _sides(triangles: Array, size: float) -> tuple[Array, Array, Array, Array]:
+def _sides(triangles: Array, size: Array) -> tuple[Array, Array, Array, Array]:
     """Of triangles (3, 3, n) the normal and what lies across each edge (3, 4, n), how far along these they reach
-    (4, n), what is more than rounding there (4, n), `size` being the bound of all coordinates, and the square (n,) of
-    what is steep along the normal."""
+    (4, n), what is more than rounding there (4, n), `size` (n,) being the bound of all coordinates, and the square (n,)
+    of what is steep along the normal."""
     edges = _edges(triangles)
     axes = np.empty((3, 4, triangles.shape[2]))
     normal = axes[:, 0]
