@@ -8,6 +8,7 @@ touch there.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from itertools import accumulate
 
@@ -83,31 +84,48 @@ def _blocked(hits: Hits, wanted: Flags, low: Array, high: Array) -> Flags:
 def verify(pair: PairView, sets: list[Probes], facing: float = FACING_LEAST) -> Verdict:
     """Cast sets of probes (one at least) against both parts, all together; `facing` is the least cosine between a facet
     and the probe."""
-    probes = sets[0]
-    if len(sets) > 1:
-        probes = Probes(*(np.concatenate([getattr(p, f.name) for p in sets]) for f in fields(Probes)))
-    count = len(probes.points)
-    chosen, on_surface, all_hits = [], [], []
+    return verify_all([(pair, sets)], facing)[0]
+
+
+def verify_all(asked: Sequence[tuple[PairView, list[Probes]]], facing: float = FACING_LEAST) -> list[Verdict]:
+    """The same of several pairs at once."""
+    joined = [
+        sets[0]
+        if len(sets) == 1
+        else Probes(*(np.concatenate([getattr(p, f.name) for p in sets]) for f in fields(Probes)))
+        for _, sets in asked
+    ]
     casts = [
         Cast(part.region, part.to_part(probes.points), part.turn_to_part(probes.normals), probes.reach)
+        for (pair, _), probes in zip(asked, joined, strict=True)
         for part in pair.parts
     ]
-    for part, hits, side, sense in zip(pair.parts, cast_all(casts), (0, 1), (1.0, -1.0), strict=True):
-        wanted = part.surfaces.labels.take(hits.facet) == probes.surfaces[:, side].take(hits.probe)
-        chosen.append(_nearest(hits, wanted & (sense * hits.facing > facing), -0.5 * sense * probes.gaps, count))
+    hits = cast_all(casts)
+    return [
+        _verdict(pair, sets, probes, (hits[2 * k], hits[2 * k + 1]), facing)
+        for k, ((pair, sets), probes) in enumerate(zip(asked, joined, strict=True))
+    ]
+
+
+def _verdict(pair: PairView, sets: list[Probes], probes: Probes, hits: tuple[Hits, Hits], facing: float) -> Verdict:
+    """What sets of probes of one pair, which are `probes` together, have hit of both parts."""
+    count = len(probes.points)
+    chosen, on_surface = [], []
+    for part, met, side, sense in zip(pair.parts, hits, (0, 1), (1.0, -1.0), strict=True):
+        wanted = part.surfaces.labels.take(met.facet) == probes.surfaces[:, side].take(met.probe)
+        chosen.append(_nearest(met, wanted & (sense * met.facing > facing), -0.5 * sense * probes.gaps, count))
         on_surface.append(wanted)
-        all_hits.append(hits)
     holds = (chosen[0] >= 0) & (chosen[1] >= 0)
     along, cosine = [np.zeros(count), np.zeros(count)], np.ones(count)
     if holds.any():
-        along = [np.where(holds, h.along[c], 0.0) for h, c in zip(all_hits, chosen, strict=True)]
-        facets = [h.facet[c] for h, c in zip(all_hits, chosen, strict=True)]
+        along = [np.where(holds, h.along[c], 0.0) for h, c in zip(hits, chosen, strict=True)]
+        facets = [h.facet[c] for h, c in zip(hits, chosen, strict=True)]
         cosine = dot(pair.a.normals(facets[0]), pair.b.normals(facets[1]))
         holds &= cosine < pair.tolerances.opposed
         inset = BETWEEN_MARGIN * pair.tolerance + BETWEEN_SHARE * np.abs(along[1] - along[0])
         low, high = np.minimum(*along) + inset, np.maximum(*along) - inset
-        for hits, wanted in zip(all_hits, on_surface, strict=True):
-            holds &= ~_blocked(hits, wanted, low, high)
+        for met, wanted in zip(hits, on_surface, strict=True):
+            holds &= ~_blocked(met, wanted, low, high)
     ends = list(accumulate(len(p.points) for p in sets))
     own = [slice(first, end) for first, end in zip([0, *ends], ends, strict=False)]
 
