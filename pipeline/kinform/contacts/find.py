@@ -8,8 +8,9 @@ from dataclasses import replace
 
 from kinform.contacts import constants
 from kinform.contacts.fastening import suggest
+from kinform.contacts.overlap.boundaries import first_crossings
 from kinform.contacts.overlap.solids import SolidStore
-from kinform.contacts.pair import PairContacts, mated_pairs, pair_contacts
+from kinform.contacts.pair import PairContacts, mated_pairs, pair_contacts, touching
 from kinform.contacts.search.candidates import Pair, candidate_pairs
 from kinform.foundation.at_work import at_work_on
 from kinform.foundation.meshes.index import MeshStore
@@ -46,10 +47,15 @@ class _Work:
             self.solids.forget(digest)
         asked = [((self.parts[a], self.parts[b]), self.tolerance[a, b]) for a, b in pairs]
         mated = mated_pairs(asked, self.surfaces, self.store, self.assembly.tolerances)
-        out = []
-        for pair, mates in zip(pairs, mated, strict=True):
-            with at_work_on(_name_of((pair,))):
-                out.append(PairContacts((), None) if mates is None else pair_contacts(mates, self.solids))
+        out, begun = [PairContacts((), None)] * len(pairs), []
+        for k, (pair, mates) in enumerate(zip(pairs, mated, strict=True)):
+            if mates is not None:
+                with at_work_on(_name_of((pair,))):
+                    begun.append((k, mates, touching(mates)))
+        told = first_crossings([(mates.pair, patches) for _, mates, patches in begun])
+        for (k, mates, patches), crosses in zip(begun, told, strict=True):
+            with at_work_on(_name_of((pairs[k],))):
+                out[k] = pair_contacts(mates, patches, crosses, self.solids)
         return out
 
     def chunks(self, most: int) -> list[tuple[Pair, ...]]:

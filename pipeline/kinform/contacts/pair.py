@@ -77,9 +77,9 @@ def mated_pairs(
     return [None if view is None else next(found) for view in views]
 
 
-def pair_contacts(mates: Mated, solids: SolidStore) -> PairContacts:
-    """Contacts between two parts of which it is known what mates."""
-    pair, X_WF, reach, overlap, mated = mates.pair, mates.X_WF, mates.reach, mates.overlap, mates.patches
+def touching(mates: Mated) -> list[Patch]:
+    """All patches of a pair of which it is known what mates, in its frame, but narrow ones and unknown touches."""
+    pair, reach, overlap, mated = mates.pair, mates.reach, mates.overlap, mates.patches
     patches = [patch for patch in mated if not patch.narrow]
     screwed = threaded_patches(pair, overlap)
     patches += freeform_patches(pair, overlap)
@@ -96,7 +96,14 @@ def pair_contacts(mates: Mated, solids: SolidStore) -> PairContacts:
     alone = all(_strip(pair, patch) for patch in patches)
     patches = [_of_scattered(pair, patch, alone) for patch in patches]
     patches.sort(key=_place_in_list)
-    interference = find_interference(pair, patches, solids)
+    return patches
+
+
+def pair_contacts(mates: Mated, patches: list[Patch], crosses: bool | None, solids: SolidStore) -> PairContacts:
+    """Contacts of a pair, of its mates and all patches that are `touching`, in the world; `crosses` is what its
+    interference asks first."""
+    pair, X_WF, mated = mates.pair, mates.X_WF, mates.patches
+    interference = find_interference(pair, patches, solids, crosses)
     if not patches and interference is None:
         patches = unknown_touches(pair)
     least = NARROW_SHARE * sum(patch.area for patch in patches)

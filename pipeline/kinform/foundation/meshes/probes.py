@@ -24,7 +24,7 @@ from kinform.foundation.constants import HITS_A_PROBE, SLIVER_WIDTH, STEEP_LEAST
 from kinform.foundation.meshes.boxes import facet_boxes, triangle_boxes
 from kinform.foundation.meshes.closest import closest_facets
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, fcl_pose, partial_model, point_model
-from kinform.foundation.meshes.slivers import beside, crossing, meetings
+from kinform.foundation.meshes.slivers import beside, crossings, meetings
 from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
@@ -102,7 +102,7 @@ class Region:
     def depths(self, points: Array) -> tuple[Array, Ints]:
         """Distance (n,) m of points (n, 3) of the part frame to these facets, and the nearest of them (n,)."""
         if not self.index.is_large:
-            told = closest_facets(points, self._corners())
+            told = closest_facets(points, self.corners())
             if told is not None:
                 return told[0], told[1] if self.facets is None else self.facets[told[1]]
         point = fcl.CollisionObject(point_model())
@@ -117,18 +117,16 @@ class Region:
 
     def crosses(self, other: Region, X_SO: Array) -> bool:
         """Whether any facets of the two intersect; `X_SO` (4, 4): pose of the other part here."""
-        if self.empty or other.empty:
-            return False
-        if not (self.index.is_large or other.index.is_large):
-            told = crossing(self._corners(), other._corners() @ X_SO[:3, :3].T + X_SO[:3, 3])
-            if told is not None:
-                return told
+        return crossings_of([(self, other, X_SO)])[0]
+
+    def crosses_in_trees(self, other: Region, X_SO: Array) -> bool:
+        """The same, of large meshes, by their models."""
         request = fcl.CollisionRequest(num_max_contacts=1, enable_contact=False)
         placed = fcl.CollisionObject(other._beside(self, inverse(X_SO)), fcl_pose(X_SO))
         base = fcl.CollisionObject(self._beside(other, X_SO))
         return bool(fcl.collide(base, placed, request, fcl.CollisionResult()))
 
-    def _corners(self) -> Array:
+    def corners(self) -> Array:
         """(n, 3, 3) m of the facets."""
         mesh = self.index.mesh
         return np.asarray(mesh.vertices.take(mesh.faces if self.facets is None else mesh.faces[self.facets], axis=0))
@@ -140,6 +138,26 @@ class Region:
         mesh = other.index.mesh
         faces = mesh.faces if other.facets is None else mesh.faces[other.facets]
         return self.index.model_near(*facet_boxes(mesh.vertices @ X_SO[:3, :3].T + X_SO[:3, 3], faces))[0]
+
+
+def crossings_of(asked: Sequence[tuple[Region, Region, Array]]) -> list[bool]:
+    """Whether any facets of one region intersect any of the other, of several pairs of them at once, with the pose
+    (4, 4) of the part of the second in the frame of the first."""
+    some = [
+        k
+        for k, (first, second, _) in enumerate(asked)
+        if not (first.empty or second.empty or first.index.is_large or second.index.is_large)
+    ]
+    triangles = [
+        (first.corners(), second.corners() @ X_SO[:3, :3].T + X_SO[:3, 3])
+        for first, second, X_SO in (asked[k] for k in some)
+    ]
+    told = dict(zip(some, crossings(triangles), strict=True))
+    out = []
+    for k, (first, second, X_SO) in enumerate(asked):
+        answer = False if first.empty or second.empty else told.get(k)
+        out.append(first.crosses_in_trees(second, X_SO) if answer is None else answer)
+    return out
 
 
 @dataclass(frozen=True, eq=False)

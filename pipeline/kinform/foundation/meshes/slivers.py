@@ -217,6 +217,18 @@ def _beyond_border(triangles: Array, size: float, owner: Ints, corners: list[Arr
     return out
 
 
+def crossings(asked: Sequence[tuple[Array, Array]]) -> list[bool | None]:
+    """`crossing` of several sets of triangles, at once where they are few."""
+    mutual = [_mutual(first, second) for first, second in asked]
+    few = [k for k, (first, second) in enumerate(mutual) if len(first) * len(second) <= CROSSED_FEW]
+    met = dict(zip(few, meetings([mutual[k] for k in few]), strict=True))
+    return [_any(met[k]) if k in met else crossing(*one) for k, one in enumerate(asked)]
+
+
+def _any(met: Met | None) -> bool | None:
+    return None if met is None else bool(len(met[0]))
+
+
 def crossing(first: Array, second: Array) -> bool | None:
     """Whether any triangles (n, 3, 3) and (m, 3, 3) meet: of many, some of the first are asked before all are, which
     settles it where much crosses. None as above."""
@@ -226,8 +238,7 @@ def crossing(first: Array, second: Array) -> bool | None:
         met = meeting(*_mutual(some, second))
         if met is not None and len(met[0]):
             return True
-    met = meeting(first, second)
-    return None if met is None else bool(len(met[0]))
+    return _any(meeting(first, second))
 
 
 def _mutual(first: Array, second: Array) -> tuple[Array, Array]:
