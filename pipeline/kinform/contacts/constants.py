@@ -324,7 +324,7 @@ POCKET_GAP = math.pi - 0.05
 TOGETHER_PAIRS = 32
 """Pairs whose decisions are taken together: numpy takes as long to begin as to go through hundreds of numbers, ..."""
 TOGETHER_FACETS = 50_000
-"""... as long as their meshes have no more facets in all: what is known of a facet takes about half a kilobyte."""
+"""... as long as no more facets come to those of the first pair: what is known of one takes about half a kilobyte."""
 SHARES = 4
 """Shares of the pairs that each process gets at least, one after the other: some take much longer than others."""
 

@@ -13,6 +13,7 @@ from kinform.contacts.overlap.solids import SolidStore
 from kinform.contacts.pair import PairContacts, mated_pairs, pair_contacts, touching
 from kinform.contacts.search.candidates import Pair, candidate_pairs
 from kinform.foundation.at_work import at_work_on
+from kinform.foundation.constants import LARGE_MESH
 from kinform.foundation.meshes.index import MeshStore
 from kinform.foundation.processes import Crash, map_in_processes
 from kinform.foundation.progress import Progress
@@ -59,18 +60,23 @@ class _Work:
         return out
 
     def chunks(self, most: int) -> list[tuple[Pair, ...]]:
-        """All pairs in their order, `most` at a time, and fewer of large meshes, all of which are known at once."""
+        """All pairs in their order, `most` at a time, and fewer of those that bring large meshes with them, which are
+        all known at once."""
         out: list[tuple[Pair, ...]] = []
         chunk: list[Pair] = []
-        facets: dict[str, int] = {}
+        known: set[str] = set()
+        more = 0
         for pair in self.order:
-            meshes = [mesh for name in pair if (mesh := self.parts[name].mesh) is not None]
-            more = facets | {mesh.digest: len(mesh.faces) for mesh in meshes}
-            if chunk and (len(chunk) >= most or sum(more.values()) > constants.TOGETHER_FACETS):
+            meshes = {mesh.digest: len(mesh.faces) for name in pair if (mesh := self.parts[name].mesh) is not None}
+            more += sum(count for digest, count in meshes.items() if digest not in known)
+            if chunk and (len(chunk) >= most or more > constants.TOGETHER_FACETS):
                 out.append(tuple(chunk))
-                chunk, more = [], {mesh.digest: len(mesh.faces) for mesh in meshes}
+                chunk, known = [], set()
+            if not chunk:
+                # what is expected of a mesh of which only a part is known is expected of one pair
+                more = constants.TOGETHER_FACETS + 1 if max(meshes.values()) > LARGE_MESH else 0
             chunk.append(pair)
-            facets = more
+            known |= meshes.keys()
         return [*out, tuple(chunk)] if chunk else out
 
     def is_little(self, pairs: list[Pair]) -> bool:
