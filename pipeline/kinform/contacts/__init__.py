@@ -3,12 +3,13 @@
 How a patch is found is best read in this order:
 
 1. `find` is the stage. `search.candidates` names the pairs of parts whose boxes come within the contact tolerance, and
-every pair is then a question of its own, which `pair.pair_contacts` answers step by step. 2. `search.pair_view` lays
+every pair is then a question of its own, which `pair.mated_pairs`, `pair.touching` and `pair.pair_contacts` answer step
+by step: of pairs of small meshes the first of them answers many at once, to the same bytes. 2. `search.pair_view` lays
 both parts into the frame of the pair and keeps what of either lies near the other: a `PairView`, with the tolerance,
 is what all questions below take; a `SurfacePair` is one surface of either part. 3. `mating.analytic` and
 `mating.one_sided` say which surfaces could lie on each other by their axes, radii and gaps alone: a `Mate`.
 `mating.charts` unrolls what both stand for into a plane, where `mating.overlay` cuts the facets of either side with
-each other: areas that both cover. 4. `search.probing` asks the meshes whether facets of both really are there, face
+each other: areas that both cover, gathered by `mating.cells`. 4. `search.probing` asks the meshes whether facets of both really are there, face
 each other and have nothing between. What holds is a `Patch` (`mating.patches`): points with normals out of the first
 part, gaps and areas. 5. Surfaces without a chart are compared by their facets (`mating.freeform`), threads by their
 profiles (`mating.threads`). Where parts share no surface, `higher` looks for points and lines: balls, rollers and
