@@ -45,6 +45,7 @@ class MeshIndex:
         self._local: fcl.BVHModel | None = None
         self._spans: Array | None = None
         self._normals: Array | None = None
+        self._asked = 0
         self._edges: SharedEdges | None = None
         self._borders: Ints | None = None
         self._neighbours: dict[int, frozenset[int]] = {}
@@ -75,10 +76,14 @@ class MeshIndex:
         return np.asarray(0.5 * np.sqrt(dot(spans, spans)))
 
     def normals(self, facets: Ints) -> Array:
-        """(n, 3) unit, outward, part frame; zero for facets without area."""
-        if self._normals is None and len(self.mesh.faces) <= KEPT_SPANS:
+        """(n, 3) unit, outward, part frame; zero for facets without area; kept once as many were asked for as there
+        are."""
+        if self._normals is not None:
+            return self._normals.take(facets, axis=0)
+        self._asked += len(facets)
+        if self._asked > len(self.mesh.faces) and len(self.mesh.faces) <= KEPT_SPANS:
             self._normals = _normals(self.spans(np.arange(len(self.mesh.faces))))
-        return _normals(self.spans(facets)) if self._normals is None else self._normals.take(facets, axis=0)
+        return _normals(self.spans(facets))
 
     @property
     def boxes(self) -> FacetBoxes:

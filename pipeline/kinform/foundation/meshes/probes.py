@@ -194,7 +194,7 @@ def cast_all(casts: Sequence[Cast], width: float = SLIVER_WIDTH) -> list[Hits]:
     probe = _joined([probe + start for (probe, _), start in zip(met, ends, strict=False)])
     normal = _joined([region.index.normals(facet) for region, (_, facet) in zip(regions, met, strict=True)])
     corner = _joined(
-        [mesh.vertices.take(mesh.faces[:, 0].take(facet), axis=0) for mesh, (_, facet) in zip(meshes, met, strict=True)]
+        [mesh.vertices.take(mesh.faces[facet, 0], axis=0) for mesh, (_, facet) in zip(meshes, met, strict=True)]
     )
     facing = dot(normal, directions.take(probe, axis=0))
     height = dot(normal, corner - points.take(probe, axis=0))

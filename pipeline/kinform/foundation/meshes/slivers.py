@@ -222,7 +222,7 @@ def crossings(asked: Sequence[tuple[Array, Array]]) -> list[bool | None]:
     mutual = [_mutual(first, second) for first, second in asked]
     few = [k for k, (first, second) in enumerate(mutual) if len(first) * len(second) <= CROSSED_FEW]
     met = dict(zip(few, meetings([mutual[k] for k in few]), strict=True))
-    return [_any(met[k]) if k in met else crossing(*one) for k, one in enumerate(asked)]
+    return [_any(met[k]) if k in met else _crossing(*pair) for k, pair in enumerate(mutual)]
 
 
 def _any(met: Met | None) -> bool | None:
@@ -230,14 +230,17 @@ def _any(met: Met | None) -> bool | None:
 
 
 def crossing(first: Array, second: Array) -> bool | None:
-    """Whether any triangles (n, 3, 3) and (m, 3, 3) meet: of many, some of the first are asked before all are, which
-    settles it where much crosses. None as above."""
-    first, second = _mutual(first, second)
-    if len(first) * len(second) > CROSSED_FEW:
-        some = first[:: max(CROSSED_SOME, -(-len(first) * len(second) // CROSSED_FEW))]
-        met = meeting(*_mutual(some, second))
-        if met is not None and len(met[0]):
-            return True
+    """Whether any triangles (n, 3, 3) and (m, 3, 3) meet. None as above."""
+    return crossings([(first, second)])[0]
+
+
+def _crossing(first: Array, second: Array) -> bool | None:
+    """The same of many that are within each other's boxes: some of the first are asked before all are, which settles
+    it where much crosses."""
+    some = first[:: max(CROSSED_SOME, -(-len(first) * len(second) // CROSSED_FEW))]
+    met = meeting(*_mutual(some, second))
+    if met is not None and len(met[0]):
+        return True
     return _any(meeting(first, second))
 
 
