@@ -73,7 +73,7 @@ def mated_pairs(
         for (pair, _, reach), overlap in zip(met, overlaps, strict=True)
     ]
     patches = mated_patches_of([(pair, own) for (pair, _, _), own in zip(met, mates, strict=True)])
-    found = iter([Mated(*view, *of_it) for view, *of_it in zip(met, overlaps, patches, strict=True)])
+    found = iter([Mated(*view, flags, own) for view, flags, own in zip(met, overlaps, patches, strict=True)])
     return [None if view is None else next(found) for view in views]
 
 

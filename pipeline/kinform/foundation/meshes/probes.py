@@ -191,7 +191,7 @@ def cast_all(casts: Sequence[Cast], width: float = SLIVER_WIDTH) -> list[Hits]:
     regions = [casts[k].region for k in some]
     met = _meetings(regions, [slivers[i:j] for i, j in pairwise(ends)])
     meshes = [region.index.mesh for region in regions]
-    probe = _joined([probe + start for (probe, _), start in zip(met, ends, strict=False)])
+    probe = np.concatenate([probe + start for (probe, _), start in zip(met, ends, strict=False)])
     normal = _joined([region.index.normals(facet) for region, (_, facet) in zip(regions, met, strict=True)])
     corner = _joined(
         [mesh.vertices.take(mesh.faces[facet, 0], axis=0) for mesh, (_, facet) in zip(meshes, met, strict=True)]
