@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import importlib
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +15,10 @@ from support.analytic_solids import MM, assembly, box_loop, extrusion, pose, rou
 
 from kinform.contacts import find
 from kinform.contacts.search.candidates import candidate_pairs
+from kinform.form.readers.assembly import load
+from kinform.surfaces import recover
+
+FIXTURES = Path(__file__).parents[2] / "fixtures"
 
 # the package gives the function of the same name in its place
 stage = importlib.import_module("kinform.contacts.find")
@@ -102,6 +107,19 @@ def test_two_jobs_give_the_same_bytes_as_one():
     assert same(find(design, surfaces), find(design, surfaces, jobs=2))
 
 
+@pytest.mark.parametrize("fixture", ["mechanisms/ball_bearing", "mechanisms/table_four_legs", "seekers/seeker_2dof"])
+def test_what_comes_of_a_pair_does_not_depend_on_those_that_are_looked_at_with_it(fixture, monkeypatch):
+    design = load(FIXTURES / fixture / f"{Path(fixture).name}.toml")
+    surfaces = {part.mesh.digest: recover(part.mesh, design.tolerances) for part in design.parts if part.mesh}
+    alone = find(design, surfaces)
+    assert len(alone.candidates) > 7
+    rng = np.random.default_rng(3)
+    for together in (1, 2, 5, 7):
+        monkeypatch.setattr(stage.constants, "TOGETHER_PAIRS", together)
+        monkeypatch.setattr(stage, "_by_neighbours", lambda pairs: [pairs[k] for k in rng.permutation(len(pairs))])
+        assert same(alone, find(design, surfaces))
+
+
 def test_named_pairs_are_taken_from_earlier_contacts_and_the_others_computed():
     design, surfaces = row()
     earlier = find(design, surfaces)
@@ -156,18 +174,19 @@ def test_what_is_known_of_a_mesh_is_dropped_after_its_last_pair(monkeypatch):
             for k, (name, cube) in enumerate(zip(names, cubes, strict=True))
         }
     )
-    known, of_pair = [], stage.pair_contacts
+    known, of_pairs = [], stage.mated_pairs
 
-    def counted(parts, surfaces, store, solids, *rest):
-        found = of_pair(parts, surfaces, store, solids, *rest)
-        known.append((len(store.indices), len(solids.solids)))
+    def counted(asked, surfaces, store, *rest):
+        found = of_pairs(asked, surfaces, store, *rest)
+        known.append(len(store.indices))
         return found
 
     before = find(*made)
-    monkeypatch.setattr(stage, "pair_contacts", counted)
+    monkeypatch.setattr(stage.constants, "TOGETHER_PAIRS", 1)
+    monkeypatch.setattr(stage, "mated_pairs", counted)
     assert same(before, find(*made))
     assert list(before.candidates) == sorted(before.candidates)
     assert len(known) == len(before.candidates) == 9
-    assert max(known)[0] <= 3
+    assert max(known) <= 3
     monkeypatch.setattr(stage, "_by_neighbours", lambda pairs: pairs[::-1])
     assert same(before, find(*made))

@@ -85,7 +85,7 @@ def test_a_mesh_meets_triangles_exactly_where_a_few_of_them_do(monkeypatch):
     triangles = middle + rng.normal(scale=1.5 * MM, size=(400, 3, 3))
     for region in (plate().whole(), plate().region(np.arange(0, len(plate().mesh.faces), 2))):
         each = [region.meets(triangle[None]) for triangle in triangles]
-        hit = [crossing(triangle[None], region._corners()) for triangle in triangles]
+        hit = [crossing(triangle[None], region.corners()) for triangle in triangles]
         assert each == hit
         assert 20 < sum(each) < 380
         first = each.index(True)

@@ -71,6 +71,23 @@ def test_none_that_meets_is_taken_for_clearly_apart(seed, size, on_a_lattice):
     assert answers[0]
 
 
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 10**6), st.sampled_from([1e-6, 1.0, 1e4]), st.sampled_from([0.0, 1e-15, 1e-12, 1e-9, 1e-7, 1.0]))
+def test_what_clearly_meets_is_what_no_direction_parts(seed, size, off):
+    """Near a lattice most triangles nearly touch, or are needles; a few of them pass through each other."""
+    rng = np.random.default_rng(seed)
+    first, second = rng.integers(0, 4, (2, 30, 3, 3)) + off * rng.normal(size=(2, 30, 3, 3)) + rng.normal(size=3)
+    first[:15, 2] = first[:15, 1] + 1e-6 * rng.normal(size=(15, 3))
+    answers, nothing = [], lambda first, second, one, two, size: (np.zeros(len(one), bool), np.zeros(len(one), bool))
+    for told in (slivers._told, nothing):
+        with pytest.MonkeyPatch.context() as patched:
+            patched.setattr(slivers, "MET_MOST", 10**9)
+            patched.setattr(slivers, "_told", told)
+            answers.append(pairs(size * first, size * second))
+    assert answers[0] == answers[1]
+    assert answers[0]
+
+
 FLAT = np.array([[[0, 0, 0], [4, 0, 0], [0, 4, 0]]], dtype=float)
 
 

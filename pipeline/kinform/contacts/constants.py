@@ -329,6 +329,13 @@ POCKET_GAP = math.pi - 0.05
 """rad: walls with no wider gap between them leave no way aside."""
 # find: pairs side by side
 
+TOGETHER_PAIRS = 32
+"""Pairs whose decisions are taken together: numpy takes as long to begin as to go through hundreds of numbers, ..."""
+TOGETHER_FACETS = 50_000
+"""... as long as no more facets come to those of the first pair: what is known of one takes about half a kilobyte."""
+SHARES = 4
+"""Shares of the pairs that each process gets at least, one after the other: some take much longer than others."""
+
 LITTLE_PAIRS = 64
 """Pairs, of ..."""
 LITTLE_FACETS = 10_000

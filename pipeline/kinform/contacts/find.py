@@ -8,11 +8,14 @@ from dataclasses import replace
 
 from kinform.contacts import constants
 from kinform.contacts.fastening import suggest
+from kinform.contacts.overlap.boundaries import first_crossings
 from kinform.contacts.overlap.solids import SolidStore
-from kinform.contacts.pair import PairContacts, pair_contacts
+from kinform.contacts.pair import PairContacts, mated_pairs, pair_contacts, touching
 from kinform.contacts.search.candidates import Pair, candidate_pairs
+from kinform.foundation.at_work import at_work_on
+from kinform.foundation.constants import LARGE_MESH
 from kinform.foundation.meshes.index import MeshStore
-from kinform.foundation.processes import map_in_processes
+from kinform.foundation.processes import Crash, map_in_processes
 from kinform.foundation.progress import Progress
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch, Suggestion
@@ -37,14 +40,44 @@ class _Work:
         for number, pair in enumerate(self.order):
             self.last.update((mesh.digest, number) for name in pair if (mesh := self.parts[name].mesh) is not None)
 
-    def contacts(self, pair: Pair) -> PairContacts:
-        """Of two parts; those of earlier pairs, in `order`, are done or have what they need."""
-        parts = self.parts[pair[0]], self.parts[pair[1]]
-        tolerances, number = self.assembly.tolerances, self.number[pair]
+    def contacts(self, pairs: tuple[Pair, ...]) -> list[PairContacts]:
+        """Of some pairs that follow each other; those before them, in `order`, are done or have what they need."""
+        number = self.number[pairs[0]]
         for digest in [known for known in list(self.store.indices) if self.last[known] < number]:
             self.store.forget(digest)
             self.solids.forget(digest)
-        return pair_contacts(parts, self.surfaces, self.store, self.solids, self.tolerance[pair], tolerances)
+        asked = [((self.parts[a], self.parts[b]), self.tolerance[a, b]) for a, b in pairs]
+        mated = mated_pairs(asked, self.surfaces, self.store, self.assembly.tolerances)
+        out, begun = [PairContacts((), None)] * len(pairs), []
+        for k, (pair, mates) in enumerate(zip(pairs, mated, strict=True)):
+            if mates is not None:
+                with at_work_on(_name_of((pair,))):
+                    begun.append((k, mates, touching(mates)))
+        told = first_crossings([(mates.pair, patches) for _, mates, patches in begun])
+        for (k, mates, patches), crosses in zip(begun, told, strict=True):
+            with at_work_on(_name_of((pairs[k],))):
+                out[k] = pair_contacts(mates, patches, crosses, self.solids)
+        return out
+
+    def chunks(self, most: int) -> list[tuple[Pair, ...]]:
+        """All pairs in their order, `most` at a time, and fewer of those that bring large meshes with them, which are
+        all known at once."""
+        out: list[tuple[Pair, ...]] = []
+        chunk: list[Pair] = []
+        known: set[str] = set()
+        more = 0
+        for pair in self.order:
+            meshes = {mesh.digest: len(mesh.faces) for name in pair if (mesh := self.parts[name].mesh) is not None}
+            more += sum(count for digest, count in meshes.items() if digest not in known)
+            if chunk and (len(chunk) >= most or more > constants.TOGETHER_FACETS):
+                out.append(tuple(chunk))
+                chunk, known = [], set()
+            if not chunk:
+                # what is expected of a mesh of which only a part is known is expected of one pair
+                more = constants.TOGETHER_FACETS + 1 if max(meshes.values()) > LARGE_MESH else 0
+            chunk.append(pair)
+            known |= meshes.keys()
+        return [*out, tuple(chunk)] if chunk else out
 
     def is_little(self, pairs: list[Pair]) -> bool:
         """Whether it takes no longer than other processes take to start."""
@@ -72,9 +105,7 @@ def find(
     reused = {p for p in reuse.candidates if p in reuse_pairs and p in tolerance} if reuse is not None else set()
     wanted = [pair for pair in tolerance if pair not in reused]
     work = _Work(assembly, surfaces, tolerance, wanted)
-    name = lambda pair: f"contacts of {pair[0]} and {pair[1]}"
-    computed = map_in_processes(work.contacts, work.order, jobs, progress, name, little=work.is_little(wanted))
-    done: dict[Pair, PairContacts] = dict(zip(work.order, computed, strict=True))
+    done = _computed(work, jobs, progress, work.is_little(wanted))
     if reuse is not None:
         done |= _earlier_contacts(reuse, reused)
     contacts = Contacts(
@@ -85,6 +116,33 @@ def find(
     )
     earlier = {} if reuse is None else _earlier_suggestions(reuse, contacts, reused)
     return replace(contacts, suggestions=suggest(assembly, surfaces, contacts, earlier))
+
+
+def _name_of(pairs: tuple[Pair, ...]) -> str:
+    """What is at work: of some pairs by the first."""
+    first = f"contacts of {pairs[0][0]} and {pairs[0][1]}"
+    return first if len(pairs) == 1 else f"{first}, or of one of the {len(pairs) - 1} pairs after them"
+
+
+def _computed(work: _Work, jobs: int, progress: Progress | None, little: bool) -> dict[Pair, PairContacts]:
+    """The contacts of all pairs of the work: of many small ones at once; where a process ends over that, one by one, so
+    that it is told which pair it was."""
+    share = len(work.order) if jobs <= 1 else len(work.order) // (constants.SHARES * jobs)
+    for most in (max(1, min(constants.TOGETHER_PAIRS, share)), 1):
+        chunks, done = work.chunks(most), dict[Pair, PairContacts]()
+        computed = map_in_processes(work.contacts, chunks, jobs, None, _name_of, little=little)
+        try:
+            for chunk, found in zip(chunks, computed, strict=True):
+                for pair, of_pair in zip(chunk, found, strict=True):
+                    done[pair] = of_pair
+                    if progress is not None:
+                        progress(len(done), len(work.order))
+        except Crash:
+            if most == 1 or len(chunks) == len(work.order):
+                raise
+        else:
+            break
+    return done
 
 
 def _by_neighbours(pairs: list[Pair]) -> list[Pair]:

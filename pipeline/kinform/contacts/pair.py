@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,14 +19,14 @@ from kinform.contacts.mating.coarse import rounded
 from kinform.contacts.mating.enclosing import enclosing_patches
 from kinform.contacts.mating.freeform import freeform_patches
 from kinform.contacts.mating.one_sided import one_sided_mates, without_continuations
-from kinform.contacts.mating.patches import in_world, mated_patches
+from kinform.contacts.mating.patches import in_world, mated_patches_of
 from kinform.contacts.mating.threads import threaded_patches
 from kinform.contacts.overlap.interference import find_interference
 from kinform.contacts.overlap.solids import SolidStore
 from kinform.contacts.search.pair_view import PairView, pair_view
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.meshes.index import MeshStore
-from kinform.model.arrays import Array, freeze
+from kinform.model.arrays import Array, Flags, freeze
 from kinform.model.assembly import Part
 from kinform.model.contacts import Interference, Patch
 from kinform.model.surfaces import MeshSurfaces
@@ -40,23 +41,45 @@ class PairContacts:
     interference: Interference | None
 
 
-def pair_contacts(
-    parts: tuple[Part, Part],
+@dataclass(frozen=True, eq=False)
+class Mated:
+    """A pair, and the patches of its surfaces that mate."""
+
+    pair: PairView
+    X_WF: Array
+    """(4, 4) pose of the frame of the pair in the world."""
+    reach: float
+    """m that surfaces that mate may be apart."""
+    overlap: Flags
+    """(s, t) near surfaces of either part that come within the tolerance."""
+    patches: list[Patch]
+    """In the frame of the pair."""
+
+
+def mated_pairs(
+    asked: Sequence[tuple[tuple[Part, Part], float]],
     surfaces: dict[str, MeshSurfaces],
     store: MeshStore,
-    solids: SolidStore,
-    tolerance: float,
     tolerances: Tolerances,
-) -> PairContacts:
-    """Contacts between two meshed parts (sorted by name), within `tolerance` (m); `surfaces` by mesh digest."""
-    view = pair_view(parts, surfaces, store, tolerance, tolerances)
-    if view is None:
-        return PairContacts((), None)
-    pair, X_WF, reach = view
-    mates = analytic_mates(pair, reach)
-    overlap = pair.overlap(MATING_REACH * tolerance)
-    mates += one_sided_mates(pair, overlap)
-    mated = mated_patches(pair, mates)
+) -> list[Mated | None]:
+    """What mates of several pairs of meshed parts (sorted by name), within a tolerance (m) each, at once; None of a
+    pair of which no facets are near each other. `surfaces` by mesh digest. What comes of a pair does not depend on
+    the others."""
+    views = [pair_view(parts, surfaces, store, tolerance, tolerances) for parts, tolerance in asked]
+    met = [view for view in views if view is not None]
+    overlaps = [pair.overlap(MATING_REACH * pair.tolerance) for pair, _, _ in met]
+    mates = [
+        analytic_mates(pair, reach) + one_sided_mates(pair, overlap)
+        for (pair, _, reach), overlap in zip(met, overlaps, strict=True)
+    ]
+    patches = mated_patches_of([(pair, own) for (pair, _, _), own in zip(met, mates, strict=True)])
+    found = iter([Mated(*view, flags, own) for view, flags, own in zip(met, overlaps, patches, strict=True)])
+    return [None if view is None else next(found) for view in views]
+
+
+def touching(mates: Mated) -> list[Patch]:
+    """All patches of a pair of which it is known what mates, in its frame, but narrow ones and unknown touches."""
+    pair, reach, overlap, mated = mates.pair, mates.reach, mates.overlap, mates.patches
     patches = [patch for patch in mated if not patch.narrow]
     screwed = threaded_patches(pair, overlap)
     patches += freeform_patches(pair, overlap)
@@ -73,7 +96,14 @@ def pair_contacts(
     alone = all(_strip(pair, patch) for patch in patches)
     patches = [_of_scattered(pair, patch, alone) for patch in patches]
     patches.sort(key=_place_in_list)
-    interference = find_interference(pair, patches, solids)
+    return patches
+
+
+def pair_contacts(mates: Mated, patches: list[Patch], crosses: bool | None, solids: SolidStore) -> PairContacts:
+    """Contacts of a pair, of its mates and all patches that are `touching`, in the world; `crosses` is what its
+    interference asks first."""
+    pair, X_WF, mated = mates.pair, mates.X_WF, mates.patches
+    interference = find_interference(pair, patches, solids, crosses)
     if not patches and interference is None:
         patches = unknown_touches(pair)
     least = NARROW_SHARE * sum(patch.area for patch in patches)

@@ -195,6 +195,9 @@ CLEARLY_APART = 1e-9
 """Share of their coordinates by which they are then apart at least: far more than rounding, ..."""
 CLEARLY_ROUNDED = 1e-12
 """... also that of the normal of a needle, in powers of its longest edge."""
+CLEARLY_STEEP = 0.1
+"""Sine between an edge and a triangle from which on it clearly passes through: where it does depends on rounding by no
+more than ten times that, and no direction in which both are short is left."""
 MET_FEW = 1000
 """Pairs of triangles up to which all directions but the normals are asked at once."""
 MET_MOST = 10

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kinform.model.arrays import Array, Flags, Ints
 
@@ -45,7 +46,7 @@ def sorted_keys(keys: Ints) -> Ints:
     return few.astype(np.int64)
 
 
-def heads(ordered: Ints) -> Flags:
+def heads(ordered: Ints | NDArray[np.complex128]) -> Flags:
     """(n,) which of the ordered keys are the first of their value."""
     out = np.empty(len(ordered), bool)
     out[:1] = True

@@ -60,6 +60,8 @@ def rim_contacts(pair: PairView, convex: tuple[ConvexEdges, ConvexEdges]) -> lis
 def seats(pair: PairView, patches: list[Patch]) -> list[Patch]:
     """Rims that go all round, on balls, cones and rings that none of the `patches` is of: what stands in a seat beside
     what guides it, as countersunk screws and valves do."""
+    if not any(_SEATED[side.kinds].any() for side in pair.near):
+        return []
     mated = tuple(np.array(sorted({patch.surfaces[k] for patch in patches}), dtype=np.int64) for k in (0, 1))
     free = [_SEATED[side.kinds] & ~np.isin(side.ids, ids) for side, ids in zip(pair.near, mated, strict=True)]
     out = []

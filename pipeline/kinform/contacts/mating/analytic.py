@@ -16,7 +16,7 @@ from kinform.contacts import constants
 from kinform.contacts.mating.charts import ConeChart, CylinderChart, PlaneChart, SphereChart, perpendicular
 from kinform.contacts.mating.mate import Axes, Mate, aligned, mean_axes, mean_direction, mean_position, radial_limit
 from kinform.contacts.search.pair_view import PairView, SurfacePair
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, lengths, norm
 from kinform.model.arrays import Array, Flags
 
 
@@ -31,8 +31,10 @@ def _plane_mates(pair: PairView, overlap: Flags) -> Iterator[Mate]:
     """Opposed planes among the surfaces flagged in `overlap` (s, t)."""
     a, b = pair.near
     rows, columns, flags = pair.of_kinds(overlap, "plane")
+    if not flags.any():
+        return
     opposed = cross(a.axes[rows][:, None], b.axes[columns][None])
-    angle = np.arctan2(np.linalg.norm(opposed, axis=2), -(a.axes[rows] @ b.axes[columns].T))
+    angle = np.arctan2(lengths(opposed), -(a.axes[rows] @ b.axes[columns].T))
     allowed = pair.tolerances.alignment + a.axis_uncertainty[rows][:, None] + b.axis_uncertainty[columns][None]
     for i, j in np.argwhere(flags & (angle <= allowed)):
         mate = _plane_mate(pair.surfaces(rows[i], columns[j]), float(angle[i, j]), pair.tolerance)
@@ -48,9 +50,9 @@ def _plane_mate(surfaces: SurfacePair, angle: float, tolerance: float) -> Mate |
     # Heights above both planes add up to the gap, whatever the point's own height in between.
     above_a, above_b = float((middle - on_first) @ first), float((middle - on_second) @ second)
     gap = above_a + above_b
-    tilt = angle * float(np.linalg.norm(size))
+    tilt = angle * norm(size)
     # the common box of two faces is thinnest across them: its middle side is their smaller extent
-    limit = constants.MATING_REACH * min(tolerance, constants.FACE_SHARE * float(np.sort(size)[1]))
+    limit = constants.MATING_REACH * min(tolerance, constants.FACE_SHARE * sorted(size.tolist())[1])
     if abs(gap) > limit + tilt:
         return None
     half = middle + 0.5 * (above_b - above_a) * normal
@@ -154,12 +156,14 @@ def _sphere_mates(pair: PairView, overlap: Flags) -> Iterator[Mate]:
     """Balls in sockets among the surfaces flagged in `overlap` (s, t)."""
     a, b = pair.near
     rows, columns, flags = pair.of_kinds(overlap, "sphere")
+    if not flags.any():
+        return
     convex = a.sides[rows][:, None] * b.sides[columns][None] < 0.0
     for i, j in np.argwhere(flags & convex):
         surfaces = pair.surfaces(rows[i], columns[j])
         (first, second), radii, side = surfaces.points, surfaces.radii, surfaces.sides[0]
         gap = (radii[1] - radii[0]) * side
-        offset = float(np.linalg.norm(second - first))
+        offset = norm(second - first)
         limit = radial_limit(pair.play, min(radii))
         spare = max(gap, 0.0) + min(sum(surfaces.shifts), pair.tolerance) + constants.MATING_OFFSET * pair.tolerance
         if abs(gap) > limit or offset > spare:
@@ -187,6 +191,8 @@ def _nearly_coaxial(pair: PairView, overlap: Flags, kind: str) -> Iterator[Surfa
     """Surfaces of one kind, convex with concave, whose axes are roughly parallel."""
     a, b = pair.near
     rows, columns, flags = pair.of_kinds(overlap, kind)
+    if not flags.any():
+        return
     cosine = np.abs(a.axes[rows] @ b.axes[columns].T)
     convex = a.sides[rows][:, None] * b.sides[columns][None] < 0.0
     for i, j in np.argwhere(flags & convex & (cosine > math.cos(constants.TILT_LIKELY * constants.MATING_TILT))):
@@ -207,4 +213,4 @@ def _base(surfaces: SurfacePair, axes: Axes, radius: float) -> Array:
     """Azimuth that looks into the common box of the two surfaces, where it has one."""
     arm = surfaces.box()[0] - axes.point
     arm = arm - (arm @ axes.axis) * axes.axis
-    return perpendicular(axes.axis, arm if np.linalg.norm(arm) > constants.SEEN_FROM_AXIS * radius else None)
+    return perpendicular(axes.axis, arm if norm(arm) > constants.SEEN_FROM_AXIS * radius else None)

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 
 from kinform.contacts.constants import CHART_ARC, CHART_FAR, HINT_LEAST, POLE_SEEN, SEEN_FROM_AXIS
 from kinform.foundation.algebra import vectors
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, lengths, norm
 from kinform.foundation.meshes.boxes import middles
 from kinform.model.arrays import Array, Ints
 
@@ -53,8 +54,8 @@ def perpendicular(axis: Array, hint: Array | None = None) -> Array:
     """A unit vector perpendicular to `axis`, towards `hint` where that says anything."""
     if hint is not None:
         across = hint - (hint @ axis) * axis
-        length = float(np.linalg.norm(across))
-        if length > HINT_LEAST * max(float(np.linalg.norm(hint)), 1e-300):
+        length = norm(across)
+        if length > HINT_LEAST * max(norm(hint), 1e-300):
             return np.asarray(across / length)
     return -vectors.perpendicular(axis)[0]
 
@@ -67,8 +68,10 @@ def plane_basis(axis: Array) -> Array:
 
 def _unit_rows(rows: Array) -> Array:
     """Vectors (…, 3) of length one; zero vectors stay."""
-    length = np.linalg.norm(rows, axis=-1, keepdims=True)
-    return np.asarray(rows / np.where(length > 0.0, length, 1.0))
+    length = lengths(rows)[..., None]
+    if not length.all():
+        length[length == 0.0] = 1.0
+    return np.asarray(rows / length)
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,14 +82,19 @@ class PlaneChart:
     point: Array
     step: tuple[float, float] = (math.inf, math.inf)
 
+    @cached_property
+    def basis(self) -> Array:
+        """(2, 3) of the coordinates."""
+        return plane_basis(self.axis)
+
     def flatten(self, triangles: Array) -> Array:
-        return np.asarray((triangles - self.point) @ plane_basis(self.axis).T)
+        return np.asarray((triangles - self.point) @ self.basis.T)
 
     def window(self) -> Array | None:
         return None
 
     def lift(self, flat: Array) -> Array:
-        return np.asarray(self.point + flat @ plane_basis(self.axis))
+        return np.asarray(self.point + flat @ self.basis)
 
     def normals(self, points: Array) -> Array:
         return np.tile(self.axis, (len(points), 1))
@@ -103,6 +111,11 @@ class _Axial:
     point: Array
     base: Array
 
+    @cached_property
+    def side(self) -> Array:
+        """(3,) unit, across the axis, azimuth π/2."""
+        return cross(self.axis, self.base)
+
     def _arms(self, points: Array) -> tuple[Array, Array]:
         """Height along the axis of points (…, 3), and what leads to them across it (…, 3)."""
         arm = points - self.point
@@ -111,26 +124,27 @@ class _Axial:
 
     def _azimuth(self, across: Array) -> Array:
         """(…,) in [−π, π] of vectors across the axis (…, 3)."""
-        return np.asarray(np.arctan2(across @ cross(self.axis, self.base), across @ self.base))
+        return np.asarray(np.arctan2(across @ self.side, across @ self.base))
 
     def _unrolled(self, triangles: Array) -> tuple[Array, Array, Array]:
         """Height, radius and azimuth (n, 3) of the corners, each azimuth within π of its centroid's."""
         along, across = self._arms(triangles)
-        radius = np.linalg.norm(across, axis=-1)
+        radius = lengths(across)
         middle = self._azimuth(self._arms(middles(triangles))[1])[:, None]
         turn = self._azimuth(across) - middle
-        turn -= 2.0 * math.pi * np.round(turn / (2.0 * math.pi))
+        turn -= 2.0 * math.pi * np.rint(turn / (2.0 * math.pi))
         turn = np.where(radius > 1e-9 * radius.max(initial=0.0), turn, 0.0)
         return along, radius, middle + turn
 
     def _radial(self, azimuth: Array) -> Array:
-        across = cross(self.axis, self.base)
-        return np.asarray(np.cos(azimuth)[..., None] * self.base + np.sin(azimuth)[..., None] * across)
+        return np.asarray(np.cos(azimuth)[..., None] * self.base + np.sin(azimuth)[..., None] * self.side)
 
 
 def _repeated(azimuth: Array) -> tuple[Ints, Array]:
     """Rows to use and their azimuths, with rows that cross the seam at ±π repeated on its other side."""
     rows = np.arange(len(azimuth))
+    if not len(rows) or max(float(azimuth.max()), -float(azimuth.min())) <= math.pi:
+        return rows, azimuth
     over = np.nonzero((azimuth > math.pi).any(axis=1))[0]
     under = np.nonzero((azimuth < -math.pi).any(axis=1))[0]
     turned = [azimuth, azimuth[over] - 2.0 * math.pi, azimuth[under] + 2.0 * math.pi]
@@ -150,7 +164,10 @@ class CylinderChart(_Axial):
     def flatten(self, triangles: Array) -> Array:
         along, _, azimuth = self._unrolled(triangles)
         rows, turned = _repeated(azimuth)
-        return np.stack([self.radius * turned, along[rows]], axis=2)
+        out = np.empty((*turned.shape, 2))
+        np.multiply(self.radius, turned, out=out[..., 0])
+        out[..., 1] = along if len(rows) == len(along) else along[rows]
+        return out
 
     def window(self) -> Array | None:
         half, far = math.pi * self.radius, CHART_FAR * self.radius
@@ -164,7 +181,7 @@ class CylinderChart(_Axial):
         return _unit_rows(self._arms(points)[1])
 
     def heights(self, points: Array) -> Array:
-        return np.asarray(np.linalg.norm(self._arms(points)[1], axis=-1) - self.radius)
+        return np.asarray(lengths(self._arms(points)[1]) - self.radius)
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,7 +210,7 @@ class ConeChart(_Axial):
         return np.concatenate([np.zeros((1, 2)), far * np.stack([np.cos(angles), np.sin(angles)], axis=1)])
 
     def lift(self, flat: Array) -> Array:
-        slant = np.linalg.norm(flat, axis=1)
+        slant = lengths(flat)
         azimuth = np.arctan2(flat[:, 1], flat[:, 0]) / math.sin(self.half_angle)
         ray = math.cos(self.half_angle) * self.axis + math.sin(self.half_angle) * self._radial(azimuth)
         return np.asarray(self.point + slant[:, None] * ray)
@@ -204,7 +221,7 @@ class ConeChart(_Axial):
 
     def heights(self, points: Array) -> Array:
         along, across = self._arms(points)
-        radius = np.linalg.norm(across, axis=-1)
+        radius = lengths(across)
         return np.asarray(radius * math.cos(self.half_angle) - along * math.sin(self.half_angle))
 
 
@@ -224,7 +241,7 @@ class SphereChart:
     def seen_from(centre: Array, radius: float, towards: Array) -> SphereChart:
         """The chart whose pole looks towards a point (3,)."""
         arm = towards - centre
-        distance = float(np.linalg.norm(arm))
+        distance = norm(arm)
         seen = distance > SEEN_FROM_AXIS * radius
         return SphereChart(centre, radius, arm / distance if seen else np.array([0.0, 0.0, 1.0]))
 
@@ -240,7 +257,7 @@ class SphereChart:
         return None
 
     def lift(self, flat: Array) -> Array:
-        distance = np.linalg.norm(flat, axis=1)
+        distance = lengths(flat)
         angle = 2.0 * np.arcsin(np.clip(distance / (2.0 * self.radius), 0.0, 1.0))
         ray = (flat / np.where(distance > 0.0, distance, 1.0)[:, None]) @ plane_basis(self.pole)
         rise = np.cos(angle)[:, None] * self.pole + np.sin(angle)[:, None] * ray
@@ -250,4 +267,4 @@ class SphereChart:
         return _unit_rows(points - self.point)
 
     def heights(self, points: Array) -> Array:
-        return np.asarray(np.linalg.norm(points - self.point, axis=1) - self.radius)
+        return np.asarray(lengths(points - self.point) - self.radius)

@@ -17,7 +17,7 @@ from kinform.contacts import constants
 from kinform.contacts.mating.patches import classify_fit
 from kinform.contacts.search.pair_view import PairView, boxes_of
 from kinform.foundation.algebra.screws import Frame, rows
-from kinform.foundation.algebra.vectors import cross, dot, foot
+from kinform.foundation.algebra.vectors import cross, dot, foot, norm
 from kinform.foundation.constants import SLIVER_WIDTH
 from kinform.foundation.meshes.boxes import meeting_box, middles, triangle_boxes
 from kinform.foundation.meshes.proximity import near_boxes
@@ -66,16 +66,16 @@ def _unread(pair: PairView, patches: list[Patch]) -> Flags:
     """(s, t): near surfaces of a and b that come within the tolerance, and that no patch is of, nor one of either and a
     neighbour of the other: a fillet beside a face says nothing that the face does not say."""
     flags = pair.overlap(constants.MATING_REACH * pair.tolerance)
-    rows_, columns = ({int(k): row for row, k in enumerate(side.ids)} for side in pair.near)
+    rows_, columns = ({k: row for row, k in enumerate(side.ids.tolist())} for side in pair.near)
     a, b = pair.parts
     for patch in patches:
         i, j = patch.surfaces
-        pairs = [(i, j)]
-        pairs += [(k, j) for k in a.index.neighbours(a.surfaces, i)]
-        pairs += [(i, k) for k in b.index.neighbours(b.surfaces, j)]
-        for first, second in pairs:
-            if first in rows_ and second in columns:
-                flags[rows_[first], columns[second]] = False
+        if j in columns:
+            about = a.index.neighbours(a.surfaces, i)
+            flags[[row for k, row in rows_.items() if k == i or k in about], columns[j]] = False
+        if i in rows_:
+            about = b.index.neighbours(b.surfaces, j)
+            flags[rows_[i], [column for k, column in columns.items() if k in about]] = False
     return flags
 
 
@@ -85,6 +85,8 @@ def _may_face(pair: PairView, unread: Flags) -> bool:
     axis, or side by side, that are further apart."""
     (a, b), plane, cylinder = pair.near, KINDS.index("plane"), KINDS.index("cylinder")
     rows_, columns = np.nonzero(unread)
+    if not len(rows_):
+        return False
     kinds = a.kinds[rows_], b.kinds[columns]
     cosine = dot(a.axes[rows_], b.axes[columns])
     flat, straight = (kinds[0] == plane) & (kinds[1] == plane), (kinds[0] == cylinder) & (kinds[1] == cylinder)
@@ -104,10 +106,10 @@ def _apart(pair: PairView, row: int, column: int) -> float:
     surfaces, (a, b) = pair.surfaces(row, column), pair.parts
     (first, second), (on_first, on_second), radii = surfaces.axes, surfaces.points, surfaces.radii
     low, high = np.minimum(a.low, b.low), np.maximum(a.high, b.high)
-    middle, whole = 0.5 * (low + high), float(np.linalg.norm(high - low))
+    middle, whole = 0.5 * (low + high), norm(high - low)
     feet = [foot(point, axis, middle) for point, axis in ((on_first, first), (on_second, second))]
-    tilt = float(np.linalg.norm(cross(first, second)))
-    between = float(np.linalg.norm(feet[1] - feet[0]))
+    tilt = norm(cross(first, second))
+    between = norm(feet[1] - feet[0])
     gap = max(abs(radii[0] - radii[1]) - between, between - sum(radii))
     return gap - tilt * whole - surfaces.slack
 

@@ -7,13 +7,14 @@ uncertainties.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from kinform.contacts import constants
 from kinform.contacts.mating.charts import Chart
 from kinform.contacts.search.pair_view import PairView, SurfacePair
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, norm
 from kinform.model.arrays import Array
 
 
@@ -49,7 +50,14 @@ class Mate:
 
     def gaps(self, points: Array) -> Array:
         """(n,) m signed gaps at points (n, 3)."""
+        if not self.slopes:
+            return np.full(len(points), self.gap + 0.0)
         return np.asarray(self.gap + (points - self.point) @ self.gradient)
+
+    @cached_property
+    def slopes(self) -> bool:
+        """Whether the gap differs from point to point."""
+        return bool(self.gradient.any())
 
 
 def radial_limit(play: float, radius: float) -> float:
@@ -84,9 +92,9 @@ def mean_direction(first: Array, second: Array, uncertainty: tuple[float, float]
     """Mean of two unit vectors that point the same way, the angle between them, and its uncertainty."""
     one, two = _shares(*uncertainty)
     mean = one * first + two * second
-    angle = float(np.arctan2(np.linalg.norm(cross(first, second)), first @ second))
+    angle = float(np.arctan2(norm(cross(first, second)), first @ second))
     spread = one * uncertainty[0] + two * uncertainty[1]
-    return mean / np.linalg.norm(mean), angle, float(spread)
+    return mean / norm(mean), angle, float(spread)
 
 
 def mean_position(first: Array, second: Array, uncertainty: tuple[float, float]) -> tuple[Array, float]:
@@ -108,7 +116,7 @@ def mean_axes(surfaces: SurfacePair, middle: Array) -> Axes:
         feet.append(origin + reach * direction)
         shifts.append(shift + u_axis * abs(reach))
     point, shift = mean_position(feet[0], feet[1], (shifts[0], shifts[1]))
-    apart = float(np.linalg.norm(feet[1] - feet[0]))
+    apart = norm(feet[1] - feet[0])
     return Axes(axis, point, angle, apart, (turn, shift), (sum(surfaces.turns), sum(shifts)))
 
 

@@ -1,114 +1,34 @@
 """Where two sets of facets lie over each other on one analytic surface, as points with areas.
 
 Both sets are drawn in the surface's chart, intersected as polygons (manifold3d's cross-sections), and
-the result is cut into triangles, which are gathered into bins of a grid. A triangle counts with 3/4 of
-its area at its centroid and 1/12 at each corner, which is exact for quadratic functions; each bin then
-stands at its mean, so that areas and first moments carry no sampling noise. The rim of the patch, which
+the result is cut into triangles, which `cells` gathers into bins of a grid. The rim of the patch, which
 bounds the cone of separating motions, stays as points of its own.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Sequence
 
 import numpy as np
 from manifold3d import CrossSection, FillRule, triangulate
-from numpy.typing import NDArray
 
 from kinform.contacts import constants
+from kinform.contacts.mating.cells import Cells, Cut, gathered, signed_areas
 from kinform.contacts.mating.charts import Chart
-from kinform.foundation.meshes.boxes import meeting_box, middles, triangle_boxes
+from kinform.foundation.algebra.vectors import lengths
+from kinform.foundation.meshes.boxes import meeting_box, triangle_boxes
 from kinform.foundation.sorting import numbered
-from kinform.model.arrays import Array, Flags, Ints
-
-
-def _signed(corners: Array) -> Array:
-    """(n,) m² areas of triangles (n, 3, 2), positive where they run left about."""
-    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    return np.asarray(0.5 * (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]))
-
-
-def _means(points: Array, weights: Array, group: Ints, count: int) -> tuple[Array, Array]:
-    """Weighted mean (count, 2) and total weight (count,) of the points of each group."""
-    total = np.bincount(group, weights=weights, minlength=count)
-    sums = [np.bincount(group, weights=weights * points[:, k], minlength=count) for k in range(2)]
-    return np.stack(sums, axis=1) / np.where(total > 0.0, total, 1.0)[:, None], np.asarray(total, np.float64)
-
-
-@dataclass(frozen=True, eq=False)
-class Cells:
-    """Triangles of an overlap in the chart, gathered into bins."""
-
-    corners: Array
-    """(k, 3, 2) m."""
-    bins: Ints
-    """(k,) bin of each triangle; every number from 0 occurs."""
-    rim: Array
-    """(r, 2) m: corners that bound the overlap."""
-    unit: float
-    """m: the contact tolerance."""
-    narrow: bool = False
-    """Whether all of the overlap is narrower than what is thin in any case."""
-
-    @cached_property
-    def areas(self) -> Array:
-        """(k,) m²."""
-        return np.abs(_signed(self.corners))
-
-    @cached_property
-    def centroids(self) -> Array:
-        """(k, 2) m."""
-        return middles(self.corners)
-
-    def probes(self) -> Array:
-        """(bins, 2) m: for each bin the centroid, of its triangles, that is nearest to its mean."""
-        centroids = self.centroids
-        mean, _ = _means(centroids, self.areas, self.bins, int(self.bins.max()) + 1)
-        off = np.linalg.norm(centroids - mean[self.bins], axis=1)
-        order = np.lexsort((off, self.bins))
-        _, first = np.unique(self.bins[order], return_index=True)
-        return np.asarray(centroids[order[first]])
-
-    def kept(self, triangles: Flags) -> Cells:
-        """Only the flagged triangles (k,), their bins renumbered, and the rim that they touch."""
-        corners = self.corners[triangles]
-        seen = np.zeros(int(self.bins.max(initial=-1)) + 1, bool)
-        seen[self.bins[triangles]] = True
-        bins = (np.cumsum(seen) - 1)[self.bins[triangles]]
-        # numpy sorts numbers of two parts several times slower than Python looks them up
-        touched = set(self._keys(corners.reshape(-1, 2)).tolist())
-        rim = [key in touched for key in self._keys(self.rim).tolist()]
-        return Cells(corners, bins, self.rim[np.array(rim, dtype=bool)], self.unit, self.narrow)
-
-    def _keys(self, points: Array) -> NDArray[np.complex128]:
-        """One number a point (n, 2), the same for points that are one."""
-        grid = np.round(points / (constants.POINT_SAME * self.unit))
-        return np.asarray(grid[:, 0] + 1j * grid[:, 1])
-
-    def quadrature(self) -> tuple[Array, Array]:
-        """Points (n, 2) m and the area (n,) m² each stands for: bins in order, then the rim."""
-        count = int(self.bins.max()) + 1
-        corners = self.corners.reshape(-1, 2)
-        shares = np.repeat(self.areas / 12.0, 3)
-        rim_keys, rim_first = np.unique(self._keys(self.rim), return_index=True)
-        keys = self._keys(corners)
-        at = np.minimum(np.searchsorted(rim_keys, keys), max(len(rim_keys) - 1, 0))
-        on_rim = rim_keys[at] == keys if len(rim_keys) else np.zeros(len(keys), dtype=bool)
-        rim_shares = np.bincount(at[on_rim], weights=shares[on_rim], minlength=len(rim_keys))
-        inner, inner_shares = corners[~on_rim], shares[~on_rim]
-        points = np.concatenate([self.centroids, inner])
-        weights = np.concatenate([0.75 * self.areas, inner_shares])
-        mean, total = _means(points, weights, np.concatenate([self.bins, np.repeat(self.bins, 3)[~on_rim]]), count)
-        return np.concatenate([mean, self.rim[rim_first]]), np.concatenate([total, rim_shares])
+from kinform.model.arrays import Array, Ints
 
 
 def _region(flat: Array, unit: float) -> CrossSection:
     """The union of triangles (n, 3, 2), in units of `unit` (m)."""
-    signed = _signed(flat)
-    flat = np.where((signed < 0.0)[:, None, None], flat[:, ::-1], flat) / unit
-    flat = np.ascontiguousarray(flat[np.abs(signed) > 1e-12 * unit * unit])
+    signed = signed_areas(flat)
+    turned = signed < 0.0
+    flat = (np.where(turned[:, None, None], flat[:, ::-1], flat) if turned.any() else flat) / unit
+    large = np.abs(signed) > 1e-12 * unit * unit
+    flat = np.ascontiguousarray(flat if large.all() else flat[large])
     return CrossSection(_outline(flat) if len(flat) > constants.MANY_TRIANGLES else list(flat), FillRule.Positive)
 
 
@@ -173,12 +93,14 @@ def _simple_loops(points: Array, leaving: Ints, reaching: Ints) -> list[Array]:
 def _perimeter(polygons: list[Array]) -> float:
     """m of all outlines."""
     edges = [np.concatenate([p[:1] - p[-1:], p[1:] - p[:-1]]) for p in polygons]
-    return float(sum(np.linalg.norm(along, axis=1).sum() for along in edges))
+    return float(sum(lengths(along).sum() for along in edges))
 
 
 def _resampled(polygon: Array, step: Array) -> Array:
     """The polygon (n, 2) with points added so that no edge is longer than `step` (2,) in any coordinate."""
     ends = np.concatenate([polygon[1:], polygon[:1]])
+    if step[0] == step[1] == math.inf:
+        return np.asarray(polygon + 0.0 * (ends - polygon))
     counts = np.maximum(np.ceil((np.abs(ends - polygon) / step).max(axis=1) - 1e-9), 1).astype(np.int64)
     rows = np.repeat(np.arange(len(polygon)), counts)
     first = np.repeat(np.cumsum(counts) - counts, counts)
@@ -186,40 +108,20 @@ def _resampled(polygon: Array, step: Array) -> Array:
     return np.asarray(polygon[rows] + share[:, None] * (ends[rows] - polygon[rows]))
 
 
-def _split(corners: Array, size: Array) -> Array:
-    """Halve triangles at their longest edge, in units of `size` (2,), until no edge is longer than it."""
-    small: list[Array] = []
-    while True:
-        edges = (corners - corners[:, _TURNS[1]]) / size
-        edges *= edges
-        length = np.sqrt(edges[..., 0] + edges[..., 1])
-        large = (length > 1.0).any(axis=1)
-        rows = np.flatnonzero(large)
-        if not len(rows):
-            return np.concatenate([*small, corners]) if small else corners
-        small.append(corners[~large])
-        turned = corners[rows[:, None], _TURNS[length[rows].argmax(axis=1)]]
-        corners = np.concatenate([turned, turned])
-        corners[: len(rows), 1] = corners[len(rows) :, 0] = 0.5 * (turned[:, 0] + turned[:, 1])
-
-
-_TURNS = np.array([[0, 1, 2], [1, 2, 0], [2, 0, 1]])
-"""Corners of a triangle in their order, from each of them on."""
-
-
 def _overlap(chart: Chart, first: Array, second: Array, unit: float) -> CrossSection | None:
     """The region, in units of `unit`, that both sets of facets cover."""
     flat_a, flat_b = chart.flatten(first), chart.flatten(second)
     if not len(flat_a) or not len(flat_b):
         return None
-    low = np.maximum(flat_a.min(axis=(0, 1)), flat_b.min(axis=(0, 1)))
-    high = np.minimum(flat_a.max(axis=(0, 1)), flat_b.max(axis=(0, 1)))
+    boxes = [triangle_boxes(flat) for flat in (flat_a, flat_b)]
+    low = np.maximum(*(lower.min(axis=0) for lower, _ in boxes))
+    high = np.minimum(*(upper.max(axis=0) for _, upper in boxes))
     if (low >= high).any():
         return None
     sides = []
-    for flat in (flat_a, flat_b):
-        within = meeting_box(*triangle_boxes(flat), low, high)
-        sides.append(_region(flat[within], unit))
+    for flat, box in zip((flat_a, flat_b), boxes, strict=True):
+        within = meeting_box(*box, low, high)
+        sides.append(_region(flat if within.all() else flat[within], unit))
     region = sides[0] ^ sides[1]
     window = chart.window()
     return region if window is None else region ^ CrossSection([window / unit], FillRule.Positive)
@@ -245,12 +147,20 @@ def _rim(polygons: list[Array], flat: bool) -> Array:
     return np.asarray(corners[::every])
 
 
-def overlay(chart: Chart, first: Array, second: Array, tolerance: float, thin: float = 0.0) -> Cells | None:
-    """Overlap of the facets `first` (n, 3, 3) and `second` (m, 3, 3) in the chart; None where there is none.
+def overlays(asked: Sequence[tuple[Chart, Array, Array, float, float]]) -> list[Cells | None]:
+    """Overlaps of facets (n, 3, 3) and (m, 3, 3) in charts, each of (chart, first, second, tolerance, thin); None of
+    those where there is none.
 
-    `tolerance` (m) sets what is too thin or too small to be a patch, `thin` (m) what is thin in any case: pieces that
+    The tolerance (m) sets what is too thin or too small to be a patch, `thin` (m) what is thin in any case: pieces that
     are narrower than this are left out beside others, and are `narrow` where there are no others.
     """
+    cuts = [_cut(*one) for one in asked]
+    cells = iter(gathered([cut for cut in cuts if cut is not None]))
+    return [None if cut is None else next(cells) for cut in cuts]
+
+
+def _cut(chart: Chart, first: Array, second: Array, tolerance: float, thin: float) -> Cut | None:
+    """One of them, not yet gathered."""
     region = _overlap(chart, first, second, tolerance)
     if region is None:
         return None
@@ -268,13 +178,7 @@ def overlay(chart: Chart, first: Array, second: Array, tolerance: float, thin: f
         pieces[number] = [_resampled(polygon, step) for polygon in polygons]
         triangles.append(np.concatenate(pieces[number])[triangulate(pieces[number])])
     corners = np.concatenate(triangles)
-    area = float(np.abs(_signed(corners)).sum())
+    area = float(np.abs(signed_areas(corners)).sum())
     size = np.minimum(step, math.sqrt(area / constants.PATCH_BINS))
-    corners = _split(corners, size)
-    corners = corners[np.abs(_signed(corners)) > 0.0]
-    # Bins are counted from the region's own corner, so that they move with it.
-    place = np.floor((middles(corners) - corners.min(axis=(0, 1))) / size).astype(np.int64)
-    across, along = (place.max(axis=0) + 1).tolist()
-    _, bins = numbered(place[:, 0] * along + place[:, 1], across * along)
     rim = _rim([polygon for polygons in pieces for polygon in polygons], flat)
-    return Cells(corners * tolerance, bins, rim * tolerance, tolerance, narrow)
+    return Cut(corners, size, rim, tolerance, narrow)

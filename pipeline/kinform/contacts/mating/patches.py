@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from kinform.contacts import constants
+from kinform.contacts.mating.cells import Cells, probed, quadratures
 from kinform.contacts.mating.mate import Mate
-from kinform.contacts.mating.overlay import Cells, overlay
-from kinform.contacts.search.narrow_phase import Probes, verify
+from kinform.contacts.mating.overlay import overlays
+from kinform.contacts.search.narrow_phase import Probes, verify_all
 from kinform.contacts.search.pair_view import PairView
 from kinform.model.arrays import Array, freeze
 from kinform.model.contacts import Patch
@@ -18,27 +20,37 @@ from kinform.model.contacts import Patch
 
 def mated_patches(pair: PairView, mates: list[Mate]) -> list[Patch]:
     """The patches of those mates that really touch, in the frame of the pair."""
-    laid, probes = [], []
-    for mate in mates:
-        cells = _cells(pair, mate)
-        if cells is not None:
-            laid.append((mate, cells))
-            probes.append(_probes(mate, cells, pair.tolerance))
+    return mated_patches_of([(pair, mates)])[0]
+
+
+def mated_patches_of(asked: Sequence[tuple[PairView, list[Mate]]]) -> list[list[Patch]]:
+    """The same of several pairs at once: what comes of one does not depend on the others."""
+    every = [(k, mate) for k, (_, mates) in enumerate(asked) for mate in mates]
+    cells = _cells([(asked[k][0], mate) for k, mate in every])
+    laid = [(k, mate, own) for (k, mate), own in zip(every, cells, strict=True) if own is not None]
+    out: list[list[Patch]] = [[] for _ in asked]
     if not laid:
-        return []
-    verdict = verify(pair, probes)
-    patches = []
-    for (mate, cells), holds, gaps in zip(laid, verdict.holds, verdict.gaps, strict=True):
+        return out
+    probes: dict[int, list[Probes]] = {}
+    for (k, mate, _), flat in zip(laid, probed([own for *_, own in laid]), strict=True):
+        probes.setdefault(k, []).append(_probes(mate, flat, asked[k][0].tolerance))
+    verdicts = verify_all([(asked[k][0], sets) for k, sets in probes.items()])
+    told = [pair for verdict in verdicts for pair in zip(verdict.holds, verdict.gaps, strict=True)]
+    touching = []
+    for (k, mate, own), (holds, gaps) in zip(laid, told, strict=True):
         if mate.corners is not None:
             holds = holds & (np.abs(gaps) <= mate.limit)
         if not holds.any():
             continue
-        kept = cells if holds.all() else cells.kept(holds[cells.bins])
-        if mate.corners is None:
-            patches.append(_patch(pair, mate, kept, None))
-        elif _rests(mate, kept, gaps[holds], pair.tolerance):
-            patches.append(_patch(pair, mate, kept, gaps[holds]))
-    return patches
+        kept, there = (own, gaps) if holds.all() else (own.kept(holds[own.bins]), gaps[holds])
+        if mate.corners is None or _rests(mate, kept, there, asked[k][0].tolerance):
+            touching.append((k, mate, kept, there))
+    if touching:
+        weighed = quadratures([kept for *_, kept, _ in touching])
+        for (k, mate, kept, gaps), (flat, weights) in zip(touching, weighed, strict=True):
+            measured = None if mate.corners is None else gaps
+            out[k].append(_patch(asked[k][0], mate, kept.narrow, measured, flat, weights))
+    return out
 
 
 def _rests(mate: Mate, cells: Cells, gaps: Array, tolerance: float) -> bool:
@@ -57,24 +69,32 @@ def _rests(mate: Mate, cells: Cells, gaps: Array, tolerance: float) -> bool:
     return area >= constants.PATCH_AREA * tolerance**2 and (mate.kind == "other" or scatter <= allowed)
 
 
-def _cells(pair: PairView, mate: Mate) -> Cells | None:
-    """Overlap of the mate's two surfaces where their gap is within its limit."""
-    first, second = mate.corners or (
-        part.vertices.take(part.faces[facets], axis=0)
-        for part, facets in zip(pair.parts, mate.surfaces.facets, strict=True)
-    )
-    cells = overlay(mate.chart, first, second, pair.tolerance, mate.thin)
-    if cells is None:
-        return None
+def _cells(mates: Sequence[tuple[PairView, Mate]]) -> list[Cells | None]:
+    """Overlap of the two surfaces of each mate of a pair where their gap is within its limit."""
+    asked = []
+    for pair, mate in mates:
+        first, second = mate.corners or (
+            part.vertices.take(part.faces.take(facets, axis=0), axis=0)
+            for part, facets in zip(pair.parts, mate.surfaces.facets, strict=True)
+        )
+        asked.append((mate.chart, first, second, pair.tolerance, mate.thin))
+    every = overlays(asked)
+    return [cells and _within(mate, cells) for (_, mate), cells in zip(mates, every, strict=True)]
+
+
+def _within(mate: Mate, cells: Cells) -> Cells | None:
+    """What of the cells is where the gap is within the limit."""
+    if not mate.slopes:
+        return cells if abs(mate.gap) <= mate.limit else None
     within = np.abs(mate.gaps(mate.chart.lift(cells.centroids))) <= mate.limit
     if within.all():
         return cells
     return cells.kept(within) if within.any() else None
 
 
-def _probes(mate: Mate, cells: Cells, tolerance: float) -> Probes:
-    """One a bin, on the surface half-way between the two."""
-    points = mate.chart.lift(cells.probes())
+def _probes(mate: Mate, flat: Array, tolerance: float) -> Probes:
+    """At points (n, 2) of the chart, on the surface half-way between the two."""
+    points = mate.chart.lift(flat)
     gaps = mate.gaps(points)
     reach = 0.5 * np.abs(gaps) + mate.slack + constants.PROBE_SPARE * tolerance
     return Probes.of(points, mate.sign * mate.chart.normals(points), gaps, reach, mate.surfaces)
@@ -97,9 +117,9 @@ def classify_fit(gaps: Array, chord: float, uncertainty: float, tolerance: float
     return "transition"
 
 
-def _patch(pair: PairView, mate: Mate, cells: Cells, measured: Array | None) -> Patch:
-    """A patch from the cells that hold; `measured` gaps of the bins where the mate does not know them."""
-    flat, weights = cells.quadrature()
+def _patch(pair: PairView, mate: Mate, narrow: bool, measured: Array | None, flat: Array, weights: Array) -> Patch:
+    """A patch of points (n, 2) in the mate's chart and the areas (n,) that they stand for; `measured` gaps of the bins,
+    the first of them, where the mate does not know them."""
     points = mate.chart.lift(flat)
     gaps = mate.gaps(points)
     if measured is not None:
@@ -136,7 +156,7 @@ def _patch(pair: PairView, mate: Mate, cells: Cells, measured: Array | None) -> 
         chord=chord,
         fit=classify_fit(gaps, chord, mate.uncertainty[1], pair.tolerance),
         tolerance=mate.limit / constants.MATING_REACH,
-        narrow=cells.narrow,
+        narrow=narrow,
     )
 
 

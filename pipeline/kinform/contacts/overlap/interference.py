@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.contacts import constants
+from kinform.contacts.overlap.boundaries import boundaries_cross
 from kinform.contacts.overlap.shrunk import are_within
 from kinform.contacts.overlap.solids import Piece, SolidStore, bounds_volume
 from kinform.contacts.presses import beyond_press
@@ -73,11 +74,14 @@ class _Allowance:
         return deep, mated
 
 
-def find_interference(pair: PairView, patches: list[Patch], solids: SolidStore) -> Interference | None:
-    """Overlap of two solids beyond the chord errors of their surfaces, in the frame of the pair."""
+def find_interference(
+    pair: PairView, patches: list[Patch], solids: SolidStore, crosses: bool | None
+) -> Interference | None:
+    """Overlap of two solids beyond the chord errors of their surfaces, in the frame of the pair; `crosses` as
+    `first_crossings` says."""
     a, b = pair.parts
     least = constants.EXACT_OVERLAP * pair.tolerance
-    if not (a.part.solid and b.part.solid) or not _meet(a, b, patches, least):
+    if crosses is None or not (boundaries_cross(pair, patches, crosses) or _holds(a, b) or _holds(b, a)):
         return None
     closed = bounds_volume(a.index.mesh) and bounds_volume(b.index.mesh)
     if closed and are_within(a, b, constants.THINNER * least):
@@ -97,49 +101,6 @@ def find_interference(pair: PairView, patches: list[Patch], solids: SolidStore) 
 def _chords(part: PartView) -> Array:
     """(s,) m that each surface may be off its facets."""
     return part.table.slacks + part.table.point_uncertainty
-
-
-def _meet(a: PartView, b: PartView, patches: list[Patch], least: float) -> bool:
-    """Whether the two boundaries cross, or one part holds a shell of the other.
-
-    Parts that a move by less than `least` (m), what counts as an overlap, sets free of each other do not. Faces that
-    coincide cross or do not as rounding has it, so the question is put once more with the second part moved by as much.
-    """
-    low, high = np.maximum(a.low, b.low), np.minimum(a.high, b.high)
-    if (high - low).min() < least:
-        return False
-    X_AF = np.linalg.inv(a.X_FP)
-
-    def crosses(move: Array) -> bool:
-        X_FB = b.X_FP.copy()
-        X_FB[:3, 3] += move
-        return a.region.crosses(b.region, X_AF @ X_FB)
-
-    apart = _parting(patches)
-    if apart is None or crosses(constants.PARTING_TRIED * least * apart):
-        shift = least * np.array([0.61, 0.53, 0.59])
-        if any(crosses(move) for move in (np.zeros(3), shift, -shift)):
-            return True
-    return _holds(a, b) or _holds(b, a)
-
-
-def _parting(patches: list[Patch]) -> Array | None:
-    """The direction (3,) in which the second part leaves all plane contacts fastest; None where none does.
-
-    The point of least norm in the hull of the normals, by Frank and Wolfe's method.
-    """
-    normals = np.array([patch.axis for patch in patches if patch.kind == "plane"]).reshape(-1, 3)
-    if not len(normals):
-        return None
-    nearest = normals.mean(axis=0)
-    for _ in range(constants.PARTING_STEPS):
-        step = normals[np.argmin(normals @ nearest)] - nearest
-        gain = -float(step @ nearest)
-        if gain <= 1e-9:
-            break
-        nearest = nearest + min(1.0, gain / float(step @ step)) * step
-    length = float(np.linalg.norm(nearest))
-    return nearest / length if length > constants.PARTING_LEAST else None
 
 
 def _holds(outer: PartView, inner: PartView) -> bool:

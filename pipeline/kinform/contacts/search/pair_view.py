@@ -9,6 +9,8 @@ take; `SurfacePair` one surface of either part that may touch.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -121,12 +123,12 @@ def near_facets(placed: PartView, low: Array, high: Array) -> _Boxed:
     if placed.at_home:
         boxes = placed.index.boxes
         facets = boxes.meeting(low, high)
-        return facets, boxes.low[facets], boxes.high[facets]
+        return facets, boxes.low.take(facets, axis=0), boxes.high.take(facets, axis=0)
     vertices, faces = placed.vertices, placed.faces
     beside = ((vertices < low) @ _BITS[:3]) | ((vertices > high) @ _BITS[3:])
     a, b, c = faces.T
     facets = np.flatnonzero((beside[a] & beside[b] & beside[c]) == 0)
-    low_f, high_f = facet_boxes(vertices, faces[facets])
+    low_f, high_f = facet_boxes(vertices, faces.take(facets, axis=0))
     return facets, low_f, high_f
 
 
@@ -140,6 +142,9 @@ def boxes_of(placed: PartView, facets: Ints) -> tuple[Array, Array]:
 
 _BITS = np.array([1, 2, 4, 8, 16, 32], dtype=np.int64)
 """One for each side of a box that a vertex can lie beyond."""
+
+
+_NONE = np.zeros(0, np.int64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,10 +161,17 @@ class NearSurfaces(SurfaceTable):
 
     def of_kind(self, *kinds: str) -> Ints:
         """Positions of the surfaces of these kinds."""
+        if self.present.isdisjoint(kinds):
+            return _NONE
         wanted = np.zeros(len(self.kinds), dtype=bool)
         for kind in kinds:
             wanted |= self.kinds == KINDS.index(kind)
         return np.flatnonzero(wanted)
+
+    @cached_property
+    def present(self) -> frozenset[str]:
+        """The kinds of the surfaces."""
+        return frozenset(KINDS[number] for number in self.kinds.tolist())
 
 
 def _near_surfaces(placed: PartView, beside: _Boxed, low: Array, high: Array) -> NearSurfaces:
@@ -167,10 +179,12 @@ def _near_surfaces(placed: PartView, beside: _Boxed, low: Array, high: Array) ->
     `beside` it."""
     near, low_f, high_f = beside
     meets = meeting_box(low_f, high_f, low, high)
-    near, low_f, high_f = near[meets], low_f[meets], high_f[meets]
-    labels = placed.surfaces.labels[near]
-    order = np.argsort(labels, kind="stable")
-    near, labels, low_f, high_f = near[order], labels[order], low_f[order], high_f[order]
+    if not meets.all():
+        rows = np.flatnonzero(meets)
+        near, low_f, high_f = near.take(rows), low_f.take(rows, 0), high_f.take(rows, 0)
+    labels = placed.surfaces.labels.take(near)
+    order = labels.argsort(kind="stable")
+    near, labels, low_f, high_f = near.take(order), labels.take(order), low_f.take(order, 0), high_f.take(order, 0)
     starts = np.flatnonzero(heads(labels))
     ids = labels[starts]
     if len(ids) > MOST_SURFACES:
@@ -186,7 +200,7 @@ def _near_surfaces(placed: PartView, beside: _Boxed, low: Array, high: Array) ->
         ids=ids.astype(np.int64),
         lows=np.minimum.reduceat(low_f, starts) if len(ids) else empty,
         highs=np.maximum.reduceat(high_f, starts) if len(ids) else empty,
-        facets=tuple(np.split(near, starts[1:])) if len(ids) else (),
+        facets=tuple(near[start:end] for start, end in pairwise([*starts.tolist(), len(near)])) if len(ids) else (),
     )
 
 
@@ -312,13 +326,13 @@ class PairView:
         """(s, t): the boxes of near surface s of a and t of b come within `margin` (m)."""
         a, b = self.near
         apart = np.maximum(a.lows[:, None] - b.highs[None], b.lows[None] - a.highs[:, None])
-        return np.asarray((apart <= margin).all(axis=2))
+        return np.asarray(np.logical_and.reduce(apart <= margin, axis=2))
 
     def of_kinds(self, overlap: Flags, *kinds: str) -> tuple[Ints, Ints, Flags]:
         """Positions of the near surfaces of these kinds of a (s,) and of b (t,), and the flags `overlap` of these (s,
         t)."""
         rows, columns = (side.of_kind(*kinds) for side in self.near)
-        return rows, columns, overlap[np.ix_(rows, columns)]
+        return rows, columns, overlap[rows[:, None], columns]
 
     def common_box(self) -> tuple[Array, Array] | None:
         """Lowest and highest corner (3,) of where near facets of both come within the tolerance; None without

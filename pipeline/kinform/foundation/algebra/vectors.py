@@ -93,6 +93,11 @@ def norm(vector: Array) -> float:
     return math.sqrt(flat.dot(flat))
 
 
+def lengths(rows: Array) -> Array:
+    """(…,) lengths of vectors (…, 3), to the bits of np.linalg.norm along the last axis."""
+    return np.asarray(np.sqrt(np.add.reduce(rows * rows, axis=-1)))
+
+
 def perpendicular(axis: Array) -> tuple[Array, Array]:
     """Two unit vectors that make a right-handed frame (u, v, axis) with the unit axis (3,)."""
     x, y, z = axis.tolist()

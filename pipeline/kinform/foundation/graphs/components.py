@@ -25,6 +25,6 @@ def components(a: Ints, b: Ints, count: int) -> Ints:
         a, b = a.take(apart), b.take(apart)
         np.minimum.at(root, np.maximum(a, b), np.minimum(a, b))
         higher = root.take(root)
-        while not np.array_equal(higher, root):
+        while (higher != root).any():
             root, higher = higher, higher.take(higher)
     return np.asarray((np.cumsum(root == every) - 1).take(root))

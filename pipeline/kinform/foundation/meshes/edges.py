@@ -134,7 +134,10 @@ def edge_table(faces: Ints, vertices: int, by_corner: bool = False) -> EdgeTable
     else:
         order = ascending(key, vertices * vertices)
     starts = np.flatnonzero(heads(key.take(order)))
-    return EdgeTable(faces, order, starts, np.diff(starts, append=len(key)))
+    counts = np.empty_like(starts)
+    np.subtract(starts[1:], starts[:-1], out=counts[:-1])
+    counts[-1:] = len(key) - starts[-1:]
+    return EdgeTable(faces, order, starts, counts)
 
 
 def unsorted_edge_table(faces: Ints, vertices: int) -> EdgeTable:

@@ -44,8 +44,11 @@ class MeshIndex:
         self._about: Flags | None = None
         self._local: fcl.BVHModel | None = None
         self._spans: Array | None = None
+        self._normals: Array | None = None
+        self._asked = 0
         self._edges: SharedEdges | None = None
         self._borders: Ints | None = None
+        self._neighbours: dict[int, frozenset[int]] = {}
         self._shells: Ints | None = None
         self._boxes: FacetBoxes | None = None
         self._rays: dict[int, Ray] = {}
@@ -64,7 +67,7 @@ class MeshIndex:
         return (
             _spans(self.mesh.vertices.take(self.mesh.faces[facets], axis=0))
             if self._spans is None
-            else self._spans[facets]
+            else self._spans.take(facets, axis=0)
         )
 
     def areas(self, facets: Ints) -> Array:
@@ -73,10 +76,14 @@ class MeshIndex:
         return np.asarray(0.5 * np.sqrt(dot(spans, spans)))
 
     def normals(self, facets: Ints) -> Array:
-        """(n, 3) unit, outward, part frame; zero for facets without area."""
-        spans = self.spans(facets)
-        length = np.sqrt(dot(spans, spans))
-        return np.asarray(spans / np.where(length > 0.0, length, 1.0)[:, None])
+        """(n, 3) unit, outward, part frame; zero for facets without area; kept once as many were asked for as there
+        are."""
+        if self._normals is not None:
+            return self._normals.take(facets, axis=0)
+        self._asked += len(facets)
+        if self._asked > len(self.mesh.faces) and len(self.mesh.faces) <= KEPT_SPANS:
+            self._normals = _normals(self.spans(np.arange(len(self.mesh.faces))))
+        return _normals(self.spans(facets))
 
     @property
     def boxes(self) -> FacetBoxes:
@@ -165,11 +172,14 @@ class MeshIndex:
             self._borders = np.stack(np.divmod(keys, count), axis=1)
         return self._borders
 
-    def neighbours(self, surfaces: MeshSurfaces, surface: int) -> list[int]:
-        """Surfaces that share an edge with this one, ascending."""
-        borders = self.borders(surfaces)
-        first, last = np.searchsorted(borders[:, 0], [surface, surface + 1])
-        return [int(k) for k in borders[first:last, 1]]
+    def neighbours(self, surfaces: MeshSurfaces, surface: int) -> frozenset[int]:
+        """Surfaces that share an edge with this one."""
+        known = self._neighbours.get(surface)
+        if known is None:
+            borders = self.borders(surfaces)
+            first, last = borders[:, 0].searchsorted([surface, surface + 1])
+            known = self._neighbours[surface] = frozenset(borders[first:last, 1].tolist())
+        return known
 
     def rings(self, surfaces: MeshSurfaces) -> tuple[Ring, ...]:
         """Rings of flats, which may be meant as round."""
@@ -249,6 +259,12 @@ class MeshIndex:
 def _spans(corners: Array) -> Array:
     """(n, 3) of facets (n, 3, 3)."""
     return cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+
+
+def _normals(spans: Array) -> Array:
+    """(n, 3) of spans (n, 3) of facets."""
+    length = np.sqrt(dot(spans, spans))
+    return np.asarray(spans / np.where(length > 0.0, length, 1.0)[:, None])
 
 
 def _balls(mesh: Mesh) -> list[tuple[Nearest, float]]:

@@ -9,20 +9,22 @@ the mesh's own frame: the BVH never has to be built again for another pose.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate, pairwise
 from typing import Protocol
 
 import fcl
 import numpy as np
 
 from kinform.foundation.algebra.displacements import inverse
-from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.algebra.vectors import cross, dot, lengths
 from kinform.foundation.constants import HITS_A_PROBE, MET_AT_ONCE, SLIVER_WIDTH, STEEP_LEAST
 from kinform.foundation.meshes.boxes import facet_boxes, triangle_boxes
 from kinform.foundation.meshes.closest import closest_facets
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, fcl_pose, partial_model, point_model
-from kinform.foundation.meshes.slivers import beside, crossing, meeting
+from kinform.foundation.meshes.slivers import beside, crossings, meetings
 from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
@@ -50,6 +52,9 @@ class Facets(Protocol):
     def normals(self, facets: Ints) -> Array:
         """(n, 3) unit, outward, part frame."""
         ...
+
+
+_UNITS = np.eye(3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,51 +97,12 @@ class Region:
 
         `width` of the slivers, relative to their reach.
         """
-        mesh = self.index.mesh
-        empty = np.zeros(0)
-        if len(points) == 0 or self.empty:
-            return Hits(empty.astype(np.int64), empty.astype(np.int64), empty, empty)
-        least = np.eye(3)[np.argmin(np.abs(directions), axis=1)]
-        across = cross(directions, least)
-        across *= (width * reach / np.linalg.norm(across, axis=1))[:, None]
-        tip = points + reach[:, None] * directions
-        slivers = np.stack([points - reach[:, None] * directions, tip + across, tip - across], axis=1)
-        probe, facet = self._meeting(slivers)
-        normal = self.index.normals(facet)
-        facing = dot(normal, directions[probe])
-        height = dot(normal, mesh.vertices[mesh.faces[facet, 0]] - points[probe])
-        steep = np.abs(facing) > STEEP_LEAST
-        along = np.where(steep, height / np.where(steep, facing, 1.0), 0.0)
-        return Hits(probe, facet, np.clip(along, -reach[probe], reach[probe]), facing)
-
-    def _meeting(self, slivers: Array) -> tuple[Ints, Ints]:
-        """Slivers (n, 3, 3) and the facets that they meet, by sliver, then by facet."""
-        mesh = self.index.mesh
-        own = np.arange(len(mesh.faces)) if self.facets is None else self.facets
-        faces = mesh.faces if self.facets is None else mesh.faces[own]
-        near = beside(slivers, mesh.vertices, faces)
-        met = meeting(slivers, mesh.vertices.take(faces[near], axis=0))
-        if met is not None:
-            return met[0], own[near[met[1]]]
-        probe_model = fcl_model(slivers.reshape(-1, 3), np.arange(3 * len(slivers)).reshape(-1, 3))
-        # Contact points stay off: they cost, come several to a facet, and depend on FCL's own tolerance.
-        most = HITS_A_PROBE * (len(slivers) + 16)
-        request = fcl.CollisionRequest(num_max_contacts=most, enable_contact=False)
-        result = fcl.CollisionResult()
-        if self.facets is None:
-            model, of_model = self.index.model_near(*triangle_boxes(slivers))
-        else:
-            model, of_model = self.bvh, self.facets
-        fcl.collide(fcl.CollisionObject(model), fcl.CollisionObject(probe_model), request, result)
-        pairs = np.array([(c.b2, c.b1) for c in result.contacts], dtype=np.int64).reshape(-1, 2)
-        facets = np.int64(max(len(mesh.faces), 1))
-        probe, facet = np.divmod(distinct(pairs[:, 0] * facets + pairs[:, 1]), facets)
-        return probe, facet if of_model is None else of_model[facet]
+        return cast_all([Cast(self, points, directions, reach)], width)[0]
 
     def depths(self, points: Array) -> tuple[Array, Ints]:
         """Distance (n,) m of points (n, 3) of the part frame to these facets, and the nearest of them (n,)."""
         if not self.index.is_large:
-            told = closest_facets(points, self._corners())
+            told = closest_facets(points, self.corners())
             if told is not None:
                 return told[0], told[1] if self.facets is None else self.facets[told[1]]
         point = fcl.CollisionObject(point_model())
@@ -151,12 +117,10 @@ class Region:
 
     def crosses(self, other: Region, X_SO: Array) -> bool:
         """Whether any facets of the two intersect; `X_SO` (4, 4): pose of the other part here."""
-        if self.empty or other.empty:
-            return False
-        if not (self.index.is_large or other.index.is_large):
-            told = crossing(self._corners(), other._corners() @ X_SO[:3, :3].T + X_SO[:3, 3])
-            if told is not None:
-                return told
+        return crossings_of([(self, other, X_SO)])[0]
+
+    def crosses_in_trees(self, other: Region, X_SO: Array) -> bool:
+        """The same, of large meshes, by their models."""
         request = fcl.CollisionRequest(num_max_contacts=1, enable_contact=False)
         placed = fcl.CollisionObject(other._beside(self, inverse(X_SO)), fcl_pose(X_SO))
         base = fcl.CollisionObject(self._beside(other, X_SO))
@@ -176,7 +140,7 @@ class Region:
                 return True
         return False
 
-    def _corners(self) -> Array:
+    def corners(self) -> Array:
         """(n, 3, 3) m of the facets."""
         mesh = self.index.mesh
         return np.asarray(mesh.vertices.take(mesh.faces if self.facets is None else mesh.faces[self.facets], axis=0))
@@ -188,3 +152,113 @@ class Region:
         mesh = other.index.mesh
         faces = mesh.faces if other.facets is None else mesh.faces[other.facets]
         return self.index.model_near(*facet_boxes(mesh.vertices @ X_SO[:3, :3].T + X_SO[:3, 3], faces))[0]
+
+
+def crossings_of(asked: Sequence[tuple[Region, Region, Array]]) -> list[bool]:
+    """Whether any facets of one region intersect any of the other, of several pairs of them at once, with the pose
+    (4, 4) of the part of the second in the frame of the first."""
+    some = [
+        k
+        for k, (first, second, _) in enumerate(asked)
+        if not (first.empty or second.empty or first.index.is_large or second.index.is_large)
+    ]
+    triangles = [
+        (first.corners(), second.corners() @ X_SO[:3, :3].T + X_SO[:3, 3])
+        for first, second, X_SO in (asked[k] for k in some)
+    ]
+    told = dict(zip(some, crossings(triangles), strict=True))
+    out = []
+    for k, (first, second, X_SO) in enumerate(asked):
+        answer = False if first.empty or second.empty else told.get(k)
+        out.append(first.crosses_in_trees(second, X_SO) if answer is None else answer)
+    return out
+
+
+@dataclass(frozen=True, eq=False)
+class Cast:
+    """Probes of one region: `points` and `directions` (n, 3) in its part's frame, `reach` (n,) m to either side."""
+
+    region: Region
+    points: Array
+    directions: Array
+    reach: Array
+
+
+def cast_all(casts: Sequence[Cast], width: float = SLIVER_WIDTH) -> list[Hits]:
+    """What each of some casts hits, all at once; `width` of the slivers, relative to their reach."""
+    empty = np.zeros(0)
+    out = [Hits(empty.astype(np.int64), empty.astype(np.int64), empty, empty)] * len(casts)
+    some = [k for k, cast in enumerate(casts) if len(cast.points) and not cast.region.empty]
+    if not some:
+        return out
+    ends = [0, *accumulate(len(casts[k].points) for k in some)]
+    points, directions, reach = (
+        _joined([getattr(casts[k], name) for k in some]) for name in ("points", "directions", "reach")
+    )
+    across = cross(directions, _UNITS.take(np.abs(directions).argmin(axis=1), axis=0))
+    across *= (width * reach / lengths(across))[:, None]
+    arms = reach[:, None] * directions
+    tip, slivers = points + arms, np.empty((len(points), 3, 3))
+    np.subtract(points, arms, out=slivers[:, 0])
+    np.add(tip, across, out=slivers[:, 1])
+    np.subtract(tip, across, out=slivers[:, 2])
+    regions = [casts[k].region for k in some]
+    met = _meetings(regions, [slivers[i:j] for i, j in pairwise(ends)])
+    meshes = [region.index.mesh for region in regions]
+    probe = np.concatenate([probe + start for (probe, _), start in zip(met, ends, strict=False)])
+    normal = _joined([region.index.normals(facet) for region, (_, facet) in zip(regions, met, strict=True)])
+    corner = _joined(
+        [mesh.vertices.take(mesh.faces[facet, 0], axis=0) for mesh, (_, facet) in zip(meshes, met, strict=True)]
+    )
+    facing = dot(normal, directions.take(probe, axis=0))
+    height = dot(normal, corner - points.take(probe, axis=0))
+    steep = np.abs(facing) > STEEP_LEAST
+    along = height / facing if steep.all() else np.where(steep, height / np.where(steep, facing, 1.0), 0.0)
+    far = reach.take(probe)
+    along = np.minimum(np.maximum(along, -far), far)
+    hits = [0, *accumulate(len(probe) for probe, _ in met)]
+    for k, (i, j), (own, facet) in zip(some, pairwise(hits), met, strict=True):
+        out[k] = Hits(own, facet, along[i:j], facing[i:j])
+    return out
+
+
+def _joined(arrays: Sequence[Array]) -> Array:
+    """All rows of some arrays."""
+    return arrays[0] if len(arrays) == 1 else np.concatenate(arrays)
+
+
+def _meetings(regions: Sequence[Region], slivers: Sequence[Array]) -> list[tuple[Ints, Ints]]:
+    """Slivers (n, 3, 3) of each region and the facets that they meet, by sliver, then by facet."""
+    asked, near = [], []
+    for region, own in zip(regions, slivers, strict=True):
+        mesh = region.index.mesh
+        faces = mesh.faces if region.facets is None else mesh.faces.take(region.facets, axis=0)
+        near.append(beside(own, mesh.vertices, faces))
+        asked.append((own, mesh.vertices.take(faces.take(near[-1], axis=0), axis=0)))
+    out = []
+    for region, own, facets, met in zip(regions, slivers, near, meetings(asked), strict=True):
+        if met is None:
+            out.append(_met_by_trees(region, own))
+        else:
+            facet = facets.take(met[1])
+            out.append((met[0], facet if region.facets is None else region.facets.take(facet)))
+    return out
+
+
+def _met_by_trees(region: Region, slivers: Array) -> tuple[Ints, Ints]:
+    """The same of many slivers of one region."""
+    mesh = region.index.mesh
+    probe_model = fcl_model(slivers.reshape(-1, 3), np.arange(3 * len(slivers)).reshape(-1, 3))
+    # Contact points stay off: they cost, come several to a facet, and depend on FCL's own tolerance.
+    most = HITS_A_PROBE * (len(slivers) + 16)
+    request = fcl.CollisionRequest(num_max_contacts=most, enable_contact=False)
+    result = fcl.CollisionResult()
+    if region.facets is None:
+        model, of_model = region.index.model_near(*triangle_boxes(slivers))
+    else:
+        model, of_model = region.bvh, region.facets
+    fcl.collide(fcl.CollisionObject(model), fcl.CollisionObject(probe_model), request, result)
+    pairs = np.array([(c.b2, c.b1) for c in result.contacts], dtype=np.int64).reshape(-1, 2)
+    facets = np.int64(max(len(mesh.faces), 1))
+    probe, facet = np.divmod(distinct(pairs[:, 0] * facets + pairs[:, 1]), facets)
+    return probe, facet if of_model is None else of_model[facet]

@@ -9,11 +9,15 @@ long rows several times faster than through rows of three.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import accumulate
+
 import numpy as np
 
 from kinform.foundation.constants import (
     CLEARLY_APART,
     CLEARLY_ROUNDED,
+    CLEARLY_STEEP,
     CROSSED_FEW,
     CROSSED_SOME,
     CULLED_LEAST,
@@ -33,27 +37,147 @@ def beside(slivers: Array, vertices: Array, faces: Ints) -> Ints:
     return np.flatnonzero(meeting_box(low_f, high_f, low, high))
 
 
-def meeting(slivers: Array, corners: Array) -> tuple[Ints, Ints] | None:
-    """(k,) each: slivers (n, 3, 3) and facets (m, 3, 3) that meet, by sliver, then by facet; one unit of length. None
-    where too many are near each other to ask about all."""
-    candidates = meeting_boxes(triangle_boxes(slivers), triangle_boxes(corners))
-    if candidates is None or len(candidates[0]) > MET_MOST * (len(slivers) + len(corners)):
+Met = tuple[Ints, Ints]
+"""(k,) each: slivers and facets that meet, by sliver, then by facet."""
+
+
+def meeting(slivers: Array, corners: Array) -> Met | None:
+    """Those of slivers (n, 3, 3) and facets (m, 3, 3) that meet; one unit of length. None where too many are near each
+    other to ask about all."""
+    return meetings([(slivers, corners)])[0]
+
+
+def meetings(asked: Sequence[tuple[Array, Array]]) -> list[Met | None]:
+    """The same of several sets of slivers with their facets, each in a frame of its own: all at once where they are
+    few, for numpy takes as long to begin as it takes to go through a few hundred of them."""
+    out = [_beside_boxes(*one) for one in asked]
+    left = [k for k, near in enumerate(out) if near is not None and len(near[0])]
+    if not left:
+        return out
+    firsts, seconds, ones, twos = [], [], [], []
+    begin = [0, 0]
+    for k in left:
+        (slivers, corners), (one, two) = asked[k], out[k]  # type: ignore[misc]
+        if len(slivers) > len(one):
+            slivers, one = slivers.take(one, axis=0), np.arange(len(one))
+        if len(corners) > len(two):
+            corners, two = corners.take(two, axis=0), np.arange(len(two))
+        firsts.append(slivers)
+        seconds.append(corners)
+        ones.append(one + begin[0])
+        twos.append(two + begin[1])
+        begin = [begin[0] + len(slivers), begin[1] + len(corners)]
+    one, two = np.concatenate(ones), np.concatenate(twos)
+    met = _decided(firsts, seconds, one, two)
+    for k, start, end in zip(left, *_spans([len(one) for one in ones]), strict=True):
+        near, kept = out[k], met[start:end].nonzero()[0]
+        assert near is not None
+        out[k] = near[0].take(kept), near[1].take(kept)
+    return out
+
+
+def _spans(counts: list[int]) -> tuple[list[int], list[int]]:
+    """Where each of so many begins and ends."""
+    ends = list(accumulate(counts))
+    return [0, *ends[:-1]], ends
+
+
+def _decided(firsts: list[Array], seconds: list[Array], one: Ints, two: Ints) -> Flags:
+    """Which of pairs of triangles `one` (c,) of all the first (n, 3, 3) and `two` (c,) of all the second meet."""
+    first, second = (np.ascontiguousarray(np.concatenate(every).transpose(1, 2, 0)) for every in (firsts, seconds))
+    # near an origin of their own, and with a bound of their own, no set is judged by the coordinates of another
+    origin = np.array([triangles[0, 0] for triangles in firsts]).T
+    starts = [_spans([len(triangles) for triangles in every])[0] for every in (firsts, seconds)]
+    owners = [np.repeat(np.arange(len(every)), [len(t) for t in every]) for every in (firsts, seconds)]
+    moved = [every - origin.take(owner, axis=1) for every, owner in zip((first, second), owners, strict=True)]
+    size, other = (
+        np.maximum.reduceat(np.abs(every).max(axis=(0, 1)), begin) for every, begin in zip(moved, starts, strict=True)
+    )
+    apart, met = _told(moved[0], moved[1], one, two, np.maximum(size, other).take(owners[1]))
+    unsure = np.flatnonzero(~(apart | met))
+    if len(unsure):
+        met[unsure[_not_parted(first.take(one[unsure], axis=2), second.take(two[unsure], axis=2))]] = True
+    return met
+
+
+def _beside_boxes(slivers: Array, corners: Array) -> Met | None:
+    """Those that may meet, by their boxes, and of many also by their planes and edges; None as above."""
+    near = meeting_boxes(triangle_boxes(slivers), triangle_boxes(corners))
+    if near is None or len(near[0]) > MET_MOST * (len(slivers) + len(corners)):
         return None
-    sliver, facet = candidates
-    both = [np.ascontiguousarray(triangles.transpose(1, 2, 0)) for triangles in (slivers, corners)]
-    if len(sliver) > CULLED_LEAST:
-        sliver, facet = _not_clearly_apart(both[0], both[1], sliver, facet)
-    first, second = (triangles.take(chosen, axis=2) for triangles, chosen in zip(both, (sliver, facet), strict=True))
+    if len(near[0]) <= CULLED_LEAST:
+        return near
+    first, second = (np.ascontiguousarray(triangles.transpose(1, 2, 0)) for triangles in (slivers, corners))
+    return _not_clearly_apart(first, second, *near)
+
+
+def _not_parted(first: Array, second: Array) -> Ints:
+    """Which of pairs of triangles (3, 3, c) none of the directions parts, ascending."""
     origin = first[0].copy()
     first -= origin
     second -= origin
     edges = _edges(first), _edges(second)
     normals = [_cross(sides[0], sides[1]) for sides in edges]
-    triangles, met = [first, second, *edges, *normals], np.arange(len(sliver))
-    for directions in _MANY if len(sliver) > MET_FEW else _FEW:
+    triangles, met = [first, second, *edges, *normals], np.arange(first.shape[2])
+    for directions in _MANY if len(met) > MET_FEW else _FEW:
         kept = np.flatnonzero(~_apart(directions(*triangles[2:]), *triangles[:2]))
-        met, triangles = met[kept], [array.take(kept, axis=-1) for array in triangles]
-    return sliver[met], facet[met]
+        met = met[kept]
+        if not len(met):
+            break
+        triangles = [array.take(kept, axis=-1) for array in triangles]
+    return met
+
+
+def _told(first: Array, second: Array, one: Ints, two: Ints, size: Array) -> tuple[Flags, Flags]:
+    """Which of pairs of triangles `one` (c,) of (3, 3, n) and `two` (c,) of (3, 3, m) are clearly apart, by the plane
+    of the second or across one of its edges, and which clearly meet, as the first edge of the one steeply passes into
+    the other: by more than rounding, so that all directions together say the same. That is most of them. `size` (m,)
+    bounds all coordinates of what each of the second is asked with."""
+    first = first.take(one, axis=2)
+    # what is asked of a triangle is computed once for all of its pairs
+    axes, reach, spare, square = (table.take(two, axis=-1) for table in _sides(second, size))
+    place = axes[0] * first[:, 0, None]
+    place += axes[1] * first[:, 1, None]
+    place += axes[2] * first[:, 2, None]
+    place -= reach
+    begin, end, third = place
+    apart = np.logical_or.reduce(np.minimum(np.minimum(begin, end), third) > spare)
+    apart |= np.maximum(np.maximum(begin[0], end[0]), third[0]) < -spare[0]
+    along, edge = end - begin, first[1] - first[0]
+    edge *= edge
+    rise = along[0]
+    met = begin[0] * end[0] < 0.0
+    met &= np.minimum(np.abs(begin[0]), np.abs(end[0])) > spare[0]
+    met &= rise * rise > (edge[0] + edge[1] + edge[2]) * square
+    through = begin[1:] - (begin[0] / np.where(met, rise, 1.0)) * along[1:]
+    met &= np.logical_and.reduce(through < -spare[1:])
+    return apart, met
+
+
+def _sides(triangles: Array, size: Array) -> tuple[Array, Array, Array, Array]:
+    """Of triangles (3, 3, n) the normal and what lies across each edge (3, 4, n), how far along these they reach
+    (4, n), what is more than rounding there (4, n), `size` (n,) being the bound of all coordinates, and the square (n,)
+    of what is steep along the normal."""
+    edges = _edges(triangles)
+    axes = np.empty((3, 4, triangles.shape[2]))
+    normal = axes[:, 0]
+    normal[:] = _cross(edges[0], edges[1])
+    axes[:, 1:] = _cross(edges.transpose(1, 0, 2), normal[:, None])
+    corners = triangles.take(_BORDERED, axis=0)
+    reach = axes[0] * corners[:, 0]
+    reach += axes[1] * corners[:, 1]
+    reach += axes[2] * corners[:, 2]
+    long = np.abs(edges).max(axis=(0, 1))
+    rounded = size * CLEARLY_ROUNDED * long * long
+    spare = size * CLEARLY_APART * np.abs(axes).max(axis=0)
+    spare[0] += rounded
+    spare[1:] += rounded * long
+    square = CLEARLY_STEEP**2 * (normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2])
+    return axes, reach, spare, square
+
+
+_BORDERED = np.array([0, 0, 1, 2])
+"""A corner on the plane of a triangle, and on each of its edges."""
 
 
 def _not_clearly_apart(first: Array, second: Array, one: Ints, two: Ints) -> tuple[Ints, Ints]:
@@ -65,61 +189,68 @@ def _not_clearly_apart(first: Array, second: Array, one: Ints, two: Ints) -> tup
     origin = first[0, :, :1]
     first, second = first - origin, second - origin
     size = max(float(np.abs(first).max()), float(np.abs(second).max()))
-    for some in (_planes, _borders):
+    for beyond in (_beyond_plane, _beyond_border):
         for mine, other, turned in ((second, first, False), (first, second, True)):
             owner, asked = (one, two) if turned else (two, one)
-            kept = ~_beyond(some(mine, size), owner, [corner.take(asked, axis=1) for corner in other])
+            kept = ~beyond(mine, size, owner, [corner.take(asked, axis=1) for corner in other])
             one, two = one[kept], two[kept]
     return one, two
 
 
-_Sides = list[tuple[Array, Array]]
-"""Directions (3, n), and how far along them (n,) triangles reach at most, rounding included."""
-
-
-def _beyond(sides: _Sides, owner: Ints, corners: list[Array]) -> Flags:
-    """(c,) whether all corners, (3, c) each, lie beyond a side of the triangle that is their `owner` (c,)."""
-    out = np.zeros(len(owner), dtype=bool)
-    for axis, reach in sides:
-        x, y, z = axis.take(owner, axis=1)
-        one, two, three = (_along(x, y, z, corner) for corner in corners)
-        out |= np.minimum(np.minimum(one, two), three) > reach.take(owner)
-    return out
-
-
-def _planes(triangles: Array, size: float) -> _Sides:
-    """Both sides of the planes of triangles (3, 3, n); `size` bounds all coordinates."""
+def _beyond_plane(triangles: Array, size: float, owner: Ints, corners: list[Array]) -> Flags:
+    """(c,) whether all corners, (3, c) each, lie on one side of the plane of their `owner` (c,) of triangles (3, 3, n);
+    `size` bounds all coordinates."""
     edges = _edges(triangles)
     normal, long = _cross(edges[0], edges[1]), np.abs(edges).max(axis=(0, 1))
     spare = size * (CLEARLY_APART * np.abs(normal).max(axis=0) + CLEARLY_ROUNDED * long**2)
     x, y, z = normal
     offset = _along(x, y, z, triangles[0])
-    return [(normal, offset + spare), (-normal, spare - offset)]
+    x, y, z = normal.take(owner, axis=1)
+    one, two, three = (_along(x, y, z, corner) for corner in corners)
+    out = np.minimum(np.minimum(one, two), three) > (offset + spare).take(owner)
+    out |= np.maximum(np.maximum(one, two), three) < (offset - spare).take(owner)
+    return np.asarray(out)
 
 
-def _borders(triangles: Array, size: float) -> _Sides:
-    """What lies across each edge in the plane of its triangle."""
-    edges = _edges(triangles)
+def _beyond_border(triangles: Array, size: float, owner: Ints, corners: list[Array]) -> Flags:
+    """(c,) whether they all lie beyond one of its edges, in the plane of the triangle."""
+    edges, out = _edges(triangles), np.zeros(len(owner), dtype=bool)
     normal, long = _cross(edges[0], edges[1]), np.abs(edges).max(axis=(0, 1))
-    out = []
     for edge, corner in zip(edges, triangles, strict=True):
         x, y, z = across = _cross(edge, normal)
         spare = size * (CLEARLY_APART * np.abs(across).max(axis=0) + CLEARLY_ROUNDED * long**3)
-        out.append((across, _along(x, y, z, corner) + spare))
+        reach = _along(x, y, z, corner) + spare
+        x, y, z = across.take(owner, axis=1)
+        one, two, three = (_along(x, y, z, place) for place in corners)
+        out |= np.minimum(np.minimum(one, two), three) > reach.take(owner)
     return out
 
 
-def crossing(first: Array, second: Array) -> bool | None:
-    """Whether any triangles (n, 3, 3) and (m, 3, 3) meet: of many, some of the first are asked before all are, which
-    settles it where much crosses. None as above."""
-    first, second = _mutual(first, second)
-    if len(first) * len(second) > CROSSED_FEW:
-        some = first[:: max(CROSSED_SOME, -(-len(first) * len(second) // CROSSED_FEW))]
-        met = meeting(*_mutual(some, second))
-        if met is not None and len(met[0]):
-            return True
-    met = meeting(first, second)
+def crossings(asked: Sequence[tuple[Array, Array]]) -> list[bool | None]:
+    """`crossing` of several sets of triangles, at once where they are few."""
+    mutual = [_mutual(first, second) for first, second in asked]
+    few = [k for k, (first, second) in enumerate(mutual) if len(first) * len(second) <= CROSSED_FEW]
+    met = dict(zip(few, meetings([mutual[k] for k in few]), strict=True))
+    return [_any(met[k]) if k in met else _crossing(*pair) for k, pair in enumerate(mutual)]
+
+
+def _any(met: Met | None) -> bool | None:
     return None if met is None else bool(len(met[0]))
+
+
+def crossing(first: Array, second: Array) -> bool | None:
+    """Whether any triangles (n, 3, 3) and (m, 3, 3) meet. None as above."""
+    return crossings([(first, second)])[0]
+
+
+def _crossing(first: Array, second: Array) -> bool | None:
+    """The same of many that are within each other's boxes: some of the first are asked before all are, which settles
+    it where much crosses."""
+    some = first[:: max(CROSSED_SOME, -(-len(first) * len(second) // CROSSED_FEW))]
+    met = meeting(*_mutual(some, second))
+    if met is not None and len(met[0]):
+        return True
+    return _any(meeting(first, second))
 
 
 def _mutual(first: Array, second: Array) -> tuple[Array, Array]:

@@ -3,11 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from functools import cached_property
+from operator import attrgetter
 
 import numpy as np
 
 from kinform.model.arrays import Array, Ints
 from kinform.model.surfaces import KINDS, MeshSurfaces
+
+_NUMBER = {kind: number for number, kind in enumerate(KINDS)}
+
+_SCALARS = (
+    "radius", "minor_radius", "half_angle", "pitch", "side", "axis_uncertainty", "point_uncertainty", "chord",
+    "residual", "area",
+)  # fmt: skip
+_scalars = attrgetter(*_SCALARS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,42 +52,43 @@ class SurfaceTable:
     @staticmethod
     def of(surfaces: MeshSurfaces, rims: Array) -> SurfaceTable:
         """The table of the surfaces; `rims` (s,) as above."""
-        number = {kind: k for k, kind in enumerate(KINDS)}
-
-        def column(name: str, *width: int) -> Array:
-            return np.array([getattr(s, name) for s in surfaces.surfaces], dtype=np.float64).reshape(-1, *width)
-
+        every = surfaces.surfaces
+        numbers = np.array([_scalars(s) for s in every], dtype=np.float64).reshape(-1, len(_SCALARS)).T
+        columns = dict(zip(_SCALARS, np.ascontiguousarray(numbers), strict=True))
         return SurfaceTable(
-            kinds=np.array([number[s.kind] for s in surfaces.surfaces], dtype=np.int64),
-            axes=column("axis", 3),
-            points=column("point", 3),
-            radii=column("radius"),
-            minor_radii=column("minor_radius"),
-            half_angles=column("half_angle"),
-            pitches=column("pitch"),
-            sides=column("side"),
-            axis_uncertainty=column("axis_uncertainty"),
-            point_uncertainty=column("point_uncertainty"),
-            slacks=column("chord") + column("residual"),
-            chords=column("chord"),
+            kinds=np.array([_NUMBER[s.kind] for s in every], dtype=np.int64),
+            axes=np.array([s.axis for s in every], dtype=np.float64).reshape(-1, 3),
+            points=np.array([s.point for s in every], dtype=np.float64).reshape(-1, 3),
+            radii=columns["radius"],
+            minor_radii=columns["minor_radius"],
+            half_angles=columns["half_angle"],
+            pitches=columns["pitch"],
+            sides=columns["side"],
+            axis_uncertainty=columns["axis_uncertainty"],
+            point_uncertainty=columns["point_uncertainty"],
+            slacks=columns["chord"] + columns["residual"],
+            chords=columns["chord"],
             rims=rims,
-            extents=column("extent", 2),
-            areas=column("area"),
+            extents=np.array([s.extent for s in every], dtype=np.float64).reshape(-1, 2),
+            areas=columns["area"],
         )
 
     def placed(self, ids: Ints, X_FP: Array) -> dict[str, Array]:
         """The columns of some surfaces, by name, at the pose `X_FP` (4, 4)."""
-        columns = {field.name: getattr(self, field.name)[ids] for field in fields(SurfaceTable)}
+        columns = {name: getattr(self, name).take(ids, axis=0) for name in _COLUMNS}
         columns["axes"] = columns["axes"] @ X_FP[:3, :3].T
         columns["points"] = columns["points"] @ X_FP[:3, :3].T + X_FP[:3, 3]
         return columns
 
-    @property
+    @cached_property
     def slack(self) -> float:
         """The greatest of `slacks`."""
         return float(self.slacks.max(initial=0.0))
 
-    @property
+    @cached_property
     def radius(self) -> float:
         """The greatest of `radii`."""
         return float(self.radii.max(initial=0.0))
+
+
+_COLUMNS = tuple(field.name for field in fields(SurfaceTable))
