@@ -88,6 +88,20 @@ def test_components_are_instances_below_their_object_in_the_unit_of_the_file(tmp
     assert any("1 object of other types" in note for note in assembly.notes)
 
 
+@pytest.mark.parametrize("order", [1, -1])
+def test_the_model_of_a_3mf_is_found_behind_its_thumbnail(tmp_path, order):
+    path = threemf(tmp_path / "a.3mf", PLATE, '<item objectid="1"/>')
+    kinds = {
+        "/3D/m.model": "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel",
+        "/Metadata/thumbnail.png": "http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail",
+    }
+    relations = [f'<Relationship Id="r{k}" Target="{to}" Type="{kind}"/>' for k, (to, kind) in enumerate(kinds.items())]
+    with zipfile.ZipFile(path) as old, zipfile.ZipFile(tmp_path / "b.3mf", "w") as new:
+        new.writestr("_rels/.rels", f"<Relationships>{''.join(relations[::order])}</Relationships>")
+        new.writestr("3D/m.model", old.read("3D/m.model"))
+    assert [part.name for part in form.load(tmp_path / "b.3mf").parts] == ["plate"]
+
+
 BAD_3MF = {
     "no zip": (lambda p: p.write_bytes(b"PK\x03\x04 no"), "zip"),
     "cut short": (lambda p: p.write_bytes(threemf(p, PLATE, '<item objectid="1"/>').read_bytes()[:300]), "cut short"),

@@ -138,6 +138,8 @@ class _Reader:
             for key in ("settotalmass", "boundmass", "boundinertia"):
                 if (xml.number(compiler, key, 0.0) or 0.0) > 0.0:
                     self.left.add(f"{key} of <compiler>")
+            if compiler.get("balanceinertia", "false") == "true":
+                self.left.add("balanceinertia of <compiler>")
         worlds = list(xml.children(root, "worldbody"))
         if not worlds:
             xml.complain(root, "has no <worldbody>", "name an MJCF with bodies")
@@ -278,8 +280,8 @@ class _Reader:
             xml.complain(element, f"joint {in_quotes(name)}: its axis is zero", 'give an axis such as "0 0 1"')
             axis = np.array([0.0, 0.0, 1.0])
         point = xml.numbers(element, said.get("pos", "0 0 0"), "pos", 3) or (0.0, 0.0, 0.0)
-        for key in ("frictionloss", "armature"):
-            if said.get(key, "0").split() not in (["0"], ["0.0"], []):
+        for key in ("frictionloss", "armature", "springdamper"):
+            if any(xml.numbers(element, said.get(key, ""), key, None) or ()):
                 self.left.add(f"{key} of joints")
         moves_one = kind in ("revolute", "prismatic")
         for key in () if moves_one else ("range", "damping", "stiffness"):
