@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from tests.support.robots import ARM, BASE, JOINT, urdf, write
+from tests.support.robots import ARM, BASE, JOINT, ring, urdf, write
 
 from kinform import form
 from kinform.errors import InputError
@@ -168,6 +168,16 @@ def test_packages_are_found_where_the_user_and_the_environment_say(tmp_path, mon
     folder.parent.rename(tmp_path / "ament" / "share" / "elsewhere")
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "ament"))
     assert form.load(path).part("base.obj").mesh.digest == meant.digest
+
+
+def test_a_package_is_where_the_user_says_though_a_folder_of_its_name_is_above(tmp_path):
+    path = write(tmp_path, urdf())
+    own = form.load(path).part("base.obj").mesh
+    other = tmp_path / "other"
+    other.mkdir()
+    (other / "base.obj").write_text(ring(5.0, 20.0, 10.0))
+    said = form.load(path, reading=Reading(packages=(("arm", str(other)),))).part("base.obj").mesh
+    assert said.digest != own.digest and np.allclose(np.ptp(said.vertices, axis=0), [0.04, 0.04, 0.01])
 
 
 def test_an_origin_may_be_turned_by_a_quaternion(tmp_path):
