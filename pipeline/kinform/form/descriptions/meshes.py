@@ -113,10 +113,18 @@ def files_below(folder: Path, suffixes: Sequence[str]) -> list[Path]:
             for entry in entries:
                 if entry.is_dir(follow_symlinks=False):
                     deeper.append(Path(entry.path))
-                elif entry.name.lower().endswith(tuple(suffixes)) and entry.is_file():
+                elif entry.name.lower().endswith(tuple(suffixes)) and _is_file(entry):
                     out.append(Path(entry.path))
         left = deeper
     return sorted(out)
+
+
+def _is_file(entry: os.DirEntry[str]) -> bool:
+    """Whether it is a file, or a link to one; a link to itself is none."""
+    try:
+        return entry.is_file()
+    except OSError:
+        return False
 
 
 def _paths(text: str | None) -> list[Path]:
