@@ -10,7 +10,7 @@ import re
 import traceback
 from typing import TYPE_CHECKING
 
-from kinform_cli import console
+from kinform_cli import console, interrupts
 
 if TYPE_CHECKING:
     from kinform.errors import Problem
@@ -41,6 +41,8 @@ def report(error: BaseException) -> int:
 
     if console.settings.debug and not _is_usage(error):
         console.tell(_traceback(error))
+    if interrupts.asked():
+        error = KeyboardInterrupt()
     if isinstance(error, InputError):
         for problem in error.problems:
             _print_problem(problem)

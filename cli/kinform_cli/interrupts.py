@@ -28,6 +28,11 @@ def raise_unheard() -> None:
         raise KeyboardInterrupt
 
 
+def asked() -> bool:
+    """Whether Ctrl-C was pressed: a library that drops it may say of its input what is not so."""
+    return _asked
+
+
 def _interrupted(number: int, frame: FrameType | None) -> None:
     """Once: a terminal sends Ctrl-C to all processes, and the one that watches passes it on."""
     global _asked

@@ -70,7 +70,10 @@ def entry() -> NoReturn:
 
 def _last_words() -> None:
     try:
-        traceback.print_exc()
+        if isinstance(sys.exc_info()[1], KeyboardInterrupt):
+            sys.stderr.write("kinform: error: interrupted\n")
+        else:
+            traceback.print_exc()
         sys.stderr.flush()
     except BaseException:  # there is nobody to tell
         os._exit(_FAILED)

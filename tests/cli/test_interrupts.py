@@ -100,6 +100,31 @@ def test_ctrl_c_is_heard_while_native_code_hears_nothing(place: str, folder: Pat
     assert not list(folder.glob("*.tmp"))
 
 
+DROPPED = """raise_ = signal.raise_signal
+    try:
+        raise_(signal.SIGINT)
+    except KeyboardInterrupt:
+        pass
+    from kinform.errors import InputError, Problem
+    raise InputError([Problem("the name has a null character")])"""
+
+
+def test_ctrl_c_that_a_library_drops_is_told_and_not_what_comes_of_it(folder: Path) -> None:
+    """Patterns of pydantic are no match where they are interrupted."""
+    running = begun(folder, "kinform.stages.import_", *WORK["kinform.stages.import_"], deed=DROPPED)
+    out, errors = running.communicate(timeout=60)
+    assert (running.returncode, out) == (2, "")
+    assert errors == "kinform: error: interrupted; an output file that existed is as it was\n"
+
+
+def test_ctrl_c_before_the_command_listens_is_told_in_one_line() -> None:
+    early = "import kinform_cli.supervision as s, signal\ns.divide = lambda: signal.raise_signal(signal.SIGINT)\n"
+    code = early + "from kinform_cli.main import entry\nentry()"
+    done = subprocess.run([sys.executable, "-c", code, "schema"], env=environment(), capture_output=True, text=True,
+                          preexec_fn=listening)  # fmt: skip
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", "kinform: error: interrupted\n")
+
+
 def test_ctrl_c_of_a_terminal_reaches_all_processes_and_is_told_once(folder: Path) -> None:
     sleeping = HELD.format(deed="import time; time.sleep(600)")
     running = subprocess.Popen(

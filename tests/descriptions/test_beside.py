@@ -18,6 +18,13 @@ def test_files_of_a_package_are_found_whatever_their_depth(tmp_path: Path) -> No
     assert meshes.files_below(tmp_path, (".urdf", ".xacro")) == [below / "y.XACRO", tmp_path / "z.urdf"]
 
 
+def test_links_that_lead_nowhere_are_no_files(tmp_path: Path) -> None:
+    (tmp_path / "a.urdf").write_text("x")
+    for name, target in (("loop.urdf", "loop.urdf"), ("gone.urdf", "nowhere"), ("b.urdf", "a.urdf")):
+        (tmp_path / name).symlink_to(target)
+    assert meshes.files_below(tmp_path, (".urdf",)) == [tmp_path / "a.urdf", tmp_path / "b.urdf"]
+
+
 def test_a_home_folder_is_not_searched_to_its_end(tmp_path: Path, monkeypatch) -> None:
     """The near folders are seen; what lies behind too many entries is left alone."""
     (tmp_path / "near").mkdir()

@@ -207,12 +207,36 @@ def box_obj():
         ('lower="0" upper="0" effort="1" velocity="1"', "warning", "both 0"),
         ("", "error", "states no limits"),
         ('lower="-1" upper="1" effort="0" velocity="1"', "note", "effort or speed"),
+        ('lower="-90" upper="90" effort="1" velocity="1"', "warning", "14.3 turns: they are probably degrees"),
+        ('lower="-30" upper="0" effort="1" velocity="1"', "warning", "4.77 turns"),
     ],
 )
 def test_limits_that_cannot_be_used_are_told(tmp_path, limit, severity, words):
     found = only(tmp_path, Walker(limits={"left_knee": limit}))
     assert (found.code, found.severity, found.subject, found.line) == ("KF415", severity, ("left_knee",), 8)
     assert words in found.message
+
+
+@pytest.mark.parametrize("limit", ["6.2831853", "12.6", "1e5"])
+def test_limits_of_a_turn_or_two_and_those_that_stand_for_none_are_no_degrees(tmp_path, limit):
+    stated = f'lower="-{limit}" upper="{limit}" effort="1" velocity="1"'
+    assert findings(tmp_path, Walker(limits={"left_knee": stated})) == []
+
+
+@pytest.mark.parametrize(("there", "hint"), [("collision", "--geometry collision"), ("", "to compare with")])
+def test_a_description_without_the_geometry_that_is_read_is_not_verified(tmp_path, there, hint):
+    walker = Walker()
+    path = tmp_path / "walker.urdf"
+    bare = re.sub(r"<visual>.*?</visual>", "", walker.text())
+    solid = '<collision><geometry><box size="1 1 1"/></geometry></collision></link>' if there else "</link>"
+    path.write_text(re.sub(r"<collision>.*?</collision>", "", bare).replace("</link>", solid))
+    rule = next(rule for rule in RULES if rule.code == "KF131")
+    outcome = rule.outcome(Context(Design(form.load(path))))
+    assert (outcome.name, outcome.findings) == ("inconclusive", ()) and outcome.reason.endswith(
+        hint + ")" * bool(there)
+    )
+    path.write_text(walker.text())
+    assert rule.outcome(Context(Design(form.load(path)))).name == "passed"
 
 
 def test_many_of_a_kind_are_one_finding(tmp_path):

@@ -126,6 +126,19 @@ def test_masses_of_geoms_and_of_the_whole_are_said_not_to_be_carried(tmp_path):
         assert {one for one in notes.rpartition(": ")[2].split(", ") if one} == said
 
 
+def test_what_changes_inertias_and_dampers_unseen_is_said_not_to_be_carried(tmp_path):
+    changed = text().replace("<compiler", '<compiler balanceinertia="true"').replace(
+        'damping="0.5"', 'damping="0.5" springdamper="1 1" armature="0.0" frictionloss="00"')  # fmt: skip
+    (said,) = (
+        note.rpartition(": ")[2].split(", ")
+        for note in form.load(write(tmp_path, changed)).notes
+        if "not carried" in note
+    )
+    assert [word for word in said if "inertia" in word or "joints" in word] == [
+        "balanceinertia of <compiler>", "springdamper of joints (3)",
+    ]  # fmt: skip
+
+
 def test_loops_are_joints(tmp_path):
     closing = '<equality><connect body1="arm" body2="base" anchor="0 0 0.1"/>'
     second = '<connect body1="arm" body2="base" anchor="0 0.1 0.1"/>'
@@ -147,6 +160,10 @@ BAD = {
     "two bodies": (text().replace('body name="wrist"', 'body name="arm"'), 17, "two bodies"),
     "no size": (text().replace('type="sphere" size="0.02"', 'type="sphere"'), 18, "positive sizes"),
     "another root": ("<robots/>", 1, "no robot description"),
+    "coordinates of the world": (text().replace('angle="degree"', 'coordinate="global" angle="degree"'), 2, "global"),
+    "no quaternion": (text().replace('axisangle="1 2 3 -50.0"', 'quat="0 0 0 0"'), 12, "no rotation"),
+    "no axis of a turn": (text().replace('axisangle="1 2 3 -50.0"', 'axisangle="0 0 0 20"'), 12, "no rotation"),
+    "parallel axes": (text().replace('xyaxes="0 1 0 -1 0 0"', 'xyaxes="0 1 0 0 2 0"'), 15, "no rotation"),
 }  # fmt: skip
 
 

@@ -18,7 +18,9 @@ ARM = """<mujoco model="arm own"><compiler angle="degree" eulerseq="zyx"/>
 <inertial mass="2" pos="0.01 0.02 0.03" diaginertia="0.3 0.2 0.4"/>
 <body name="lower" pos="0.5 0 0.1" euler="0 40 0"><joint name="a"/><joint name="b" type="slide" axis="1 0 0"/>
 <geom/><site name="end" pos="0 0 1"/><frame euler="5 6 7">
-<attach model="palm" body="palm" prefix="h_"/></frame></body></body>
+<attach model="palm" body="palm" prefix="h_"/></frame>
+<frame pos="1 0 0"><frame euler="50 0 9"><body name="tip" pos="0 0 2" euler="3 0 0"><joint name="last" axis="1 2 3"/>
+<geom size="1 2 3"/></body></frame></frame></body></body>
 </worldbody>
 <equality><joint joint1="a" joint2="turn" polycoef="0 -2 0 0 0"/></equality>
 <actuator><motor joint="turn" forcerange="-3 3"/></actuator></mujoco>
@@ -35,6 +37,7 @@ TOP = """<mujoco model="top"><compiler angle="radian"/><asset><model name="arm" 
 PLACES = {
     "a body": '<attach model="arm" body="upper" prefix="l_"/>',
     "a body in a body": '<attach model="arm" body="lower" prefix="l_"/>',
+    "a body in a frame": '<attach model="arm" body="tip" prefix="l_"/>',
     "all of it, in a frame": '<frame pos="0 1 2" euler="1 0 0"><attach model="arm" prefix="l_"/></frame>',
     "its world": '<attach model="arm" body="world" prefix="l_"/>',
     "twice": '<attach model="arm" body="upper" prefix="l_"/><attach model="arm" body="upper" prefix="r_"/>',

@@ -239,6 +239,17 @@ def test_a_mimic_is_a_coupling_and_the_world_is_a_link_only_where_it_is_needed(t
     assert next(j for j in turning.function.joints if j.name == "hold").between == ("world", "a")
 
 
+def test_joints_that_mimic_each_other_are_refused(tmp_path):
+    axes = (f'<axis><xyz>0 0 1</xyz><mimic joint="{name}" axis="axis"><multiplier>2</multiplier></mimic></axis>'
+            for name in ("two", "one"))  # fmt: skip
+    text = (
+        f'<sdf version="1.11"><model name="m">{link("a")}{link("b")}{link("c")}'
+        f"{joint('one', 'a', 'b', axis=next(axes))}{joint('two', 'b', 'c', axis=next(axes))}</model></sdf>"
+    )
+    with pytest.raises(InputError, match="mimic each other in a circle"):
+        load(tmp_path, text)
+
+
 def test_several_models_of_a_world_keep_their_names_apart(tmp_path):
     model = '<model name="{}"><static>{}</static><pose>{} 0 0 0 0 0</pose>' + link("a") + "</model>"
     models = model.format("m", 1, 1) + model.format("n", 0, 2)

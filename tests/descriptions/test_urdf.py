@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from tests.support.robots import ARM, BASE, JOINT, urdf, write
+from tests.support.robots import ARM, BASE, JOINT, ring, urdf, write
 
 from kinform import form
 from kinform.errors import InputError
@@ -122,6 +122,18 @@ BAD = {
     "no geometry": (urdf(arm="<visual><geometry/></visual>"), 3, "has no geometry"),
     "negative size": (urdf(arm=ARM.replace('"0.06"', '"-0.06"')), 3, "not positive"),
     "mimics nobody": (urdf(joint=JOINT + '<mimic joint="tarn"/>'), 5, "is no joint"),
+    "mimic each other": (
+        urdf(
+            joint=JOINT + '<mimic joint="f"/>',
+            more='<link name="f"/><joint name="f" type="continuous"><parent '
+            'link="arm"/><child link="f"/><mimic joint="turn" multiplier="2"/></joint>',
+        ),
+        7,
+        "in a circle",
+    ),
+    "underscore": (urdf(joint=JOINT.replace("0 0 0.03", "0 0 1_0")), 5, "no finite number"),
+    "two rotations": (urdf(joint=JOINT.replace("rpy=", 'quat_xyzw="0 0 0 1" rpy=')), 5, "rpy and quat_xyzw"),
+    "no quaternion": (urdf(joint=JOINT.replace('rpy="0 0 0.5"', 'quat_xyzw="0 0 0 0"')), 5, "zero"),
     "truncated": (urdf()[:400], None, "not well-formed"),
     "entity bomb": ('<!DOCTYPE r [<!ENTITY a "b"><!ENTITY c "&a;&a;">]>\n' + urdf(), 1, "entity"),
     "external entity": ('<!DOCTYPE r [\n<!ENTITY a SYSTEM "file:///etc/hostname">]>\n' + urdf(), 2, "entity"),
@@ -156,6 +168,29 @@ def test_packages_are_found_where_the_user_and_the_environment_say(tmp_path, mon
     folder.parent.rename(tmp_path / "ament" / "share" / "elsewhere")
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "ament"))
     assert form.load(path).part("base.obj").mesh.digest == meant.digest
+
+
+def test_a_package_is_where_the_user_says_though_a_folder_of_its_name_is_above(tmp_path):
+    path = write(tmp_path, urdf())
+    own = form.load(path).part("base.obj").mesh
+    other = tmp_path / "other"
+    other.mkdir()
+    (other / "base.obj").write_text(ring(5.0, 20.0, 10.0))
+    said = form.load(path, reading=Reading(packages=(("arm", str(other)),))).part("base.obj").mesh
+    assert said.digest != own.digest and np.allclose(np.ptp(said.vertices, axis=0), [0.04, 0.04, 0.01])
+
+
+def test_an_origin_may_be_turned_by_a_quaternion(tmp_path):
+    half = 0.25
+    turned = JOINT.replace('rpy="0 0 0.5"', f'quat_xyzw="0 0 {math.sin(half)!r} {math.cos(half)!r}"')
+    one, other = (form.load(write(tmp_path, urdf(joint=said))) for said in (JOINT, turned))
+    assert np.allclose(one.part("shaft").X_WP, other.part("shaft").X_WP, atol=1e-15)
+    assert not np.allclose(one.part("shaft").X_WP[:3, :3], np.eye(3), atol=0.1)
+
+
+def test_expressions_are_said_to_be_of_xacro(tmp_path):
+    (problem,) = faults(write(tmp_path, urdf(joint=JOINT.replace("0 0 0.03", "0 0 ${height}"))))
+    assert ".xacro" in problem.remedy
 
 
 def test_a_prefix_that_nobody_declares_is_accepted(tmp_path):

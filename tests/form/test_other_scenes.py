@@ -88,6 +88,20 @@ def test_components_are_instances_below_their_object_in_the_unit_of_the_file(tmp
     assert any("1 object of other types" in note for note in assembly.notes)
 
 
+@pytest.mark.parametrize("order", [1, -1])
+def test_the_model_of_a_3mf_is_found_behind_its_thumbnail(tmp_path, order):
+    path = threemf(tmp_path / "a.3mf", PLATE, '<item objectid="1"/>')
+    kinds = {
+        "/3D/m.model": "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel",
+        "/Metadata/thumbnail.png": "http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail",
+    }
+    relations = [f'<Relationship Id="r{k}" Target="{to}" Type="{kind}"/>' for k, (to, kind) in enumerate(kinds.items())]
+    with zipfile.ZipFile(path) as old, zipfile.ZipFile(tmp_path / "b.3mf", "w") as new:
+        new.writestr("_rels/.rels", f"<Relationships>{''.join(relations[::order])}</Relationships>")
+        new.writestr("3D/m.model", old.read("3D/m.model"))
+    assert [part.name for part in form.load(tmp_path / "b.3mf").parts] == ["plate"]
+
+
 BAD_3MF = {
     "no zip": (lambda p: p.write_bytes(b"PK\x03\x04 no"), "zip"),
     "cut short": (lambda p: p.write_bytes(threemf(p, PLATE, '<item objectid="1"/>').read_bytes()[:300]), "cut short"),
@@ -170,6 +184,17 @@ def test_a_dae_is_placed_in_its_unit_with_z_up_and_in_its_hierarchy(tmp_path):
     assert np.allclose(np.ptp(assembly.part("base").mesh.vertices, axis=0), [0.001, 0.002, 0.003])
 
 
+@pytest.mark.parametrize(("axis", "angle"), [("0.577 0.577 0.577", 120), ("0 0 2", 90), ("0 0 0", 0), ("1 2 3", -20)])
+def test_the_axis_of_a_turn_in_a_dae_needs_no_length_of_one(tmp_path, axis, angle):
+    nodes = f'<node name="box"><rotate>{axis} {angle}</rotate><instance_geometry url="#gbox"/></node>'
+    (tmp_path / "a.dae").write_text(dae({"box": BOX}, MM, nodes=nodes))
+    vector = np.array(axis.split(), dtype=float) if angle else [0, 0, 1]
+    meant = trimesh.transformations.rotation_matrix(np.radians(angle), vector)
+    part = form.load(tmp_path / "a.dae").part("box")
+    assert np.allclose(part.X_WP, meant, atol=1e-7)
+    assert np.allclose(np.ptp(part.mesh.vertices, axis=0), [0.001, 0.002, 0.003])
+
+
 @pytest.mark.parametrize(("unit", "metres"), [("", 1.0), (MM, 0.001)])
 def test_the_unit_of_a_dae_holds_for_the_meshes_of_a_robot_and_its_up_axis_does_not(tmp_path, unit, metres):
     mesh = '<visual><geometry><mesh filename="box.dae"/></geometry></visual>'
@@ -188,6 +213,8 @@ BAD_DAE = {
     "cut short": (dae({"box": BOX})[:900], "cannot be read as DAE"),
     "corner": (dae({"box": trimesh.Trimesh(BOX.vertices, BOX.faces + 5, process=False)}), ""),
     "nothing": (dae({}), "no part"),
+    "no axis": (dae({"box": BOX}, nodes='<node><rotate>0 0 0 9</rotate><instance_geometry url="#gbox"/></node>'),
+                "axis"),
     "unit": (dae({"box": BOX}, '<unit name="x" meter="-1"/>'), "unit"),
 }  # fmt: skip
 

@@ -122,6 +122,14 @@ def test_instances_share_a_mesh_and_repeated_names_are_numbered(tmp_path):
     assert any('"a/b" is "a_b#2"' in note for note in assembly.notes)
 
 
+def test_a_node_with_a_mesh_and_a_group_of_its_name_below_it_are_told_apart(tmp_path):
+    inner = {"name": "n", "children": [2, 3]}, {"mesh": 0, "name": "a"}, {"mesh": 0, "name": "b"}
+    path = glb(
+        tmp_path, nodes({"name": "n", "mesh": 0, "children": [1]}, *inner, {"mesh": 0, "name": "c"}, roots=[0, 4])
+    )
+    assert [part.name for part in form.load(path).parts] == ["c", "n/n#2", "n/n/a", "n/n/b"]
+
+
 def test_scales_mirror_and_enlarge(tmp_path):
     mirrored = {"name": "m", "mesh": 0, "scale": [-1, 2, 1], "rotation": [0, 0, np.sqrt(0.5), np.sqrt(0.5)]}
     part = form.load(glb(tmp_path, nodes(mirrored))).part("m")

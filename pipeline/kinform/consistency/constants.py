@@ -30,6 +30,12 @@ QUIET = 1e-9
 BENT_ALIKE = 0.25
 """Share of its curvature that a peak's neighbours must have for a parabola to say how high it is; a choice."""
 
+# --- rules/kf415 ------------------------------------------------------------------------------------------------------
+
+DEGREES = 8.0 * math.pi, 360.0
+"""Limits of a joint that turns (rad) which are probably degrees, or stand for none: from four turns on, which hardly a
+joint of a robot goes, to as many degrees as a turn has. A choice; 38 robots and two arms at hand have none there."""
+
 # --- comparisons/near -------------------------------------------------------------------------------------------------
 
 MOST_CORRECTIONS = 4

@@ -2,7 +2,8 @@
 
 A mesh that is not there is an error, told once a file. The link stands without it: stated masses, sides and collision
 geometry are not compared there, and a joint may be found not held for want of what is missing. Where none of the meshes
-is there, nothing can be judged, and the reading ends. Mesh files in the folders of the description's meshes that
+is there, nothing can be judged, and the reading ends. A description of which no link has the geometry that is read is
+judged by nothing: then the rule is inconclusive. Mesh files in the folders of the description's meshes that
 neither it nor another text of its package names are one note.
 
 Why it matters: a simulator refuses the description, and a planner that cannot load a collision mesh sees no obstacle
@@ -18,11 +19,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from kinform.consistency.context import Context
-from kinform.consistency.outcome import Outcome, decided
+from kinform.consistency.outcome import Outcome, settled
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, quoted
 from kinform.model.assembly import Source
-from kinform.model.descriptions import LooseMesh
+from kinform.model.descriptions import Description, LooseMesh
 from kinform.model.findings import Finding
 
 
@@ -48,7 +49,24 @@ def check(context: Context) -> Outcome:
                     remedy="Remove them, or name them where they were meant.",
                 )
             )
-    return decided(findings)
+    bare = [description for description in context.assembly.descriptions if _is_bare(context, description)]
+    return settled(findings, "; ".join(map(_nothing, bare)))
+
+
+def _is_bare(context: Context, description: Description) -> bool:
+    """Whether none of its links has geometry, as it was read."""
+    solid = {part.name for part in context.assembly.parts if part.mesh is not None}
+    return bool(description.links) and all(solid.isdisjoint(link.parts) for link in description.links)
+
+
+def _nothing(description: Description) -> str:
+    """Why such a description is judged by nothing."""
+    kinds = {
+        "visual": sum(x.visuals for x in description.links),
+        "collision": sum(x.collisions for x in description.links),
+    }
+    there = [f"; it has {kind} geometry (--geometry {kind})" for kind, many in kinds.items() if many]
+    return f"no link of {description.file} has geometry to compare with{''.join(there[:1])}"
 
 
 def _missing(uses: Sequence[LooseMesh]) -> Finding:

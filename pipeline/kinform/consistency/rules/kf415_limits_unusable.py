@@ -1,7 +1,8 @@
 """The limits of a joint in a robot description are missing, exchanged, or nothing; or its effort or speed is zero.
 
 An error where the lower limit is above the upper one, or a format that needs limits (URDF: revolute and prismatic) has
-none. A warning where both limits are equal: the joint cannot move. One note names all joints whose effort or speed is
+none. A warning where both limits are equal: the joint cannot move; and where those of a joint that turns are more than
+four turns, and no more than 360: they are probably degrees. One note names all joints whose effort or speed is
 limited to zero. The range is then taken as not stated, and nothing that depends on it is compared.
 
 Why it matters: loaders differ: some refuse the file, some lock the joint, some let it turn without end.
@@ -14,9 +15,11 @@ Example: `<limit lower="1.57" upper="-1.57" …/>` after an axis was turned roun
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from kinform.consistency.comparisons.gathering import Ranked, gathered
+from kinform.consistency.constants import DEGREES
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided
 from kinform.consistency.rule import Rule
@@ -24,6 +27,9 @@ from kinform.foundation.words import counted, number, quoted
 from kinform.model.assembly import Source
 from kinform.model.descriptions import DescribedJoint, Description
 from kinform.model.findings import Finding
+
+TURNING = ("revolute", "hinge")
+"""Joints that turn between limits, as formats call them."""
 
 
 def check(context: Context) -> Outcome:
@@ -47,20 +53,24 @@ def _of_joint(joint: DescribedJoint) -> Ranked | None:
     if lower == upper:
         text = f"joint '{joint.name}': its limits are both {number(lower, 6)}, so it cannot move"
         return _finding("warning", joint, text, shown, "State its range, or make it fixed.")
+    most = max(abs(lower), abs(upper))
+    if joint.kind in TURNING and DEGREES[0] <= most <= DEGREES[1]:
+        turns = number(most / (2.0 * math.pi), 3)
+        text = f"joint '{joint.name}': its limits {shown} rad are {turns} turns: they are probably degrees"
+        return _finding("degrees", joint, text, shown, "State radians; or make it continuous, if it has no limits.")
     return None
 
 
-def _finding(severity: str, joint: DescribedJoint, text: str, found: str, remedy: str) -> Ranked:
-    kind = "none" if joint.limits is None else severity
-    finding = RULE.at(severity).finding(
+def _finding(kind: str, joint: DescribedJoint, text: str, found: str, remedy: str) -> Ranked:
+    finding = RULE.at("error" if kind == "error" else "warning").finding(
         [joint.name], text,
         found=found,
-        intended="a lower limit below the upper one",
+        intended="limits in radians" if kind == "degrees" else "a lower limit below the upper one",
         place=joint.point,
         declared=Source(joint.file, joint.line),
         remedy=remedy,
     )  # fmt: skip
-    return Ranked(kind, abs(joint.span), finding)
+    return Ranked("none" if joint.limits is None else kind, abs(joint.span), finding)
 
 
 def _zeros(description: Description) -> Iterator[Finding]:

@@ -148,7 +148,7 @@ class Xml:
         values: list[float] = []
         for word in words:
             try:
-                value = float(word)
+                value = math.nan if "_" in word else float(word)
             except ValueError:
                 value = math.nan
             most = math.inf if what in _BOUNDS else LARGEST_NUMBER
@@ -156,7 +156,8 @@ class Xml:
                 shown = word if len(word) <= VALUE_LENGTH else word[:VALUE_LENGTH] + "…"
                 up_to = "" if what in _BOUNDS else f" up to {LARGEST_NUMBER:g}"
                 wrong = f"<{tag_of(element)}>: {what} has {in_quotes(shown)}, which is no finite number{up_to}"
-                self.complain(element, wrong, "give finite numbers")
+                remedy = "it is xacro: name it so (.xacro)" if "${" in shown else "give finite numbers"
+                self.complain(element, wrong, remedy)
                 return None
             values.append(value)
         if count is not None and len(values) != count:

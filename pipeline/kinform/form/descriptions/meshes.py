@@ -79,17 +79,17 @@ class MeshFiles:
         return Found(None, message=f"package://{name}/{rest} is not found: no folder {name} is known", remedy=remedy)
 
     def _roots(self, name: str) -> Iterator[Path]:
-        """Folders that may be the package: beside the description, as stated, then as the environment says."""
+        """Folders that may be the package: as stated, beside the description, then as the environment says."""
         if name in ("", ".", ".."):
             yield from (self.folder, self.home)[: 0 if name else 2]
             return
+        if name in self.packages:
+            yield self.packages[name]
         for above in _above(self.folder, None):
             if above.name == name:
                 yield above
             if (above / name).is_dir():
                 yield above / name
-        if name in self.packages:
-            yield self.packages[name]
         for prefix in _paths(self._environment.get("AMENT_PREFIX_PATH")):
             yield prefix / "share" / name
         for folder in _paths(self._environment.get("ROS_PACKAGE_PATH")):
@@ -113,10 +113,18 @@ def files_below(folder: Path, suffixes: Sequence[str]) -> list[Path]:
             for entry in entries:
                 if entry.is_dir(follow_symlinks=False):
                     deeper.append(Path(entry.path))
-                elif entry.name.lower().endswith(tuple(suffixes)) and entry.is_file():
+                elif entry.name.lower().endswith(tuple(suffixes)) and _is_file(entry):
                     out.append(Path(entry.path))
         left = deeper
     return sorted(out)
+
+
+def _is_file(entry: os.DirEntry[str]) -> bool:
+    """Whether it is a file, or a link to one; a link to itself is none."""
+    try:
+        return entry.is_file()
+    except OSError:
+        return False
 
 
 def _paths(text: str | None) -> list[Path]:

@@ -105,6 +105,7 @@ class _Reader:
         self.models = Models(xml, root, path, meshes, budget, _model)
         self.links: dict[str, Link] = {}
         self.above: dict[str, str] = {}
+        self.own: dict[str, Array] = {}
         self.joints: dict[str, RobotJoint] = {}
         self.loops: list[RobotJoint] = []
         self.ratios: list[Ratio] = []
@@ -138,6 +139,8 @@ class _Reader:
             for key in ("settotalmass", "boundmass", "boundinertia"):
                 if (xml.number(compiler, key, 0.0) or 0.0) > 0.0:
                     self.left.add(f"{key} of <compiler>")
+            if compiler.get("balanceinertia", "false") == "true":
+                self.left.add("balanceinertia of <compiler>")
         worlds = list(xml.children(root, "worldbody"))
         if not worlds:
             xml.complain(root, "has no <worldbody>", "name an MJCF with bodies")
@@ -147,7 +150,8 @@ class _Reader:
             self._inside(world, WORLD, np.eye(4), world.get("childclass"))
         self.loops += closures(xml, root, self.links, self.sites, self.defaults, self.left)
         self.ratios += ratios(xml, root, self.joints, self.defaults, self.left)
-        return Content(self.links, self.joints, tuple(self.loops), tuple(self.ratios), self.sites, self.above)
+        loops, coupled = tuple(self.loops), tuple(self.ratios)
+        return Content(self.links, self.joints, loops, coupled, self.sites, self.above, self.own)
 
     def _leave_out_world(self, loops: list[RobotJoint]) -> None:
         """The world is no link where it has no geometry, and at most one body is fixed to it."""
@@ -189,7 +193,8 @@ class _Reader:
             self.links[link] = Link(link, old.X_FL, old.at, both, both, old.inertial, old.stated)
 
     def _body(self, element: Element, above: str, X: Array, named: str | None) -> None:
-        X = X @ self.compiler.pose(self.xml, element, element.attrib)
+        own = self.compiler.pose(self.xml, element, element.attrib)
+        X = X @ own
         stated = (element.get("name") or "").replace("/", "_")
         if stated in self.links:
             first = self.links[stated].at.line
@@ -207,7 +212,7 @@ class _Reader:
         free = self.xml.child(element, "freejoint") is not None or any(self._type(j, c) == "" for j, _, c in joints)
         written = None if inertial is None else self.shapes.stated(inertial)
         self.links[name] = Link(name, X, at, inertial=stated_mass, stated=written)
-        self.above[name] = above
+        self.above[name], self.own[name] = above, own
         if not free:
             between = above
             for k, (joint, X_FJ, of_class) in enumerate(joints):
@@ -245,6 +250,7 @@ class _Reader:
             limits = [v for v in (joint.effort, self.efforts.get(name)) if v is not None]
             self.joints[self.free_joint(name)] = replace(joint, effort=min(limits) if limits else None)
         self.above |= {name: around for name, around in new.above.items() if name not in self.above and name != link}
+        self.own |= {name: own for name, own in new.own.items() if name not in self.own}
         self.loops += new.loops
         self.ratios += new.ratios
         self.sites |= new.sites
@@ -278,8 +284,8 @@ class _Reader:
             xml.complain(element, f"joint {in_quotes(name)}: its axis is zero", 'give an axis such as "0 0 1"')
             axis = np.array([0.0, 0.0, 1.0])
         point = xml.numbers(element, said.get("pos", "0 0 0"), "pos", 3) or (0.0, 0.0, 0.0)
-        for key in ("frictionloss", "armature"):
-            if said.get(key, "0").split() not in (["0"], ["0.0"], []):
+        for key in ("frictionloss", "armature", "springdamper"):
+            if any(xml.numbers(element, said.get(key, ""), key, None) or ()):
                 self.left.add(f"{key} of joints")
         moves_one = kind in ("revolute", "prismatic")
         for key in () if moves_one else ("range", "damping", "stiffness"):

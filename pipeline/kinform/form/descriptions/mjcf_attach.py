@@ -1,7 +1,8 @@
 """`<attach>` of an MJCF: a model among the assets, or one body of it, put where the element stands, as MuJoCo has it.
 
 A model is read by its own file: its compiler settings, default classes and meshes are its own. What it names has the
-prefix in front, in the model that it is attached to. A body keeps its pose in the body around it, which stays behind.
+prefix in front, in the model that it is attached to. A body keeps the pose that it states; what is around it, body or
+frame, stays behind.
 """
 
 from __future__ import annotations
@@ -35,6 +36,8 @@ class Content:
     sites: Mapping[str, tuple[str, Array]]
     above: Mapping[str, str]
     """The body around each body; that of the world is none."""
+    own: Mapping[str, Array]
+    """(4, 4) of each body, in the frame or the body that it is stated in."""
 
     def below(self, body: str) -> Iterator[str]:
         """A body and all that are in it."""
@@ -130,14 +133,15 @@ def attached(xml: Xml, element: Element, content: Content, link: str, X: Array) 
         xml.complain(element, "<attach> has no prefix", 'add prefix="…"')
         return None
     world = next(iter(content.links))
-    if body is not None and body not in content.links:
+    bodies = (world, *content.own)  # links between the joints of a body are none
+    if body is not None and body not in bodies:
         wrong = f"<attach>: the model {in_quotes(element.get('model'))} has no body {in_quotes(body)}"
-        xml.complain(element, wrong, did_you_mean(body, content.links, "its bodies"))
+        xml.complain(element, wrong, did_you_mean(body, bodies, "its bodies"))
         return None
     top = world if body is None else body
     inside = list(content.below(top))
     around = content.above.get(top)
-    move = X if around is None else X @ inverse(content.links[around].X_FL)
+    move = X if around is None else X @ content.own[top] @ inverse(content.links[top].X_FL)
     names = {name: (prefix + name + suffix).replace("/", "_") for name in inside}
     if body is None:
         names[world] = link
@@ -182,6 +186,7 @@ class _Graft:
                 for name, around in content.above.items()
                 if name in self.inside and around in self.names
             },
+            own={self.names[name]: X for name, X in content.own.items() if name in self.inside},
         )
 
     def _named(self, name: str) -> str:

@@ -83,6 +83,17 @@ ORIENTATIONS = ("quat", "euler", "axisangle", "xyaxes", "zaxis")
 """Attributes that state a rotation, of which an element has one."""
 
 
+_DIRECTIONS = {"quat": "a quaternion that is not zero", "axisangle": "an axis that is not zero",
+               "xyaxes": "two axes that are not parallel", "zaxis": "an axis that is not zero"}  # fmt: skip
+
+
+def _turns(key: str, values: tuple[float, ...]) -> bool:
+    """Whether these numbers of an orientation state one."""
+    if key == "xyaxes":
+        return float(np.linalg.norm(np.cross(values[:3], values[3:]))) > 0.0
+    return any(values[:3] if key == "axisangle" else values)
+
+
 ACTUATOR = "general"
 ACTUATORS = ("general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle", "adhesion")
 """Actuators, which have one default among them."""
@@ -108,6 +119,9 @@ class Compiler:
             if set(element.get("eulerseq", "xyz")) - set("xyzXYZ"):
                 xml.complain(element, "eulerseq has other letters than x, y, z", 'give eulerseq="xyz"')
                 said.pop("eulerseq")
+            if element.get("coordinate", "local") != "local":
+                xml.complain(element, "coordinate is \"global\", which MuJoCo reads no more since version 2.3.4",
+                             "load it in MuJoCo 2.3.3, and save it: that gives local coordinates")  # fmt: skip
         sequence = said.get("eulerseq", "xyz")
         return Compiler(
             degrees=said.get("angle", "degree") == "degree",
@@ -126,7 +140,11 @@ class Compiler:
         """The rotation (3, 3) that an element states in one of five ways; the identity where it states none."""
 
         def numbers(key: str, count: int) -> tuple[float, ...] | None:
-            return xml.numbers(element, said[key], key, count) if key in said else None
+            values = xml.numbers(element, said[key], key, count) if key in said else None
+            if values is not None and key in _DIRECTIONS and not _turns(key, values):
+                wrong = f"<{tag_of(element)}>: {key} has {in_quotes(said[key])}, which states no rotation"
+                xml.complain(element, wrong, f"give {_DIRECTIONS[key]}")
+            return values
 
         if (q := numbers("quat", 4)) is not None:
             return quaternion(q)

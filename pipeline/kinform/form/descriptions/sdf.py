@@ -23,7 +23,7 @@ from kinform.form.descriptions.sdf_links import Links
 from kinform.form.descriptions.sdf_models import Model, Models, version_of
 from kinform.form.descriptions.sdf_text import whole_text
 from kinform.form.descriptions.sdf_values import Values
-from kinform.form.descriptions.tree import Count, distinct
+from kinform.form.descriptions.tree import Count, distinct, refuse_circle
 from kinform.form.problems import Problems
 from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.model.arrays import Array
@@ -88,6 +88,8 @@ class _Reader:
         for name in self.stated:
             self._joint(name)
         self._hold(links)
+        ratios = [ratio for joint in self.stated if (ratio := self._ratio(joint)) is not None]
+        refuse_circle(ratios, xml.problems)
         label = next((m.element.get("name") for m in self.models.models), None) or path.stem
         every = (*links.values(), *self.between.values())
         world = Link(WORLD, np.eye(4), xml.at(root))
@@ -101,7 +103,7 @@ class _Reader:
             at=xml.at(root),
             links=(*every, Link(name, world.X_FL, world.at)) if keep else every,
             joints=tuple(_renamed(j, name) for j in joints if keep or j not in held),
-            ratios=tuple(ratio for joint in self.stated if (ratio := self._ratio(joint)) is not None),
+            ratios=tuple(ratios),
             root=name if keep else next((end for end in ends), next(iter(links), None)),
             notes=self.left.sentences(xml.file),
             files=tuple(self.models.files),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.form.descriptions.robot import At
+from kinform.form.descriptions.robot import At, Ratio
 from kinform.form.problems import Problems
 from kinform.foundation.meant import did_you_mean, first_names, in_quotes
 from kinform.model.arrays import Array
@@ -50,7 +50,7 @@ def tree_of(links: Mapping[str, At], edges: Sequence[Edge], at: At, problems: Pr
         problems.add(f"has {len(roots)} roots: no joint has {listed} as its child", where.file, where.line,
                      "join them by a joint, or remove what is not connected")  # fmt: skip
         return None
-    circle = _circle(links, parent)
+    circle = _circle({link: parent[link][1] for link in links if link in parent})
     if circle is not None:
         where = parent[circle[0]][4]
         problems.add("the joints form a cycle: " + " → ".join(map(in_quotes, [*circle, circle[0]])),
@@ -62,19 +62,28 @@ def tree_of(links: Mapping[str, At], edges: Sequence[Edge], at: At, problems: Pr
     return Tree(roots[0], _poses(roots[0], edges))
 
 
-def _circle(links: Mapping[str, At], parent: Mapping[str, Edge]) -> list[str] | None:
-    """Links that are above each other in a circle; None where there is none."""
+def _circle(above: Mapping[str, str]) -> list[str] | None:
+    """Names that are above each other in a circle; None where there is none."""
     done: set[str] = set()
-    for start in links:
+    for start in above:
         way: list[str] = []
         here: str | None = start
         while here is not None and here not in done and here not in way:
             way.append(here)
-            here = parent[here][1] if here in parent else None
+            here = above.get(here)
         if here is not None and here in way:
             return way[way.index(here) :][::-1]
         done.update(way)
     return None
+
+
+def refuse_circle(mimics: Sequence[Ratio], problems: Problems) -> None:
+    """Note joints that mimic each other in a circle: none of them leads."""
+    circle = _circle({mimic.joints[0]: mimic.joints[1] for mimic in mimics})
+    if circle is not None:
+        at = next(mimic.at for mimic in mimics if mimic.joints[0] == circle[0])
+        told = " → ".join(map(in_quotes, [*circle, circle[0]]))
+        problems.add(f"joints mimic each other in a circle: {told}", at.file, at.line, "remove one <mimic> of these")
 
 
 def _poses(root: str, edges: Sequence[Edge]) -> dict[str, Array]:

@@ -16,7 +16,7 @@ from kinform.form.constants import AXIS_LENGTH, NO_BOUND
 from kinform.form.descriptions.elements import Element, Xml, colour_of, parse_xml, tag_of, xml_text
 from kinform.form.descriptions.inertials import placed, symmetric
 from kinform.form.descriptions.meshes import MeshFiles
-from kinform.form.descriptions.poses import place, pose, rpy
+from kinform.form.descriptions.poses import place, pose, quaternion, rpy
 from kinform.form.descriptions.robot import (
     Inertial,
     Limits,
@@ -29,7 +29,7 @@ from kinform.form.descriptions.robot import (
     Stated,
     bounded,
 )
-from kinform.form.descriptions.tree import Count, Edge, Tree, tree_of
+from kinform.form.descriptions.tree import Count, Edge, Tree, refuse_circle, tree_of
 from kinform.form.problems import Problems
 from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.model.arrays import Array
@@ -129,8 +129,14 @@ class _Reader:
 
     def _origin(self, element: Element | None) -> Array:
         origin = self.xml.child(element, "origin")
-        angles = self.xml.vector(origin, "rpy", (0.0, 0.0, 0.0))
-        return pose(rpy(angles), self.xml.vector(origin, "xyz", (0.0, 0.0, 0.0)))
+        place = self.xml.vector(origin, "xyz", (0.0, 0.0, 0.0))
+        if origin is None or origin.get("quat_xyzw") is None:
+            return pose(rpy(self.xml.vector(origin, "rpy", (0.0, 0.0, 0.0))), place)
+        x, y, z, w = self.xml.vector(origin, "quat_xyzw", (0.0, 0.0, 0.0, 1.0))
+        if origin.get("rpy") is not None or not any((x, y, z, w)):
+            wrong = "rpy and quat_xyzw" if origin.get("rpy") is not None else "a quat_xyzw that is zero"
+            self.xml.complain(origin, f"<origin> has {wrong}", "give one rotation")
+        return pose(quaternion((w, x, y, z)), place)
 
     def _edge(self, name: str, element: Element) -> Edge | None:
         ends = []
@@ -335,4 +341,5 @@ class _Reader:
                 self.left.add("<mimic> of ratio zero" if not ratio else "<mimic> of a joint that is not carried")
                 continue
             out.append(Ratio((name, leader), ratio, self.xml.at(mimic)))
+        refuse_circle(out, self.xml.problems)
         return out

@@ -8,6 +8,7 @@ these programs have it. Archives, entities and external document types are refus
 from __future__ import annotations
 
 import io
+import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from kinform.form.constants import LARGEST_NUMBER, SCENE_DEEP, SCENE_NODES, SCENE_XML_BYTES
+from kinform.form.descriptions.poses import about, pose
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate, prevailing
 from kinform.form.scenes.declarations import refuse_declarations
 from kinform.form.scenes.scene import EXPORT, Node, Scene
@@ -118,7 +120,7 @@ class _Reader:
 
         if deep > SCENE_DEEP or len(self.nodes) > SCENE_NODES:
             raise MeshError([Fault(f"has nodes more than {SCENE_DEEP} deep in each other, or too many", EXPORT)])
-        X = np.array(node.matrix, dtype=np.float64)
+        X = _matrix(node)
         X[:3, 3] *= self.metres
         children: list[int] = []
         for child in node.children:
@@ -206,6 +208,23 @@ def _joined(name: str, X: Array, children: list[int], nodes: list[Node]) -> Node
     if len(children) == 1 and nodes[children[0]].name == "" and not nodes[children[0]].children:
         return Node(name, X, nodes[children[0]].mesh)
     return Node(name, X, None, tuple(children))
+
+
+def _matrix(node: Any) -> Array:
+    """What the steps of a node make together, (4, 4). pycollada takes the axes of turns for unit vectors, and shears
+    where they are rounded."""
+    import collada
+
+    X = np.eye(4)
+    for step in node.transforms:
+        if isinstance(step, collada.scene.RotateTransform):
+            axis = float(step.x), float(step.y), float(step.z)
+            if step.angle != 0.0 and not any(axis):
+                raise MeshError([Fault("turns a node about an axis that is zero", EXPORT)])
+            X = X @ pose(about(axis, math.radians(step.angle)), (0.0, 0.0, 0.0))
+        else:
+            X = X @ np.array(step.matrix, dtype=np.float64)
+    return X
 
 
 def _name(node: Any) -> str:

@@ -132,7 +132,8 @@ class _Walk:
             if inner:
                 below = list(self._below(inner, f"{name}/", f"{told}/", X_here, deep + 1))
                 yield from below
-                own_name = distinct({part.name for part in below})(f"{name}/{own}")
+                taken = {"/".join(part.name.split("/")[: name.count("/") + 2]) for part in below}
+                own_name = distinct(taken)(f"{name}/{own}")
             else:
                 own_name = name
             if node.mesh is not None:

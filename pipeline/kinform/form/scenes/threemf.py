@@ -80,8 +80,7 @@ class _Reader:
         if "/_rels/.rels" in self.names:
             for relation in self._xml("/_rels/.rels").iterfind("{*}Relationship"):
                 if relation.get("Type", "").endswith("/3dmodel"):
-                    target: str = relation.get("Target", "")
-                return "/" + target.lstrip("/").lower()
+                    return "/" + str(relation.get("Target", "")).lstrip("/").lower()
         return "/3d/3dmodel.model"
 
     def _xml(self, name: str) -> Any:
