@@ -25,12 +25,13 @@ def drive_alone(shapes: Shapes, joint: Joint, still: Sequence[str], moving: Sequ
     twist = joint_twist(joint)
     profiles = {name: _profile(shapes, name, twist) for name in (*still, *moving)}
     candidates = _candidates(shapes, profiles, twist, still, moving)
-    below, above = guide(*shapes.design(), joint, shapes.body_parts[joint.bodies[1]])
     if joint.type == "revolute":
         below, above = -math.pi, math.pi
-    elif joint.type == "screw":
-        return _screwed(joint, candidates, below, above)
     else:
+        below, above = guide(*shapes.design(), joint, shapes.body_parts[joint.bodies[1]])
+    if joint.type == "screw":
+        return _screwed(joint, candidates, below, above)
+    if joint.type == "prismatic":
         reach = _clear(list(profiles.values()))
         below, above = max(below, -reach), min(above, reach)
     ends = {sign: _end(candidates, sign, abs(limit), 0.0) for sign, limit in ((-1, below), (1, above))}

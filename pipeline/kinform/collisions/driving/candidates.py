@@ -8,6 +8,7 @@ from functools import cached_property, lru_cache
 
 from kinform.collisions.constants import (
     CROSSING_LEAST,
+    FACETS_STEP,
     MEETING_MARGIN,
     MODEL_MOST,
     MODEL_SHARED,
@@ -70,6 +71,16 @@ class Candidate:
     def wholes(self) -> Wholes:
         """The parts with all their facets."""
         return Wholes(self._shapes, *self.names)
+
+    @property
+    def steps_apart(self) -> int:
+        """Steps as wholes that cost about as much as to ask whether they are apart for good."""
+        return sum(len(self._shapes.mesh(name).faces) for name in self.names) // FACETS_STEP
+
+    @property
+    def apart(self) -> bool:
+        """Whether none of their facets can meet anywhere."""
+        return not all(map(len, self._meeting.facets))
 
     @cached_property
     def _meeting(self) -> Meeting:
@@ -176,10 +187,11 @@ class _Window:
 class Approach:
     """A pair on the way to one side: up to `s` nothing is met.
 
-    As long as its parts are far from each other as wholes it goes on in steps. From where they are not, the facets that
-    can meet in a window of the motion are looked at: where none can, or they stay apart, it goes on behind the window;
-    where they come too near to go on in steps, they are followed to its end. Parts that are in touch there, or that
-    mate, are followed all the way.
+    As long as its parts are far from each other as wholes it goes on in steps; when these have cost as much as asking
+    which facets can meet at all, that is asked: nested parts stay near all the way, and never meet. From where they are
+    not far, the facets that can meet in a window of the motion are looked at: where none can, or they stay apart, it
+    goes on behind the window; where they come too near to go on in steps, they are followed to its end. Parts that are
+    in touch there, or that mate, are followed all the way.
     """
 
     def __init__(self, candidate: Candidate, sign: int, s: float):
@@ -199,6 +211,9 @@ class Approach:
             return self._followed(self._search, reach)
         if self._window is not None:
             return self._through(self._window, reach)
+        if self._wholes.steps >= self._candidate.steps_apart and self._candidate.apart:
+            self.s = math.inf
+            return None
         following, short = self._wholes.step(self._candidate.course(self._sign), self.s, reach)
         if short:
             self._open(reach)
