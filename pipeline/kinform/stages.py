@@ -26,6 +26,7 @@ from kinform.reuse.ledger import Ledger
 
 if TYPE_CHECKING:
     from kinform.model.assembly import Assembly
+    from kinform.model.kinematics import Kinematics
     from kinform.model.simulation import Simulation
 
 
@@ -142,8 +143,8 @@ def simulate(
     ledger: Ledger | None = None,
 ) -> Design:
     """Motion at the level that is known, or at `level`, with what the parts collide with in it; and how far each joint
-    goes: where `ranges` says so, else where the function states ranges or requirements. Raises StageError without mass
-    properties.
+    goes, unless `ranges` is False, or None and that would take long: then the run says so, unless the function states
+    ranges or requirements. Raises StageError without mass properties.
 
     `say` is told what takes long besides the steps that `progress` counts.
     """
@@ -152,7 +153,9 @@ def simulate(
     function = design.assembly.function
     meshed = any(part.mesh is not None for part in design.assembly.parts)
     stated = meshed and (bool(function.requirements) or any(joint.range is not None for joint in function.joints))
-    wanted = stated if ranges is None else meshed and ranges
+    unasked = _unasked(design.assembly, kinematics) if meshed and not stated and ranges is not True else ""
+    by_default = meshed and not unasked
+    wanted = by_default if ranges is None else meshed and ranges
 
     def move(view: Assembly) -> Result:
         from kinform import simulation
@@ -173,12 +176,15 @@ def simulate(
             request = view.simulation or SimulationRequest()
             return run(replace(view, simulation=replace(request, step=request.step / times)))
 
-        return Result(
-            {"behaviour": behaviour, "simulation": _with_collisions(design, view, run(view, progress), reach, finer)}
-        )
+        moved = _with_collisions(design, view, run(view, progress), reach, finer)
+        if unasked and moved.ranges is None:
+            moved = replace(moved, assumptions=(*moved.assumptions, unasked))
+            if say is not None:
+                say(unasked)
+        return Result({"behaviour": behaviour, "simulation": moved})
 
     settings = {"whether ranges are asked for": "yes" if wanted else "no", "level": level}
-    asked = level if wanted == stated else f"{level}, ranges {wanted}"
+    asked = level if wanted == by_default else f"{level}, ranges {wanted}"
     return advance(SIMULATION, design, move, ledger or Ledger(), settings, asked)
 
 
@@ -252,6 +258,14 @@ def _with_collisions(
         )  # fmt: skip
         run = replace(run, collisions=met, uncollided=untested)
     return run if ranges is None else replace(run, ranges=ranges)
+
+
+def _unasked(assembly: Assembly, kinematics: Kinematics) -> str:
+    """That ranges are not looked for where nobody asks, and why; empty where they are."""
+    from kinform import collisions
+
+    why = collisions.too_large(assembly, kinematics)
+    return f"how far joints go was not looked for: {why}; --ranges asks" if why else ""
 
 
 def _ranges(design: Design, view: Assembly) -> tuple[JointRange, ...] | None:

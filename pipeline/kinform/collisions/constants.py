@@ -180,6 +180,16 @@ SECTORS = 64
 TESTED_TOGETHER = 64
 """Groups of one that are asked at once."""
 
+# joint_ranges: what is looked for unasked
+
+UNASKED_PAIRS = 10_000
+"""Joints times parts up to which ranges are looked for where nobody asks: 100 links took 2.5 s of processor, ..."""
+UNASKED_LOOPS = 8
+"""... joints of loops, whose motions are followed step by step, counting so many times: 30 bars of four-bars took 4 s,
+90 over a minute; ..."""
+UNASKED_FACETS = 30_000_000
+"""... and joints times facets: 27 million, of a humanoid of 1.3 million facets, took 9 s, as long as all before."""
+
 # driving/loop_motion: the one motion of joints that loops tie together
 
 STEP = 0.04

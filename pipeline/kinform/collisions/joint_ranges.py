@@ -9,11 +9,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from kinform.collisions.constants import UNASKED_FACETS, UNASKED_LOOPS, UNASKED_PAIRS
 from kinform.collisions.driving.alone import drive_alone
 from kinform.collisions.driving.loops import drive_loops
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.graphs.graph import UnionFind, blocks
 from kinform.foundation.progress import Progress
+from kinform.foundation.words import counted
 from kinform.model.assembly import Assembly
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.contacts import Contacts
@@ -59,6 +61,21 @@ def ranges(
     if progress is not None:
         progress(len(driven), len(driven))
     return tuple(replace(out[k], slides=joints[k].type == "prismatic") for k in driven)
+
+
+def too_large(assembly: Assembly, kinematics: Kinematics) -> str:
+    """Why ranges are looked for only where they are asked for: what is too large; empty where nothing is. It hangs on
+    numbers of joints, parts and facets alone."""
+    parts = [part for part in assembly.parts if part.mesh is not None]
+    facets = sum(len(part.mesh.faces) for part in parts if part.mesh is not None)
+    index = {body.name: n for n, body in enumerate(kinematics.bodies)}
+    edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in kinematics.joints]
+    looped = {k for block in blocks(len(index), edges) if len(block) > 1 for k in block}
+    driven = [k for k, joint in enumerate(kinematics.joints) if joint.type in ONE_FREEDOM]
+    weight = sum(UNASKED_LOOPS if k in looped else 1 for k in driven)
+    if weight * len(parts) <= UNASKED_PAIRS and len(driven) * facets <= UNASKED_FACETS:
+        return ""
+    return f"{counted(len(driven), 'joint')}, {counted(len(parts), 'part')} and {facets:,} facets take long"
 
 
 def shapes_of(
