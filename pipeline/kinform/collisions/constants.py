@@ -111,6 +111,12 @@ REFINED = 2e-3
 less than 1e-9 rad of a turn."""
 FIRST_TRIED = 4
 """So often the facets that cross first are looked for among those that cross a little later."""
+OVERLAP_SAME = 1.25
+"""Parts that overlapped at the start, and come to overlap by no more than this share of it, come back to where they
+were; ..."""
+DEEPER = 5e-3
+"""... and go into each other where it is by so much more: an arm that lies 0.3 mm in its base, of 166 mm, rubs on it by
+0.74 mm until it is clear of it."""
 RISE = 0.02
 """Share of what may be overlap of mates or chord errors by which the depth has to grow."""
 RISE_UNEVEN = 0.1
@@ -248,9 +254,6 @@ OUTPUTS_MOST = 50_000
 """Outputs up to which a run is asked for again."""
 RUN_ASKED = 3
 """How often: with more outputs more of the motion is seen."""
-OVERLAP_SAME = 1.25
-"""Parts that overlapped at the start, and come to overlap by no more than this share of it, come back to where they
-were."""
 DEPTH_SOON = 17
 """Times within an output step of the first contact at which the depth is measured too."""
 DEPTH_TIMES = 12

@@ -18,6 +18,7 @@ from kinform.collisions.constants import (
     WINDOW_TURN,
 )
 from kinform.collisions.driving.meeting_spans import Spans, meeting_spans
+from kinform.collisions.driving.overlaps import Overlap, Pair
 from kinform.collisions.driving.swept_profiles import Meeting, Profile, meeting
 from kinform.collisions.pair.advancement import First, Near, Search, first_crossing
 from kinform.collisions.pair.course import Course
@@ -30,9 +31,6 @@ from kinform.foundation.algebra.displacements import displacement
 from kinform.kinematics.mobility.guides import preserved
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
-from kinform.model.names import PartName
-
-Pair = tuple[PartName, PartName]
 
 
 class Candidate:
@@ -50,6 +48,11 @@ class Candidate:
         self._tests: list[PairTest] = []
         self._modelled = 0
         """Facets of models of some so far."""
+
+    @property
+    def units(self) -> str:
+        """Of the assembly, in which lengths are told."""
+        return self._shapes.assembly.units
 
     @property
     def part_names(self) -> Pair:
@@ -201,9 +204,12 @@ class Approach:
         self._search: Search | None = None
 
     @property
-    def overlaps(self) -> bool:
-        """Whether the parts cross from the start, as far as they were followed."""
-        return self._search is not None and self._search.overlaps
+    def overlap(self) -> Overlap | None:
+        """How the parts overlap from the start, as far as they were followed; None where they do not."""
+        search = self._search
+        if search is None or not search.overlapping:
+            return None
+        return Overlap(self._candidate.part_names, search.before, search.place)
 
     def advance(self, reach: float) -> First | None:
         """One step, up to `reach`; what is met, and what is not known, at its end; None: it may go on."""
@@ -267,6 +273,6 @@ class Approach:
         """A piece of the way, followed."""
         limit = min(self.s + self._candidate.window, reach)
         first = search.until(limit, reach)
-        over = limit >= reach or first.at is not None or first.exhausted is not None
+        over = limit >= reach or first.at is not None or first.exhausted is not None or first.deeper < math.inf
         self.s = math.inf if over else limit
         return first if over else None
