@@ -67,7 +67,9 @@ def run(
         design = stages.contacts(design, jobs=jobs, progress=_steps(progress, "contacts"), ledger=ledger)
         design = stages.joints(design, ledger=ledger)
         design = stages.mass(design, ledger=ledger)
-        design = stages.simulate(design, ranges=ranges, progress=_steps(progress, "simulation"), say=say, ledger=ledger)
+        design = stages.simulate(
+            design, ranges=ranges, jobs=jobs, progress=_steps(progress, "simulation"), say=say, ledger=ledger
+        )
         return stages.check(design, ledger=ledger)
 
     ledger = Ledger(earlier)
@@ -106,7 +108,7 @@ def completed(
         design = stages.mass(design)
         ran.append("mass")
     if design.simulation is None:
-        design = stages.simulate(design, progress=_steps(progress, "simulation"), say=say)
+        design = stages.simulate(design, jobs=jobs, progress=_steps(progress, "simulation"), say=say)
         ran.append("simulate")
     if design.report is None:
         design = stages.check(design)

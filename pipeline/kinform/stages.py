@@ -138,6 +138,7 @@ def simulate(
     *,
     level: str | None = None,
     ranges: bool | None = None,
+    jobs: int = 1,
     progress: Progress | None = None,
     say: Callable[[str], None] | None = None,
     ledger: Ledger | None = None,
@@ -161,7 +162,7 @@ def simulate(
         from kinform import simulation
 
         stopping = view.simulation is not None and view.simulation.stops == "found"
-        reach = _ranges(design, view) if stopping or wanted else None
+        reach = _ranges(design, view, jobs) if stopping or wanted else None
         behaviour = simulation.port_model(
             view, kinematics, masses, level=level, contacts=design.contacts, surfaces=design.surfaces,
             reach=reach or (),
@@ -268,10 +269,10 @@ def _unasked(assembly: Assembly, kinematics: Kinematics) -> str:
     return f"how far joints go was not looked for: {why}; --ranges asks" if why else ""
 
 
-def _ranges(design: Design, view: Assembly) -> tuple[JointRange, ...] | None:
+def _ranges(design: Design, view: Assembly, jobs: int) -> tuple[JointRange, ...] | None:
     """How far joints go; None where there are no meshes to stop them."""
     if not design.surfaces or design.kinematics is None or all(part.mesh is None for part in view.parts):
         return None
     from kinform import collisions
 
-    return collisions.ranges(view, design.surfaces, design.contacts, design.kinematics)
+    return collisions.ranges(view, design.surfaces, design.contacts, design.kinematics, jobs=jobs)

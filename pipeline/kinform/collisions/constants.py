@@ -186,7 +186,10 @@ SECTORS = 64
 TESTED_TOGETHER = 64
 """Groups of one that are asked at once."""
 
-# joint_ranges: what is looked for unasked
+# joint_ranges: what is looked for unasked, and by several processes
+
+SHARED_FACETS = 200_000
+"""Joints times facets from which on processes share them: 300,000, of an arm, take 2 s, starting them 0.1 s."""
 
 UNASKED_PAIRS = 10_000
 """Joints times parts up to which ranges are looked for where nobody asks: 100 links took 2.5 s of processor, ..."""

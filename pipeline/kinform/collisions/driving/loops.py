@@ -13,7 +13,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from kinform.collisions.constants import LOOP_STOP, TURNED_ROUND
+from kinform.collisions.constants import CLOSED, LOOP_STOP, TURNED_ROUND
 from kinform.collisions.driving.alone import drive_alone
 from kinform.collisions.driving.loop_motion import RETURNED, Between, Linkage, Path, follow
 from kinform.collisions.driving.overlaps import Overlap, Pair, overlap_words
@@ -171,6 +171,9 @@ def _range(joint: Joint, linkage: Linkage, column: int, ends: Sequence[_Travelle
     )
     left_out = tuple(sorted({pair for end in ends for pair in end.left_out}))
     overlap = next((end.overlap for end in ends if end.overlap), "")
+    if high - low < CLOSED and any(np.ptp(end.s) > 1.0 for end in ends):
+        still = RangeEnd("unknown", reason="its loops move, and it does not")
+        return JointRange(joint.name, still, still, left_out)
     returned = any(end.why == RETURNED for end in ends)
     if returned and linkage.turns[column] and high - low > TURNED_ROUND:
         free = RangeEnd("unknown", reason=overlap) if left_out else RangeEnd("unbounded")
