@@ -122,6 +122,8 @@ class Search:
         self._touching = False
         """Whether the pair touched where it was last asked."""
         self._inside: Inside | None = None
+        self._drawn = course.travel(start) <= 0.0
+        """Whether it begins where the motion does: further on parts have been apart."""
         self._start = self._apart = self._left = start
         """From where on it is looked for; since where the parts have not overlapped; up to where it was looked for."""
         self._cover(start, end if near is None else min(start + near.window, end))
@@ -137,7 +139,7 @@ class Search:
         """What is met up to `limit`, from where it was looked for last; points that come in are looked for a little
         further, up to `end`. Of parts that overlap at the start and go deeper, or meet before they have parted and gone
         on by more than that, nothing is known."""
-        soon = None if self._left > self._start or self.overlaps else self._soon(end)
+        soon = self._soon(end) if self._drawn and self._left <= self._start and not self.overlaps else None
         first = self._until(limit, end)
         if soon is not None and (first.hit is None or first.hit > soon.hit):
             first = soon
@@ -302,7 +304,7 @@ class Search:
         """The points that may come in, from where the parts do not cross on."""
         if self._inside is None:
             self._inside = Inside(self.test, self.course, self._apart)
-            if self._apart > self._start:
+            if not self._drawn or self._apart > self._start:
                 self._inside.forget()
             elif self._inside.place is not None:
                 self.before, self.place = self._inside.sunk, self._world(self._inside.place)
@@ -335,7 +337,8 @@ class Search:
         self.since = {pair: self.since.get(pair, (left, right)) for pair in crossing.shared}
         if self.overlaps:
             self.overlaps, self._apart = bool(crossing), right
-            if self.overlaps and self._depth(right) > self.test.going_deeper(self.before):
+            least = self.test.going_deeper(self.before)
+            if crossing and self.test.depth(self.course.displacement(right), crossing.segments(), least) > least:
                 self._deeper = right
         self._known = {key: state for key, state in self._known.items() if key >= right}
         return right
