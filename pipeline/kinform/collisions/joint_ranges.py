@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from kinform.collisions.constants import SHARED_FACETS, UNASKED_FACETS, UNASKED_LOOPS, UNASKED_PAIRS
 from kinform.collisions.driving.alone import drive_alone
-from kinform.collisions.driving.loops import drive_loops
+from kinform.collisions.driving.loops import drive_loops, is_followed
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.graphs.graph import UnionFind, blocks
 from kinform.foundation.processes import map_in_processes
@@ -65,13 +65,17 @@ def ranges(
 
 def too_large(assembly: Assembly, kinematics: Kinematics) -> str:
     """Why ranges are looked for only where they are asked for: what is too large; empty where nothing is. It hangs on
-    numbers of joints, parts and facets alone."""
+    numbers of joints, parts and facets alone, and on which loops move in one way."""
     parts = [part for part in assembly.parts if part.mesh is not None]
     facets = sum(len(part.mesh.faces) for part in parts if part.mesh is not None)
     index = {body.name: n for n, body in enumerate(kinematics.bodies)}
     edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in kinematics.joints]
-    looped = {k for block in blocks(len(index), edges) if len(block) > 1 for k in block}
-    driven = [k for k, joint in enumerate(kinematics.joints) if joint.type in ONE_FREEDOM]
+    together = [block for block in blocks(len(index), edges) if len(block) > 1]
+    driven = {k for k, joint in enumerate(kinematics.joints) if joint.type in ONE_FREEDOM}
+    if UNASKED_LOOPS * len(driven) * len(parts) > UNASKED_PAIRS:
+        # joints of loops that have more than one freedom are not followed, and take no time
+        driven -= {k for block in together if not is_followed(kinematics, edges, block) for k in block}
+    looped = {k for block in together for k in block}
     weight = sum(UNASKED_LOOPS if k in looped else 1 for k in driven)
     if weight * len(parts) <= UNASKED_PAIRS and len(driven) * facets <= UNASKED_FACETS:
         return ""

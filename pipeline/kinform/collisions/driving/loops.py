@@ -35,18 +35,10 @@ def drive_loops(
     shapes: Shapes, kinematics: Kinematics, edges: Sequence[Edge], block: Sequence[int]
 ) -> dict[int, JointRange] | str:
     """The ranges of the joints of one block; or why they are not known."""
-    doubtful = [
-        k for k in block if kinematics.joints[k].type == "general" or kinematics.joints[k].status == "ambiguous"
-    ]
-    if doubtful:
-        return f"its loops run through {kinematics.joints[doubtful[0]].name}, whose motion is not known"
+    linkage = _linkage(kinematics, edges, block, shapes.size)
+    if isinstance(linkage, str):
+        return linkage
     idle = _idle(kinematics, block)
-    linkage = Linkage(kinematics, edges, block, idle, shapes.size)
-    first = linkage.tangent(np.zeros(linkage.system.coordinates))
-    if first is None:
-        return "the loops do not move"
-    if not first[1]:
-        return "its loops have more than one freedom, or a singular pose"
     ends = [_travelled(shapes, kinematics, linkage, follow(linkage, -1.0))]
     # a motion that comes back to where it began, and meets nothing, is the same the other way round
     free = ends[0].why == RETURNED and not ends[0].left_out
@@ -61,6 +53,25 @@ def drive_loops(
                 _spun(shapes, kinematics, joint, spinning[0]) if spinning else _range(joint, linkage, columns[0], ends)
             )
     return out
+
+
+def is_followed(kinematics: Kinematics, edges: Sequence[Edge], block: Sequence[int]) -> bool:
+    """Whether the motion of the joints of one block is followed, which takes long."""
+    return not isinstance(_linkage(kinematics, edges, block, 1.0), str)
+
+
+def _linkage(kinematics: Kinematics, edges: Sequence[Edge], block: Sequence[int], size: float) -> Linkage | str:
+    """The joints of one block with their one motion; or why they have none that is followed."""
+    doubtful = [
+        k for k in block if kinematics.joints[k].type == "general" or kinematics.joints[k].status == "ambiguous"
+    ]
+    if doubtful:
+        return f"its loops run through {kinematics.joints[doubtful[0]].name}, whose motion is not known"
+    linkage = Linkage(kinematics, edges, block, _idle(kinematics, block), size)
+    first = linkage.tangent(np.zeros(linkage.system.coordinates))
+    if first is None:
+        return "the loops do not move"
+    return linkage if first[1] else "its loops have more than one freedom, or a singular pose"
 
 
 def _idle(kinematics: Kinematics, block: Sequence[int]) -> list[Freedom]:
