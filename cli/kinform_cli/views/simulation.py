@@ -121,7 +121,7 @@ def _ranges(run: Simulation, lengths: Lengths) -> list[RenderableType]:
         why = dict.fromkeys(end.reason for end in ends if end.status == "unknown")
         reasons += [f"range of {item.joint} unknown: {reason}" for reason in why]
         if item.left_out and not why:
-            reasons.append(f"range of {item.joint}: without {_pairs(item.left_out)}, which overlap or roll on each other")
+            reasons.append(f"range of {item.joint}: without {_pairs(item.left_out)}, which overlap, or roll")
     return [rows, *reasons]
 
 

@@ -186,7 +186,7 @@ def _range(design: Design, joint: Joint) -> str:
     if computed.status == "found" and computed.left_out:
         pairs = ", ".join(" and ".join(pair) for pair in computed.left_out[:3])
         more = len(computed.left_out) - 3
-        said.append(f"without {pairs}{f' and {more} more' if more > 0 else ''}, which overlap or roll on each other")
+        said.append(f"without {pairs}{f' and {more} more' if more > 0 else ''}, which overlap, or roll")
     return "; ".join(said)
 
 
