@@ -239,7 +239,7 @@ Ranges = Annotated[
     option(
         "--ranges/--no-ranges",
         None,
-        "Find how far each joint goes until parts meet; else only where the function states ranges or requirements.",
+        "Find how far each joint goes until parts meet; default: yes, unless very many joints or facets make it long.",
     ),
 ]
 Sources = Annotated[

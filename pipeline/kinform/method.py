@@ -45,9 +45,10 @@ def run(
     `output` the results are written there in one step, and what is still valid in an earlier file is reused; the result
     is the same, byte for byte, as one made from nothing. `jobs` processes share the work. Meshes outside the
     manifest's folder need `allow_outside`. `say` is told what takes long besides, and of an earlier file that is no
-    longer whole. `ranges`: whether it is found how far each joint goes; None: where the function states ranges or
-    requirements. `base`: results of a design that is nearly the same, of which is taken what holds, where there is no
-    `output`. `changed`: an earlier file is known not to be what a run would give, and is not asked.
+    longer whole. `ranges`: whether it is found how far each joint goes; None: unless that would take long and the
+    function states no ranges or requirements. `base`: results of a design that is nearly the same, of which is taken
+    what holds, where there is no `output`. `changed`: an earlier file is known not to be what a run would give, and is
+    not asked.
 
     Raises InputError with every problem of the input, ResultsError when `output` cannot be written.
     """
@@ -66,7 +67,9 @@ def run(
         design = stages.contacts(design, jobs=jobs, progress=_steps(progress, "contacts"), ledger=ledger)
         design = stages.joints(design, ledger=ledger)
         design = stages.mass(design, ledger=ledger)
-        design = stages.simulate(design, ranges=ranges, progress=_steps(progress, "simulation"), say=say, ledger=ledger)
+        design = stages.simulate(
+            design, ranges=ranges, jobs=jobs, progress=_steps(progress, "simulation"), say=say, ledger=ledger
+        )
         return stages.check(design, ledger=ledger)
 
     ledger = Ledger(earlier)
@@ -105,7 +108,7 @@ def completed(
         design = stages.mass(design)
         ran.append("mass")
     if design.simulation is None:
-        design = stages.simulate(design, progress=_steps(progress, "simulation"), say=say)
+        design = stages.simulate(design, jobs=jobs, progress=_steps(progress, "simulation"), say=say)
         ran.append("simulate")
     if design.report is None:
         design = stages.check(design)

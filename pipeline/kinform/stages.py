@@ -26,6 +26,7 @@ from kinform.reuse.ledger import Ledger
 
 if TYPE_CHECKING:
     from kinform.model.assembly import Assembly
+    from kinform.model.kinematics import Kinematics
     from kinform.model.simulation import Simulation
 
 
@@ -137,13 +138,14 @@ def simulate(
     *,
     level: str | None = None,
     ranges: bool | None = None,
+    jobs: int = 1,
     progress: Progress | None = None,
     say: Callable[[str], None] | None = None,
     ledger: Ledger | None = None,
 ) -> Design:
     """Motion at the level that is known, or at `level`, with what the parts collide with in it; and how far each joint
-    goes: where `ranges` says so, else where the function states ranges or requirements. Raises StageError without mass
-    properties.
+    goes, unless `ranges` is False, or None and that would take long: then the run says so, unless the function states
+    ranges or requirements. Raises StageError without mass properties.
 
     `say` is told what takes long besides the steps that `progress` counts.
     """
@@ -152,13 +154,15 @@ def simulate(
     function = design.assembly.function
     meshed = any(part.mesh is not None for part in design.assembly.parts)
     stated = meshed and (bool(function.requirements) or any(joint.range is not None for joint in function.joints))
-    wanted = stated if ranges is None else meshed and ranges
+    unasked = _unasked(design.assembly, kinematics) if meshed and not stated and ranges is not True else ""
+    by_default = meshed and not unasked
+    wanted = by_default if ranges is None else meshed and ranges
 
     def move(view: Assembly) -> Result:
         from kinform import simulation
 
         stopping = view.simulation is not None and view.simulation.stops == "found"
-        reach = _ranges(design, view) if stopping or wanted else None
+        reach = _ranges(design, view, jobs) if stopping or wanted else None
         behaviour = simulation.port_model(
             view, kinematics, masses, level=level, contacts=design.contacts, surfaces=design.surfaces,
             reach=reach or (),
@@ -173,12 +177,15 @@ def simulate(
             request = view.simulation or SimulationRequest()
             return run(replace(view, simulation=replace(request, step=request.step / times)))
 
-        return Result(
-            {"behaviour": behaviour, "simulation": _with_collisions(design, view, run(view, progress), reach, finer)}
-        )
+        moved = _with_collisions(design, view, run(view, progress), reach, finer)
+        if unasked and moved.ranges is None:
+            moved = replace(moved, assumptions=(*moved.assumptions, unasked))
+            if say is not None:
+                say(unasked)
+        return Result({"behaviour": behaviour, "simulation": moved})
 
     settings = {"whether ranges are asked for": "yes" if wanted else "no", "level": level}
-    asked = level if wanted == stated else f"{level}, ranges {wanted}"
+    asked = level if wanted == by_default else f"{level}, ranges {wanted}"
     return advance(SIMULATION, design, move, ledger or Ledger(), settings, asked)
 
 
@@ -254,10 +261,18 @@ def _with_collisions(
     return run if ranges is None else replace(run, ranges=ranges)
 
 
-def _ranges(design: Design, view: Assembly) -> tuple[JointRange, ...] | None:
+def _unasked(assembly: Assembly, kinematics: Kinematics) -> str:
+    """That ranges are not looked for where nobody asks, and why; empty where they are."""
+    from kinform import collisions
+
+    why = collisions.too_large(assembly, kinematics)
+    return f"how far joints go was not looked for: {why}; --ranges asks" if why else ""
+
+
+def _ranges(design: Design, view: Assembly, jobs: int) -> tuple[JointRange, ...] | None:
     """How far joints go; None where there are no meshes to stop them."""
     if not design.surfaces or design.kinematics is None or all(part.mesh is None for part in view.parts):
         return None
     from kinform import collisions
 
-    return collisions.ranges(view, design.surfaces, design.contacts, design.kinematics)
+    return collisions.ranges(view, design.surfaces, design.contacts, design.kinematics, jobs=jobs)

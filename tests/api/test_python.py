@@ -151,7 +151,8 @@ class TestSummary:
         assert joint.keys() >= {
             "name", "bodies", "type", "axis", "point", "pitch", "freedoms", "evidence", "status", "range",
         }  # fmt: skip
-        assert joint["pitch"] is joint["range"] is None
+        assert joint["pitch"] is None
+        assert joint["range"] == {"lower": None, "upper": None, "status": "unbounded"}
         assert joint["freedoms"] == 1
         np.testing.assert_allclose(np.linalg.norm(joint["axis"]), 1.0)
         assert found["mobility"] == {

@@ -60,6 +60,10 @@ def test_a_lock_keeps_the_range_and_says_where_it_differs(before, shorter):
     unranged = dataclasses.replace(before, simulation=dataclasses.replace(before.simulation, ranges=None))
     (rule,) = (r for r in with_lock(before.report, unranged, read_lock(text, "b.json")).rules if r.code == "KF450")
     assert (rule.outcome, "ranges" in rule.reason) == ("inconclusive", True)
+    old = read_lock(write_lock(snapshot(unranged)), "o.json")
+    (note,) = (f for f in with_lock(before.report, before, old).findings if f.code == "KF450")
+    assert (note.severity, note.message) == ("note", "ranges are new: o.json does not hold them")
+    assert verdict(with_lock(before.report, before, old)) == verdict(before.report)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,5 @@
-"""`run --ranges` and `simulate --ranges`: what they compute, print and answer, and what the gate makes of it."""
+"""Ranges of `run` and `simulate`, asked for or not: what they compute, print and answer, and what the gate makes of
+it."""
 
 from __future__ import annotations
 
@@ -73,14 +74,14 @@ def ran(
     return code, text, {f.code: f.message for f in report.findings}
 
 
-def test_ranges_that_nothing_states_are_found_where_they_are_asked_for(
+def test_ranges_that_nothing_states_are_found_unless_told_not_to(
     meshes: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert ran(meshes, capsys, "plain", PARTS)[0] == 0
+    assert ran(meshes, capsys, "plain", PARTS, "--no-ranges")[0] == 0
     plain = read(meshes / "plain.h5").simulation
     assert plain is not None
     assert plain.ranges is None
-    assert ran(meshes, capsys, "plain", PARTS, "--ranges")[0] == 0
+    assert ran(meshes, capsys, "plain", PARTS)[0] == 0
     (joint,) = json.loads(shown(meshes / "plain.h5", "joints", capsys))["joints"]
     assert joint["range"]["status"] == "found"
     assert np.degrees([joint["range"]["lower"], joint["range"]["upper"]]) == pytest.approx([-LOWER, UPPER], abs=0.01)
@@ -116,6 +117,32 @@ def test_simulate_finds_the_same_and_leaves_them_out_where_told_to(
     assert [(r.lower.value, r.upper.value) for r in found.ranges or ()] == [
         (r.lower.value, r.upper.value) for r in by_default.ranges or ()
     ]
+
+
+def test_where_it_would_take_long_they_are_found_where_they_are_asked_for_and_that_is_said(
+    meshes: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("kinform.collisions.joint_ranges.UNASKED_PAIRS", 1)
+    assert ran(meshes, capsys, "long", PARTS)[0] == 0
+    unasked = read(meshes / "long.h5").simulation
+    assert unasked is not None
+    assert unasked.ranges is None
+    (said,) = (text for text in unasked.assumptions if "--ranges" in text)
+    assert said.startswith("how far joints go was not looked for: 1 joint, 2 parts and")
+    capsys.readouterr()
+    assert main(["show", str(meshes / "long.h5"), "simulation"]) == 0
+    assert "was not looked for" in capsys.readouterr().out
+    assert main(["run", str(meshes / "long.toml"), "-o", str(meshes / "said.h5")]) == 0
+    assert "was not looked for" in " ".join(capsys.readouterr().err.split())
+    for name, options, text in (
+        ("long", ["--ranges"], PARTS),
+        ("told", [], PARTS + STATED.format(range="range = [-15, 10]", amplitude=5)),
+    ):
+        ran(meshes, capsys, name, text, *options)
+        run = read(meshes / f"{name}.h5").simulation
+        assert run is not None
+        assert run.ranges
+        assert not any("--ranges" in sentence for sentence in run.assumptions)
 
 
 def test_a_range_that_a_peg_cuts_short_and_a_run_into_it_close_the_gate(

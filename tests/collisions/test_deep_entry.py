@@ -18,6 +18,8 @@ def inside(depth):
         probes=[SimpleNamespace(points=np.zeros((1, 3)))],
         size=1.0,
         loose=1e-3,
+        solid_about=np.ones(1, dtype=bool),
+        going_deeper=lambda before: 1.25 * before + 5e-3,
         heights=lambda s, chosen, away: np.full(len(chosen), depth(s)),
         places=lambda s: np.zeros((1, 3)),
     )

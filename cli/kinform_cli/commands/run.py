@@ -38,7 +38,7 @@ EXAMPLES = examples(
     "kinform run arm.toml -o arm.h5",
     "kinform run arm.toml -o arm.h5 --format concise --fail-on warning",
     "kinform run housing.stl shaft.stl --units mm -o pair.h5",
-    "kinform run arm.toml -o arm.h5 --ranges",
+    "kinform run arm.toml -o arm.h5 --no-ranges",
     "kinform run robot.urdf -o robot.h5",
     "kinform run arm.toml                # verify only, keep nothing",
     "kinform run .                       # the manifest in this folder",

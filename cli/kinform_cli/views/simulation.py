@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 from rich.console import RenderableType
@@ -119,7 +120,15 @@ def _ranges(run: Simulation, lengths: Lengths) -> list[RenderableType]:
         rows.add(item.joint, *shown, ", ".join(dict.fromkeys(stop for stop in stops if stop)))
         why = dict.fromkeys(end.reason for end in ends if end.status == "unknown")
         reasons += [f"range of {item.joint} unknown: {reason}" for reason in why]
+        if item.left_out and not why:
+            reasons.append(f"range of {item.joint}: without {_pairs(item.left_out)}, which overlap, or roll")
     return [rows, *reasons]
+
+
+def _pairs(pairs: Sequence[tuple[str, str]]) -> str:
+    more = len(pairs) - NAMED_PAIRS
+    rest = f", and {counted(more, 'pair')} more" if more > 0 else ""
+    return ", ".join(" and ".join(pair) for pair in pairs[:NAMED_PAIRS]) + rest
 
 
 def _collisions(run: Simulation, lengths: Lengths) -> list[RenderableType]:

@@ -19,6 +19,9 @@ from kinform.changes.matching import holder, new_names, same_bodies, with_names
 from kinform.changes.tolerance import Tolerance
 from kinform.design import Design
 
+NEW = "ranges"
+"""What earlier versions did not compute unasked: where only the later side knows it, it is new, not in doubt."""
+
 PARTS = ("bodies", "joints", "ranges", "mobility", "masses", "interferences", "simulation", "findings")
 """What is compared, where both know it."""
 
@@ -35,6 +38,8 @@ class Comparison:
     """(what, why) that only one side knows: not verified."""
     compared: tuple[str, ...]
     tolerance: Tolerance
+    new: tuple[str, ...] = ()
+    """What only the later one knows, and is said once: nothing could have been lost."""
     causes: tuple[Cause, ...] = ()
     """What was done to the parts, where the designs themselves are known."""
     groups: tuple[Consequences, ...] = ()
@@ -56,7 +61,12 @@ def compare(
     within = Tolerance() if tolerance is None else tolerance
     old, new = ({name for name in PARTS if getattr(side, name) is not None} for side in (before, after))
     both = [name for name in PARTS if name in old & new]
-    missing = [(name, "not computed " + ("before" if name in new else "after")) for name in PARTS if name in old ^ new]
+    lacking = old ^ new
+    come: tuple[str, ...] = ()
+    if NEW in new - old and both:
+        lacking.remove(NEW)
+        come = (NEW,) if any(joint.range_status != "unknown" for joint in after.joints or ()) else ()
+    missing = [(name, "not computed " + ("before" if name in new else "after")) for name in PARTS if name in lacking]
     other = new_names(before, after) if other is None else other
     before = with_names(before, other)
     now = same_bodies(before, after)
@@ -72,7 +82,7 @@ def compare(
         "findings": lambda: _findings(before, after),
     }
     changes = tuple(change for name in both if name in steps for change in steps[name]())
-    return Comparison(before.assembly, after.assembly, changes, tuple(missing), tuple(both), within)
+    return Comparison(before.assembly, after.assembly, changes, tuple(missing), tuple(both), within, come)
 
 
 def compare_designs(before: Design, after: Design, tolerance: Tolerance | None = None) -> Comparison:

@@ -110,10 +110,18 @@ def _outcome(comparison: Comparison, lock: Lock) -> Outcome:
     from kinform.consistency import Outcome
 
     findings = tuple(_finding(change, lock) for change in comparison.changes)
+    findings += tuple(_new(what, lock) for what in comparison.new)
     lacking = [what for what, why in comparison.missing if why.endswith("after")]
     if lacking:
         return Outcome("inconclusive", findings, f"{', '.join(lacking)} of {lock.file} have not been computed")
     return Outcome("decided", findings)
+
+
+def _new(what: str, lock: Lock) -> Finding:
+    return Finding(
+        CODE, NAME, "note", (what,), f"{what} are new: {lock.file} does not hold them", file=lock.file,
+        remedy="Take them in: kinform lock F.h5 -o FILE, and review the file.",
+    )  # fmt: skip
 
 
 def _finding(change: Change, lock: Lock) -> Finding:

@@ -11,7 +11,7 @@ import numpy as np
 from kinform.changes import constants
 from kinform.changes.causes import Cause
 from kinform.changes.comparison import Comparison
-from kinform.changes.render import cause_lines, change_lines, verdict_words
+from kinform.changes.render import cause_lines, change_lines, new_lines, verdict_words
 from kinform.design import Design
 from kinform.foundation.algebra.displacements import displacement, inverse, twist_of
 from kinform.foundation.algebra.spatial import quaternions
@@ -45,6 +45,7 @@ def diff_page(comparison: Comparison, before: Design, after: Design, files: tupl
             overview=image_url(Artist(Scene(after)).overview()),
             groups=_groups(comparison, numbers),
             missing=comparison.missing,
+            new=new_lines(comparison),
             legend=[(kind, colour, kinds[kind]) for kind, colour in constants.REVISION_COLOURS.items() if kinds[kind]],
         )
     )

@@ -32,7 +32,13 @@ def _full(comparison: Comparison) -> str:
     else:
         lines += [line for change in comparison.changes for line in change_lines(change)]
     lines += [f"not compared: {what}: {why}" for what, why in comparison.missing]
+    lines += new_lines(comparison)
     return "\n".join([*lines, verdict_words(comparison)]) + "\n"
+
+
+def new_lines(comparison: Comparison) -> list[str]:
+    """That something is known now that was not computed before."""
+    return [f"{what} are new: not computed before, nothing to compare with" for what in comparison.new]
 
 
 def cause_lines(group: Consequences, comparison: Comparison) -> list[str]:
@@ -73,6 +79,7 @@ def _json(comparison: Comparison) -> str:
         "changes": [dataclasses.asdict(change) for change in comparison.changes],
         "compared": comparison.compared,
         "not_compared": [{"what": what, "why": why} for what, why in comparison.missing],
+        "new": comparison.new,
         "tolerance": dataclasses.asdict(comparison.tolerance),
     }
     return json.dumps(found, indent=1, allow_nan=False) + "\n"
@@ -95,6 +102,8 @@ def _markdown(comparison: Comparison) -> str:
         blocks.append(table(("what", "change", "before", "after"), rows))
     if comparison.missing:
         blocks.append("\n".join(f"- not compared: {what}: {why}" for what, why in comparison.missing))
+    if comparison.new:
+        blocks.append("\n".join(f"- {line}" for line in new_lines(comparison)))
     return "\n\n".join(blocks) + "\n"
 
 

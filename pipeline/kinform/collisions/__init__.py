@@ -14,7 +14,8 @@ another does a part first meet it (`pair`)? The rooms are read in this order:
    (`passages`). `posed_pairs` makes courses of poses of bodies.
 3. `driving`: `alone` drives a joint that no loop closes over. Of pairs that come near each other (`candidates`), the
    one free for the shortest way goes on first. What points keep as they turn or slide tells which of its facets
-   can meet (`swept_profiles`), and where (`meeting_spans`, `swept_spheres`): only there the course is followed.
+   can meet (`swept_profiles`), and where (`meeting_spans`, `swept_spheres`): only there the course is followed, and of
+   parts that mate with those facets alone that can meet there other than along mates.
    `loops` drives all joints of a block along its one motion (`loop_motion`).
 
 Less deep than mates may overlap it is a scrape, and none of this counts.
@@ -22,10 +23,10 @@ Less deep than mates may overlap it is a scrape, and none of this counts.
 
 from __future__ import annotations
 
-from kinform.collisions.joint_ranges import ranges
+from kinform.collisions.joint_ranges import ranges, too_large
 from kinform.collisions.run_collisions import along
 
-__all__ = ["CODE_VERSION", "along", "ranges"]
+__all__ = ["CODE_VERSION", "along", "ranges", "too_large"]
 
 CODE_VERSION: int = 17
 """Raised when the same input would give other ranges or collisions."""

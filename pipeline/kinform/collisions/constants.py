@@ -111,6 +111,12 @@ REFINED = 2e-3
 less than 1e-9 rad of a turn."""
 FIRST_TRIED = 4
 """So often the facets that cross first are looked for among those that cross a little later."""
+OVERLAP_SAME = 1.25
+"""Parts that overlapped at the start, and come to overlap by no more than this share of it, come back to where they
+were; ..."""
+DEEPER = 5e-3
+"""... and go into each other where it is by so much more: an arm that lies 0.3 mm in its base, of 166 mm, rubs on it by
+0.74 mm until it is clear of it."""
 RISE = 0.02
 """Share of what may be overlap of mates or chord errors by which the depth has to grow."""
 RISE_UNEVEN = 0.1
@@ -144,6 +150,9 @@ WINDOW_TURN = 2.0 * math.pi / 32
 WINDOW_SLIDE = 0.05
 """... and share of the smaller part's diagonal of a slide, that parts which come near each other are followed with the
 facets that can meet there."""
+FACETS_STEP = 2000
+"""Facets of a pair of which it is asked which can meet at all, in the time of one step as wholes: nested parts of 1,000
+facets took 0.5 ms and 1 to 3 ms, those of an arm with 20,000 took 5 ms and 0.5 to 2 ms."""
 MODEL_MOST = 0.7
 """Where more than this share of the facets that can meet at all can in a window, all are modelled, ..."""
 MODEL_SHARED = 8.0
@@ -176,6 +185,19 @@ SECTORS = 64
 """Of the motion, for each of which it is known which facets can meet in it."""
 TESTED_TOGETHER = 64
 """Groups of one that are asked at once."""
+
+# joint_ranges: what is looked for unasked, and by several processes
+
+SHARED_FACETS = 200_000
+"""Joints times facets from which on processes share them: 300,000, of an arm, take 2 s, starting them 0.1 s."""
+
+UNASKED_PAIRS = 10_000
+"""Joints times parts up to which ranges are looked for where nobody asks: 100 links took 2.5 s of processor, ..."""
+UNASKED_LOOPS = 8
+"""... joints of loops, whose motions are followed step by step, counting so many times: 30 bars of four-bars took 4 s,
+90 over a minute; ..."""
+UNASKED_FACETS = 30_000_000
+"""... and joints times facets: 27 million, of a humanoid of 1.3 million facets, took 9 s, as long as all before."""
 
 # driving/loop_motion: the one motion of joints that loops tie together
 
@@ -235,9 +257,6 @@ OUTPUTS_MOST = 50_000
 """Outputs up to which a run is asked for again."""
 RUN_ASKED = 3
 """How often: with more outputs more of the motion is seen."""
-OVERLAP_SAME = 1.25
-"""Parts that overlapped at the start, and come to overlap by no more than this share of it, come back to where they
-were."""
 DEPTH_SOON = 17
 """Times within an output step of the first contact at which the depth is measured too."""
 DEPTH_TIMES = 12

@@ -9,11 +9,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from kinform.collisions.constants import SHARED_FACETS, UNASKED_FACETS, UNASKED_LOOPS, UNASKED_PAIRS
 from kinform.collisions.driving.alone import drive_alone
-from kinform.collisions.driving.loops import drive_loops
+from kinform.collisions.driving.loops import drive_loops, is_followed
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.graphs.graph import UnionFind, blocks
+from kinform.foundation.processes import map_in_processes
 from kinform.foundation.progress import Progress
+from kinform.foundation.words import counted
 from kinform.model.assembly import Assembly
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.contacts import Contacts
@@ -29,36 +32,54 @@ def ranges(
     contacts: Contacts | None,
     kinematics: Kinematics,
     progress: Progress | None = None,
+    jobs: int = 1,
 ) -> tuple[JointRange, ...]:
-    """The range of each joint that is not fixed, in the order of the joints."""
+    """The range of each joint that is not fixed, in the order of the joints; `jobs` processes share those of many
+    facets."""
     shapes = shapes_of(assembly, surfaces, contacts, kinematics)
     index = {body.name: n for n, body in enumerate(kinematics.bodies)}
     joints = kinematics.joints
     edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in joints]
     looped = {k: block for block in blocks(len(index), edges) if len(block) > 1 for k in block}
-    out: dict[int, JointRange] = {}
     driven = [k for k, joint in enumerate(joints) if joint.type != "fixed"]
-    for done, k in enumerate(driven):
-        if progress is not None:
-            progress(done, len(driven))
-        if k in out:
-            continue
-        joint = joints[k]
-        reason = _refused(joint, kinematics, shapes)
-        if reason:
-            out[k] = unknown(joint, reason)
-        elif k in looped:
-            of_block = drive_loops(shapes, kinematics, edges, looped[k])
-            for n in looped[k]:
-                if _refused(joints[n], kinematics, shapes):
-                    continue
-                out[n] = unknown(joints[n], of_block) if isinstance(of_block, str) else of_block[n]
-        else:
-            still, moving = _sides(kinematics, edges, k, shapes)
-            out[k] = drive_alone(shapes, joint, still, moving)
-    if progress is not None:
-        progress(len(driven), len(driven))
+    out = {k: unknown(joints[k], reason) for k in driven if (reason := _refused(joints[k], kinematics, shapes))}
+
+    def of_some(some: Sequence[int]) -> dict[int, JointRange]:
+        if some[0] not in looped:
+            return {some[0]: drive_alone(shapes, joints[some[0]], *_sides(kinematics, edges, some[0], shapes))}
+        of_block = drive_loops(shapes, kinematics, edges, looped[some[0]])
+        return {n: unknown(joints[n], of_block) if isinstance(of_block, str) else of_block[n] for n in some}
+
+    # those of a block of loops together, where its first is
+    together: dict[int, list[int]] = {}
+    for k in driven:
+        if k not in out:
+            together.setdefault(looped[k][0] if k in looped else k, []).append(k)
+    facets = sum(len(part.mesh.faces) for part in assembly.parts if part.mesh is not None)
+    shared = jobs if len(together) * facets > SHARED_FACETS else 1
+    name = lambda some: f"the range of {joints[some[0]].name}"
+    for found in map_in_processes(of_some, list(together.values()), shared, progress, name):
+        out.update(found)
     return tuple(replace(out[k], slides=joints[k].type == "prismatic") for k in driven)
+
+
+def too_large(assembly: Assembly, kinematics: Kinematics) -> str:
+    """Why ranges are looked for only where they are asked for: what is too large; empty where nothing is. It hangs on
+    numbers of joints, parts and facets alone, and on which loops move in one way."""
+    parts = [part for part in assembly.parts if part.mesh is not None]
+    facets = sum(len(part.mesh.faces) for part in parts if part.mesh is not None)
+    index = {body.name: n for n, body in enumerate(kinematics.bodies)}
+    edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in kinematics.joints]
+    together = [block for block in blocks(len(index), edges) if len(block) > 1]
+    driven = {k for k, joint in enumerate(kinematics.joints) if joint.type in ONE_FREEDOM}
+    if UNASKED_LOOPS * len(driven) * len(parts) > UNASKED_PAIRS:
+        # joints of loops that have more than one freedom are not followed, and take no time
+        driven -= {k for block in together if not is_followed(kinematics, edges, block) for k in block}
+    looped = {k for block in together for k in block}
+    weight = sum(UNASKED_LOOPS if k in looped else 1 for k in driven)
+    if weight * len(parts) <= UNASKED_PAIRS and len(driven) * facets <= UNASKED_FACETS:
+        return ""
+    return f"{counted(len(driven), 'joint')}, {counted(len(parts), 'part')} and {facets:,} facets take long"
 
 
 def shapes_of(

@@ -92,7 +92,11 @@ GLOSSARY: dict[str, tuple[str, str]] = {
     "ignored": (OUTCOME, "A finding that [check] in the manifest or a baseline accepts. It does not count."),
     "found": (RANGE, "The joint was moved until a part stopped it; what stopped it is named."),
     "unbounded": (RANGE, "Nothing stops the joint."),
-    "unknown": (RANGE, "How far the joint goes was not looked for, or could not be found; ask with `--ranges`."),
+    "unknown": (
+        RANGE,
+        "How far the joint goes could not be found; or was not looked for, with `--no-ranges` or where it takes long: "
+        "`--ranges` asks.",
+    ),
     "complete": (
         OTHER,
         "`complete = true` in [function]: every joint that is meant to move is stated. Which parts are one body then "

@@ -9,7 +9,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from kinform.collisions.constants import SCREW_TURNS, SCREW_TURNS_MOST
-from kinform.collisions.driving.candidates import Approach, Candidate, Pair
+from kinform.collisions.driving.candidates import Approach, Candidate
+from kinform.collisions.driving.overlaps import Overlap, Pair, overlap_words
 from kinform.collisions.driving.swept_profiles import Profile
 from kinform.collisions.driving.swept_spheres import first_touch
 from kinform.collisions.parts.shapes import Shapes
@@ -25,12 +26,13 @@ def drive_alone(shapes: Shapes, joint: Joint, still: Sequence[str], moving: Sequ
     twist = joint_twist(joint)
     profiles = {name: _profile(shapes, name, twist) for name in (*still, *moving)}
     candidates = _candidates(shapes, profiles, twist, still, moving)
-    below, above = guide(*shapes.design(), joint, shapes.body_parts[joint.bodies[1]])
     if joint.type == "revolute":
         below, above = -math.pi, math.pi
-    elif joint.type == "screw":
-        return _screwed(joint, candidates, below, above)
     else:
+        below, above = guide(*shapes.design(), joint, shapes.body_parts[joint.bodies[1]])
+    if joint.type == "screw":
+        return _screwed(joint, candidates, below, above)
+    if joint.type == "prismatic":
         reach = _clear(list(profiles.values()))
         below, above = max(below, -reach), min(above, reach)
     ends = {sign: _end(candidates, sign, abs(limit), 0.0) for sign, limit in ((-1, below), (1, above))}
@@ -38,11 +40,35 @@ def drive_alone(shapes: Shapes, joint: Joint, still: Sequence[str], moving: Sequ
         for sign in (-1, 1):
             # a turn that stops one way stops the other way too, before the same place is reached
             other = ends[-sign][0]
-            if ends[sign][0].status == "unbounded" and other.status == "found" and other.value is not None:
-                ends[sign] = _end(candidates, sign, 2.0 * math.pi - abs(other.value), math.pi)
+            if ends[sign][0].status == "unbounded" and other.status != "unbounded":
+                ends[sign] = _end(candidates, sign, 2.0 * math.pi - abs(other.value or 0.0), math.pi)
+                if ends[sign][0].status == "unbounded" and other.status == "unknown":
+                    ends[sign] = (other, ends[sign][1])
     left_out = {pair for _, pairs in ends.values() for pair in pairs}
+    stuck = _stuck([ends[sign][0] for sign in (-1, 1)], candidates)
+    if stuck:
+        end = RangeEnd("unknown", reason=overlap_words(stuck, candidates[0].units))
+        return JointRange(joint.name, end, end, tuple(sorted(left_out | {overlap.pair for overlap in stuck})))
     done = [_leaving(ends[sign][0], joint, limit) for sign, limit in ((-1, below), (1, above))]
     return JointRange(joint.name, done[0], done[1], tuple(sorted(left_out)))
+
+
+def _stuck(ends: Sequence[RangeEnd], candidates: Sequence[Candidate]) -> list[Overlap]:
+    """What overlaps as it is drawn, where that stops a joint both ways before it has moved: it is drawn too tight, by
+    less than mates may overlap, and how far it would go is not known. Parts that just touch both ways overlap in
+    nothing: they are stopped."""
+    out = []
+    for end in ends:
+        candidate = next((c for c in candidates if end.status == "found" and c.part_names == end.parts), None)
+        test = None if candidate is None else candidate.anywhere
+        if candidate is None or test is None or end.value is None:
+            return []
+        if candidate.course(1).travel(abs(end.value)) > test.loose:
+            return []
+        depth, place = test.sunk(np.eye(4))
+        if depth > 0.0:
+            out.append(Overlap(candidate.part_names, depth, place))
+    return out
 
 
 def _screwed(joint: Joint, candidates: Sequence[Candidate], below: float, above: float) -> JointRange:
@@ -95,8 +121,11 @@ def _candidates(
 
 def _end(candidates: Sequence[Candidate], sign: int, limit: float, start: float) -> tuple[RangeEnd, list[Pair]]:
     """How far one side goes, up to `limit`; and the pairs of which something was left out. The pair that is known to be
-    free for the shortest way goes on first: none goes much further than where another is stopped."""
-    reach, left_out = limit, []
+    free for the shortest way goes on first: none goes much further than where another is stopped. Where parts that
+    overlap as they are drawn go deeper before that, nothing is known of this side."""
+    reach = limit
+    overlaps: list[Overlap] = []
+    deeper: list[tuple[float, Overlap]] = []
     best: tuple[float, Pair, Array] | None = None
     exhausted: tuple[float, Pair] | None = None
     waiting: list[tuple[float, int, Approach | None]] = list(_apart(candidates, sign, start, limit))
@@ -111,19 +140,23 @@ def _end(candidates: Sequence[Candidate], sign: int, limit: float, start: float)
             continue
         names = candidates[n].part_names
         if first.overlaps:
-            left_out.append(names)
+            overlaps.append(Overlap(names, first.before, first.place))
+        if first.deeper < math.inf:
+            deeper.append((first.deeper, overlaps[-1]))
         if first.exhausted is not None and (exhausted is None or first.exhausted < exhausted[0]):
             exhausted = (first.exhausted, names)
         if first.at is not None and first.place is not None:
             reach, best = first.at, (first.at, names, first.place)
-    left_out += [candidates[n].part_names for _, n, known in waiting if known is not None and known.overlaps]
+    overlaps += [overlap for _, _, known in waiting if known is not None and (overlap := known.overlap) is not None]
+    left_out = [overlap.pair for overlap in overlaps]
+    into = [overlap for s, overlap in deeper if s < reach]
+    unknown = into if into or best is not None else overlaps
+    if unknown:
+        return RangeEnd("unknown", reason=overlap_words(unknown, candidates[0].units)), left_out
     if exhausted is not None and exhausted[0] < reach:
         return RangeEnd("unknown", reason=f"{' and '.join(exhausted[1])} stay too close to be followed"), left_out
     if best is not None:
         return RangeEnd("found", sign * best[0], best[1], best[2]), left_out
-    if left_out:
-        few = ", ".join(" and ".join(pair) for pair in sorted(left_out)[:3])
-        return RangeEnd("unknown", reason=f"overlap from the start: {few}"), left_out
     return RangeEnd("unbounded"), left_out
 
 

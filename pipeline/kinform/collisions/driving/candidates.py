@@ -8,6 +8,7 @@ from functools import cached_property, lru_cache
 
 from kinform.collisions.constants import (
     CROSSING_LEAST,
+    FACETS_STEP,
     MEETING_MARGIN,
     MODEL_MOST,
     MODEL_SHARED,
@@ -17,6 +18,7 @@ from kinform.collisions.constants import (
     WINDOW_TURN,
 )
 from kinform.collisions.driving.meeting_spans import Spans, meeting_spans
+from kinform.collisions.driving.overlaps import Overlap, Pair
 from kinform.collisions.driving.swept_profiles import Meeting, Profile, meeting
 from kinform.collisions.pair.advancement import First, Near, Search, first_crossing
 from kinform.collisions.pair.course import Course
@@ -29,9 +31,6 @@ from kinform.foundation.algebra.displacements import displacement
 from kinform.kinematics.mobility.guides import preserved
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
-from kinform.model.names import PartName
-
-Pair = tuple[PartName, PartName]
 
 
 class Candidate:
@@ -49,6 +48,11 @@ class Candidate:
         self._tests: list[PairTest] = []
         self._modelled = 0
         """Facets of models of some so far."""
+
+    @property
+    def units(self) -> str:
+        """Of the assembly, in which lengths are told."""
+        return self._shapes.assembly.units
 
     @property
     def part_names(self) -> Pair:
@@ -70,6 +74,16 @@ class Candidate:
     def wholes(self) -> Wholes:
         """The parts with all their facets."""
         return Wholes(self._shapes, *self.names)
+
+    @property
+    def steps_apart(self) -> int:
+        """Steps as wholes that cost about as much as to ask whether they are apart for good."""
+        return sum(len(self._shapes.mesh(name).faces) for name in self.names) // FACETS_STEP
+
+    @property
+    def apart(self) -> bool:
+        """Whether none of their facets can meet anywhere."""
+        return not all(map(len, self._meeting.facets))
 
     @cached_property
     def _meeting(self) -> Meeting:
@@ -176,10 +190,11 @@ class _Window:
 class Approach:
     """A pair on the way to one side: up to `s` nothing is met.
 
-    As long as its parts are far from each other as wholes it goes on in steps. From where they are not, the facets that
-    can meet in a window of the motion are looked at: where none can, or they stay apart, it goes on behind the window;
-    where they come too near to go on in steps, they are followed to its end. Parts that are in touch there, or that
-    mate, are followed all the way.
+    As long as its parts are far from each other as wholes it goes on in steps; when these have cost as much as asking
+    which facets can meet at all, that is asked: nested parts stay near all the way, and never meet. From where they are
+    not far, the facets that can meet in a window of the motion are looked at: where none can, or they stay apart, it
+    goes on behind the window; where they come too near to go on in steps, they are followed to its end. Parts that are
+    in touch there, or that mate, are followed all the way.
     """
 
     def __init__(self, candidate: Candidate, sign: int, s: float):
@@ -189,9 +204,12 @@ class Approach:
         self._search: Search | None = None
 
     @property
-    def overlaps(self) -> bool:
-        """Whether the parts cross from the start, as far as they were followed."""
-        return self._search is not None and self._search.overlaps
+    def overlap(self) -> Overlap | None:
+        """How the parts overlap from the start, as far as they were followed; None where they do not."""
+        search = self._search
+        if search is None or not search.overlapping:
+            return None
+        return Overlap(self._candidate.part_names, search.before, search.place)
 
     def advance(self, reach: float) -> First | None:
         """One step, up to `reach`; what is met, and what is not known, at its end; None: it may go on."""
@@ -199,6 +217,9 @@ class Approach:
             return self._followed(self._search, reach)
         if self._window is not None:
             return self._through(self._window, reach)
+        if self._wholes.steps >= self._candidate.steps_apart and self._candidate.apart:
+            self.s = math.inf
+            return None
         following, short = self._wholes.step(self._candidate.course(self._sign), self.s, reach)
         if short:
             self._open(reach)
@@ -252,6 +273,6 @@ class Approach:
         """A piece of the way, followed."""
         limit = min(self.s + self._candidate.window, reach)
         first = search.until(limit, reach)
-        over = limit >= reach or first.at is not None or first.exhausted is not None
+        over = limit >= reach or first.at is not None or first.exhausted is not None or first.deeper < math.inf
         self.s = math.inf if over else limit
         return first if over else None

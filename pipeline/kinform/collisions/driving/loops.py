@@ -13,10 +13,11 @@ from functools import lru_cache
 
 import numpy as np
 
-from kinform.collisions.constants import LOOP_STOP, TURNED_ROUND
+from kinform.collisions.constants import CLOSED, LOOP_STOP, TURNED_ROUND
 from kinform.collisions.driving.alone import drive_alone
 from kinform.collisions.driving.loop_motion import RETURNED, Between, Linkage, Path, follow
-from kinform.collisions.pair.advancement import first_crossing
+from kinform.collisions.driving.overlaps import Overlap, Pair, overlap_words
+from kinform.collisions.pair.advancement import First, first_crossing
 from kinform.collisions.pair.posed_pairs import Nodes, moving_pairs
 from kinform.collisions.parts.shapes import Shapes
 from kinform.kinematics.mobility.guides import guide
@@ -34,18 +35,10 @@ def drive_loops(
     shapes: Shapes, kinematics: Kinematics, edges: Sequence[Edge], block: Sequence[int]
 ) -> dict[int, JointRange] | str:
     """The ranges of the joints of one block; or why they are not known."""
-    doubtful = [
-        k for k in block if kinematics.joints[k].type == "general" or kinematics.joints[k].status == "ambiguous"
-    ]
-    if doubtful:
-        return f"its loops run through {kinematics.joints[doubtful[0]].name}, whose motion is not known"
+    linkage = _linkage(kinematics, edges, block, shapes.size)
+    if isinstance(linkage, str):
+        return linkage
     idle = _idle(kinematics, block)
-    linkage = Linkage(kinematics, edges, block, idle, shapes.size)
-    first = linkage.tangent(np.zeros(linkage.system.coordinates))
-    if first is None:
-        return "the loops do not move"
-    if not first[1]:
-        return "its loops have more than one freedom, or a singular pose"
     ends = [_travelled(shapes, kinematics, linkage, follow(linkage, -1.0))]
     # a motion that comes back to where it began, and meets nothing, is the same the other way round
     free = ends[0].why == RETURNED and not ends[0].left_out
@@ -60,6 +53,25 @@ def drive_loops(
                 _spun(shapes, kinematics, joint, spinning[0]) if spinning else _range(joint, linkage, columns[0], ends)
             )
     return out
+
+
+def is_followed(kinematics: Kinematics, edges: Sequence[Edge], block: Sequence[int]) -> bool:
+    """Whether the motion of the joints of one block is followed, which takes long."""
+    return not isinstance(_linkage(kinematics, edges, block, 1.0), str)
+
+
+def _linkage(kinematics: Kinematics, edges: Sequence[Edge], block: Sequence[int], size: float) -> Linkage | str:
+    """The joints of one block with their one motion; or why they have none that is followed."""
+    doubtful = [
+        k for k in block if kinematics.joints[k].type == "general" or kinematics.joints[k].status == "ambiguous"
+    ]
+    if doubtful:
+        return f"its loops run through {kinematics.joints[doubtful[0]].name}, whose motion is not known"
+    linkage = Linkage(kinematics, edges, block, _idle(kinematics, block), size)
+    first = linkage.tangent(np.zeros(linkage.system.coordinates))
+    if first is None:
+        return "the loops do not move"
+    return linkage if first[1] else "its loops have more than one freedom, or a singular pose"
 
 
 def _idle(kinematics: Kinematics, block: Sequence[int]) -> list[Freedom]:
@@ -91,7 +103,9 @@ class _Travelled:
     why: str
     parts: tuple[PartName, ...]
     place: Array | None
-    left_out: tuple[tuple[PartName, PartName], ...]
+    left_out: tuple[Pair, ...]
+    overlap: str
+    """Why these are left out."""
 
 
 def _travelled(shapes: Shapes, kinematics: Kinematics, linkage: Linkage, path: Path) -> _Travelled:
@@ -106,21 +120,38 @@ def _travelled(shapes: Shapes, kinematics: Kinematics, linkage: Linkage, path: P
     end, why, place = float(s[-1]), path.why, None
     parts: tuple[PartName, ...] = ()
     left_out = set()
+    overlaps, rolls = [], ""
     for item in sorted(moving_pairs(shapes, names, kinematics.joints, nodes), key=lambda item: -item.free):
         test = item.test
         if item.free >= end:
             continue
         first = first_crossing(test, item.course, end, LOOP_STOP, start=item.free)
-        if first.overlaps or (item.rolls and first.at is not None):
+        rolling = item.rolls and first.at is not None
+        if first.overlaps or rolling:
             left_out.add(test.part_names)
-        if first.exhausted is not None:
+        if first.overlaps:
+            overlaps.append(Overlap(test.part_names, first.before, _placed(nodes, item.first, first)))
+        elif rolling and not rolls:
+            rolls = f"{' and '.join(test.part_names)} roll or mesh, and their facets overlap where they do"
+        if first.deeper < end:
+            end, parts, place = first.deeper, (), None
+            why = overlap_words(overlaps[-1:], shapes.assembly.units)
+        elif first.exhausted is not None:
             end, why, parts, place = first.exhausted, f"{' and '.join(test.names)} stay too close", (), None
         elif first.at is not None and first.place is not None and not item.rolls:
             end, why, parts = first.at, "", test.part_names
-            place = (nodes.between(first.at)[item.first] @ np.append(first.place, 1.0))[:3]
+            place = _placed(nodes, item.first, first)
     kept = s < end
     q, s = np.concatenate([path.q[kept], at(end)[None]]), np.append(s[kept], end)
-    return _Travelled(q, s, why, parts, place, tuple(sorted(left_out)))
+    overlap = overlap_words(overlaps, shapes.assembly.units) if overlaps else rolls
+    return _Travelled(q, s, why, parts, place, tuple(sorted(left_out)), overlap)
+
+
+def _placed(nodes: Nodes, body: int, first: First) -> Array | None:
+    """(3,) m, world, at the pose in which two parts first meet: where they do; `body` has the first of them."""
+    if first.place is None:
+        return None
+    return np.asarray((nodes.between(first.at or float(nodes.s[0]))[body] @ np.append(first.place, 1.0))[:3])
 
 
 def _guided(shapes: Shapes, kinematics: Kinematics, linkage: Linkage, path: Path) -> Path:
@@ -150,9 +181,13 @@ def _range(joint: Joint, linkage: Linkage, column: int, ends: Sequence[_Travelle
         min(_least(sign * v, end.s) for v, end in zip(values, ends, strict=True)) * sign for sign in (1.0, -1.0)
     )
     left_out = tuple(sorted({pair for end in ends for pair in end.left_out}))
+    overlap = next((end.overlap for end in ends if end.overlap), "")
+    if high - low < CLOSED and any(np.ptp(end.s) > 1.0 for end in ends):
+        still = RangeEnd("unknown", reason="its loops move, and it does not")
+        return JointRange(joint.name, still, still, left_out)
     returned = any(end.why == RETURNED for end in ends)
     if returned and linkage.turns[column] and high - low > TURNED_ROUND:
-        free = RangeEnd("unknown", reason=_overlap(left_out)) if left_out else RangeEnd("unbounded")
+        free = RangeEnd("unknown", reason=overlap) if left_out else RangeEnd("unbounded")
         return JointRange(joint.name, free, free, left_out)
     sides = []
     for value in (low, high):
@@ -166,7 +201,7 @@ def _range(joint: Joint, linkage: Linkage, column: int, ends: Sequence[_Travelle
         elif at_end and end.why != RETURNED:
             sides.append(RangeEnd("unknown", reason=end.why))
         elif left_out:
-            sides.append(RangeEnd("unknown", reason=_overlap(left_out)))
+            sides.append(RangeEnd("unknown", reason=overlap))
         else:
             sides.append(RangeEnd("found", float(value), reason="the linkage turns back"))
     return JointRange(joint.name, sides[0], sides[1], left_out)
@@ -179,10 +214,6 @@ def _least(values: Array, s: Array) -> float:
         return float(values[n])
     bend, slope, least = (float(c) for c in np.polyfit(s[n - 1 : n + 2] - s[n], values[n - 1 : n + 2], 2))
     return least - slope * slope / (4.0 * bend) if bend > 0.0 else least
-
-
-def _overlap(pairs: Sequence[tuple[str, str]]) -> str:
-    return f"overlap from the start: {', '.join(' and '.join(pair) for pair in pairs[:3])}"
 
 
 def _sense(joint: Joint, twist: Array) -> float:

@@ -7,6 +7,7 @@ a resolution. What happens within the resolution, free at both ends, is a graze 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from functools import cached_property, partial
@@ -15,7 +16,7 @@ import numpy as np
 
 from kinform.collisions import constants
 from kinform.collisions.pair.course import Course, narrowed
-from kinform.collisions.pair.deep_entry import Inside
+from kinform.collisions.pair.deep_entry import Entry, Inside
 from kinform.collisions.pair.mate_surfaces import SurfacePair
 from kinform.collisions.pair.prepared_pair import NONE, Crossing, PairTest
 from kinform.model.arrays import Array, Ints
@@ -23,7 +24,7 @@ from kinform.model.arrays import Array, Ints
 
 @dataclass(frozen=True, eq=False)
 class First:
-    """`at` is free and `hit` is not, closer than asked; None: nothing was met. `overlaps`: the parts cross from the
+    """`at` is free and `hit` is not, closer than asked; None: nothing was met. `overlaps`: the parts overlap from the
     start and never part, so nothing is known. `exhausted`: how far it is free, where the work allowed was not
     enough."""
 
@@ -34,6 +35,8 @@ class First:
     exhausted: float | None = None
     before: float = 0.0
     """m: how deep the parts overlapped at the start, before they parted."""
+    deeper: float = math.inf
+    """Where they were seen to go deeper since, before they parted: this way they ought not to go."""
 
 
 NOTHING = First(None, None, None)
@@ -105,27 +108,62 @@ class Search:
             constants.RESOLUTION * test.size, (course.travel(end) - course.travel(start)) / constants.WORK * 2.0
         )
         self.overlaps = False
-        """Overlapping since the start, by more than chord errors."""
+        """Crossing since the start, by more than chord errors."""
         self.since: dict[SurfacePair, tuple[float, float] | None] = {}
         """Surfaces that cross, and the step in which they began to; None: at the start."""
         self.tried = 0
         self.before = 0.0
         """m: overlap at the start."""
+        self.place: Array | None = None
+        """(3,) m, world: where."""
+        self._deeper = math.inf
+        """Where parts that have crossed since the start were seen to be deeper."""
         self._known: dict[float, _State] = {}
         self._touching = False
         """Whether the pair touched where it was last asked."""
         self._inside: Inside | None = None
+        self._drawn = course.travel(start) <= 0.0
+        """Whether it begins where the motion does: further on parts have been apart."""
         self._start = self._apart = self._left = start
         """From where on it is looked for; since where the parts have not overlapped; up to where it was looked for."""
         self._cover(start, end if near is None else min(start + near.window, end))
         self.begin(start)
 
+    @property
+    def overlapping(self) -> bool:
+        """Whether the parts have overlapped since the start, as far as it was looked for: crossing, or flush, with
+        points of one deep inside the other."""
+        return self.overlaps or (self._inside is not None and not self._inside.parted)
+
     def until(self, limit: float, end: float) -> First:
         """What is met up to `limit`, from where it was looked for last; points that come in are looked for a little
-        further, up to `end`."""
+        further, up to `end`. Of parts that overlap at the start and go deeper, or meet before they have parted and gone
+        on by more than that, nothing is known."""
+        soon = self._soon(end) if self._drawn and self._left <= self._start and not self.overlaps else None
+        first = self._until(limit, end)
+        if soon is not None and (first.hit is None or first.hit > soon.hit):
+            first = soon
+        inside = self._inside
+        if first.hit is not None and inside is not None and not inside.parted:
+            way = self.course.travel(first.hit) - self.course.travel(self._start)
+            if way <= inside.sunk + self.test.loose:
+                self._deeper = first.hit
+        deeper = self.deeper < math.inf
+        if deeper or (first.hit is None and first.exhausted is None and self.overlapping):
+            return First(None, None, self.place, True, before=self.before, deeper=self.deeper)
+        return first
+
+    @property
+    def deeper(self) -> float:
+        """Where parts that have overlapped since the start were seen to be deeper; infinite where they were not."""
+        return min(self._deeper, math.inf if self._inside is None else self._inside.deeper)
+
+    def _until(self, limit: float, end: float) -> First:
         fine, resolution, left, stack = self._fine, self._resolution, self._left, [limit]
         self._cover(left, limit)
         while stack:
+            if self.deeper < math.inf:
+                break
             right = stack[-1]
             if self.course.meets is not None:
                 meets, until = self.course.meets(left)
@@ -176,7 +214,10 @@ class Search:
         crossing = self.state(start).crossing
         self.since = dict.fromkeys(crossing.shared)
         self.overlaps = bool(crossing) and (self.test.overlapping or self.too_deep(start))
-        self.before = self._depth(start) if self.overlaps else 0.0
+        if self.overlaps:
+            self.before = self._depth(start)
+            middles = crossing.segments().mean(axis=1)
+            self.place = self._world(middles[np.argmin(np.linalg.norm(middles - middles.mean(axis=0), axis=1))])
 
     def state(self, s: float) -> _State:
         if s not in self._known:
@@ -252,22 +293,39 @@ class Search:
         return crossed if entered is None or crossed.hit is None or entered.hit >= crossed.hit else entered
 
     def _entered(self, right: float, end: float, fine: float, *, every: bool) -> _Hit | None:
-        if self.overlaps:
-            return None
+        return None if self.overlaps else self._came_in(self._points.met(right, end, fine, every=every))
+
+    def _soon(self, end: float) -> _Hit | None:
+        """Points that go in from the start."""
+        return self._came_in(self._points.soon(end, self._fine))
+
+    @property
+    def _points(self) -> Inside:
+        """The points that may come in, from where the parts do not cross on."""
         if self._inside is None:
             self._inside = Inside(self.test, self.course, self._apart)
-        point = self._inside.met(right, end, fine, every=every)
+            if not self._drawn or self._apart > self._start:
+                self._inside.forget()
+            elif self._inside.place is not None:
+                self.before, self.place = self._inside.sunk, self._world(self._inside.place)
+        return self._inside
+
+    def _came_in(self, point: Entry | None) -> _Hit | None:
         if point is None:
             return None
         at, hit, place = point
-        return _Hit(at, hit, (self.test.X_WA @ np.append(place, 1.0))[:3], before=self.before)
+        return _Hit(at, hit, self._world(place), before=self.before)
+
+    def _world(self, place: Array) -> Array:
+        """(3,) m, world: a place in the frame of the first part."""
+        return np.asarray((self.test.X_WA @ np.append(place, 1.0))[:3])
 
     def flat(self, left: float, right: float, fine: float) -> First:
         """Where faces meet flat: one passes through the other between `left` and `right`."""
         state = self.state(left)
         left, right = narrowed(left, right, constants.REFINED * fine, partial(self._behind, state))
         place = state.test.middle(self.course.displacement(right), *state.nearest)
-        return First(left, right, (self.test.X_WA @ np.append(place, 1.0))[:3], before=self.before)
+        return First(left, right, self._world(place), before=self.before)
 
     def _behind(self, state: _State, s: float) -> bool:
         height = state.test.height(self.course.displacement(s), state.nearest)
@@ -279,6 +337,9 @@ class Search:
         self.since = {pair: self.since.get(pair, (left, right)) for pair in crossing.shared}
         if self.overlaps:
             self.overlaps, self._apart = bool(crossing), right
+            least = self.test.going_deeper(self.before)
+            if crossing and self.test.depth(self.course.displacement(right), crossing.segments(), least) > least:
+                self._deeper = right
         self._known = {key: state for key, state in self._known.items() if key >= right}
         return right
 
@@ -363,5 +424,5 @@ class Search:
         return bool(test.crossing(self.course.displacement(s), hits))
 
     def _hit(self, left: float, right: float) -> First:
-        at = np.append(self.state(right).crossing.segments().mean(axis=(0, 1)), 1.0)
-        return First(left, right, (self.test.X_WA @ at)[:3], before=self.before)
+        place = self.state(right).crossing.segments().mean(axis=(0, 1))
+        return First(left, right, self._world(place), before=self.before)

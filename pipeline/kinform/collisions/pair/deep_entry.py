@@ -6,6 +6,7 @@ a turn or a slide, after it has passed through a facet (`passages`).
 
 from __future__ import annotations
 
+import math
 from functools import partial
 
 import numpy as np
@@ -38,6 +39,18 @@ class Inside:
         asked = self._every if self._passages is None else np.flatnonzero(self._passages.maybe_inside(s))
         heights[asked] = self._heights(s, asked)
         self._ignored = heights > test.loose
+        self._sunk = self._ignored & test.solid_about
+        """Those that are deep inside from the start, and have not been out since."""
+        self.sunk: float = float(heights[self._sunk].max(initial=0.0))
+        """m: how deep the deepest of them was."""
+        self.place = (
+            test.places(course.displacement(s))[int(np.argmax(np.where(self._sunk, heights, -1.0)))]
+            if self.sunk
+            else None
+        )
+        """(3,) m, first part's frame: where."""
+        self.deeper = math.inf
+        """Where they were seen to be deeper."""
         self._entered = np.where(heights > speck, s, np.nan)
         """Where each point that is inside was last outside."""
         self._least = np.where(heights > speck, test.loose, speck)
@@ -67,6 +80,7 @@ class Inside:
         travelled = self._course.travel(right)
         if not every and travelled < self._next:
             return None
+        self._follow_sunk(right)
         asked = self._asked(right, travelled, every)
         if not len(asked):
             return None
@@ -74,6 +88,7 @@ class Inside:
         heights = self._heights(right, asked)
         out = heights <= self._speck
         self._ignored[asked[out]] = False
+        self._sunk[asked[out]] = False
         self._least[asked[out]] = self._speck
         came = ~out & np.isnan(self._entered[asked]) & ~self._ignored[asked]
         self._entered[asked[out]] = np.nan
@@ -92,6 +107,38 @@ class Inside:
             if (later > self._test.loose).any():
                 return self._first(shallow[later > self._test.loose], later[later > self._test.loose], further, fine)
         return None
+
+    @property
+    def parted(self) -> bool:
+        """Whether all that was deep inside at the start has been out."""
+        return not self._sunk.any()
+
+    def soon(self, end: float, fine: float) -> Entry | None:
+        """Whether points that are a little inside at the start are deep soon after, as where faces are flush and go
+        into each other: no facets meet on the way that could tell."""
+        start = self._last
+        shallow = np.flatnonzero(~np.isnan(self._entered) & ~self._ignored)
+        for way in (2.0 * self._test.loose, self._stride) if len(shallow) else ():
+            further = self._course.when(self._course.travel(start) + way, start, end)
+            heights = self._heights(further, shallow)
+            deep = heights > self._test.loose
+            if deep.any():
+                return self._first(shallow[deep], heights[deep], further, fine)
+        return None
+
+    def forget(self) -> None:
+        """What is deep inside where it began has not been so from the start."""
+        self._sunk[:] = False
+        self.sunk, self.place = 0.0, None
+
+    def _follow_sunk(self, right: float) -> None:
+        """Whether those that were deep inside at the start go deeper, as long as they have not been out."""
+        chosen = np.flatnonzero(self._sunk)
+        if len(chosen):
+            heights = self._heights(right, chosen)
+            self._sunk[chosen[heights <= self._speck]] = False
+            if heights.max() > self._test.going_deeper(self.sunk):
+                self.deeper = min(self.deeper, right)
 
     def _asked(self, right: float, travelled: float, every: bool) -> Ints:
         """Points that are due at `right`, or all; of a turn or a slide, those that are inside, or have passed."""

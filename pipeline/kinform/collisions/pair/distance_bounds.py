@@ -32,7 +32,7 @@ class Apart:
     """Two parts on their way, by how far they are certainly apart; `size` (m): diagonal of the smaller."""
 
     def __init__(self, size: float):
-        self._size, self._steps = size, 0
+        self._size, self.steps = size, 0
 
     def distance(self, D: Array) -> float:
         """m: nothing that counts is nearer at a displacement (4, 4) of the second body relative to the first; 0 where
@@ -46,17 +46,17 @@ class Apart:
     def step(self, course: Course, s: float, end: float) -> tuple[float, bool]:
         """A parameter after s up to which they are certainly apart, and whether that was too short a step to go on
         so."""
-        self._steps += 1
+        self.steps += 1
         free = self.distance(course.displacement(s))
         following = course.when(course.travel(s) + max(free, 0.0), s, end)
-        return following, following < end and (free < SHORT_STEP * self._size or self._steps > STEPS_MOST)
+        return following, following < end and (free < SHORT_STEP * self._size or self.steps > STEPS_MOST)
 
     def clear_until(self, course: Course, start: float, end: float) -> float:
         """The parameter up to which they are certainly apart: `start` where they touch, `end` where they stay so; less
         where so many steps as are taken would not reach the end."""
         s, short = self.step(course, start, end)
         while s < end and not short:
-            if self._steps >= STEPS_TRIED and (s - start) * STEPS_MOST < (end - start) * self._steps:
+            if self.steps >= STEPS_TRIED and (s - start) * STEPS_MOST < (end - start) * self.steps:
                 break
             s, short = self.step(course, s, end)
         return s

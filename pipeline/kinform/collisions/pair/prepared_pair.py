@@ -25,7 +25,7 @@ from kinform.foundation.at_work import at_work_on
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_pose
 from kinform.foundation.meshes.index import MeshIndex
 from kinform.foundation.sorting import distinct
-from kinform.model.arrays import Array, Ints
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.names import PartName
 
@@ -107,6 +107,10 @@ class PairTest:
             len(some) <= len(side) and bool(np.isin(some, side, assume_unique=True).all())
             for some, side in zip(facets, self.facets, strict=True)
         )
+
+    def going_deeper(self, before: float) -> float:
+        """m: deeper than that, parts that overlapped by `before` (m) do not just rub on, but go into each other."""
+        return constants.OVERLAP_SAME * before + max(self.loose, constants.DEEPER * self.size)
 
     def pose(self, D: Array) -> Array:
         """(4, 4) of the second part in the first, by the displacement `D` of the second body relative to the first."""
@@ -202,6 +206,14 @@ class PairTest:
         )
         return first, second
 
+    @cached_property
+    def solid_about(self) -> Flags:
+        """(n,) whether what these points, counted through, may be inside of is closed: else nothing is certainly
+        inside."""
+        first, second = (mesh.health.watertight for mesh in self._meshes)
+        near, far = self.probes
+        return np.repeat([second, first], [len(near.points), len(far.points)])
+
     def passages(self, path: Path) -> Passages:
         """Where these points, counted through, pass through the facets that count of the other part as the second part
         moves along a path, the same whenever it is asked, or the other way."""
@@ -234,6 +246,14 @@ class PairTest:
         X = self.pose(D)
         near, far = self.probes
         return np.concatenate([near.points, far.points @ X[:3, :3].T + X[:3, 3]])
+
+    def sunk(self, D: Array) -> tuple[float, Array]:
+        """m: how deep the deepest of these points is inside, 0 where that is rounding; and where it is (3,), world."""
+        places = self.places(D)
+        heights = self.heights(D, np.arange(len(places)), away=False)
+        n = int(np.argmax(heights))
+        depth = float(heights[n])
+        return depth if depth > constants.SPECK * self.size else 0.0, (self.X_WA @ np.append(places[n], 1.0))[:3]
 
     def deepest(self, D: Array) -> float:
         """m: how deep the parts go into each other where they cross, or where points of one are inside the other."""

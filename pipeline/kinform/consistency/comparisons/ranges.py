@@ -63,7 +63,7 @@ def _beside_ends(context: Context, intended: IntendedJoint, comparison: Comparis
         return RangeComparison(intended, reason="no joint of that type was found directly between its parts")
     joint, sign = match
     if run is None or run.ranges is None:
-        return RangeComparison(intended, reason="ranges have not been computed: run `kinform simulate`")
+        return RangeComparison(intended, reason="ranges have not been computed: run `kinform simulate --ranges`")
     reach = next((item for item in run.ranges if item.joint == joint.name), None)
     if reach is None:
         return RangeComparison(intended, reason="no range was computed for it")

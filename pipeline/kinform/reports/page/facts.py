@@ -182,7 +182,12 @@ def _range(design: Design, joint: Joint) -> str:
     if computed.status == "unbounded":
         return "unbounded: nothing stops it"
     ends = (("lower", computed.lower), ("upper", computed.upper))
-    return "; ".join(f"{side}: {_end(computed.slides, end, design.assembly.units)}" for side, end in ends)
+    said = [f"{side}: {_end(computed.slides, end, design.assembly.units)}" for side, end in ends]
+    if computed.status == "found" and computed.left_out:
+        pairs = ", ".join(" and ".join(pair) for pair in computed.left_out[:3])
+        more = len(computed.left_out) - 3
+        said.append(f"without {pairs}{f' and {more} more' if more > 0 else ''}, which overlap, or roll")
+    return "; ".join(said)
 
 
 def _end(slides: bool, end: RangeEnd, units: str) -> str:
