@@ -10,7 +10,7 @@ from kinform.kinematics.pair.joint import twists_of
 from kinform.model.checks import Ignore
 from kinform.model.contacts import Interference
 from kinform.model.function import Coupling, Drive, Law, Load, Requirement
-from kinform.model.kinematics import Blocker, Membership
+from kinform.model.kinematics import Blocker, LeftOut, Membership
 
 
 def with_function(design, function):
@@ -87,6 +87,14 @@ WRONG = {
     "KF403": lambda d: changed_intent(d, axis=tilted(d.assembly.function.joints[0].axis, 0.5)),
     "KF404": lambda d: changed_intent(d, point=d.assembly.function.joints[0].point + np.array([0.002, 0.001, -0.003])),
     "KF414": lambda d: as_planar(d),
+    "KF416": lambda d: replace(
+        d,
+        kinematics=replace(
+            d.kinematics,
+            membership=(Membership("shaft", "block", "held", 1.0, "", False),),
+            left_out=(LeftOut("block", "revolute", np.array([0.0, 0, 1]), np.zeros(3), ("block",), ("shaft",), ""),),
+        ),
+    ),
     "KF409": lambda d: changed_function(d, drives=(drive("wing"),)),
 }
 

@@ -32,6 +32,7 @@ DESCRIPTION: Mapping[str, str] = {
     "KF408": "note",
     "KF412": "warning",
     "KF414": "note",
+    "KF416": "note",
     "KF901": "note",
     "KF903": "note",
     "KF904": "note",

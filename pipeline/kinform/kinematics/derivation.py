@@ -40,7 +40,7 @@ from kinform.kinematics.mobility.loop_redundancy import redundancies_of_loops
 from kinform.kinematics.mobility.named_freedoms import named_freedoms
 from kinform.kinematics.mobility.stated_couplings import coupled_mobility, coupling_rows, restrict_closure
 from kinform.kinematics.pair.question import Answer, bare_patches
-from kinform.kinematics.partition import Partition, partition, with_sides
+from kinform.kinematics.partition import Partition, left_out, partition, with_sides
 from kinform.kinematics.separation.constraint_matrix import constraint_matrix
 from kinform.kinematics.separation.contact_rows import ContactRows, pair_cones
 from kinform.kinematics.separation.releases import with_releases
@@ -156,6 +156,7 @@ def derive(
         asides=asides,
         membership=() if found is None else _membership(found, _body_of_part(bodies)),
         unparted=() if found is None else tuple(Unparted(joint, parts) for joint, parts in found.unparted.items()),
+        left_out=() if found is None else left_out(assembly, surfaces, contacts, bodies),
         sides=sides,
     )
 

@@ -440,6 +440,26 @@ class Unparted:
     may part from it."""
 
 
+@dataclass(frozen=True, eq=False)
+class LeftOut:
+    """A joint that contact alone would make inside one body, where the bodies follow from the function."""
+
+    body: BodyName
+    type: str
+    """revolute or spherical."""
+    axis: Direction | None
+    point: Place
+    first: tuple[PartName, ...]
+    second: tuple[PartName, ...]
+    """The parts of its two sides, as far as contact holds them together."""
+    words: str
+
+    def parts(self, one: PartName, other: PartName) -> bool:
+        """Whether these two parts lie on different sides of it."""
+        first, second = set(self.first), set(self.second)
+        return (one in first and other in second) or (one in second and other in first)
+
+
 @dataclass(frozen=True)
 class FoundSides:
     """The sides of an intended joint that names one part, or none."""
@@ -475,6 +495,8 @@ class Kinematics:
     """With `[function] complete = true`: every part of an assembly with meshes, sorted by name."""
     unparted: tuple[Unparted, ...] = ()
     """With `[function] complete = true`: joints whose sides contact holds together, sorted by name."""
+    left_out: tuple[LeftOut, ...] = ()
+    """With `[function] complete = true`: joints that contact alone would make inside bodies."""
     sides: tuple[FoundSides, ...] = ()
     """Of joints that name one part or none, sorted by name."""
 

@@ -94,6 +94,8 @@ def _kind(tolerances: Tolerances, c: Comparison) -> tuple[str, str, str]:
         return "no contact", "", ""
     if c.state == "undecided":
         return "undecided", "", ""
+    if c.loose:
+        return "not held", f"{c.type}, {counted(c.freedoms, 'freedom')} by contact", ""
     if c.state == "one body":
         return ("agrees", "", "") if c.right_type else ("contradicts", "", c.reason or "both sides are one body")
     if c.right_type:

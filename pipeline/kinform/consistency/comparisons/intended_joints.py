@@ -16,7 +16,7 @@ from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.function import IntendedJoint
-from kinform.model.kinematics import Body, Joint, Kinematics
+from kinform.model.kinematics import FREEDOMS, Body, Joint, Kinematics, LeftOut
 
 STATES = ("stated", "taken", "one body", "absent", "undecided", "found")
 
@@ -57,6 +57,8 @@ class Comparison:
     """Uncertainty of the found position."""
     size: float = 1.0
     """m: diagonal of the smaller body."""
+    loose: bool = False
+    """The joint is stated as fixed, which makes its sides one body, and contact would part them as `type` says."""
     position_limit: float = 0.0
     """By so much the axis or centre may lie beside the intended one (m)."""
 
@@ -64,7 +66,7 @@ class Comparison:
     def right_type(self) -> bool:
         """Whether the joint is there and of the intended type."""
         if self.state == "one body":
-            return self.intended.type == "fixed"
+            return self.intended.type == "fixed" and not self.loose
         return self.state == "found" and self.type == self.intended.type
 
     @property
@@ -108,7 +110,13 @@ def compare_joint(
     bodies = (first, second)
     if first.name == second.name:
         reason = "; ".join(first.merged)
-        return Comparison(intended, bodies, "one body", reason, type="fixed")
+        one = loose_joint(assembly, kinematics, intended)
+        if one is None:
+            return Comparison(intended, bodies, "one body", reason, type="fixed")
+        freedoms = FREEDOMS[one.type]
+        return Comparison(
+            intended, bodies, "one body", reason, one.type, one.axis, one.point, freedoms=freedoms, loose=True
+        )
     pair = {first.name, second.name}
     direct = next((joint for joint in kinematics.joints if set(joint.bodies) == pair), None)
     if direct is not None and direct.status == "stated":
@@ -151,6 +159,14 @@ def compare_joint(
         size=_smaller(assembly, bodies),
         position_limit=assembly.tolerances.offset_limit(_smaller(assembly, bodies)),
     )
+
+
+def loose_joint(assembly: Assembly, kinematics: Kinematics, intended: IntendedJoint) -> LeftOut | None:
+    """What contact alone would make of a joint that is stated as fixed, where it would part its sides."""
+    if intended.type != "fixed":
+        return None
+    first, second = (assembly.parts_of(name)[0] for name in intended.between)
+    return next((one for one in kinematics.left_out if one.parts(first, second)), None)
 
 
 def _certainty(intended: IntendedJoint, found: str, used: tuple[Joint, ...]) -> tuple[str, str]:

@@ -27,7 +27,7 @@ from kinform.model.kinematics import FREEDOMS
 
 def check(context: Context) -> Outcome:
     """Intended joints of which a type was found that forbids them."""
-    present = [c for c in context.comparisons if c.state in ("found", "one body")]
+    present = [c for c in context.comparisons if c.state in ("found", "one body") and not c.loose]
     findings = [_finding(context, c) for c in present if not c.right_type and not leaves_more(c)]
     unknown = [f"'{c.intended.name}': {c.reason}" for c in context.comparisons if c.state == "undecided"]
     return settled(findings, "; ".join(unknown), f"{counted(len(present), 'joint')} compared")

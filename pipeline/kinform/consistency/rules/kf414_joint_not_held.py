@@ -1,7 +1,9 @@
 """Contact leaves the intended joint free, and more: nothing in the geometry holds it.
 
 The intended motion is possible, and so are others. Where the function states all joints (`complete = true`), the joint
-is then taken as stated, and everything that follows from it says so. Contact that forbids the joint is KF402.
+is then taken as stated, and everything that follows from it says so; one that is stated as fixed makes its sides one
+body, and is found here where contact alone would let them turn as a joint does. Contact that forbids the joint is
+KF402.
 
 Why it matters: parts that only lie against each other slide off. In many assemblies the pin or the bearing is just not
 modelled: then say so by `complete = true`, or model it.
@@ -25,7 +27,7 @@ from kinform.model.kinematics import FREEDOMS
 
 def check(context: Context) -> Findings:
     """Intended joints that contact leaves free without holding them."""
-    return [_finding(c) for c in context.comparisons if leaves_more(c) or _taken_with_contact(c)]
+    return [_finding(c) for c in context.comparisons if leaves_more(c) or _taken_with_contact(c) or c.loose]
 
 
 def _taken_with_contact(c: Comparison) -> bool:
@@ -52,12 +54,14 @@ def _finding(c: Comparison) -> Finding:
         intended=intended.type + (f" about {direction(intended.axis)}" if intended.axis is not None else ""),
         place=c.point if c.point is not None else intended.point,
         declared=intended,
-        remedy=_remedy(intended.type, found, taken=c.state == "taken"),
+        remedy=_remedy(intended.type, found, taken=c.state == "taken" or c.loose),
     )
 
 
 def _remedy(wanted: str, found: str, *, taken: bool) -> str:
     shaft = wanted == "revolute" and found == "cylindrical"
+    if wanted == "fixed" and taken:
+        return "It is taken as stated. Model what holds it, or join the two by [[group]]; if it moves, say so."
     hold = "Give the shaft shoulders or clips that hold it along the axis" if shaft else "Model what holds the joint"
     if taken:
         return f'It is taken as stated. {hold}; if that is in no mesh, `[check.severity] KF414 = "note"`.'

@@ -14,7 +14,17 @@ The method is a multiway cut as an integer program (Boykov, Veksler, Zabih 2001 
 """
 
 from kinform.kinematics.partition.bodies import Partition, partition
+from kinform.kinematics.partition.left_out import left_out
 from kinform.kinematics.partition.open_sides import with_sides
 from kinform.kinematics.partition.proposals import Proposal, propose, proposed_joints, stated_proposals
 
-__all__ = ["Partition", "Proposal", "partition", "propose", "proposed_joints", "stated_proposals", "with_sides"]
+__all__ = [
+    "Partition",
+    "Proposal",
+    "left_out",
+    "partition",
+    "propose",
+    "proposed_joints",
+    "stated_proposals",
+    "with_sides",
+]

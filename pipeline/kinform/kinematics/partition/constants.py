@@ -114,6 +114,8 @@ SAME_AXIS = np.radians(1.0)
 """rad: journals whose axes differ by less are on one axis."""
 SAME_AXIS_OFF = 0.02
 """The same of their distance, as a share of the smaller journal's reach."""
+ALONG_STATED = np.cos(SAME_AXIS)
+"""Cosine of the angle between such an axis and that of a joint that is stated from which they are one."""
 SAME_CENTRE = 1e-6
 """m: balls on one pin that differ by less are one, seen from two contacts."""
 BALL_AREA = 0.9

@@ -65,8 +65,13 @@ class Proposal:
         return first, second
 
 
-def propose(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: Contacts) -> list[Proposal]:
-    """Joints that may be meant, the largest smaller side first."""
+def propose(
+    assembly: Assembly,
+    surfaces: Mapping[str, MeshSurfaces],
+    contacts: Contacts,
+    together: Sequence[Sequence[PartName]] = (),
+) -> list[Proposal]:
+    """Joints that may be meant, the largest smaller side first. `together`: parts that are one anyway."""
     volume = volumes(assembly)
     parts = sorted(volume)
     pairs = contact_of_pairs(contacts.patches)
@@ -74,7 +79,8 @@ def propose(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: 
     axes = _candidates(contacts.patches)
     screws = {pair: 0.0 if worth <= constants.FASTENED["spigot"] else worth for pair, worth in hints.items()}
     free = [_freed(axis, pairs, screws, constants.PROPOSED[0]) for axis in axes]
-    graph = _Parts(parts, sorted(pairs), volume)
+    known = [[name for name in names if name in volume] for names in together]
+    graph = _Parts(parts, sorted(pairs), volume, [names for names in known if len(names) > 1])
     standard = standard_parts(assembly, surfaces)
     holders = {name for name, one in standard.items() if one.kind in HOLDERS}
     journals = [frozenset(p for p in cut if pairs[p].journal(axis)) for axis, cut in zip(axes, free, strict=True)]
@@ -241,12 +247,16 @@ class _Parts:
     parts: Sequence[PartName]
     pairs: Sequence[PartPair]
     volume: Mapping[PartName, float]
+    together: Sequence[Sequence[PartName]]
 
     def sides(self, own: frozenset[PartPair], cut: frozenset[PartPair]) -> list[Sides]:
         """The pairs of bodies that pairs of a joint (`own`) lie between once all of `cut` is parted, the larger one
         first. What is small, or a ring, lies between the others."""
         number = {name: k for k, name in enumerate(self.parts)}
         sets = UnionFind(len(self.parts))
+        for names in self.together:
+            for name in names[1:]:
+                sets.union(number[names[0]], number[name])
         for pair in self.pairs:
             if pair not in cut:
                 sets.union(number[pair[0]], number[pair[1]])

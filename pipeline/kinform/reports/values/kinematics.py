@@ -57,6 +57,7 @@ def body_values(design: Design) -> dict[str, Any]:
         "bodies": [fields(body, "name", "parts", "ground", "merged") for body in kinematics.bodies],
         "membership": [asdict(one) for one in kinematics.membership],
         "unparted": [asdict(one) for one in kinematics.unparted],
+        "left_out": [asdict(one) for one in kinematics.left_out],
     }
 
 

@@ -42,6 +42,7 @@ LAYOUT = Layout(
     Table("asides"),
     Table("membership"),
     Table("unparted"),
+    Table("left_out"),
     Table("sides"),
     Table("couplings", Table("meshings", field="meshing", owner="coupling")),
 )

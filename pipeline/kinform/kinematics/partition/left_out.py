@@ -1,0 +1,68 @@
+"""Joints that a function which states all of them leaves out: contact that alone would part a body.
+
+Where the function states all joints, contact that none of them moves holds, and so does what it states as fixed. That
+also holds a joint that was forgotten, or stated as fixed by mistake. So the contact inside each body is asked for
+joints as where no function is (`proposals`): what the designer joins by groups or assumptions stays one, and what
+lies on the axis of a joint that is stated is the question which side it goes with, which is said elsewhere
+(`Placed.unclear`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from kinform.foundation.algebra.vectors import norm
+from kinform.kinematics.bodies.extents import Extents
+from kinform.kinematics.bodies.merging import Merger
+from kinform.kinematics.partition import constants
+from kinform.kinematics.partition.proposals import Proposal, propose
+from kinform.model.assembly import Assembly
+from kinform.model.contacts import Contacts
+from kinform.model.function import IntendedJoint
+from kinform.model.kinematics import Body, LeftOut
+from kinform.model.names import PartName
+from kinform.model.surfaces import MeshSurfaces
+
+
+def left_out(
+    assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: Contacts, bodies: Sequence[Body]
+) -> tuple[LeftOut, ...]:
+    """The joints that contact proposes inside the bodies, which follow from the function; the largest smaller side
+    first."""
+    body_of = {part: body for body in bodies for part in body.parts}
+    inside = tuple(patch for patch in contacts.patches if body_of[patch.parts[0]] is body_of[patch.parts[1]])
+    moving = tuple(joint for joint in assembly.function.joints if joint.type != "fixed")
+    merger = Merger(replace(assembly, function=replace(assembly.function, joints=moving)))
+    together: dict[int, list[PartName]] = {}
+    for part in assembly.parts:
+        together.setdefault(merger.root(part.name), []).append(part.name)
+    found = propose(assembly, surfaces, replace(contacts, patches=inside), tuple(together.values()))
+    extents = Extents(assembly)
+    out = []
+    for one in found:
+        body = body_of[one.sides[0][0]]
+        near = assembly.tolerances.offset_limit(extents.diagonal(body.parts))
+        stated = (j for j in moving if body in {body_of[assembly.parts_of(name)[0]] for name in j.between})
+        if not any(_same(one, joint, near) for joint in stated):
+            sides = tuple(tuple(sorted(side)) for side in one.sides)
+            out.append(LeftOut(body.name, one.type, one.axis, one.point, sides[0], sides[1], one.words))
+    return tuple(out)
+
+
+def _same(one: Proposal, joint: IntendedJoint, near: float) -> bool:
+    """Whether a proposal lies on the axis, or at the centre, of a joint that is stated, to `near` (m); of a slide,
+    which has no place, along it."""
+    if one.axis is None or joint.axis is None:
+        return joint.point is None or _off(one, joint) <= near
+    if abs(float(one.axis @ joint.axis)) < constants.ALONG_STATED * norm(joint.axis):
+        return False
+    return joint.point is None or _off(one, joint) <= near
+
+
+def _off(one: Proposal, joint: IntendedJoint) -> float:
+    """m from the joint's place to the proposal's axis, or to its centre."""
+    assert joint.point is not None
+    apart = joint.point - one.point
+    axis = joint.axis if one.axis is None else one.axis
+    return norm(apart) if axis is None else norm(apart - (apart @ axis) / float(axis @ axis) * axis)
