@@ -34,7 +34,7 @@ BENT_ALIKE = 0.25
 
 DEGREES = 8.0 * math.pi, 360.0
 """Limits of a joint that turns (rad) which are probably degrees, or stand for none: from four turns on, which hardly a
-joint of a robot goes, to as many degrees as a turn has. A choice; 38 robots and two arms at hand have none there."""
+joint of a robot goes, to as many degrees as a turn has. A choice."""
 
 # --- comparisons/near -------------------------------------------------------------------------------------------------
 
