@@ -109,13 +109,14 @@ def passive_seeker(**request):
 
 
 def swinging(found, **request):
-    """The same design left to itself under a slanted gravity: dynamics, without drives."""
+    """The same design left to itself under a slanted gravity: dynamics, without drives, and without ranges, which
+    exports would make limits of."""
     key = (id(found), *sorted(request.items()))
     if key not in _swung:
         asked = SimulationRequest(**({"gravity": np.array([3.0, -2.0, -9.0]), "duration": 0.2, "step": 0.01} | request))
         function = replace(found.assembly.function, drives=())
         assembly = replace(found.assembly, simulation=asked, function=function)
-        _swung[key] = found, stages.simulate(replace(found, assembly=assembly), level="dynamic")
+        _swung[key] = found, stages.simulate(replace(found, assembly=assembly), level="dynamic", ranges=False)
     return _swung[key][1]
 
 
