@@ -9,7 +9,7 @@ both parts into the frame of the pair and keeps what of either lies near the oth
 what all questions below take; a `SurfacePair` is one surface of either part. 3. `mating.analytic` and
 `mating.one_sided` say which surfaces could lie on each other by their axes, radii and gaps alone: a `Mate`.
 `mating.charts` unrolls what both stand for into a plane, where `mating.overlay` cuts the facets of either side with
-each other: areas that both cover, gathered by `mating.cells`. 4. `search.probing` asks the meshes whether facets of
+each other: areas that both cover, gathered by `mating.cells`. 4. `search.narrow_phase` asks the meshes if facets of
 both really are there, face each other and have nothing between. What holds is a `Patch` (`mating.patches`): points with
 normals out of the first part, gaps and areas. 5. Surfaces without a chart are compared by their facets
 (`mating.freeform`), threads by their profiles (`mating.threads`). Where parts share no surface, `higher` looks for
@@ -17,8 +17,9 @@ points and lines: balls, rollers and rings (`rounds`, `tapers`, `rings`), edges 
 balls, cones, bores and rings (`rims`), cams and teeth by their outlines (`profiles`); beside shared surfaces, only rims
 that stand all round in a seat. Where nothing of all this is there and the meshes come as near as parts that touch do,
 the place is a patch of a contact that is not known (`higher.unknown`). 6. `overlap` measures how solids go into each
-other, deeper than chord errors and mates explain. `fastening` reads the patches for hints that parts are one body,
-which nobody has to believe.
+other, deeper than chord errors and mates explain: `boundaries` says whether they cross, `shrunk` that they share
+nothing all the same, `solids` cuts, `interference` measures. `fastening` reads the patches for hints that parts are
+one body, which nobody has to believe.
 
 An example, `fixtures/pairs/cylindrical_gap_015`: a shaft of 10 mm radius in a bore of 10.15 mm. Their boxes meet; the
 tolerance is 0.5 mm. The mate of the shaft's cylinder (124 facets) with the bore's has a gap of 0.15 mm, three times
