@@ -107,7 +107,7 @@ def test_no_pair_of_rounds_raises_however_badly_their_axes_are_known(kinds, turn
 
     def row(kind, axis, point, uncertainty, side):
         numbers = {name: np.array([0.3]) for name in ("radii", "minor_radii", "half_angles", "pitches")}
-        rest = {name: np.zeros(1) for name in ("point_uncertainty", "slacks", "chords", "rims", "areas")}
+        rest = {name: np.zeros(1) for name in ("point_uncertainty", "slacks", "chords", "residuals", "rims", "areas")}
         table = SurfaceTable(
             kinds=np.array([KINDS.index(kind)]), axes=axis[None], points=point[None], sides=np.array([side]),
             axis_uncertainty=np.array([uncertainty]), extents=np.array([[-1.0, 1.0]]), **numbers, **rest,

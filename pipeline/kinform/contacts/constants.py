@@ -136,6 +136,10 @@ GIVER_AREA = 4.0
 """An analytic surface gives normals to others, and a plane to edges, from this area on, in squared tolerances."""
 FACING_OPPOSED = -0.93
 """Greatest cosine between the surface's normal and a facet that rests on it."""
+CLEARLY = 1e-9
+"""Of the coordinates: more than rounding, of facets that are left out as they lie clearly off a surface."""
+SURELY_FACING = 1e-6
+"""More than rounding, of cosines of facets that are left out as they are clearly turned away."""
 PLANES_TILTED = math.radians(3.0)
 """rad: planes that oppose each other within this lie on each other badly; beyond, they meet at an edge."""
 

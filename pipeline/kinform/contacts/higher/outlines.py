@@ -25,6 +25,9 @@ from kinform.foundation.meshes.edges import shared_edges
 from kinform.foundation.meshes.near import Near
 from kinform.foundation.sorting import ascending, heads
 from kinform.model.arrays import Array, Flags, Ints
+from kinform.model.surfaces import KINDS
+
+_CYLINDER = KINDS.index("cylinder")
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +121,8 @@ class Segments:
 
 @dataclass(frozen=True, eq=False)
 class Sheet:
-    """Facets of a part (ascending), and pairs (2, k) of them that meet in a smooth edge: a bent or a flat one."""
+    """Facets of a part (n,), ascending, and pairs (2, k) of them, by their places, that meet in a smooth edge: a bent
+    or a flat one."""
 
     facets: Ints
     normals: Array
@@ -132,68 +136,92 @@ class Sheet:
         """(n,) facets that have an area."""
         return np.asarray(self.normals.any(axis=1))
 
+    @cached_property
+    def faces(self) -> Ints:
+        """(n,) number of the plane face that each facet belongs to: facets joined by flat edges are one face, so that
+        vertices on chords, which booleans leave, do not count."""
+        return components(*self.flats, len(self.facets))
+
+    @cached_property
+    def sizes(self) -> Ints:
+        """(f,) how many facets each face has."""
+        return np.bincount(self.faces)
+
+    def faces_among(self, chosen: Flags) -> Ints:
+        """(m,) the same of facets flagged in `chosen` (n,) alone, numbered by their first facets."""
+        rows = np.flatnonzero(chosen)
+        face = self.faces.take(rows)
+        number = np.bincount(face, minlength=len(self.sizes))
+        torn = (number > 0) & (number < self.sizes)
+        if not torn.any():
+            return np.asarray(np.cumsum(number > 0) - 1).take(face)
+        one, two = self.flats
+        kept = chosen.take(one)
+        kept &= chosen.take(two)
+        place = np.cumsum(chosen) - 1
+        return components(place.take(one[kept]), place.take(two[kept]), len(rows))
+
     @staticmethod
     def of(part: PartView, facets: Ints, flat: float, smooth: float) -> Sheet:
         """The sheet of these facets; an edge is bent above `flat` and smooth below `smooth` (rad)."""
         normals = part.normals(facets)
-        pairs = shared_edges(part.faces[facets], len(part.vertices), by_corner=True).facets
-        cosine = dot(normals[pairs[:, 0]], normals[pairs[:, 1]])
+        pairs = shared_edges(part.faces.take(facets, axis=0), len(part.vertices), by_corner=True).facets
+        one, two = np.ascontiguousarray(pairs.T)
+        cosine = dot(normals.take(one, axis=0), normals.take(two, axis=0))
         bent = cosine < math.cos(flat)
-        bends, flats = (facets[pairs[which]].T for which in (bent & (cosine > math.cos(smooth)), ~bent))
-        return Sheet(facets, normals, np.concatenate([bends, bends[::-1]], axis=1), np.ascontiguousarray(flats))
+        smooth_bent = bent & (cosine > math.cos(smooth))
+        bends = np.stack([one[smooth_bent], two[smooth_bent]])
+        flats = np.stack([one[~bent], two[~bent]])
+        return Sheet(facets, normals, np.concatenate([bends, bends[::-1]], axis=1), flats)
 
 
 def segments(part: PartView, sheet: Sheet, direction: Array, alignment: float, grain: float) -> Segments | None:
     """Those of the facets that run along `direction` (3,) within `alignment` (rad), and are no strip of a surface
     that bends along it too; ends nearer to each other than `grain` (m) are one."""
-    upright = np.zeros(len(part.faces), dtype=bool)
-    facets = sheet.facets
-    along = (np.abs(sheet.normals @ direction) < math.sin(alignment)) & sheet.solid
-    if not along.any():
+    upright = (np.abs(sheet.normals @ direction) < math.sin(alignment)) & sheet.solid
+    if not upright.any():
         return None
-    upright[facets] = along
     inner, outer = sheet.bends
     leaves = upright.take(inner)
     leaves &= ~upright.take(outer)
-    inner, outer = inner[leaves], outer[leaves]
+    inner, outer = sheet.facets.take(inner[leaves]), sheet.facets.take(outer[leaves])
     heights = [np.ptp(part.vertices.take(part.faces[side], axis=0) @ direction, axis=1) for side in (inner, outer)]
-    upright[inner[heights[1] > STRIP_HEIGHT * heights[0]]] = False
-    facets = facets[upright.take(facets)]
+    upright[sheet.facets.searchsorted(inner[heights[1] > STRIP_HEIGHT * heights[0]])] = False
+    facets = sheet.facets[upright]
     if not len(facets):
         return None
     plane = plane_basis(direction)
-    one, two = sheet.flats
-    face = _faces(len(part.faces), facets, sheet.flats[:, upright.take(one) & upright.take(two)])
+    face = sheet.faces_among(upright)
     # faces are numbered by their first facets
     lead = facets[heads(np.maximum.accumulate(face))]
     normals = part.normals(lead) @ plane.T
     along = np.stack([-normals[:, 1], normals[:, 0]], axis=1)
-    corners = part.vertices.take(part.faces[facets], axis=0)
+    corners = part.vertices.take(part.faces.take(facets, axis=0), axis=0)
     flat, height = (corners @ plane.T).reshape(-1, 2), (corners @ direction).ravel()
     owner = np.repeat(face, 3)
-    reach = np.einsum("ik,ik->i", flat, along[owner])
+    reach = np.einsum("ik,ik->i", flat, along.take(owner, axis=0))
     order = ascending(owner, len(lead))
     starts = np.flatnonzero(heads(owner.take(order)))
     first, last = _ends(reach, order, starts)
     ordered = height.take(order)
     lows, highs = np.minimum.reduceat(ordered, starts), np.maximum.reduceat(ordered, starts)
-    keep = reach[last] - reach[first] > grain
-    if not keep.any():
+    keep = np.flatnonzero(reach.take(last) - reach.take(first) > grain)
+    if not len(keep):
         return None
-    ids, points = _merged(np.concatenate([flat[first[keep]], flat[last[keep]]]), grain)
-    count = int(keep.sum())
-    key, number, back = np.unique(
-        ids[:count] * np.int64(len(points)) + ids[count:], return_index=True, return_inverse=True
-    )
-    low, high = np.full(len(key), np.inf), np.full(len(key), -np.inf)
-    np.minimum.at(low, back, lows[keep])
-    np.maximum.at(high, back, highs[keep])
-    start, end = np.divmod(key, np.int64(len(points)))
+    ends = np.concatenate([first.take(keep), last.take(keep)])
+    ids, points = _merged(flat.take(ends, axis=0), grain)
+    key = ids[: len(keep)] * np.int64(len(points)) + ids[len(keep) :]
+    order = ascending(key, len(points) ** 2)
+    key = key.take(order)
+    begin = np.flatnonzero(heads(key))
+    low = np.minimum.reduceat(lows.take(keep).take(order), begin)
+    high = np.maximum.reduceat(highs.take(keep).take(order), begin)
+    start, end = np.divmod(key.take(begin), np.int64(len(points)))
     # a chain of points each within the grain of the next may make one point of both ends
     long = start != end
     if not long.any():
         return None
-    labels = part.surfaces.labels[lead[keep]][number]
+    labels = part.surfaces.labels.take(lead.take(keep.take(order.take(begin))))
     return Segments(points, start[long], end[long], low[long], high[long], labels[long])
 
 
@@ -207,53 +235,79 @@ def _ends(values: Array, order: Ints, starts: Ints) -> tuple[Ints, Ints]:
     return order[low[np.searchsorted(low, starts)]], order[high[np.searchsorted(high, after) - 1]]
 
 
-def _faces(count: int, facets: Ints, flats: Ints) -> Ints:
-    """(n,) number of the plane face that each facet belongs to: facets joined by flat edges are one face, so that
-    vertices on chords, which booleans leave, do not count."""
-    place = np.zeros(count, dtype=np.int64)
-    place[facets] = np.arange(len(facets))
-    one, two = place.take(flats)
-    return components(one, two, len(facets))
-
-
 def _merged(points: Array, grain: float) -> tuple[Ints, Array]:
     """Points (n, 2) with those nearer than `grain` made one: index of each, and the points."""
     order = np.lexsort((points[:, 1], points[:, 0]))
-    pairs = Near(points[order], grain).pairs
-    leader = np.arange(len(points))
-    if len(pairs):
-        np.minimum.at(leader, pairs.max(axis=1), pairs.min(axis=1))
-    while (leader[leader] != leader).any():
-        leader = leader[leader]
+    points = points.take(order, axis=0)
+    leader = _leaders(points, grain)
     leads = leader == np.arange(len(points))
     ids = np.empty(len(points), dtype=np.int64)
     ids[order] = (np.cumsum(leads) - 1).take(leader)
-    return ids, points[order[leads]]
+    return ids, points[leads]
 
 
-def curves(part: PartView, pieces: Segments, near: Flags, smooth_edge: float) -> list[Curve]:
-    """The smooth curves that segments make, of those curves that have a segment flagged in `near` (n,)."""
+def _leaders(points: Array, grain: float) -> Ints:
+    """(n,) of points (n, 2), sorted, the first that each is near to, or the first that this is near to, and so on.
+
+    Steps of more than the grain along either coordinate part them into groups; a group that is no larger is near
+    itself, and only others need to be measured."""
+    spare, count = 1e-9, len(points)
+    x, y = np.ascontiguousarray(points.T)
+    column = np.cumsum(np.diff(x, prepend=x[:1]) > (1.0 + spare) * grain)
+    order = np.lexsort((y, column))
+    group = np.empty(count, np.int64)
+    step = np.diff(y.take(order), prepend=0.0) > (1.0 + spare) * grain
+    step[1:] |= np.diff(column) != 0
+    step[0] = False
+    number = np.cumsum(step)
+    group[order] = number
+    starts = np.flatnonzero(heads(number))
+    lead = np.minimum.reduceat(order, starts)
+    ordered = x.take(order)
+    wide = np.maximum.reduceat(ordered, starts) - np.minimum.reduceat(ordered, starts)
+    ordered = y.take(order)
+    tall = np.maximum.reduceat(ordered, starts) - np.minimum.reduceat(ordered, starts)
+    leader = lead.take(group)
+    loose = np.flatnonzero((wide * wide + tall * tall > (1.0 - spare) * grain * grain).take(group))
+    if len(loose):
+        leader[loose] = loose
+        pairs = loose.take(Near(points.take(loose, axis=0), grain).pairs)
+        np.minimum.at(leader, pairs.max(axis=1), pairs.min(axis=1))
+    while (leader[leader] != leader).any():
+        leader = leader[leader]
+    return leader
+
+
+def curves(part: PartView, pieces: Segments, near: Flags, wanted: Flags, smooth_edge: float) -> list[Curve]:
+    """The smooth curves that segments make and that have a segment flagged in `near` (n,), of those runs of segments
+    that are `wanted` (n,)."""
     out = []
-    for chain in _chains(pieces.start, pieces.end, len(pieces.points), near):
+    for chain in _chains(pieces.start, pieces.end, len(pieces.points), near & wanted):
         out += _cut(part, pieces, chain, near, smooth_edge)
     return out
 
 
-def may_curve(part: PartView, pieces: Segments, smooth_edge: float) -> bool:
-    """Whether any of the smooth curves that segments make may be no exact one: most outlines are straight and round,
-    which the turns from segment to segment tell sooner than the curves do."""
-    count = len(pieces.points)
+def may_curve(part: PartView, pieces: Segments, smooth_edge: float) -> Flags:
+    """(n,) segments of those unbranched runs of which some smooth curve may be no exact one: most outlines are straight
+    and round, which the turns from segment to segment tell sooner than the curves do."""
+    count, number = len(pieces.points), len(pieces.start)
     leaving, entering = np.full(count, -1), np.full(count, -1)
-    leaving[pieces.start], entering[pieces.end] = np.arange(len(pieces.start)), np.arange(len(pieces.start))
+    leaving[pieces.start], entering[pieces.end] = np.arange(number), np.arange(number)
     through = (np.bincount(pieces.start, minlength=count) == 1) & (np.bincount(pieces.end, minlength=count) == 1)
     exact = _circular(part, pieces.labels)
-    through &= ~(exact[entering] | exact[leaving])
-    steps = pieces.points[pieces.end] - pieces.points[pieces.start]
-    one, two = steps[entering[through]], steps[leaving[through]]
+    joints = np.flatnonzero(through & ~(exact.take(entering) | exact.take(leaving)))
+    steps = pieces.points.take(pieces.end, axis=0) - pieces.points.take(pieces.start, axis=0)
+    before = entering.take(joints)
+    one, two = steps.take(before, axis=0), steps.take(leaving.take(joints), axis=0)
     turn = np.abs(np.arctan2(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0], dot(one, two)))
     # for rounding; and a closed curve that is nowhere cut overlaps itself, and turns there twice
     spare = 1.0 + 1e-6
-    return bool(2.0 * spare * turn[turn < spare * smooth_edge].sum() >= CURVE_BEND_LEAST)
+    turn[turn >= spare * smooth_edge] = 0.0
+    if 2.0 * spare * turn.sum() < CURVE_BEND_LEAST:
+        return np.zeros(number, bool)
+    run = components(entering[through], leaving[through], number)
+    bent = np.bincount(run.take(before), turn, number)
+    return np.asarray((2.0 * spare * spare * bent >= CURVE_BEND_LEAST).take(run))
 
 
 def _chains(start: Ints, end: Ints, count: int, near: Flags) -> list[Ints]:
@@ -319,6 +373,6 @@ def _cut(part: PartView, pieces: Segments, chain: Ints, near: Flags, smooth_edge
 
 def _circular(part: PartView, labels: Ints) -> Flags:
     """Whether each segment belongs to an exact cylinder."""
-    unique, back = np.unique(labels, return_inverse=True)
-    surfaces = [part.surfaces.surfaces[k] for k in unique]
-    return np.array([s.kind == "cylinder" and s.residual < CYLINDER_EXACT * s.chord for s in surfaces])[back]
+    table = part.table
+    round_ = table.kinds.take(labels) == _CYLINDER
+    return np.asarray(round_ & (table.residuals.take(labels) < CYLINDER_EXACT * table.chords.take(labels)))

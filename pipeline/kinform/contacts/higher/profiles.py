@@ -20,8 +20,9 @@ from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.mating.charts import plane_basis
 from kinform.contacts.search.pair_view import NearSurfaces, PairView, PartView, near_facets
 from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.meshes.boxes import meeting_box
 from kinform.foundation.meshes.proximity import near_boxes
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances
@@ -94,20 +95,38 @@ def _meetings(pair: PairView, sheets: list[Sheet], direction: Array) -> list[_Me
         if pieces is None:
             return []
         cut.append(pieces)
-    if not any(may_curve(part, pieces, tolerances.smooth_edge) for part, pieces in zip(pair.parts, cut, strict=True)):
+    may = [may_curve(part, pieces, tolerances.smooth_edge) for part, pieces in zip(pair.parts, cut, strict=True)]
+    if not any(flags.any() for flags in may):
         return []
-    near = near_boxes(*cut[0].boxes(), *cut[1].boxes(), limit)
-    first = curves(pair.a, cut[0], near[0], tolerances.smooth_edge)
-    second = curves(pair.b, cut[1], near[1], tolerances.smooth_edge)
+    boxes = [pieces.boxes() for pieces in cut]
+    if not _may_be_near(boxes, may, limit):
+        return []
+    near = near_boxes(*boxes[0], *boxes[1], limit)
+    bent = [of_part & flags for of_part, flags in zip(near, may, strict=True)]
+    # an exact curve is compared with those that are not
+    first, second = (
+        curves(part, pieces, of_part, np.ones(len(of_part), bool) if other.any() else flags, tolerances.smooth_edge)
+        for part, pieces, of_part, flags, other in zip(pair.parts, cut, near, may, bent[::-1], strict=True)
+    )
     if not first or not second:
         return []
-    boxes = [np.array([[c.points.min(axis=0), c.points.max(axis=0)] for c in side]) for side in (first, second)]
-    apart = np.maximum(boxes[0][:, None, 0] - boxes[1][None, :, 1], boxes[1][None, :, 0] - boxes[0][:, None, 1])
+    flat = [np.array([[c.points.min(axis=0), c.points.max(axis=0)] for c in side]) for side in (first, second)]
+    apart = np.maximum(flat[0][:, None, 0] - flat[1][None, :, 1], flat[1][None, :, 0] - flat[0][:, None, 1])
     exact = np.outer([c.exact for c in first], [c.exact for c in second])
     meetings = []
     for i, j in np.argwhere((apart.max(axis=2) <= limit) & ~exact):
         meetings += _closest(first[i], second[j], tolerance)
     return _distinct(meetings, tolerance)
+
+
+def _may_be_near(boxes: list[tuple[Array, Array]], may: list[Flags], margin: float) -> bool:
+    """Whether any segments flagged in `may` of either part, of which these are all boxes, come within `margin` (m) of
+    the box of the other part's."""
+    for flags, (low, high), (low_other, high_other) in zip(may, boxes, boxes[::-1], strict=True):
+        beside = meeting_box(low[flags], high[flags], low_other.min(axis=0) - margin, high_other.max(axis=0) + margin)
+        if beside.any():
+            return True
+    return False
 
 
 def _sheet(part: PartView, low: Array, high: Array, tolerances: Tolerances) -> Sheet:

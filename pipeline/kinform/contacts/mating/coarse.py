@@ -198,6 +198,7 @@ def _row(one: _Round, radius: float) -> NearSurfaces:
     numbers = {
         "radii": radius, "minor_radii": 0.0, "half_angles": 0.0, "pitches": 0.0, "sides": one.side,
         "axis_uncertainty": ring.turn, "point_uncertainty": ring.shift, "slacks": chord + ring.shift, "chords": chord,
+        "residuals": ring.shift,
         "rims": 0.0, "areas": 0.0,
     }  # fmt: skip
     table = SurfaceTable(

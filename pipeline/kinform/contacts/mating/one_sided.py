@@ -11,17 +11,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from itertools import groupby
-from operator import itemgetter
 
 import numpy as np
 
-from kinform.contacts.constants import ANALYTIC_KINDS, FACING_OPPOSED, GIVER_AREA, MATING_REACH, PLANES_TILTED
+from kinform.contacts.constants import (
+    ANALYTIC_KINDS,
+    CLEARLY,
+    FACING_OPPOSED,
+    GIVER_AREA,
+    MATING_REACH,
+    PLANES_TILTED,
+    SURELY_FACING,
+)
 from kinform.contacts.mating.charts import Chart, ConeChart, CylinderChart, PlaneChart, SphereChart, perpendicular
 from kinform.contacts.mating.mate import Mate
-from kinform.contacts.search.pair_view import PairView, SurfacePair
-from kinform.foundation.algebra.vectors import dot
-from kinform.foundation.meshes.boxes import facet_boxes, meeting_box, middles
+from kinform.contacts.search.pair_view import PairView, SurfacePair, boxes_of
+from kinform.foundation.algebra.vectors import dot, lengths
+from kinform.foundation.meshes.box_pairs import Boxes, meeting_boxes
+from kinform.foundation.meshes.boxes import meeting_box, middles
+from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
@@ -29,7 +37,7 @@ from kinform.model.surfaces import KINDS
 _ANALYTIC = np.array([kind in ANALYTIC_KINDS for kind in KINDS])
 """Which kinds of surfaces have equations, by their numbers."""
 
-_PLANE = KINDS.index("plane")
+_PLANE, _SPHERE, _CONE = (KINDS.index(kind) for kind in ("plane", "sphere", "cone"))
 
 
 def one_sided_mates(pair: PairView, overlap: Flags) -> list[Mate]:
@@ -37,38 +45,83 @@ def one_sided_mates(pair: PairView, overlap: Flags) -> list[Mate]:
     mates: list[Mate] = []
     # a gives the normals, then b
     for view, flags, first in ((pair, overlap, True), (pair.swapped, overlap.T, False)):
-        for row, column, facets in _beside(view, _givers_and_takers(view, flags, first)):
+        for row, column, facets in _beside(view, flags & _givers_and_takers(view, flags, first)):
             mate = _mate(view, view.surfaces(row, column), facets, first)
             if mate is not None:
                 mates.append(mate)
     return mates
 
 
-def _beside(view: PairView, pairs: list[tuple[int, int]]) -> Iterator[tuple[int, int, Ints]]:
-    """The pairs of a giver with a taker, sorted, of which facets of the taker lie in the giver's box, and face it where
-    it is plane, with these: all takers of a giver at once, for most of them have none there."""
+def _beside(view: PairView, wanted: Flags) -> Iterator[tuple[int, int, Ints]]:
+    """The pairs of a giver with a taker flagged in `wanted` (s, t), sorted, of which facets of the taker lie in the
+    giver's box, and face it where it is plane, with these, where any of them may rest on it: all at once, for most of
+    them have none there."""
     giver, taker = view.near
-    columns = sorted({column for _, column in pairs})
-    if not columns:
+    rows, columns = np.flatnonzero(wanted.any(axis=1)), np.flatnonzero(wanted.any(axis=0))
+    if not len(rows):
         return
-    every = np.concatenate([taker.facets[column] for column in columns])
-    low, high = facet_boxes(view.b.vertices, view.b.faces[every])
-    normals = view.b.normals(every)
-    ends = np.cumsum([len(taker.facets[column]) for column in columns]).tolist()
-    place = {column: (start, end) for column, start, end in zip(columns, [0, *ends], ends, strict=False)}
-    for row, group in groupby(pairs, key=itemgetter(0)):
-        takers = [column for _, column in group]
-        at = np.concatenate([np.arange(*place[column]) for column in takers])
-        bounds = giver.lows[row] - view.tolerance, giver.highs[row] + view.tolerance
-        inside = at[meeting_box(low[at], high[at], *bounds)]
-        if giver.kinds[row] == _PLANE:
-            outward = np.broadcast_to(giver.sides[row] * giver.axes[row], (len(inside), 3))
-            inside = inside[dot(outward, normals[inside]) < FACING_OPPOSED]
-        first = np.searchsorted(inside, [place[column][0] for column in takers]).tolist()
-        last = np.searchsorted(inside, [place[column][1] for column in takers]).tolist()
-        for column, i, j in zip(takers, first, last, strict=True):
-            if i < j:
-                yield row, column, every[inside[i:j]]
+    every = np.concatenate([taker.facets[column] for column in columns.tolist()])
+    of_column = np.repeat(columns, [len(taker.facets[column]) for column in columns.tolist()])
+    reach = view.tolerance
+    boxes = giver.lows.take(rows, axis=0) - reach, giver.highs.take(rows, axis=0) + reach
+    one, two = _meeting(boxes, boxes_of(view.b, every))
+    row, column = rows.take(one), of_column.take(two)
+    kept = np.flatnonzero(wanted[row, column])
+    row, column, facets = row.take(kept), column.take(kept), every.take(two.take(kept))
+    normals = view.b.normals(facets)
+    flat = giver.kinds.take(row) == _PLANE
+    outward = giver.sides.take(row)[:, None] * giver.axes.take(row, axis=0)
+    kept = np.flatnonzero(~flat | (dot(outward, normals) < FACING_OPPOSED))
+    row, column, facets, normals = row.take(kept), column.take(kept), facets.take(kept), normals.take(kept, axis=0)
+    if not len(row):
+        return
+    may = _may_rest(view, row, facets, normals)
+    pair = row * np.int64(len(taker.ids)) + column
+    starts = np.flatnonzero(heads(pair))
+    ends = [*starts[1:].tolist(), len(pair)]
+    some = np.logical_or.reduceat(may, starts).tolist()
+    for start, end, may_some in zip(starts.tolist(), ends, some, strict=True):
+        if may_some:
+            yield int(row[start]), int(column[start]), facets[start:end]
+
+
+def _meeting(first: Boxes, second: Boxes) -> tuple[Ints, Ints]:
+    """Indices (k,) of boxes (n, 3) and (m, 3) that meet, by the first, then by the second."""
+    met = meeting_boxes(first, second)
+    if met is not None:
+        return met
+    each = [np.flatnonzero(meeting_box(*second, low, high)) for low, high in zip(*first, strict=True)]
+    return np.repeat(np.arange(len(each)), [len(found) for found in each]), np.concatenate(each)
+
+
+def _may_rest(view: PairView, rows: Ints, facets: Ints, normals: Array) -> Flags:
+    """(k,) which of these facets of the taker, with their normals (k, 3), may have something within the tolerance of
+    the giver's surface in the same row, and face it: what is clearly above, or below, or turned away, has not."""
+    giver, taker = view.near[0], view.b
+    corners = taker.vertices.take(taker.faces.take(facets, axis=0), axis=0)
+    axes, kinds = giver.axes.take(rows, axis=0), giver.kinds.take(rows)
+    arms = corners - giver.points.take(rows, axis=0)[:, None]
+    heights = along = np.einsum("kij,kj->ki", arms, axes)
+    spare = CLEARLY * (np.abs(arms).max(initial=0.0) + giver.radii.max(initial=0.0))
+    out = np.ones(len(rows), bool)
+    curved = np.flatnonzero(kinds != _PLANE)
+    if len(curved):
+        rows, kinds, axes, along = rows.take(curved), kinds.take(curved), axes.take(curved, axis=0), along[curved]
+        along[kinds == _SPHERE] = 0.0
+        across = arms[curved] - along[..., None] * axes[:, None]
+        conical = kinds == _CONE
+        half = np.where(conical, giver.half_angles.take(rows), 0.0)
+        cosine, sine = np.cos(half), np.sin(half)
+        radius = np.where(conical, 0.0, giver.radii.take(rows))
+        heights[curved] = lengths(across) * cosine[:, None] - along * sine[:, None] - radius[:, None]
+        radial = middles(across)
+        radial /= np.maximum(lengths(radial), 1e-300)[:, None]
+        outward = cosine[:, None] * radial - sine[:, None] * axes
+        facing = giver.sides.take(rows) * dot(outward, normals.take(curved, axis=0))
+        # of a middle that is nearly on the axis nothing is clear
+        out[curved] = (facing < FACING_OPPOSED + SURELY_FACING) | (lengths(middles(across)) <= 1e3 * spare)
+    limit = MATING_REACH * view.tolerance + spare
+    return np.asarray(out & (heights.min(axis=1) <= limit) & (heights.max(axis=1) >= -limit))
 
 
 def without_continuations(pair: PairView, patches: list[Patch]) -> list[Patch]:
@@ -93,24 +146,25 @@ def without_continuations(pair: PairView, patches: list[Patch]) -> list[Patch]:
     return kept
 
 
-def _givers_and_takers(view: PairView, overlap: Flags, first: bool) -> list[tuple[int, int]]:
-    """Analytic surfaces of the part that gives the normals with freeform ones of the other that rests on it, and planes
-    with larger planes that they lie on askew; of planes of one size that of the `first` part gives."""
+def _givers_and_takers(view: PairView, overlap: Flags, first: bool) -> Flags:
+    """(s, t) of those flagged in `overlap`: analytic surfaces of the part that gives the normals with freeform ones of
+    the other that rests on it, and planes with larger planes that they lie on askew; of planes of one size that of the
+    `first` part gives."""
     giver, taker = view.near
     analytic = _ANALYTIC[giver.kinds]
     large = giver.areas >= GIVER_AREA * view.tolerance**2
     loose = ~_ANALYTIC[taker.kinds]
     flags = (analytic & large)[:, None] & loose[None]
     # a ball touches the groove of a ring along a circle or at a point, as `rounds` knows, and does not rest in it
-    flags &= ~((giver.kinds == KINDS.index("sphere"))[:, None] & (taker.kinds == KINDS.index("torus"))[None])
-    planes = (giver.kinds == _PLANE)[:, None] & (taker.kinds == _PLANE)[None]
-    angle = np.arccos(np.clip(-(giver.axes @ taker.axes.T), -1.0, 1.0))
-    spread = giver.axis_uncertainty[:, None] + taker.axis_uncertainty[None]
-    larger = giver.areas[:, None] > taker.areas[None]
-    if first:
-        larger |= giver.areas[:, None] == taker.areas[None]
-    askew = planes & (angle > view.tolerances.alignment + spread) & (angle < PLANES_TILTED) & larger
-    return [(int(i), int(j)) for i, j in np.argwhere(overlap & (flags | (askew & large[:, None])))]
+    flags &= ~((giver.kinds == _SPHERE)[:, None] & (taker.kinds == KINDS.index("torus"))[None])
+    planes = overlap & (large & (giver.kinds == _PLANE))[:, None] & (taker.kinds == _PLANE)[None]
+    i, j = planes.nonzero()
+    angle = np.arccos(np.clip(-(giver.axes @ taker.axes.T)[i, j], -1.0, 1.0))
+    spread = giver.axis_uncertainty.take(i) + taker.axis_uncertainty.take(j)
+    area, other = giver.areas.take(i), taker.areas.take(j)
+    larger = (area >= other) if first else (area > other)
+    flags[i, j] = (angle > view.tolerances.alignment + spread) & (angle < PLANES_TILTED) & larger
+    return flags
 
 
 def _chart(surfaces: SurfacePair) -> Chart:

@@ -42,6 +42,7 @@ class SurfaceTable:
     slacks: Array
     """(s,) that facets may stand off the surface: chord error and residual of the fit."""
     chords: Array
+    residuals: Array
     rims: Array
     """(s,) greatest chord error of the surfaces that share an edge with this one."""
     extents: Array
@@ -68,6 +69,7 @@ class SurfaceTable:
             point_uncertainty=columns["point_uncertainty"],
             slacks=columns["chord"] + columns["residual"],
             chords=columns["chord"],
+            residuals=columns["residual"],
             rims=rims,
             extents=np.array([s.extent for s in every], dtype=np.float64).reshape(-1, 2),
             areas=columns["area"],
