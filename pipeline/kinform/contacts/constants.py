@@ -103,8 +103,6 @@ ENCLOSING_PROBES = 600
 """Middles of facets of either part that are looked at."""
 FACING_ROUNDED = 1e-9
 """By which the cosine of two facets may be off for rounding."""
-MANY_FACING = 20_000
-"""Pairs of a probe and a facet from which on a grid tells sooner which of them are near each other."""
 MOST_ASKED = 20_000
 """Facets beyond which finding out which probes can hit any of them takes longer than casting all."""
 ENCLOSED_HELD = 0.02

@@ -140,7 +140,8 @@ class Sheet:
     def faces(self) -> Ints:
         """(n,) number of the plane face that each facet belongs to: facets joined by flat edges are one face, so that
         vertices on chords, which booleans leave, do not count."""
-        return components(*self.flats, len(self.facets))
+        one, two = self.flats
+        return components(one, two, len(self.facets))
 
     @cached_property
     def sizes(self) -> Ints:

@@ -19,8 +19,10 @@ from kinform.contacts.search.pair_view import PairView, boxes_of
 from kinform.foundation.algebra.screws import Frame, rows
 from kinform.foundation.algebra.vectors import cross, dot, foot, norm
 from kinform.foundation.constants import SLIVER_WIDTH
+from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import meeting_box, middles, triangle_boxes
-from kinform.foundation.meshes.proximity import near_boxes
+from kinform.foundation.meshes.probes import Region
+from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
@@ -145,15 +147,15 @@ def _facing(view: PairView, unread: Flags) -> _Near | None:
         return None
     chosen, weight = _evenly(areas, constants.ENCLOSING_PROBES)
     points, normals = middles(corners[chosen]), a.normals(facets[chosen])
-    able = np.flatnonzero(_can_hit(view, points, normals, reach, columns))
+    of_row = of_row[chosen]
+    column = np.full(len(b.table.areas), -1)
+    column[other.ids] = np.arange(len(other.ids))
+    able, region = _can_hit(view, points, normals, reach, unread[of_row][:, column] & (column >= 0))
     if not len(able):
         return None
-    chosen, weight, points, normals = chosen[able], weight[able], points[able], normals[able]
-    facets, of_row = facets[chosen], of_row[chosen]
-    reaches = np.full(len(points), reach)
-    hits = b.region.cast(b.to_part(points), b.turn_to_part(normals), reaches)
-    column = {int(k): number for number, k in enumerate(other.ids)}
-    of_column = np.array([column.get(int(k), -1) for k in b.surfaces.labels[hits.facet]], dtype=np.int64)
+    weight, points, normals, of_row = weight[able], points[able], normals[able], of_row[able]
+    hits = region.cast(b.to_part(points), b.turn_to_part(normals), np.full(len(points), reach))
+    of_column = column[b.surfaces.labels[hits.facet]]
     wanted = (hits.facing < -constants.FACING_LEAST) & (of_column >= 0)
     wanted[wanted] = unread[of_row[hits.probe[wanted]], of_column[wanted]]
     kept = np.flatnonzero(wanted)
@@ -171,28 +173,29 @@ def _facing(view: PairView, unread: Flags) -> _Near | None:
     )
 
 
-def _can_hit(view: PairView, points: Array, normals: Array, reach: float, columns: Ints) -> Flags:
-    """(n,) which probes along the normals of the first part at these points, `reach` (m) to either side, have a facet
-    of these near surfaces of the second part in their box that faces them: no other needs to be cast."""
+def _can_hit(view: PairView, points: Array, normals: Array, reach: float, unread: Flags) -> tuple[Ints, Region]:
+    """Which probes along the normals of the first part at these points (n, 3), `reach` (m) to either side, have a facet
+    in their box that faces them, of those surfaces of the second part that are `unread` (n, surfaces) beside the
+    probe's; and these facets: no others need to be cast."""
     b = view.b
-    wanted = np.zeros(len(b.table.areas), bool)
-    wanted[view.near[1].ids[columns]] = True
     facets = np.arange(len(b.faces)) if b.region.facets is None else b.region.facets
-    facets = facets[wanted[b.surfaces.labels[facets]]]
+    facets = facets[np.logical_or.reduce(unread, axis=0)[b.surfaces.labels[facets]]]
+    every = np.arange(len(points)), b.region
     if len(facets) > constants.MOST_ASKED:
-        return np.ones(len(points), bool)
+        return every
     half = reach * (np.abs(normals) + 2.0 * SLIVER_WIDTH)
     low, high = points - half, points + half
     low_b, high_b = boxes_of(b, facets)
     near = np.flatnonzero(meeting_box(low_b, high_b, low.min(axis=0), high.max(axis=0)))
     facets, low_b, high_b = facets[near], low_b[near], high_b[near]
-    out = np.ones(len(points), bool)
-    if len(points) * len(facets) > constants.MANY_FACING:
-        out, beside = near_boxes(low, high, low_b, high_b, 0.0)
-        facets = facets[beside]
-    opposed = normals[out] @ b.normals(facets).T < constants.FACING_ROUNDED - constants.FACING_LEAST
-    out[out] = opposed.any(axis=1)
-    return out
+    met = meeting_boxes((low, high), (low_b, high_b))
+    if met is None:
+        return every
+    probe, facet = met
+    facing = dot(normals.take(probe, axis=0), b.normals(facets).take(facet, axis=0))
+    kept = unread[probe, b.surfaces.labels.take(facets).take(facet)]
+    kept &= facing < constants.FACING_ROUNDED - constants.FACING_LEAST
+    return distinct(probe[kept]), Region(b.index, facets[distinct(facet[kept])])
 
 
 def _evenly(areas: Array, count: int) -> tuple[Ints, Array]:

@@ -19,8 +19,11 @@ from kinform.contacts.mating.patches import classify_fit
 from kinform.contacts.search.narrow_phase import Probes, verify
 from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.foundation.algebra.vectors import cross, dot, widest_gap
-from kinform.foundation.meshes.boxes import meeting_box, middles
-from kinform.model.arrays import Array, Flags
+from kinform.foundation.constants import SLIVER_WIDTH
+from kinform.foundation.meshes.box_pairs import meeting_boxes
+from kinform.foundation.meshes.boxes import meeting_box, middles, triangle_boxes
+from kinform.foundation.sorting import among, distinct
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 
 
@@ -28,9 +31,9 @@ def freeform_patches(pair: PairView, overlap: Flags) -> list[Patch]:
     """Patches between freeform surfaces flagged in `overlap` (s, t), in the frame of the pair."""
     rows, columns, flags = pair.of_kinds(overlap, *constants.FREEFORM_KINDS)
     probed = []
-    for i, j in np.argwhere(flags):
+    for i, j, facing in _may_face(pair, rows, columns, flags):
         surfaces = pair.surfaces(rows[i], columns[j])
-        probes, shares = _probes(pair, surfaces)
+        probes, shares = _probes(pair, surfaces, facing)
         if len(probes.points):
             probed.append((surfaces, probes, shares))
     if not probed:
@@ -52,13 +55,56 @@ def freeform_patches(pair: PairView, overlap: Flags) -> list[Patch]:
     return patches
 
 
-def _probes(pair: PairView, surfaces: SurfacePair) -> tuple[Probes, Array]:
-    """Probes at the middles of facets of both surfaces, and half the area (m²) each stands for."""
+_Facing = tuple[Ints, Ints] | None
+"""Facets of a and of b whose probes may hold; None: all."""
+
+
+def _may_face(pair: PairView, rows: Ints, columns: Ints, flags: Flags) -> list[tuple[int, int, _Facing]]:
+    """Those of near surfaces at `rows` (s,) of a and `columns` (t,) of b, flagged in `flags` (s, t), of which any facet
+    has one of the other in the box of its probe, that it faces, with such facets: no other probe meets anything."""
+    if not flags.any():
+        return []
+    reach = constants.MATING_REACH * pair.tolerance
+    facets, owners, slivers, boxes, normals = [], [], [], [], []
+    some = flags.any(axis=1), flags.any(axis=0)
+    for part, near, chosen, flagged in zip(pair.parts, pair.near, (rows, columns), some, strict=True):
+        own = np.flatnonzero(flagged)
+        of_each = [near.facets[k] for k in chosen[own].tolist()]
+        every = np.concatenate(of_each)
+        corners = part.vertices.take(part.faces.take(every, axis=0), axis=0)
+        centres, outward = middles(corners), part.normals(every)
+        half = reach * (np.abs(outward) + 2.0 * SLIVER_WIDTH)
+        facets.append(every)
+        owners.append(np.repeat(own, [len(each) for each in of_each]))
+        normals.append(outward)
+        slivers.append((centres - half, centres + half))
+        boxes.append(triangle_boxes(corners))
+    keys, able = [], []
+    for side, met in enumerate((meeting_boxes(slivers[0], boxes[1]), meeting_boxes(boxes[0], slivers[1]))):
+        if met is None:
+            return [(int(i), int(j), None) for i, j in np.argwhere(flags)]
+        one, two = met
+        opposed = dot(normals[0].take(one, axis=0), normals[1].take(two, axis=0))
+        kept = (opposed < constants.SURELY_FACING - constants.FACETS_FACING) & flags[owners[0][one], owners[1][two]]
+        keys.append((owners[0][one] * flags.shape[1] + owners[1][two])[kept])
+        able.append(facets[side].take(met[side][kept]))
+    out: list[tuple[int, int, _Facing]] = []
+    for key in distinct(np.concatenate(keys)).tolist():
+        first, second = (distinct(of_side[own == key]) for own, of_side in zip(keys, able, strict=True))
+        out.append((*divmod(key, flags.shape[1]), (first, second)))
+    return out
+
+
+def _probes(pair: PairView, surfaces: SurfacePair, facing: _Facing) -> tuple[Probes, Array]:
+    """Probes at the middles of facets of both surfaces, and half the area (m²) each stands for, but those whose facets
+    are not `facing`."""
     reach = constants.MATING_REACH * pair.tolerance
     middle, size = surfaces.box()
     low, high = middle - 0.5 * size - reach, middle + 0.5 * size + reach
     points, normals, shares = [], [], []
-    for part, facets, sense in zip(pair.parts, surfaces.facets, (1.0, -1.0), strict=True):
+    for k, (part, facets, sense) in enumerate(zip(pair.parts, surfaces.facets, (1.0, -1.0), strict=True)):
+        if facing is not None and not len(facing[k]):
+            continue
         centres = middles(part.vertices.take(part.faces[facets], axis=0))
         inside = meeting_box(centres, centres, low, high)
         # facets without area have no normal
@@ -66,12 +112,13 @@ def _probes(pair: PairView, surfaces: SurfacePair) -> tuple[Probes, Array]:
         chosen = within[:: max(1, math.ceil(len(within) / constants.FREEFORM_PROBES))]
         areas = part.index.areas(facets[chosen])
         total = float(part.index.areas(facets[within]).sum())
-        points.append(centres[chosen])
-        normals.append(sense * part.normals(facets[chosen]))
-        shares.append(0.5 * areas * total / max(float(areas.sum()), 1e-300))
-    count = len(points[0]) + len(points[1])
-    gaps, reaches = np.zeros(count), np.full(count, reach)
-    return Probes.of(np.concatenate(points), np.concatenate(normals), gaps, reaches, surfaces), np.concatenate(shares)
+        able = slice(None) if facing is None else np.flatnonzero(among(facets[chosen], facing[k]))
+        points.append(centres[chosen][able])
+        normals.append(sense * part.normals(facets[chosen])[able])
+        shares.append((0.5 * areas * total / max(float(areas.sum()), 1e-300))[able])
+    place = np.concatenate(points)
+    gaps, reaches = np.zeros(len(place)), np.full(len(place), reach)
+    return Probes.of(place, np.concatenate(normals), gaps, reaches, surfaces), np.concatenate(shares)
 
 
 def _patch(

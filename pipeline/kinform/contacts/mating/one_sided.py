@@ -164,7 +164,7 @@ def _givers_and_takers(view: PairView, overlap: Flags, first: bool) -> Flags:
     area, other = giver.areas.take(i), taker.areas.take(j)
     larger = (area >= other) if first else (area > other)
     flags[i, j] = (angle > view.tolerances.alignment + spread) & (angle < PLANES_TILTED) & larger
-    return flags
+    return np.asarray(flags)
 
 
 def _chart(surfaces: SurfacePair) -> Chart:
