@@ -184,7 +184,7 @@ class MeshIndex:
     def rings(self, surfaces: MeshSurfaces) -> tuple[Ring, ...]:
         """Rings of flats, which may be meant as round."""
         if self._rings is None:
-            self._rings = rings_of(self.mesh, surfaces, self.edges, self.borders(surfaces))
+            self._rings = rings_of(self.mesh, surfaces, self.table(surfaces), self.edges, self.borders(surfaces))
         return self._rings
 
     @property

@@ -16,10 +16,11 @@ from kinform.foundation import constants
 from kinform.foundation.algebra.vectors import canonical, cross, dot, normalised, perpendicular, widest_gap
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import SharedEdges
+from kinform.foundation.meshes.surface_table import SurfaceTable
 from kinform.foundation.sorting import distinct, heads, median, numbered
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
-from kinform.model.surfaces import MeshSurfaces
+from kinform.model.surfaces import KINDS, MeshSurfaces
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,13 +69,15 @@ class _Ridges:
         return _Ridges(*(getattr(self, name)[rows] for name in self.__dataclass_fields__))
 
 
-def rings_of(mesh: Mesh, surfaces: MeshSurfaces, edges: SharedEdges, borders: Ints) -> tuple[Ring, ...]:
-    """The rings among the planes of a mesh with these shared edges (by corner), and surfaces (k, 2) that share some, by
-    direction, sense and lowest facet."""
-    plane = np.array([surface.kind == "plane" for surface in surfaces.surfaces], dtype=bool)
-    if plane.sum() < constants.RING_SIDES or not _any_bent(surfaces, borders, plane):
+def rings_of(
+    mesh: Mesh, surfaces: MeshSurfaces, table: SurfaceTable, edges: SharedEdges, borders: Ints
+) -> tuple[Ring, ...]:
+    """The rings among the planes of a mesh with the table of its surfaces, these shared edges (by corner), and surfaces
+    (k, 2) that share some, by direction, sense and lowest facet."""
+    plane = table.kinds == KINDS.index("plane")
+    if plane.sum() < constants.RING_SIDES or not _any_bent(table, borders, plane):
         return ()
-    piece, ridges = _ridges(mesh, surfaces, edges, plane)
+    piece, ridges = _ridges(mesh, surfaces, table, edges, plane)
     family = _families(ridges)
     ridges, family = ridges.where(family >= 0), family[family >= 0]
     if len(family) < constants.RING_SIDES - 1:
@@ -84,7 +87,7 @@ def rings_of(mesh: Mesh, surfaces: MeshSurfaces, edges: SharedEdges, borders: In
     rows = _rows_of_flats(ridges, family)
     found = [
         _ring(mesh, surfaces, piece, row, label[row.pieces])
-        for row, plausible in zip(rows, _may_be_round(mesh, surfaces, rows, label), strict=True)
+        for row, plausible in zip(rows, _may_be_round(mesh, surfaces.noise, table, rows, label), strict=True)
         if plausible
     ]
     return tuple(ring for ring in found if ring is not None)
@@ -96,15 +99,16 @@ def _bent(sine: Array, cosine: Array) -> Flags:
     return np.asarray((angle > constants.RING_TURN[0]) & (angle < constants.RING_TURN[1]))
 
 
-def _any_bent(surfaces: MeshSurfaces, borders: Ints, plane: Flags) -> bool:
+def _any_bent(table: SurfaceTable, borders: Ints, plane: Flags) -> bool:
     """Whether any planes among the surfaces that share edges do."""
     first, second = borders[plane[borders].all(axis=1)].T
-    axes = np.array([surface.axis for surface in surfaces.surfaces]).reshape(-1, 3)
-    one, two = axes[first], axes[second]
+    one, two = table.axes[first], table.axes[second]
     return bool(_bent(np.linalg.norm(cross(one, two), axis=1), dot(one, two)).any())
 
 
-def _ridges(mesh: Mesh, surfaces: MeshSurfaces, edges: SharedEdges, plane: Flags) -> tuple[Ints, _Ridges]:
+def _ridges(
+    mesh: Mesh, surfaces: MeshSurfaces, table: SurfaceTable, edges: SharedEdges, plane: Flags
+) -> tuple[Ints, _Ridges]:
     """(F,) connected piece of its plane of each facet, and the ridges between pieces."""
     labels, vertices = surfaces.labels, mesh.vertices
     facets = edges.facets
@@ -115,8 +119,7 @@ def _ridges(mesh: Mesh, surfaces: MeshSurfaces, edges: SharedEdges, plane: Flags
     between = flat & ~inside & edges.opposed
     edges = edges.where(between)
     first, second = facets[between].T
-    axes = np.array([surface.axis for surface in surfaces.surfaces]).reshape(-1, 3)
-    one, two = axes[labels[first]], axes[labels[second]]
+    one, two = table.axes[labels[first]], table.axes[labels[second]]
     across, along = cross(one, two), edges.along(vertices)
     sine, length = np.linalg.norm(across, axis=1), np.linalg.norm(along, axis=1)
     bent = _bent(sine, dot(one, two))
@@ -242,7 +245,7 @@ def _circles(mesh: Mesh, rows: list[_Row]) -> _Circles:
     return _Circles(axis, middle + one[:, None] * u + two[:, None] * v, radius, off)
 
 
-def _may_be_round(mesh: Mesh, surfaces: MeshSurfaces, rows: list[_Row], label: Ints) -> Flags:
+def _may_be_round(mesh: Mesh, noise: float, table: SurfaceTable, rows: list[_Row], label: Ints) -> Flags:
     """(r,) rows that are not left out at first sight: most are boxes, pockets and steps. `label` (pieces,) tells the
     plane of each piece."""
     if not rows:
@@ -250,18 +253,31 @@ def _may_be_round(mesh: Mesh, surfaces: MeshSurfaces, rows: list[_Row], label: I
     circles = _circles(mesh, rows)
     spare = 1.0 + constants.RING_SPARE
     with np.errstate(invalid="ignore"):
-        out = ~(circles.off > spare * (constants.RING_ROUND * circles.radius + constants.RING_NOISES * surfaces.noise))
+        out = ~(circles.off > spare * (constants.RING_ROUND * circles.radius + constants.RING_NOISES * noise))
         planes = [np.unique(label[r.pieces]) for r in rows]
         sizes = np.array([len(p) for p in planes])
         row, starts = np.repeat(np.arange(len(rows)), sizes), np.cumsum(sizes) - sizes
-        every = [surfaces.surfaces[k] for k in np.concatenate(planes).tolist()]
-        axes, points = np.array([s.axis for s in every]), np.array([s.point for s in every])
+        every = np.concatenate(planes)
+        axes, points = table.axes[every], table.points[every]
         side = np.array([1.0 if r.ridges.convex[0] else -1.0 for r in rows])
         reach = side[row] * dot(points - circles.centre[row], axes)
         low, high = np.minimum.reduceat(reach, starts), np.maximum.reduceat(reach, starts)
         out &= ~(low < -constants.RING_SPARE * circles.radius)
         out &= ~((sizes <= constants.RING_FEW) & (high - low > spare * constants.RING_EVEN * circles.radius))
+        out &= ~(_widest_gaps(axes, circles.axis, row, starts) > constants.RING_OPEN + constants.RING_SPARE)
     return out
+
+
+def _widest_gaps(vectors: Array, axes: Array, row: Ints, starts: Ints) -> Array:
+    """(r,) rad: `widest_gap` about unit axes (r, 3) of vectors (n, 3), those of a row after each other, from `starts`
+    (r,) on; `row` (n,)."""
+    u = normalised(cross(np.eye(3)[np.abs(axes).argmin(axis=1)], axes))
+    v = cross(axes, u)
+    azimuth = np.arctan2(dot(vectors, v[row]), dot(vectors, u[row]))
+    azimuth = azimuth[np.lexsort((azimuth, row))]
+    gaps = np.diff(azimuth, prepend=0.0)
+    gaps[starts] = azimuth[starts] + 2.0 * np.pi - azimuth[np.append(starts[1:], len(row)) - 1]
+    return np.asarray(np.maximum.reduceat(gaps, starts))
 
 
 def _ring(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, row: _Row, labels: Ints) -> Ring | None:
