@@ -36,6 +36,8 @@ GRID_LISTED_LEAST = 4096
 """... and these in all, which cost nothing."""
 UNLISTED = 32
 """Comparisons of points with boxes, a facet, that cost less than a grid."""
+STEPS_QUICKER = 4
+"""Times that small integers are compared as fast as floating numbers, all told."""
 SIZE_OCTAVES = 20
 """Octaves of size that facets are sorted by."""
 PLACE_BITS = 10
