@@ -60,3 +60,16 @@ def test_few_points_are_in_the_same_boxes_as_among_many():
     which, found = boxes.around(points)
     for n, (_, those) in zip(range(0, len(points), 40), few, strict=True):
         assert those.tolist() == found[which == n].tolist()
+
+
+def test_points_are_in_the_same_boxes_by_steps_as_exactly():
+    rng = np.random.default_rng(11)
+    for scale, place in ((1.0, 0.0), (1e-3, 7.0), (1e5, -3.0)):
+        low = place + scale * rng.uniform(-1.0, 1.0, (900, 2))
+        high = low + scale * 10.0 ** rng.uniform(-5, 0.0, (900, 2))
+        points = np.concatenate([place + scale * rng.uniform(-1.0, 1.0, (30, 2)), low[:20], high[20:40]])
+        boxes = FlatBoxes(low, high)
+        which, found = boxes.around(points)
+        assert boxes._left > 0
+        inside = ((points[:, None] >= low) & (points[:, None] <= high)).all(axis=2)
+        assert [which.tolist(), found.tolist()] == [column.tolist() for column in np.nonzero(inside)]
