@@ -42,33 +42,24 @@ def regions(flats: Sequence[Array], units: Sequence[float]) -> list[CrossSection
 def _simple_outlines(flat: Array, owner: Ints, count: int) -> list[list[Array] | None]:
     """Closed loops around triangles (n, 3, 2) of positive area of `count` sets, by the set of each (n,), ascending:
     edges that no other triangle of the set runs the other way. They wind about every point as often as the triangles
-    do, and there are far fewer of them. None of sets in which several edges leave one corner."""
-    out: list[list[Array] | None] = [[] for _ in range(count)]
-    points = flat.reshape(-1, 2)
+    do, and there are far fewer of them. Each from its lowest corner on, and by that; None of sets in which several
+    edges leave one corner."""
+    points, of_point = flat.reshape(-1, 2), np.repeat(owner, 3)
     cells = np.round(points / constants.POINT_SAME)
     cells += 0.0  # one zero
-    of_point = np.repeat(owner, 3)
     first, corner = numbered_alike([*np.ascontiguousarray(cells.T).view(np.uint64), of_point.view(np.uint64)])
-    total = len(first)
-    start, end = corner, corner.reshape(-1, 3).take(_NEXT, axis=1).ravel()
-    low, high = np.minimum(start, end), np.maximum(start, end)
-    leads, edge = numbered_alike([(low * total + high).view(np.uint64)])
-    net = np.bincount(edge, np.where(start < end, 1.0, -1.0), len(leads)).astype(np.int64)
-    left = net.nonzero()[0]
-    forward, one, two = net.take(left) > 0, low.take(leads.take(left)), high.take(leads.take(left))
-    leaving, reaching = np.where(forward, one, two), np.where(forward, two, one)
-    times = np.bincount(leaving, np.abs(net.take(left)), total)
+    leaving, reaching, times = _one_way(corner)
     of_corner = of_point.take(first)
-    for k in of_corner[times > 1.0].tolist():
+    out: list[list[Array] | None] = [[] for _ in range(count)]
+    for k in of_corner[np.bincount(leaving, times, len(first)) > 1.0].tolist():
         out[k] = None
-    onward = np.full(total, -1)
+    x, y = cells.take(first.take(leaving), axis=0).T
+    begins = leaving.take(np.lexsort((y, x, of_corner.take(leaving))))
+    onward = np.full(len(first), -1)
     onward[leaving] = reaching
-    begins, cells = np.sort(leaving), cells.take(first, axis=0)
-    x, y = cells.take(begins, axis=0).T
-    begins = begins.take(np.lexsort((y, x, of_corner.take(begins))))
-    after, owners, seen = onward.tolist(), of_corner.take(begins).tolist(), bytearray(total)
+    after, seen = onward.tolist(), bytearray(len(first))
     places, sizes, sets = [], [], []
-    for begin, k in zip(begins.tolist(), owners, strict=True):
+    for begin, k in zip(begins.tolist(), of_corner.take(begins).tolist(), strict=True):
         if seen[begin] or out[k] is None:
             continue
         loop, at = [begin], after[begin]
@@ -80,15 +71,28 @@ def _simple_outlines(flat: Array, owner: Ints, count: int) -> list[list[Array] |
             places += loop
             sizes.append(len(loop))
             sets.append(k)
-    corners = points.take(first.take(places), axis=0) if places else points[:0]
-    ends = [0, *accumulate(sizes)]
-    for k, i, j in zip(sets, ends[:-1], ends[1:], strict=True):
-        out[k].append(corners[i:j])
+    corners, ends = points.take(first.take(np.array(places, np.int64)), axis=0), [0, *accumulate(sizes)]
+    for k, start, end in zip(sets, ends, ends[1:], strict=False):
+        loops = out[k]
+        assert loops is not None
+        loops.append(corners[start:end])
     return out
 
 
+def _one_way(corner: Ints) -> tuple[Ints, Ints, Ints]:
+    """Edges of triangles, by their numbered corners (3n,), that more triangles run one way than the other: the corners
+    that they leave and reach, and how many more."""
+    total, end = int(corner.max(initial=0)) + 1, corner.reshape(-1, 3).take(_NEXT, axis=1).ravel()
+    low, high = np.minimum(corner, end), np.maximum(corner, end)
+    leads, edge = numbered_alike([(low * total + high).view(np.uint64)])
+    net = np.bincount(edge, np.where(corner < end, 1.0, -1.0), len(leads)).astype(np.int64)
+    left = net.nonzero()[0]
+    forward, one, two = net.take(left) > 0, low.take(leads.take(left)), high.take(leads.take(left))
+    return np.where(forward, one, two), np.where(forward, two, one), np.abs(net.take(left))
+
+
 def _outline(flat: Array) -> list[Array]:
-    """The same of one set, whatever its corners are."""
+    """The same of one set (n, 3, 2), whatever leaves its corners."""
     cells = np.round(flat.reshape(-1, 2) / constants.POINT_SAME)
     order = np.lexsort((cells[:, 1], cells[:, 0]))
     fresh = np.r_[True, (cells[order[1:]] != cells[order[:-1]]).any(axis=1)]

@@ -19,6 +19,7 @@ from kinform.foundation.constants import (
     CLEARLY_ROUNDED,
     CLEARLY_STEEP,
     CROSSED_FEW,
+    CROSSED_MOST,
     CROSSED_SOME,
     CULLED_LEAST,
     MET_FEW,
@@ -47,10 +48,11 @@ def meeting(slivers: Array, corners: Array) -> Met | None:
     return meetings([(slivers, corners)])[0]
 
 
-def meetings(asked: Sequence[tuple[Array, Array]]) -> list[Met | None]:
+def meetings(asked: Sequence[tuple[Array, Array]], most: float | None = None) -> list[Met | None]:
     """The same of several sets of slivers with their facets, each in a frame of its own: all at once where they are
-    few, for numpy takes as long to begin as it takes to go through a few hundred of them."""
-    out = [_beside_boxes(*one) for one in asked]
+    few, for numpy takes as long to begin as it takes to go through a few hundred of them. `most`: pairs near each
+    other, in all triangles, that are too many."""
+    out = [_beside_boxes(*one, MET_MOST if most is None else most) for one in asked]
     left = [k for k, near in enumerate(out) if near is not None and len(near[0])]
     if not left:
         return out
@@ -100,10 +102,10 @@ def _decided(firsts: list[Array], seconds: list[Array], one: Ints, two: Ints) ->
     return met
 
 
-def _beside_boxes(slivers: Array, corners: Array) -> Met | None:
+def _beside_boxes(slivers: Array, corners: Array, most: float) -> Met | None:
     """Those that may meet, by their boxes, and of many also by their planes and edges; None as above."""
     near = meeting_boxes(triangle_boxes(slivers), triangle_boxes(corners))
-    if near is None or len(near[0]) > MET_MOST * (len(slivers) + len(corners)):
+    if near is None or len(near[0]) > most * (len(slivers) + len(corners)):
         return None
     if len(near[0]) <= CULLED_LEAST:
         return near
@@ -230,7 +232,7 @@ def crossings(asked: Sequence[tuple[Array, Array]]) -> list[bool | None]:
     """`crossing` of several sets of triangles, at once where they are few."""
     mutual = [_mutual(first, second) for first, second in asked]
     few = [k for k, (first, second) in enumerate(mutual) if len(first) * len(second) <= CROSSED_FEW]
-    met = dict(zip(few, meetings([mutual[k] for k in few]), strict=True))
+    met = dict(zip(few, meetings([mutual[k] for k in few], CROSSED_MOST), strict=True))
     return [_any(met[k]) if k in met else _crossing(*pair) for k, pair in enumerate(mutual)]
 
 
@@ -247,10 +249,10 @@ def _crossing(first: Array, second: Array) -> bool | None:
     """The same of many that are within each other's boxes: some of the first are asked before all are, which settles
     it where much crosses."""
     some = first[:: max(CROSSED_SOME, -(-len(first) * len(second) // CROSSED_FEW))]
-    met = meeting(*_mutual(some, second))
+    (met,) = meetings([_mutual(some, second)], CROSSED_MOST)
     if met is not None and len(met[0]):
         return True
-    return _any(meeting(first, second))
+    return _any(meetings([(first, second)], CROSSED_MOST)[0])
 
 
 def _mutual(first: Array, second: Array) -> tuple[Array, Array]:
