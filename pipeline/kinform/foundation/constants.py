@@ -204,6 +204,8 @@ MET_FEW = 1000
 MET_MOST = 10
 """Pairs of triangles, in all triangles, from which on to ask about each takes longer than to make trees of them."""
 
+TOLD_AT_ONCE = 4096
+"""Pairs of triangles that are looked at in one pass: 2 MB, which stay near the processor."""
 CROSSED_MOST = 20
 """The same where it is only asked whether any meet: two trees for it take longer than one of few slivers does."""
 

@@ -24,6 +24,7 @@ from kinform.foundation.constants import (
     CULLED_LEAST,
     MET_FEW,
     MET_MOST,
+    TOLD_AT_ONCE,
 )
 from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import facet_boxes, meeting_box, triangle_boxes
@@ -135,9 +136,16 @@ def _told(first: Array, second: Array, one: Ints, two: Ints, size: Array) -> tup
     of the second or across one of its edges, and which clearly meet, as the first edge of the one steeply passes into
     the other: by more than rounding, so that all directions together say the same. That is most of them. `size` (m,)
     bounds all coordinates of what each of the second is asked with."""
-    first = first.take(one, axis=2)
     # what is asked of a triangle is computed once for all of its pairs
-    axes, reach, spare, square = (table.take(two, axis=-1) for table in _sides(second, size))
+    sides, apart, met = _sides(second, size), np.empty(len(one), bool), np.empty(len(one), bool)
+    for start in range(0, len(one), TOLD_AT_ONCE):
+        some = slice(start, start + TOLD_AT_ONCE)
+        apart[some], met[some] = _told_of(first.take(one[some], axis=2), *(of.take(two[some], axis=-1) for of in sides))
+    return apart, met
+
+
+def _told_of(first: Array, axes: Array, reach: Array, spare: Array, square: Array) -> tuple[Flags, Flags]:
+    """The same of triangles (3, 3, c), each with the sides of the other."""
     place = axes[0] * first[:, 0, None]
     place += axes[1] * first[:, 1, None]
     place += axes[2] * first[:, 2, None]
@@ -258,17 +266,12 @@ def _crossing(first: Array, second: Array) -> bool | None:
 def _mutual(first: Array, second: Array) -> tuple[Array, Array]:
     """Those of triangles (n, 3, 3) and (m, 3, 3), in their order, that may meet some of the others by the box of all of
     these; neither of none."""
-    low, high = triangle_boxes(second)
-    first = _within(first, low.min(axis=0), high.max(axis=0))
-    if not len(first):
-        return first, second[:0]
-    low, high = triangle_boxes(first)
-    return first, _within(second, low.min(axis=0), high.max(axis=0))
-
-
-def _within(triangles: Array, low: Array, high: Array) -> Array:
-    """Those of triangles (n, 3, 3) whose boxes meet that from `low` to `high` (3,)."""
-    return np.asarray(triangles[meeting_box(*triangle_boxes(triangles), low, high)])
+    (low, high), (low_other, high_other) = triangle_boxes(first), triangle_boxes(second)
+    near = meeting_box(low, high, low_other.min(axis=0), high_other.max(axis=0)).nonzero()[0]
+    if not len(near):
+        return first[:0], second[:0]
+    least, most = low.take(near, axis=0).min(axis=0), high.take(near, axis=0).max(axis=0)
+    return first.take(near, axis=0), np.asarray(second[meeting_box(low_other, high_other, least, most)])
 
 
 def _edges(triangles: Array) -> Array:
