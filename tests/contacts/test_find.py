@@ -114,7 +114,7 @@ def test_what_comes_of_a_pair_does_not_depend_on_those_that_are_looked_at_with_i
     alone = find(design, surfaces)
     assert len(alone.candidates) > 7
     rng = np.random.default_rng(3)
-    for together in (1, 2, 5, 7):
+    for together in (1, 2, 5, 7, 100):
         monkeypatch.setattr(stage.constants, "TOGETHER_PAIRS", together)
         monkeypatch.setattr(stage, "_by_neighbours", lambda pairs: [pairs[k] for k in rng.permutation(len(pairs))])
         assert same(alone, find(design, surfaces))

@@ -72,6 +72,8 @@ def all_cylinders(parts: Iterable[Cylinders]) -> Cylinders:
 
 def aligned_holes(a: Cylinders, b: Cylinders, planes: Iterable[Patch], tolerance: float) -> Holes:
     """Holes of part a that go on in part b across one of their plane contacts."""
+    if not ((a.sides < 0).any() and (b.sides < 0).any()):
+        return Holes(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0))
     axes: list[Array] = []
     places: list[Array] = []
     radii: list[float] = []

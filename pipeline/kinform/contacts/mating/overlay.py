@@ -14,80 +14,12 @@ import numpy as np
 from manifold3d import CrossSection, FillRule, triangulate
 
 from kinform.contacts import constants
-from kinform.contacts.mating.cells import Cells, Cut, gathered, signed_areas
+from kinform.contacts.mating.cells import Cells, Cut, gathered, joined, signed_areas
 from kinform.contacts.mating.charts import Chart
+from kinform.contacts.mating.regions import regions
 from kinform.foundation.algebra.vectors import lengths
-from kinform.foundation.meshes.boxes import meeting_box, triangle_boxes
-from kinform.foundation.sorting import numbered
-from kinform.model.arrays import Array, Ints
-
-
-def _region(flat: Array, unit: float) -> CrossSection:
-    """The union of triangles (n, 3, 2), in units of `unit` (m)."""
-    signed = signed_areas(flat)
-    turned = signed < 0.0
-    flat = (np.where(turned[:, None, None], flat[:, ::-1], flat) if turned.any() else flat) / unit
-    large = np.abs(signed) > 1e-12 * unit * unit
-    flat = np.ascontiguousarray(flat if large.all() else flat[large])
-    return CrossSection(_outline(flat) if len(flat) > constants.MANY_TRIANGLES else list(flat), FillRule.Positive)
-
-
-def _outline(flat: Array) -> list[Array]:
-    """Closed loops around triangles (n, 3, 2) of positive area: edges that no other triangle runs the other way.
-
-    They wind about every point as often as the triangles do, and there are far fewer of them.
-    """
-    cells = np.round(flat.reshape(-1, 2) / constants.POINT_SAME)
-    order = np.lexsort((cells[:, 1], cells[:, 0]))
-    fresh = np.r_[True, (cells[order[1:]] != cells[order[:-1]]).any(axis=1)]
-    renamed = np.empty(len(order), np.int64)
-    renamed[order] = np.cumsum(fresh) - 1
-    points, count = flat.reshape(-1, 2)[order[fresh]], np.int64(fresh.sum())
-    corner = renamed.reshape(-1, 3)
-    start, end = renamed, np.roll(corner, -1, axis=1).ravel()
-    low, high = np.minimum(start, end), np.maximum(start, end)
-    edge, number = numbered(low * count + high, int(count) ** 2)
-    net = np.bincount(number, np.where(start < end, 1.0, -1.0)).astype(np.int64)
-    times = np.abs(net)
-    one: Ints = np.repeat(edge // count, times)
-    two: Ints = np.repeat(edge % count, times)
-    forward = np.repeat(net > 0, times)
-    leaving, reaching = np.where(forward, one, two), np.where(forward, two, one)
-    if int(np.bincount(leaving).max(initial=0)) == 1:
-        return _simple_loops(points, leaving, reaching)
-    onward: dict[int, list[int]] = {}
-    for a, b in zip(leaving.tolist(), reaching.tolist(), strict=True):
-        onward.setdefault(a, []).append(b)
-    loops = []
-    for begin in sorted(onward):
-        while onward[begin]:
-            # every corner is left as often as it is reached, so that a walk ends where it began
-            loop, at = [begin], onward[begin].pop()
-            while at != begin:
-                loop.append(at)
-                at = onward[at].pop()
-            if len(loop) > 2:
-                loops.append(points[loop])
-    return loops
-
-
-def _simple_loops(points: Array, leaving: Ints, reaching: Ints) -> list[Array]:
-    """The loops of edges (k,), no two of which leave one corner, each from its lowest corner on."""
-    onward = np.full(len(points), -1)
-    onward[leaving] = reaching
-    after, seen = onward.tolist(), bytearray(len(points))
-    loops = []
-    for begin in np.sort(leaving).tolist():
-        if seen[begin]:
-            continue
-        loop, at = [begin], after[begin]
-        while at != begin:
-            loop.append(at)
-            seen[at] = True
-            at = after[at]
-        if len(loop) > 2:
-            loops.append(points[loop])
-    return loops
+from kinform.foundation.meshes.boxes import triangle_boxes
+from kinform.model.arrays import Array
 
 
 def _perimeter(polygons: list[Array]) -> float:
@@ -108,23 +40,36 @@ def _resampled(polygon: Array, step: Array) -> Array:
     return np.asarray(polygon[rows] + share[:, None] * (ends[rows] - polygon[rows]))
 
 
-def _overlap(chart: Chart, first: Array, second: Array, unit: float) -> CrossSection | None:
-    """The region, in units of `unit`, that both sets of facets cover."""
-    flat_a, flat_b = chart.flatten(first), chart.flatten(second)
-    if not len(flat_a) or not len(flat_b):
-        return None
-    boxes = [triangle_boxes(flat) for flat in (flat_a, flat_b)]
-    low = np.maximum(*(lower.min(axis=0) for lower, _ in boxes))
-    high = np.minimum(*(upper.max(axis=0) for _, upper in boxes))
-    if (low >= high).any():
-        return None
-    sides = []
-    for flat, box in zip((flat_a, flat_b), boxes, strict=True):
-        within = meeting_box(*box, low, high)
-        sides.append(_region(flat if within.all() else flat[within], unit))
-    region = sides[0] ^ sides[1]
-    window = chart.window()
-    return region if window is None else region ^ CrossSection([window / unit], FillRule.Positive)
+def _overlaps(asked: Sequence[tuple[Chart, Array, Array, float, float]]) -> list[CrossSection | None]:
+    """The region of each, in units of its tolerance, that both sets of facets cover."""
+    flats = [(chart.flatten(first), chart.flatten(second)) for chart, first, second, *_ in asked]
+    some = [k for k, (one, two) in enumerate(flats) if len(one) and len(two)]
+    out: list[CrossSection | None] = [None] * len(asked)
+    if not some:
+        return out
+    sets = [flat for k in some for flat in flats[k]]
+    counts = [len(flat) for flat in sets]
+    flat, starts = joined(sets), np.cumsum([0, *counts[:-1]])
+    low, high = triangle_boxes(flat)
+    least, most = np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)
+    least, most = np.maximum(least[0::2], least[1::2]), np.minimum(most[0::2], most[1::2])
+    meets = (least < most).all(axis=1)
+    of_set = np.repeat(np.arange(len(sets)), counts)
+    pair = of_set // 2
+    within = meets.take(pair)
+    within &= (low <= most.take(pair, axis=0)).all(axis=1)
+    within &= (high >= least.take(pair, axis=0)).all(axis=1)
+    if not within.all():
+        flat, of_set = flat[within], of_set[within]
+    left = np.searchsorted(of_set, np.arange(len(sets) + 1)).tolist()
+    kept = [k for k in range(len(some)) if left[2 * k] < left[2 * k + 1] < left[2 * k + 2]]
+    both = [(flat[left[k] : left[k + 1]], asked[some[k // 2]][3]) for n in kept for k in (2 * n, 2 * n + 1)]
+    found = regions([own for own, _ in both], [unit for _, unit in both])
+    for n, k in enumerate(kept):
+        chart, _, _, unit, _ = asked[some[k]]
+        region, window = found[2 * n] ^ found[2 * n + 1], chart.window()
+        out[some[k]] = region if window is None else region ^ CrossSection([window / unit], FillRule.Positive)
+    return out
 
 
 def _pieces(region: CrossSection, thin: float) -> list[list[Array]]:
@@ -154,16 +99,16 @@ def overlays(asked: Sequence[tuple[Chart, Array, Array, float, float]]) -> list[
     The tolerance (m) sets what is too thin or too small to be a patch, `thin` (m) what is thin in any case: pieces that
     are narrower than this are left out beside others, and are `narrow` where there are no others.
     """
-    cuts = [_cut(*one) for one in asked]
+    cuts = [
+        None if region is None else _cut(region, chart, tolerance, thin)
+        for region, (chart, _, _, tolerance, thin) in zip(_overlaps(asked), asked, strict=True)
+    ]
     cells = iter(gathered([cut for cut in cuts if cut is not None]))
     return [None if cut is None else next(cells) for cut in cuts]
 
 
-def _cut(chart: Chart, first: Array, second: Array, tolerance: float, thin: float) -> Cut | None:
-    """One of them, not yet gathered."""
-    region = _overlap(chart, first, second, tolerance)
-    if region is None:
-        return None
+def _cut(region: CrossSection, chart: Chart, tolerance: float, thin: float) -> Cut | None:
+    """One of them, whose region is in units of the tolerance, not yet gathered."""
     wide = max(constants.REGION_THIN, thin / tolerance)
     pieces = _pieces(region, wide)
     narrow = not pieces and wide > constants.REGION_THIN

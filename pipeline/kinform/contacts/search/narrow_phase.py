@@ -11,8 +11,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from itertools import accumulate
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kinform.contacts.constants import BETWEEN_MARGIN, BETWEEN_SHARE, FACING_LEAST
 from kinform.contacts.search.pair_view import PairView, SurfacePair
@@ -49,7 +51,7 @@ class Verdict:
     along_a: list[Array]
     along_b: list[Array]
     cosine: list[Array]
-    """(n,) of the angle between the outward normals of the two facets."""
+    """(n,) of the angle between the outward normals of the two facets; 1 where both are not met."""
 
     @property
     def gaps(self) -> list[Array]:
@@ -89,47 +91,98 @@ def verify(pair: PairView, sets: list[Probes], facing: float = FACING_LEAST) -> 
 
 def verify_all(asked: Sequence[tuple[PairView, list[Probes]]], facing: float = FACING_LEAST) -> list[Verdict]:
     """The same of several pairs at once."""
-    joined = [
-        sets[0]
-        if len(sets) == 1
-        else Probes(*(np.concatenate([getattr(p, f.name) for p in sets]) for f in fields(Probes)))
-        for _, sets in asked
-    ]
+    joined = [Probes(*(_rows([getattr(p, f.name) for p in sets]) for f in fields(Probes))) for _, sets in asked]
     casts = [
         Cast(part.region, part.to_part(probes.points), part.turn_to_part(probes.normals), probes.reach)
         for (pair, _), probes in zip(asked, joined, strict=True)
         for part in pair.parts
     ]
-    hits = cast_all(casts)
-    return [
-        _verdict(pair, sets, probes, (hits[2 * k], hits[2 * k + 1]), facing)
-        for k, ((pair, sets), probes) in enumerate(zip(asked, joined, strict=True))
-    ]
-
-
-def _verdict(pair: PairView, sets: list[Probes], probes: Probes, hits: tuple[Hits, Hits], facing: float) -> Verdict:
-    """What sets of probes of one pair, which are `probes` together, have hit of both parts."""
-    count = len(probes.points)
-    chosen, on_surface = [], []
-    for part, met, side, sense in zip(pair.parts, hits, (0, 1), (1.0, -1.0), strict=True):
-        wanted = part.surfaces.labels.take(met.facet) == probes.surfaces[:, side].take(met.probe)
-        chosen.append(_nearest(met, wanted & (sense * met.facing > facing), -0.5 * sense * probes.gaps, count))
-        on_surface.append(wanted)
-    holds = (chosen[0] >= 0) & (chosen[1] >= 0)
-    along, cosine = [np.zeros(count), np.zeros(count)], np.ones(count)
-    if holds.any():
-        along = [np.where(holds, h.along[c], 0.0) for h, c in zip(hits, chosen, strict=True)]
-        facets = [h.facet[c] for h, c in zip(hits, chosen, strict=True)]
-        cosine = dot(pair.a.normals(facets[0]), pair.b.normals(facets[1]))
-        holds &= cosine < pair.tolerances.opposed
-        inset = BETWEEN_MARGIN * pair.tolerance + BETWEEN_SHARE * np.abs(along[1] - along[0])
-        low, high = np.minimum(*along) + inset, np.maximum(*along) - inset
-        for met, wanted in zip(hits, on_surface, strict=True):
-            holds &= ~_blocked(met, wanted, low, high)
-    ends = list(accumulate(len(p.points) for p in sets))
+    every = _Joined.of([pair for pair, _ in asked], joined, cast_all(casts))
+    holds, along_a, along_b, cosine = every.verdict(facing)
+    ends = list(accumulate(len(p.points) for _, sets in asked for p in sets))
     own = [slice(first, end) for first, end in zip([0, *ends], ends, strict=False)]
+    out, at = [], 0
+    for _, sets in asked:
+        rows = own[at : at + len(sets)]
+        at += len(sets)
+        out.append(
+            Verdict(
+                [holds[some] for some in rows],
+                [along_a[some] for some in rows],
+                [along_b[some] for some in rows],
+                [cosine[some] for some in rows],
+            )
+        )
+    return out
 
-    def by_set(of_all: Array) -> list[Array]:
-        return [of_all[rows] for rows in own]
 
-    return Verdict([holds[rows] for rows in own], by_set(along[0]), by_set(along[1]), by_set(cosine))
+@dataclass(frozen=True, eq=False)
+class _Joined:
+    """All probes of several pairs, one after the other, and what they hit of both parts of each."""
+
+    pairs: Sequence[PairView]
+    starts: list[int]
+    """Where the probes of each pair begin, and where all end."""
+    surfaces: Ints
+    gaps: Array
+    """(n, 2), (n,) as of `Probes`."""
+    hits: tuple[Hits, Hits]
+    labels: tuple[Ints, Ints]
+    """(h,) surface of the facet of each hit."""
+
+    @staticmethod
+    def of(pairs: Sequence[PairView], probes: list[Probes], hits: list[Hits]) -> _Joined:
+        """Of the hits of the first and second part of each pair."""
+        starts = [0, *accumulate(len(p.points) for p in probes)]
+        sides, labels = [], []
+        for side in (0, 1):
+            own = hits[side::2]
+            sides.append(
+                Hits(
+                    _rows([hit.probe + start for hit, start in zip(own, starts, strict=False)]),
+                    *(_rows([getattr(hit, name) for hit in own]) for name in ("facet", "along", "facing")),
+                )
+            )
+            labels.append(
+                _rows([p.parts[side].surfaces.labels.take(hit.facet) for p, hit in zip(pairs, own, strict=True)])
+            )
+        surfaces, gaps = (_rows([getattr(p, name) for p in probes]) for name in ("surfaces", "gaps"))
+        return _Joined(pairs, starts, surfaces, gaps, (sides[0], sides[1]), (labels[0], labels[1]))
+
+    def verdict(self, facing: float) -> tuple[Flags, Array, Array, Array]:
+        """What `Verdict` says, (n,) of all probes."""
+        count = self.starts[-1]
+        chosen, on_surface = [], []
+        for met, labels, side, sense in zip(self.hits, self.labels, (0, 1), (1.0, -1.0), strict=True):
+            wanted = labels == self.surfaces[:, side].take(met.probe)
+            chosen.append(_nearest(met, wanted & (sense * met.facing > facing), -0.5 * sense * self.gaps, count))
+            on_surface.append(wanted)
+        holds = (chosen[0] >= 0) & (chosen[1] >= 0)
+        along, cosine = [np.zeros(count), np.zeros(count)], np.ones(count)
+        some = holds.nonzero()[0]
+        if not len(some):
+            return holds, along[0], along[1], cosine
+        for side, met in enumerate(self.hits):
+            along[side][some] = met.along.take(chosen[side].take(some))
+        cosine[some] = dot(*(self._normals(side, chosen[side].take(some), some) for side in (0, 1)))
+        counts = np.diff(self.starts)
+        holds &= cosine < np.repeat([pair.tolerances.opposed for pair in self.pairs], counts)
+        inset = np.repeat([BETWEEN_MARGIN * pair.tolerance for pair in self.pairs], counts)
+        inset += BETWEEN_SHARE * np.abs(along[1] - along[0])
+        low, high = np.minimum(*along) + inset, np.maximum(*along) - inset
+        for met, wanted in zip(self.hits, on_surface, strict=True):
+            holds &= ~_blocked(met, wanted, low, high)
+        return holds, along[0], along[1], cosine
+
+    def _normals(self, side: int, chosen: Ints, probes: Ints) -> Array:
+        """(k, 3) of the facets of hits `chosen` (k,) of `probes` (k,), ascending, in the frames of their pairs."""
+        facets = self.hits[side].facet.take(chosen)
+        ends = probes.searchsorted(self.starts).tolist()
+        return _rows(
+            [pair.parts[side].normals(facets[i:j]) for pair, i, j in zip(self.pairs, ends, ends[1:], strict=False)]
+        )
+
+
+def _rows(arrays: Sequence[NDArray[Any]]) -> NDArray[Any]:
+    """All rows of some arrays."""
+    return arrays[0] if len(arrays) == 1 else np.concatenate(arrays)

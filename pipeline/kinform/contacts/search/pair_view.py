@@ -125,9 +125,15 @@ def near_facets(placed: PartView, low: Array, high: Array) -> _Boxed:
         facets = boxes.meeting(low, high)
         return facets, boxes.low.take(facets, axis=0), boxes.high.take(facets, axis=0)
     vertices, faces = placed.vertices, placed.faces
-    beside = ((vertices < low) @ _BITS[:3]) | ((vertices > high) @ _BITS[3:])
-    a, b, c = faces.T
-    facets = np.flatnonzero((beside[a] & beside[b] & beside[c]) == 0)
+    beside = np.zeros(len(vertices), np.uint8)
+    for axis in range(3):
+        column = vertices[:, axis]
+        beside |= (column < low[axis]) * _BITS[axis]
+        beside |= (column > high[axis]) * _BITS[3 + axis]
+    a, b, c = (beside.take(corner) for corner in faces.T)
+    a &= b
+    a &= c
+    facets = np.flatnonzero(a == 0)
     low_f, high_f = facet_boxes(vertices, faces.take(facets, axis=0))
     return facets, low_f, high_f
 
@@ -140,7 +146,7 @@ def boxes_of(placed: PartView, facets: Ints) -> tuple[Array, Array]:
     return facet_boxes(placed.vertices, placed.faces[facets])
 
 
-_BITS = np.array([1, 2, 4, 8, 16, 32], dtype=np.int64)
+_BITS = np.array([1, 2, 4, 8, 16, 32], dtype=np.uint8)
 """One for each side of a box that a vertex can lie beyond."""
 
 
@@ -163,10 +169,16 @@ class NearSurfaces(SurfaceTable):
         """Positions of the surfaces of these kinds."""
         if self.present.isdisjoint(kinds):
             return _NONE
+        if len(kinds) == 1:
+            return self._of_kind[kinds[0]]
         wanted = np.zeros(len(self.kinds), dtype=bool)
         for kind in kinds:
             wanted |= self.kinds == KINDS.index(kind)
         return np.flatnonzero(wanted)
+
+    @cached_property
+    def _of_kind(self) -> dict[str, Ints]:
+        return {kind: np.flatnonzero(self.kinds == KINDS.index(kind)) for kind in self.present}
 
     @cached_property
     def present(self) -> frozenset[str]:
@@ -332,6 +344,8 @@ class PairView:
         """Positions of the near surfaces of these kinds of a (s,) and of b (t,), and the flags `overlap` of these (s,
         t)."""
         rows, columns = (side.of_kind(*kinds) for side in self.near)
+        if not len(rows) or not len(columns):
+            return rows, columns, np.zeros((len(rows), len(columns)), bool)
         return rows, columns, overlap[rows[:, None], columns]
 
     def common_box(self) -> tuple[Array, Array] | None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.constants import CELLS_LEAST, CELLS_MOST
-from kinform.foundation.meshes.boxes import bounds, meeting_box
+from kinform.foundation.meshes.boxes import meeting_box
 from kinform.model.arrays import Array, Flags, Ints
 
 
@@ -20,61 +20,67 @@ def near_boxes(low_a: Array, high_a: Array, low_b: Array, high_b: Array, margin:
     """
     if not len(low_a) or not len(low_b):
         return np.zeros(len(low_a), bool), np.zeros(len(low_b), bool)
-    low = np.maximum(bounds(low_a)[0], bounds(low_b)[0]) - margin
-    high = np.minimum(bounds(high_a)[1], bounds(high_b)[1]) + margin
+    sides = [np.ascontiguousarray(side.T) for side in (low_a, high_a, low_b, high_b)]
+    low = np.maximum(sides[0].min(axis=1), sides[2].min(axis=1)) - margin
+    high = np.minimum(sides[1].max(axis=1), sides[3].max(axis=1)) + margin
     size = np.maximum(high - low, 1e-300)
     finest = min(CELLS_MOST, CELLS_LEAST + int(np.sqrt(len(low_a) + len(low_b)) / 4))
     counts = np.maximum(np.ceil(finest * size / size.max()), 1).astype(np.int64)
-    first, last = _cells(low_b - margin, high_b + margin, low, size, counts)
-    keep_a = _occupied(_grid(first, last, counts), *_cells(low_a, high_a, low, size, counts))
+    placed_a, placed_b = (_cells(sides[k], sides[k + 1], 0.0, low, size, counts) for k in (0, 2))
+    keep_a = _occupied(_grid(_cells(sides[2], sides[3], margin, low, size, counts), counts), placed_a)
     keep_a &= meeting_box(low_a, high_a, low, high)
-    first, last = _cells(low_a[keep_a] - margin, high_a[keep_a] + margin, low, size, counts)
-    keep_b = _occupied(_grid(first, last, counts), *_cells(low_b, high_b, low, size, counts))
+    grown = _cells(sides[0][:, keep_a], sides[1][:, keep_a], margin, low, size, counts)
+    keep_b = _occupied(_grid(grown, counts), placed_b)
     keep_b &= meeting_box(low_b, high_b, low, high)
     return keep_a, keep_b
 
 
-def _cells(low: Array, high: Array, origin: Array, size: Array, counts: Ints) -> tuple[Ints, Ints]:
-    """First and last cell (n, 3) of each box, inside the grid."""
-    cells = np.concatenate([low, high], dtype=np.float64)
-    cells -= origin
-    cells /= size
-    cells *= counts
-    np.floor(cells, out=cells)
-    np.maximum(cells, 0, out=cells)
-    np.minimum(cells, counts - 1, out=cells)
-    both = cells.astype(np.int64)
-    return both[: len(low)], both[len(low) :]
-
-
-def _grid(first: Ints, last: Ints, counts: Ints) -> Array:
-    """Sums of occupied cells from the origin, one larger than the grid along each axis."""
-    shape = counts + 1
-    flat, sign = _corners(first, last, shape)
-    cells = np.bincount(flat.ravel(), np.repeat(sign, len(first)), int(shape.prod())).reshape(tuple(shape))
+def _cells(low: Array, high: Array, margin: float, origin: Array, size: Array, counts: Ints) -> Ints:
+    """(2, 3, n) first and last cell of each box (3, n), grown by `margin`, inside the grid."""
+    cells = np.empty((2, *low.shape))
+    np.subtract(low, margin, out=cells[0])
+    np.add(high, margin, out=cells[1])
     for axis in range(3):
-        np.cumsum(cells, axis=axis, out=cells)
+        column = cells[:, axis]
+        column -= origin[axis]
+        column /= size[axis]
+        column *= counts[axis]
+    np.floor(cells, out=cells)
+    np.maximum(cells, 0.0, out=cells)
+    np.minimum(cells, (counts - 1)[:, None], out=cells)
+    return cells.astype(np.int64)
+
+
+def _grid(cells: Ints, counts: Ints) -> Array:
+    """Sums of occupied cells from the origin, one larger than the grid along each axis, of boxes of cells (2, 3, n)."""
+    shape = counts + 1
+    flat = _corners(cells, shape)
+    found = np.bincount(flat.ravel(), np.repeat(_SIGNS, flat.shape[1]), int(shape.prod())).reshape(tuple(shape))
+    for axis in range(3):
+        np.cumsum(found, axis=axis, out=found)
     summed = np.zeros(tuple(shape))
-    summed[1:, 1:, 1:] = cells[:-1, :-1, :-1] > 0.5
+    summed[1:, 1:, 1:] = found[:-1, :-1, :-1] > 0.5
     for axis in range(3):
         np.cumsum(summed, axis=axis, out=summed)
     return summed
 
 
-def _corners(first: Ints, last: Ints, shape: Ints) -> tuple[Ints, Array]:
-    """(8, n) place in a flat grid of that shape of the corners of boxes of cells, upper ones one beyond, and their
-    signs (8,) in sums."""
-    x, y, z = (np.stack([low, high + 1]) * step for low, high, step in zip(
-        first.T, last.T, (shape[1] * shape[2], shape[2], 1), strict=True
-    ))  # fmt: skip
-    flat = (x[:, None, None] + y[None, :, None] + z[None, None]).reshape(8, -1)
-    return flat, _SIGNS
+def _corners(cells: Ints, shape: Ints) -> Ints:
+    """(8, n) place in a flat grid of that shape of the corners of boxes of cells (2, 3, n), upper ones one beyond."""
+    places = cells.copy()
+    places[1] += 1
+    places[:, 0] *= shape[1] * shape[2]
+    places[:, 1] *= shape[2]
+    x, y, z = places[:, 0], places[:, 1], places[:, 2]
+    out = np.empty((2, 2, 2, cells.shape[2]), np.int64)
+    np.add(x[:, None, None], (y[:, None] + z[None])[None], out=out)
+    return out.reshape(8, -1)
 
 
 _SIGNS = np.array([(-1.0) ** (i + j + k) for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+"""(8,) of the corners of a box in sums."""
 
 
-def _occupied(summed: Array, first: Ints, last: Ints) -> Flags:
-    """Whether any cell of each box is occupied."""
-    flat, sign = _corners(first, last, np.array(summed.shape))
-    return np.asarray(-sign @ summed.ravel()[flat] > 0.5)
+def _occupied(summed: Array, cells: Ints) -> Flags:
+    """Whether any cell of each box of cells (2, 3, n) is occupied."""
+    return np.asarray(-_SIGNS @ summed.ravel().take(_corners(cells, np.array(summed.shape))) > 0.5)

@@ -19,10 +19,12 @@ from kinform.foundation.constants import (
     CLEARLY_ROUNDED,
     CLEARLY_STEEP,
     CROSSED_FEW,
+    CROSSED_MOST,
     CROSSED_SOME,
     CULLED_LEAST,
     MET_FEW,
     MET_MOST,
+    TOLD_AT_ONCE,
 )
 from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import facet_boxes, meeting_box, triangle_boxes
@@ -47,10 +49,11 @@ def meeting(slivers: Array, corners: Array) -> Met | None:
     return meetings([(slivers, corners)])[0]
 
 
-def meetings(asked: Sequence[tuple[Array, Array]]) -> list[Met | None]:
+def meetings(asked: Sequence[tuple[Array, Array]], most: float | None = None) -> list[Met | None]:
     """The same of several sets of slivers with their facets, each in a frame of its own: all at once where they are
-    few, for numpy takes as long to begin as it takes to go through a few hundred of them."""
-    out = [_beside_boxes(*one) for one in asked]
+    few, for numpy takes as long to begin as it takes to go through a few hundred of them. `most`: pairs near each
+    other, in all triangles, that are too many."""
+    out = [_beside_boxes(*one, MET_MOST if most is None else most) for one in asked]
     left = [k for k, near in enumerate(out) if near is not None and len(near[0])]
     if not left:
         return out
@@ -100,10 +103,10 @@ def _decided(firsts: list[Array], seconds: list[Array], one: Ints, two: Ints) ->
     return met
 
 
-def _beside_boxes(slivers: Array, corners: Array) -> Met | None:
+def _beside_boxes(slivers: Array, corners: Array, most: float) -> Met | None:
     """Those that may meet, by their boxes, and of many also by their planes and edges; None as above."""
     near = meeting_boxes(triangle_boxes(slivers), triangle_boxes(corners))
-    if near is None or len(near[0]) > MET_MOST * (len(slivers) + len(corners)):
+    if near is None or len(near[0]) > most * (len(slivers) + len(corners)):
         return None
     if len(near[0]) <= CULLED_LEAST:
         return near
@@ -133,9 +136,16 @@ def _told(first: Array, second: Array, one: Ints, two: Ints, size: Array) -> tup
     of the second or across one of its edges, and which clearly meet, as the first edge of the one steeply passes into
     the other: by more than rounding, so that all directions together say the same. That is most of them. `size` (m,)
     bounds all coordinates of what each of the second is asked with."""
-    first = first.take(one, axis=2)
     # what is asked of a triangle is computed once for all of its pairs
-    axes, reach, spare, square = (table.take(two, axis=-1) for table in _sides(second, size))
+    sides, apart, met = _sides(second, size), np.empty(len(one), bool), np.empty(len(one), bool)
+    for start in range(0, len(one), TOLD_AT_ONCE):
+        some = slice(start, start + TOLD_AT_ONCE)
+        apart[some], met[some] = _told_of(first.take(one[some], axis=2), *(of.take(two[some], axis=-1) for of in sides))
+    return apart, met
+
+
+def _told_of(first: Array, axes: Array, reach: Array, spare: Array, square: Array) -> tuple[Flags, Flags]:
+    """The same of triangles (3, 3, c), each with the sides of the other."""
     place = axes[0] * first[:, 0, None]
     place += axes[1] * first[:, 1, None]
     place += axes[2] * first[:, 2, None]
@@ -230,7 +240,7 @@ def crossings(asked: Sequence[tuple[Array, Array]]) -> list[bool | None]:
     """`crossing` of several sets of triangles, at once where they are few."""
     mutual = [_mutual(first, second) for first, second in asked]
     few = [k for k, (first, second) in enumerate(mutual) if len(first) * len(second) <= CROSSED_FEW]
-    met = dict(zip(few, meetings([mutual[k] for k in few]), strict=True))
+    met = dict(zip(few, meetings([mutual[k] for k in few], CROSSED_MOST), strict=True))
     return [_any(met[k]) if k in met else _crossing(*pair) for k, pair in enumerate(mutual)]
 
 
@@ -247,26 +257,21 @@ def _crossing(first: Array, second: Array) -> bool | None:
     """The same of many that are within each other's boxes: some of the first are asked before all are, which settles
     it where much crosses."""
     some = first[:: max(CROSSED_SOME, -(-len(first) * len(second) // CROSSED_FEW))]
-    met = meeting(*_mutual(some, second))
+    (met,) = meetings([_mutual(some, second)], CROSSED_MOST)
     if met is not None and len(met[0]):
         return True
-    return _any(meeting(first, second))
+    return _any(meetings([(first, second)], CROSSED_MOST)[0])
 
 
 def _mutual(first: Array, second: Array) -> tuple[Array, Array]:
     """Those of triangles (n, 3, 3) and (m, 3, 3), in their order, that may meet some of the others by the box of all of
     these; neither of none."""
-    low, high = triangle_boxes(second)
-    first = _within(first, low.min(axis=0), high.max(axis=0))
-    if not len(first):
-        return first, second[:0]
-    low, high = triangle_boxes(first)
-    return first, _within(second, low.min(axis=0), high.max(axis=0))
-
-
-def _within(triangles: Array, low: Array, high: Array) -> Array:
-    """Those of triangles (n, 3, 3) whose boxes meet that from `low` to `high` (3,)."""
-    return np.asarray(triangles[meeting_box(*triangle_boxes(triangles), low, high)])
+    (low, high), (low_other, high_other) = triangle_boxes(first), triangle_boxes(second)
+    near = meeting_box(low, high, low_other.min(axis=0), high_other.max(axis=0)).nonzero()[0]
+    if not len(near):
+        return first[:0], second[:0]
+    least, most = low.take(near, axis=0).min(axis=0), high.take(near, axis=0).max(axis=0)
+    return first.take(near, axis=0), np.asarray(second[meeting_box(low_other, high_other, least, most)])
 
 
 def _edges(triangles: Array) -> Array:
