@@ -97,20 +97,19 @@ def _givers_and_takers(view: PairView, overlap: Flags, first: bool) -> list[tupl
     """Analytic surfaces of the part that gives the normals with freeform ones of the other that rests on it, and planes
     with larger planes that they lie on askew; of planes of one size that of the `first` part gives."""
     giver, taker = view.near
-    analytic = _ANALYTIC[giver.kinds]
-    large = giver.areas >= GIVER_AREA * view.tolerance**2
-    loose = ~_ANALYTIC[taker.kinds]
-    flags = (analytic & large)[:, None] & loose[None]
+    rows, columns = np.nonzero(overlap & (giver.areas >= GIVER_AREA * view.tolerance**2)[:, None])
+    kinds = giver.kinds[rows], taker.kinds[columns]
+    resting = _ANALYTIC[kinds[0]] & ~_ANALYTIC[kinds[1]]
     # a ball touches the groove of a ring along a circle or at a point, as `rounds` knows, and does not rest in it
-    flags &= ~((giver.kinds == KINDS.index("sphere"))[:, None] & (taker.kinds == KINDS.index("torus"))[None])
-    planes = (giver.kinds == _PLANE)[:, None] & (taker.kinds == _PLANE)[None]
-    angle = np.arccos(np.clip(-(giver.axes @ taker.axes.T), -1.0, 1.0))
-    spread = giver.axis_uncertainty[:, None] + taker.axis_uncertainty[None]
-    larger = giver.areas[:, None] > taker.areas[None]
-    if first:
-        larger |= giver.areas[:, None] == taker.areas[None]
-    askew = planes & (angle > view.tolerances.alignment + spread) & (angle < PLANES_TILTED) & larger
-    return [(int(i), int(j)) for i, j in np.argwhere(overlap & (flags | (askew & large[:, None])))]
+    resting &= (kinds[0] != KINDS.index("sphere")) | (kinds[1] != KINDS.index("torus"))
+    angle = np.arccos(np.clip(-dot(giver.axes[rows], taker.axes[columns]), -1.0, 1.0))
+    spread = giver.axis_uncertainty[rows] + taker.axis_uncertainty[columns]
+    areas = giver.areas[rows], taker.areas[columns]
+    larger = areas[0] >= areas[1] if first else areas[0] > areas[1]
+    askew = (kinds[0] == _PLANE) & (kinds[1] == _PLANE) & larger
+    askew &= (angle > view.tolerances.alignment + spread) & (angle < PLANES_TILTED)
+    chosen = resting | askew
+    return list(zip(rows[chosen].tolist(), columns[chosen].tolist(), strict=True))
 
 
 def _chart(surfaces: SurfacePair) -> Chart:
