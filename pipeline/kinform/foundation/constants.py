@@ -221,8 +221,14 @@ CLOSEST_SOME = 60_000
 CLOSEST_MOST = 1_000_000
 """Points times the facets near each up to which all are measured: 0.1 s, and 0.2 GB."""
 
-SEEN_AT_ONCE = 500_000
-"""Points times the facets whose solid angles are had at once: 0.1 GB."""
+SEEN_AT_ONCE = 4096
+"""Points times the facets whose solid angles are had at once: what is had of them stays in the cache."""
+
+BOXES_AT_ONCE = 200_000
+"""Boxes times boxes up to which all are compared with all: blocks of fewer take longer."""
+
+BOXES_A_BLOCK = 64
+"""Neighbouring boxes of which more are compared together, with what comes near them."""
 
 # --- alike ------------------------------------------------------------------------------------------------------------
 

@@ -16,7 +16,7 @@ from kinform.contacts import constants
 from kinform.contacts.mating.charts import ConeChart, CylinderChart, PlaneChart, SphereChart, perpendicular
 from kinform.contacts.mating.mate import Axes, Mate, aligned, mean_axes, mean_direction, mean_position, radial_limit
 from kinform.contacts.search.pair_view import PairView, SurfacePair
-from kinform.foundation.algebra.vectors import cross, lengths, norm
+from kinform.foundation.algebra.vectors import cross, dot, lengths, norm
 from kinform.model.arrays import Array, Flags
 
 
@@ -33,11 +33,13 @@ def _plane_mates(pair: PairView, overlap: Flags) -> Iterator[Mate]:
     rows, columns, flags = pair.of_kinds(overlap, "plane")
     if not flags.any():
         return
-    opposed = cross(a.axes[rows][:, None], b.axes[columns][None])
-    angle = np.arctan2(lengths(opposed), -(a.axes[rows] @ b.axes[columns].T))
-    allowed = pair.tolerances.alignment + a.axis_uncertainty[rows][:, None] + b.axis_uncertainty[columns][None]
-    for i, j in np.argwhere(flags & (angle <= allowed)):
-        mate = _plane_mate(pair.surfaces(rows[i], columns[j]), float(angle[i, j]), pair.tolerance)
+    at, of = np.nonzero(flags)
+    rows, columns = rows[at], columns[of]
+    first, second = a.axes[rows], b.axes[columns]
+    angle = np.arctan2(lengths(cross(first, second)), -dot(first, second))
+    allowed = pair.tolerances.alignment + a.axis_uncertainty[rows] + b.axis_uncertainty[columns]
+    for k in np.flatnonzero(angle <= allowed):
+        mate = _plane_mate(pair.surfaces(rows[k], columns[k]), float(angle[k]), pair.tolerance)
         if mate is not None:
             yield mate
 
@@ -193,10 +195,12 @@ def _nearly_coaxial(pair: PairView, overlap: Flags, kind: str) -> Iterator[Surfa
     rows, columns, flags = pair.of_kinds(overlap, kind)
     if not flags.any():
         return
-    cosine = np.abs(a.axes[rows] @ b.axes[columns].T)
-    convex = a.sides[rows][:, None] * b.sides[columns][None] < 0.0
-    for i, j in np.argwhere(flags & convex & (cosine > math.cos(constants.TILT_LIKELY * constants.MATING_TILT))):
-        yield pair.surfaces(rows[i], columns[j])
+    at, of = np.nonzero(flags)
+    rows, columns = rows[at], columns[of]
+    cosine = np.abs(dot(a.axes[rows], b.axes[columns]))
+    convex = a.sides[rows] * b.sides[columns] < 0.0
+    for k in np.flatnonzero(convex & (cosine > math.cos(constants.TILT_LIKELY * constants.MATING_TILT))):
+        yield pair.surfaces(rows[k], columns[k])
 
 
 def _engaged(surfaces: SurfacePair) -> tuple[float, Array]:

@@ -45,7 +45,7 @@ def one_sided_mates(pair: PairView, overlap: Flags) -> list[Mate]:
     mates: list[Mate] = []
     # a gives the normals, then b
     for view, flags, first in ((pair, overlap, True), (pair.swapped, overlap.T, False)):
-        for row, column, facets in _beside(view, flags & _givers_and_takers(view, flags, first)):
+        for row, column, facets in _beside(view, _givers_and_takers(view, flags, first)):
             mate = _mate(view, view.surfaces(row, column), facets, first)
             if mate is not None:
                 mates.append(mate)
@@ -151,20 +151,20 @@ def _givers_and_takers(view: PairView, overlap: Flags, first: bool) -> Flags:
     the other that rests on it, and planes with larger planes that they lie on askew; of planes of one size that of the
     `first` part gives."""
     giver, taker = view.near
-    analytic = _ANALYTIC[giver.kinds]
-    large = giver.areas >= GIVER_AREA * view.tolerance**2
-    loose = ~_ANALYTIC[taker.kinds]
-    flags = (analytic & large)[:, None] & loose[None]
+    rows, columns = np.nonzero(overlap & (giver.areas >= GIVER_AREA * view.tolerance**2)[:, None])
+    kinds = giver.kinds[rows], taker.kinds[columns]
+    resting = _ANALYTIC[kinds[0]] & ~_ANALYTIC[kinds[1]]
     # a ball touches the groove of a ring along a circle or at a point, as `rounds` knows, and does not rest in it
-    flags &= ~((giver.kinds == _SPHERE)[:, None] & (taker.kinds == KINDS.index("torus"))[None])
-    planes = overlap & (large & (giver.kinds == _PLANE))[:, None] & (taker.kinds == _PLANE)[None]
-    i, j = planes.nonzero()
-    angle = np.arccos(np.clip(-(giver.axes @ taker.axes.T)[i, j], -1.0, 1.0))
-    spread = giver.axis_uncertainty.take(i) + taker.axis_uncertainty.take(j)
-    area, other = giver.areas.take(i), taker.areas.take(j)
-    larger = (area >= other) if first else (area > other)
-    flags[i, j] = (angle > view.tolerances.alignment + spread) & (angle < PLANES_TILTED) & larger
-    return np.asarray(flags)
+    resting &= (kinds[0] != _SPHERE) | (kinds[1] != KINDS.index("torus"))
+    angle = np.arccos(np.clip(-dot(giver.axes[rows], taker.axes[columns]), -1.0, 1.0))
+    spread = giver.axis_uncertainty[rows] + taker.axis_uncertainty[columns]
+    areas = giver.areas[rows], taker.areas[columns]
+    larger = areas[0] >= areas[1] if first else areas[0] > areas[1]
+    askew = (kinds[0] == _PLANE) & (kinds[1] == _PLANE) & larger
+    askew &= (angle > view.tolerances.alignment + spread) & (angle < PLANES_TILTED)
+    flags = np.zeros(overlap.shape, bool)
+    flags[rows, columns] = resting | askew
+    return flags
 
 
 def _chart(surfaces: SurfacePair) -> Chart:

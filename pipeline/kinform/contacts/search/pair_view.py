@@ -16,7 +16,7 @@ import numpy as np
 
 from kinform.contacts.constants import CLEARANCE_SHARE, FEW_BESIDE, MATING_REACH, MOST_SURFACES
 from kinform.foundation.algebra.displacements import inverse
-from kinform.foundation.meshes.boxes import facet_boxes, meeting_box
+from kinform.foundation.meshes.boxes import boxes_within, facet_boxes, meeting_box
 from kinform.foundation.meshes.index import MeshIndex, MeshStore
 from kinform.foundation.meshes.probes import Region
 from kinform.foundation.meshes.proximity import near_boxes
@@ -337,8 +337,7 @@ class PairView:
     def overlap(self, margin: float) -> Flags:
         """(s, t): the boxes of near surface s of a and t of b come within `margin` (m)."""
         a, b = self.near
-        apart = np.maximum(a.lows[:, None] - b.highs[None], b.lows[None] - a.highs[:, None])
-        return np.asarray(np.logical_and.reduce(apart <= margin, axis=2))
+        return boxes_within((a.lows, a.highs), (b.lows, b.highs), margin)
 
     def of_kinds(self, overlap: Flags, *kinds: str) -> tuple[Ints, Ints, Flags]:
         """Positions of the near surfaces of these kinds of a (s,) and of b (t,), and the flags `overlap` of these (s,

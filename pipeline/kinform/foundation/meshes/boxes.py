@@ -66,6 +66,32 @@ def meeting_box(lows: Array, highs: Array, low: Array, high: Array) -> Flags:
     return np.asarray(meets)
 
 
+def boxes_within(first: tuple[Array, Array], second: tuple[Array, Array], margin: float) -> Flags:
+    """(n, m) whether boxes come within `margin` of each other along every axis: lowest and highest corners (n, d) of
+    the first kind, (m, d) of the second. Many are compared in blocks of neighbours with what their box comes near."""
+    (low_a, high_a), (low_b, high_b) = first, second
+    if len(low_a) * len(low_b) <= constants.BOXES_AT_ONCE:
+        return _within(low_a, high_a, low_b, high_b, margin)
+    out = np.zeros((len(low_a), len(low_b)), bool)
+    order = together(low_a, high_a)
+    for start in range(0, len(order), constants.BOXES_A_BLOCK):
+        rows = order[start : start + constants.BOXES_A_BLOCK]
+        low, high = low_a[rows], high_a[rows]
+        columns = np.flatnonzero(_within(low.min(axis=0)[None], high.max(axis=0)[None], low_b, high_b, margin)[0])
+        if len(columns):
+            out[rows[:, None], columns] = _within(low, high, low_b[columns], high_b[columns], margin)
+    return out
+
+
+def _within(low_a: Array, high_a: Array, low_b: Array, high_b: Array, margin: float) -> Flags:
+    """`boxes_within` of all with all."""
+    out = np.ones((len(low_a), len(low_b)), bool)
+    for axis in range(low_a.shape[1]):
+        out &= low_a[:, None, axis] - high_b[None, :, axis] <= margin
+        out &= low_b[None, :, axis] - high_a[:, None, axis] <= margin
+    return out
+
+
 class FacetBoxes:
     """Boxes (F, d) of facets, d 2 or 3, in an order of chunks by size and place once they are asked for often."""
 

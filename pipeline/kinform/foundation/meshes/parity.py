@@ -51,18 +51,24 @@ def winding(mesh: Mesh, points: Array) -> Array:
     """(n,) how often the facets go round points (n, 3): 1 inside of a closed mesh, 0 outside, and between the two
     beside what is missing of an open one, ½ in the middle of a gap. Each facet by the solid angle that it is seen under
     (Van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30, 1983)."""
-    corners = mesh.vertices[once(mesh.faces)]
+    columns, corners = np.ascontiguousarray(mesh.vertices.T), once(mesh.faces).T
     out = np.zeros(len(points))
-    some = max(1, SEEN_AT_ONCE // max(len(corners), 1))
-    for start in range(0, len(points), some):
-        seen = (corners[None] - points[start : start + some, None, None]).transpose(2, 3, 0, 1)
-        a, b, c = seen
-        la, lb, lc = np.sqrt((seen**2).sum(axis=1))
-        ab, bc, ca = (a * b).sum(axis=0), (b * c).sum(axis=0), (c * a).sum(axis=0)
-        above = (a * np.stack([b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]])).sum(0)
-        angles = np.arctan2(above, la * lb * lc + ab * lc + bc * la + ca * lb)
-        out[start : start + some] = angles.sum(axis=1) / (2.0 * np.pi)
-    return out
+    for begin in range(0, corners.shape[1], SEEN_AT_ONCE):
+        facets = columns[:, corners[:, begin : begin + SEEN_AT_ONCE]]
+        some = max(1, SEEN_AT_ONCE // facets.shape[2])
+        for start in range(0, len(points), some):
+            out[start : start + some] += _solid_angles(facets, points[start : start + some]).sum(axis=1)
+    return out / (4.0 * np.pi)
+
+
+def _solid_angles(facets: Array, points: Array) -> Array:
+    """(n, m) of facets (3, 3, m), coordinate by coordinate and corner by corner, from points (n, 3)."""
+    x, y, z = (column[:, None] - points[:, axis, None] for axis, column in enumerate(facets))
+    (ax, bx, cx), (ay, by, cy), (az, bz, cz) = x, y, z
+    la, lb, lc = np.sqrt(x * x + y * y + z * z)
+    ab, bc, ca = ax * bx + ay * by + az * bz, bx * cx + by * cy + bz * cz, cx * ax + cy * ay + cz * az
+    above = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
+    return np.asarray(2.0 * np.arctan2(above, la * lb * lc + ab * lc + bc * la + ca * lb))
 
 
 def once(faces: Ints) -> Ints:
