@@ -198,6 +198,11 @@ DIP_SHARE = 0.05
 """... and share of the area below which it then decides nothing, ..."""
 FACED = -0.99
 """... unless another such flat faces it: cosine of their normals."""
+STEP_WIDTH = 5.0
+"""Width of each of the two faces of a step that two edges make (`scraps._width`: of rings π times their width), over
+the overlap at the other, up to which the step is there by the overlap alone. It is π to the rounding of the mesh."""
+STEP_CORNER = 0.5
+"""Largest cosine between the normals of the two faces of a step."""
 
 # --- pair/stops ------------------------------------------------------------------------------------------------------
 
