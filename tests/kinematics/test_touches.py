@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.patches import cylinder, ring
+from support.patches import Z, cylinder, ring
 from support.solids import ball, box, derived, random_pose, rod
 
 from kinform.kinematics.pair.decision import decide
@@ -66,3 +66,16 @@ def test_a_ball_beside_a_plate_touches_it_only_where_it_touches(gap, status, see
     assert (found.type, found.freedoms, found.status) == ("general", 5, status)
     if gap:
         assert f"{abs(gap):.2g} mm" in found.reason
+
+
+@pytest.mark.parametrize("apart", [0.0, 0.3, 3.0])
+def test_a_round_that_its_facets_leave_unknown_says_nothing_where_it_does_not_touch(apart):
+    """Its axis, and so whether it mates at all, hangs on the last digits of the vertices, and so on the pose."""
+    collars = [ring((0, 0, 0.01), outer=0.02), ring((0, 0, -0.01), normal=-Z, outer=0.02)]
+    near = cylinder(0.03, 0.002, point=(0, 0.01, 0), arc=(0.2, 0.5), gap=1e-3 * apart)
+    known = decision([*collars, replace(near, mismatch=(1e-4, 1e-5))])
+    unknown = decision([*collars, replace(near, mismatch=(0.05, 0.01))])
+    assert known.form.type != "planar"
+    assert (unknown.form.type == "planar") == (apart > 0.0)
+    if apart:
+        assert unknown.status == "determined"
