@@ -158,7 +158,11 @@ def _stray(item: Item, total: float, contact: float) -> bool:
     """Facets of no known surface that pass near a small bit of a surface without touching it say nothing. Nor do those
     of a round surface that they leave unknown: its axis, and so whether it mates, hangs on their last digits."""
     unknown = item.patch.kind in COAXIAL and item.patch.mismatch[0] > UNKNOWN_DIRECTION
-    return (item.patch.one_sided or unknown) and item.patch.gap > TOUCHING_GAP * contact and item.area < STRAY_SHARE * total
+    return (
+        (item.patch.one_sided or unknown)
+        and item.patch.gap > TOUCHING_GAP * contact
+        and item.area < STRAY_SHARE * total
+    )
 
 
 def _item(index: int, patch: Patch, turned: bool, tolerances: Tolerances, contact: float) -> Item:
