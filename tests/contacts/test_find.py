@@ -16,6 +16,7 @@ from support.analytic_solids import MM, assembly, box_loop, extrusion, pose, rou
 from kinform.contacts import find
 from kinform.contacts.search.candidates import candidate_pairs
 from kinform.form.readers.assembly import load
+from kinform.foundation import processes
 from kinform.surfaces import recover
 
 FIXTURES = Path(__file__).parents[2] / "fixtures"
@@ -102,7 +103,8 @@ def test_progress_counts_every_pair():
     assert seen == [(k, 4) for k in range(1, 5)]
 
 
-def test_two_jobs_give_the_same_bytes_as_one():
+def test_two_jobs_give_the_same_bytes_as_one(monkeypatch):
+    monkeypatch.setattr(processes, "_threaded", False)  # else both would be done in this process
     design, surfaces = row()
     assert same(find(design, surfaces), find(design, surfaces, jobs=2))
 

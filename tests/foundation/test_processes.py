@@ -5,11 +5,20 @@ from __future__ import annotations
 import faulthandler
 import os
 import signal
+import subprocess
+import sys
 
 import pytest
 
 from kinform.errors import KinformError
-from kinform.foundation.processes import Crash, in_own_process, map_in_processes
+from kinform.foundation import processes
+from kinform.foundation.processes import Crash, apart, in_own_process, map_in_processes
+
+
+@pytest.fixture(autouse=True)
+def _forks(monkeypatch):
+    """As in a process in which no native threads have run, whatever other tests did."""
+    monkeypatch.setattr(processes, "_threaded", False)
 
 
 def ended(number: int) -> int:
@@ -61,3 +70,64 @@ def test_little_work_gets_one_process_and_a_crash_in_it_is_told_alike():
     with pytest.raises(KinformError, match=r"part 5: .*SIGSEGV"):
         come.extend(map_in_processes(ended, [1, 2, 5, 6], jobs=2, name=lambda k: f"part {k}", little=True))
     assert list(map_in_processes(ended, [1, 2, 3], jobs=2, little=True)) == [1, 4, 9]
+
+
+def no_fork():
+    raise AssertionError("forked where native threads may have run")
+
+
+def test_where_native_threads_ran_nothing_is_forked(monkeypatch):
+    processes.threads_ran()
+    monkeypatch.setattr(os, "fork", no_fork)
+    here = os.getpid()
+    assert apart(divmod, 17, 5) == (3, 2)
+    assert apart(os.getpid) != here
+    assert set(map_in_processes(lambda _: os.getpid(), range(6), jobs=2)) == {here}
+    with pytest.raises(ZeroDivisionError):
+        apart(divmod, 1, 0)
+    with pytest.raises(Crash, match="SIGABRT"):
+        apart(os.abort)
+    with pytest.raises(Crash, match="exit code 3"):
+        apart(os._exit, 3)
+
+
+def test_what_native_code_prints_is_no_answer():
+    processes.threads_ran()
+    assert apart(os.system, "echo said; exit 0") == 0
+
+
+PROGRAM = """
+import os, sys
+import numpy as np
+from pathlib import Path
+from kinform import stages
+from kinform.foundation import processes
+from kinform.form.meshes.health import build_mesh
+from kinform.form.meshes.raw import RawMesh
+from support.solids import ball, box, save
+
+folder = Path(sys.argv[1])
+save(box(-20, 20, -20, 20, -10, 0), folder / "plate.stl")
+save(ball(9, 64).translate((0, 0, 5)), folder / "ball.stl")
+parts = "".join(f'[[part]]\\nname = "{name}"\\nmesh = "{name}.stl"\\n' for name in ("plate", "ball"))
+(folder / "a.toml").write_text('schema = 1\\n[assembly]\\nname = "a"\\nunits = "mm"\\n' + parts)
+design = stages.contacts(stages.import_(folder / "a.toml"))
+assert design.contacts.interferences and processes._threaded
+os.fork = None
+corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+cube = np.array([[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1],
+                 [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]])
+both = np.concatenate([corners, corners + [1.0, 1.0, 0.0]])
+raw = RawMesh(both, np.concatenate([cube, cube + 8]))
+print(build_mesh(raw, 1.0, None, path="m", body=None, solid=True).health.manifold_status)
+print("main", __name__)
+"""
+"""Two cubes that share an edge, read by a program that has cut solids; what it prints it prints once."""
+
+
+def test_a_program_that_has_cut_solids_reads_meshes_with_shared_edges(tmp_path):
+    found = subprocess.run(
+        [sys.executable, "-c", PROGRAM, str(tmp_path)],
+        capture_output=True, text=True, timeout=120, env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+    )  # fmt: skip
+    assert found.stdout.split("\n")[:2] == ["NoError", "main __main__"], found.stderr

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import h5py
 import numpy as np
 import pytest
 from support.places import FIXTURES
 from support.sealing import editing
 
-from kinform import results
+from kinform import results, stages
 from kinform.results.held import hold
 from kinform.results.table import read_rows, real, text, write_rows
 
@@ -35,3 +37,22 @@ def test_a_results_file_from_before_drives_named_their_freedom_is_read(tmp_path,
         del file[name]
         file.create_dataset(name, data=before, track_times=False).attrs["units"] = units[kept]
     assert repr(results.read(tmp_path / "old.h5").assembly.function.drives) == repr(design.assembly.function.drives)
+
+
+def test_joints_that_nobody_looked_for_are_not_said_to_be_none(tmp_path, derive_design):
+    """A file from before left-out joints were looked for: the rule is skipped with the reason, and does not pass."""
+    design = derive_design(FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml")
+    stated = replace(design.assembly, function=replace(design.assembly.function, complete=("",)))
+    design = stages.simulate(stages.mass(stages.joints(replace(design, assembly=stated))))
+    results.write(design, tmp_path / "old.h5")
+    assert _outcome(results.read(tmp_path / "old.h5")).outcome == "passed"
+    with editing(tmp_path / "old.h5") as file:
+        del file["joints/left_out"]
+    before = _outcome(results.read(tmp_path / "old.h5"))
+    assert before.outcome == "skipped"
+    assert "older version" in before.reason
+
+
+def _outcome(design):
+    (rule,) = (outcome for outcome in stages.check(design).report.rules if outcome.code == "KF416")
+    return rule

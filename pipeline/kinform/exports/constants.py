@@ -27,6 +27,8 @@ STEP_OF_LOOPS = 0.0002
 """s, of RK4: loops are stiff springs to MuJoCo and need the shorter step (within 1e-5 of rigid ones in the tests)."""
 BANDWIDTH = 2.0 * math.pi * 10.0
 """rad/s, of the position servos that stand for prescribed motions: 10 Hz, a choice."""
+SHOWN_ASIDE = 1e-9
+"""rad and m: a servo that is aimed aside by less is not said to be: that is rounding."""
 LOCKED_SHARE = 1e-6
 """Share of what one rate opens loops by that the others may leave open: more, and the loops lock it. Axes that contact
 made agree close loops to 1e-9 and better."""

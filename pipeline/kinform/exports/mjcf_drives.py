@@ -19,7 +19,7 @@ from kinform.behaviour import (
 )
 from kinform.behaviour.shafts import Controller
 from kinform.behaviour.signals import Signal
-from kinform.exports.constants import BANDWIDTH
+from kinform.exports.constants import BANDWIDTH, SHOWN_ASIDE
 from kinform.exports.motors import limited, slowed
 from kinform.exports.names import XML, identifiers
 from kinform.exports.reflected import Carried, carried
@@ -125,8 +125,8 @@ def _motor(robot: Robot, motor: DcMotor, lost: list[str]) -> dict[str, Any]:
 
 
 def _aimed(aside: float, joint: JointComponent, freedom: int) -> str:
-    """What carries gravity at the start, in words."""
-    if aside == 0.0:
+    """What carries gravity at the start, in words; nothing where it is rounding."""
+    if abs(aside) < SHOWN_ASIDE:
         return ""
     turns = joint.kind.coordinates[freedom][1]
     size = f"{math.degrees(aside):.3g}°" if turns else f"{1e3 * aside:.3g} mm"

@@ -2,6 +2,10 @@
 
 Native code can end a process without a word. One that ends so in a worker is found out by doing what was left again,
 each in a process of its own, and told as a `Crash` with what it was about.
+
+A fork has one thread. Where native code has run threads before (manifold3d's TBB, in a notebook that has derived one
+design and reads another), it may wait for ever in the fork for those that are not there. So nothing is forked then that
+could ask it again (`threads_ran`): many things are computed in this process, single ones by a new interpreter.
 """
 
 from __future__ import annotations
@@ -9,6 +13,7 @@ from __future__ import annotations
 import os
 import pickle
 import signal
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, TypeVar
 
@@ -22,6 +27,16 @@ Result = TypeVar("Result")
 
 _function: Callable[[Any], Any] | None = None
 """What a worker does; a fork has it, and all that it holds, without being sent it."""
+
+
+_threaded = False
+"""Whether native code may have run threads in this process, or in one that it was forked from."""
+
+
+def threads_ran() -> None:
+    """Note that native code that runs threads is about to be asked in this process."""
+    global _threaded
+    _threaded = True
 
 
 class Crash(KinformError):
@@ -47,7 +62,8 @@ def map_in_processes(
 ) -> Iterator[Result]:
     """The function of each item, in their order, whatever the number of `jobs`; `progress(done, total)` counts items.
 
-    Items and results are sent between processes, the function is not. Where the system cannot fork, threads do it.
+    Items and results are sent between processes, the function is not. Where the system cannot fork, threads do it;
+    where native threads ran in this process, it does all in turn.
     Raises Crash, with the `name` of the item, where another process ends without an answer: with more than one of the
     `jobs`, also a single item is computed in one. `little`: all of them together take no longer than several processes
     take to start, and are computed in one.
@@ -61,7 +77,7 @@ def map_in_processes(
 def _results(
     function: Callable[[Item], Result], items: Sequence[Item], jobs: int, name: Callable[[Item], str], little: bool
 ) -> Iterator[Result]:
-    if jobs <= 1:
+    if jobs <= 1 or _threaded:
         for item in items:
             with at_work_on(name(item)):
                 result = function(item)
@@ -134,7 +150,7 @@ def _in_worker(item: Any) -> Any:
 def in_own_process(function: Callable[[], Result]) -> Result:
     """The function's result, computed in a fork; raises what it raises, and Crash where the fork ends without one.
 
-    Where the system cannot fork it is called here.
+    Where the system cannot fork it is called here. Of what runs native threads: `apart`.
     """
     if not hasattr(os, "fork"):
         return function()
@@ -153,11 +169,56 @@ def in_own_process(function: Callable[[], Result]) -> Result:
     _, status = os.waitpid(child, 0)
     if status != 0:
         raise Crash(cause_of(status))
+    result: Result = _given_or_raised(answer)
+    return result
+
+
+def apart(function: Callable[..., Result], *given: Any) -> Result:
+    """What a function of a module gives of picklable things, in another process, as `in_own_process`.
+
+    In a fork, or, where native threads ran in this process, by a new interpreter, which imports nothing of the program
+    that this one runs.
+    """
+    if not _threaded or not sys.executable:
+        return in_own_process(lambda: function(*given))
+    import subprocess
+
+    run = f"import sys; sys.path[:] = {sys.path!r}; from kinform.foundation import processes; processes.answer_asked()"
+    with subprocess.Popen([sys.executable, "-c", run], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as child:
+        try:
+            answer, _ = child.communicate(pickle.dumps((function, given)))
+        except BaseException:
+            child.kill()
+            raise
+    if child.returncode != 0:
+        raise Crash(_cause(child.returncode))
+    result: Result = _given_or_raised(answer)
+    return result
+
+
+def answer_asked() -> None:
+    """In a new interpreter: answer on the standard output what is asked on the standard input."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    writing = os.dup(1)
+    os.dup2(2, 1)  # what native code says is no answer
+    function, given = pickle.load(sys.stdin.buffer)
+    with os.fdopen(writing, "wb") as stream:
+        stream.write(_answered(lambda: function(*given)))
+
+
+def _given_or_raised(answer: bytes) -> Any:
     succeeded, value = pickle.loads(answer)
     if not succeeded:
         raise value
-    result: Result = value
-    return result
+    return value
+
+
+def _answered(function: Callable[[], Any]) -> bytes:
+    """What the function gives or raises."""
+    try:
+        return pickle.dumps((True, function()))
+    except Exception as error:
+        return pickle.dumps((False, error))
 
 
 def _answer(function: Callable[[], Any], reading: int, writing: int) -> None:
@@ -167,10 +228,7 @@ def _answer(function: Callable[[], Any], reading: int, writing: int) -> None:
         os.close(reading)
         at_work.board = None  # what ends this process is told by who asked for it
         signal.signal(signal.SIGINT, signal.SIG_IGN)
-        try:
-            answer = pickle.dumps((True, function()))
-        except Exception as error:
-            answer = pickle.dumps((False, error))
+        answer = _answered(function)
         with os.fdopen(writing, "wb") as stream:
             stream.write(answer)
         code = 0
@@ -180,5 +238,8 @@ def _answer(function: Callable[[], Any], reading: int, writing: int) -> None:
 
 def cause_of(status: int) -> str:
     """What ended a process, from the status of waitpid."""
-    code = os.waitstatus_to_exitcode(status)
+    return _cause(os.waitstatus_to_exitcode(status))
+
+
+def _cause(code: int) -> str:
     return f"signal {-code} ({signal.Signals(-code).name})" if code < 0 else f"exit code {code}"

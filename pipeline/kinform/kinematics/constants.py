@@ -64,6 +64,9 @@ SAME_PITCH = 5e-3
 """Relative difference of pitches that are one."""
 STRAY_SHARE = 0.02
 """Share of the contact area below which a one-sided patch counts only where it touches."""
+UNKNOWN_DIRECTION = math.radians(2.0)
+"""rad: standard uncertainty between two axes from which on it is not known that the surfaces mate. Of a knee of public
+robots it was 3° or 90° by the pose, and with it the mate was found or not; of all others that decide it is below 1°."""
 LOOSE_ANGLE = 0.2
 """rad by which the direction of facets of no known surface may be off."""
 
@@ -198,6 +201,11 @@ DIP_SHARE = 0.05
 """... and share of the area below which it then decides nothing, ..."""
 FACED = -0.99
 """... unless another such flat faces it: cosine of their normals."""
+STEP_WIDTH = 5.0
+"""Width of each of the two faces of a step that two edges make (`scraps._width`: of rings π times their width), over
+the overlap at the other, up to which the step is there by the overlap alone. It is π to the rounding of the mesh."""
+STEP_CORNER = 0.5
+"""Largest cosine between the normals of the two faces of a step."""
 
 # --- pair/stops ------------------------------------------------------------------------------------------------------
 

@@ -495,8 +495,8 @@ class Kinematics:
     """With `[function] complete = true`: every part of an assembly with meshes, sorted by name."""
     unparted: tuple[Unparted, ...] = ()
     """With `[function] complete = true`: joints whose sides contact holds together, sorted by name."""
-    left_out: tuple[LeftOut, ...] = ()
-    """With `[function] complete = true`: joints that contact alone would make inside bodies."""
+    left_out: tuple[LeftOut, ...] | None = ()
+    """With `[function] complete = true`: joints that contact alone would make inside bodies. None: nobody looked."""
     sides: tuple[FoundSides, ...] = ()
     """Of joints that name one part or none, sorted by name."""
 

@@ -166,7 +166,7 @@ def loose_joint(assembly: Assembly, kinematics: Kinematics, intended: IntendedJo
     if intended.type != "fixed":
         return None
     first, second = (assembly.parts_of(name)[0] for name in intended.between)
-    return next((one for one in kinematics.left_out if one.parts(first, second)), None)
+    return next((one for one in kinematics.left_out or () if one.parts(first, second)), None)
 
 
 def _certainty(intended: IntendedJoint, found: str, used: tuple[Joint, ...]) -> tuple[str, str]:

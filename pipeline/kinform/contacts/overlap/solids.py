@@ -15,6 +15,7 @@ from manifold3d import Error, Manifold, Mesh64
 from kinform.contacts.search.pair_view import PartView
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.graphs.components import components
+from kinform.foundation.processes import threads_ran
 from kinform.foundation.sorting import ascending, heads
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
@@ -84,6 +85,7 @@ def bounds_volume(mesh: Mesh) -> bool:
 
 def _solid(mesh: Mesh, role: int) -> Manifold | None:
     """The mesh as a manifold whose facets remember their number; inside-out meshes are turned."""
+    threads_ran()
     middle, scale = _scaling(mesh)
     faces = mesh.faces if mesh.health.volume >= 0.0 else mesh.faces[:, ::-1]
     solid = Manifold(

@@ -16,7 +16,7 @@ from kinform.foundation.algebra.vectors import box, dot
 from kinform.foundation.meshes.boxes import bounds
 from kinform.foundation.meshes.edges import EdgeTable, unsorted_edge_table
 from kinform.foundation.meshes.shells import shells_of
-from kinform.foundation.processes import Crash, in_own_process
+from kinform.foundation.processes import Crash, apart
 from kinform.foundation.words import counted
 from kinform.model.arrays import Array, Ints, freeze
 from kinform.model.assembly import Mesh, MeshHealth
@@ -212,10 +212,8 @@ def _manifold_status(vertices: Array, faces: Ints, edges: EdgeTable, duplicates:
     size = float(np.ptp(vertices, axis=0).max()) or 1.0
     scaled = np.ascontiguousarray((vertices - vertices.mean(axis=0)) / size)
     corners = np.ascontiguousarray(faces.astype(np.uint64))
-    if not edges.overused:
-        return _asked_status(scaled, corners)
     try:
-        return in_own_process(lambda: _asked_status(scaled, corners))
+        return apart(_asked_status, scaled, corners)
     except Crash as crash:
         raise MeshError([Fault(
             f"cannot be told to be a solid: manifold3d ended by {crash.cause} on it, and "

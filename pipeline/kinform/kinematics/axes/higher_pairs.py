@@ -20,7 +20,8 @@ from kinform.kinematics.constants import AT_REST, DOUBTFUL_MOTION, MOST_TURNED, 
 from kinform.kinematics.loops.assembly_closure import body_twists
 from kinform.kinematics.loops.joint_graph import JointGraph
 from kinform.kinematics.pair.canonical_basis import canonical_twists
-from kinform.kinematics.pair.certainty import TOUCHING, meets
+from kinform.kinematics.pair.certainty import meets
+from kinform.kinematics.pair.touches import TOUCHING
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, Joint

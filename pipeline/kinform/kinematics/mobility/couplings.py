@@ -18,7 +18,7 @@ from kinform.kinematics.constants import FIXED_RATIO, TOOTHED_TURNS
 from kinform.kinematics.loops.assembly_closure import Closure
 from kinform.kinematics.loops.joint_graph import JointGraph
 from kinform.kinematics.mobility.teeth import Side, meshing
-from kinform.kinematics.pair.certainty import TOUCHING
+from kinform.kinematics.pair.touches import TOUCHING
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Mesh
 from kinform.model.contacts import Patch

@@ -18,8 +18,8 @@ from kinform.foundation.algebra.vectors import cross, dot, norm, sine, widest_ga
 from kinform.kinematics import constants
 from kinform.kinematics.bodies.stated_joints import Pair, pair_between
 from kinform.kinematics.loops.joint_graph import JointGraph
-from kinform.kinematics.pair.certainty import TOUCHING
 from kinform.kinematics.pair.evidence import COAXIAL
+from kinform.kinematics.pair.touches import TOUCHING
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Patch

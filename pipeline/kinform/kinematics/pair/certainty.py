@@ -32,13 +32,12 @@ from kinform.kinematics.pair.stops import (
     seat_reading,
     stop_reading,
 )
+from kinform.kinematics.pair.touches import TOUCHING, apart_doubt, stray_doubt
 from kinform.kinematics.pair.uncertainty import uncertainty_doubt
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.tolerances import Tolerances
 
-TOUCHING = ("point", "line")
-"""Kinds of higher pairs: alone they are no joint, and leave what they leave at this instant."""
 HIGHER = (*TOUCHING, "freeform", "other")
 """Kinds of patches whose normals turn, or whose place moves, as soon as the bodies do."""
 
@@ -81,13 +80,15 @@ def certainty(
     form = evidence.form(basis)
     touching = momentary(evidence, basis) or (form.type == "general" and meets([item.patch for item in evidence.items]))
     doubt, seat = "", None
-    if not touching:
+    if touching:
+        doubt = apart_doubt(evidence)
+    else:
         firm, vague = _known(evidence, count), _vagueness(evidence, count)
         sure = firm & (vague <= constants.VAGUE_DIRECTION)
         seat = yield from seat_reading(evidence, twists, preserved, basis, sure, tolerances)
         if seat is None:
             loose = yield from _loose_doubt(evidence, twists, count, firm, vague, tolerances)
-            doubt = loose or _stray_doubt(evidence)
+            doubt = loose or stray_doubt(evidence)
     doubt = doubt or (yield from _near_axes_doubt(evidence, twists, count, tolerances))
     doubt = doubt or _thread_doubt(evidence, basis)
     doubt = doubt or (yield from _torn_doubt(evidence, twists, preserved, count, tolerances))
@@ -345,18 +346,3 @@ def _prism_words(evidence: Evidence, form: JointForm, other: OtherReading) -> st
         f"{form.type} if the {patch.sides} flats of {2e3 * max(patch.radii):.3g} mm across their corners are a "
         f"cylinder in a coarse mesh; {other.form.type} if they are {ROLES[other.role]}: a stated joint tells"
     )
-
-
-def _stray_doubt(evidence: Evidence) -> str:
-    """Is all of the contact on one side, and so small, or so far apart, that it may not be meant?"""
-    normals = evidence.rows[:, 3:]
-    if evidence.size == 0.0 or (normals @ (evidence.share @ normals) <= 0.0).any():
-        return ""
-    area = sum(item.patch.area for item in evidence.items)
-    least = max(constants.WIDE_GAP * evidence.contact, constants.PASSING_GAP * evidence.size)
-    apart = all(item.patch.gap > least for item in evidence.items)
-    least_area = constants.STRAY_AREA_APART if apart else constants.STRAY_AREA
-    if area >= least_area * evidence.size**2 or evidence.frame.length > constants.WIDE_CONTACT * evidence.size:
-        return ""
-    what = "they pass each other without touching" if apart else "they touch"
-    return f"{what} over {1e6 * area:.3g} mm² on one side only: too little to tell a joint from a stray touch"

@@ -16,7 +16,7 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import cross
-from kinform.kinematics.constants import GAP_BANDS, LOOSE_ANGLE, SIGMAS, STRAY_SHARE, TOUCHING_GAP
+from kinform.kinematics.constants import GAP_BANDS, LOOSE_ANGLE, SIGMAS, STRAY_SHARE, TOUCHING_GAP, UNKNOWN_DIRECTION
 from kinform.kinematics.pair.lower_pairs import JointForm, name_space
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
@@ -155,9 +155,14 @@ def gather(patches: Sequence[Member], tolerances: Tolerances, contact: float, si
 
 
 def _stray(item: Item, total: float, contact: float) -> bool:
-    """Facets of no known surface that pass near a small bit of a surface without touching it say nothing."""
-    apart = item.patch.gap > TOUCHING_GAP * contact
-    return item.patch.one_sided and apart and item.area < STRAY_SHARE * total
+    """Facets of no known surface that pass near a small bit of a surface without touching it say nothing. Nor do those
+    of a round surface that they leave unknown: its axis, and so whether it mates, hangs on their last digits."""
+    unknown = item.patch.kind in COAXIAL and item.patch.mismatch[0] > UNKNOWN_DIRECTION
+    return (
+        (item.patch.one_sided or unknown)
+        and item.patch.gap > TOUCHING_GAP * contact
+        and item.area < STRAY_SHARE * total
+    )
 
 
 def _item(index: int, patch: Patch, turned: bool, tolerances: Tolerances, contact: float) -> Item:

@@ -1,7 +1,8 @@
-"""Patches too slight to decide: slivers of rounds, and shallow overlaps of small flats.
+"""Patches too slight to decide: slivers of rounds, shallow overlaps of small flats, and edges that dip into each other.
 
-A tooth's flank that happens to lie near another, a facet or two of a fillet, a corner that dips into a face: each has
-normals and an area, and would hold something if it were believed. They may confirm a joint that the rest of the contact
+A tooth's flank that happens to lie near another, a facet or two of a fillet, a corner that dips into a face, the end of
+a rod that meets the mouth of its bore and is drawn a little into it: each has normals and an area, and would hold
+something if it were believed. They may confirm a joint that the rest of the contact
 gives; where the answer hangs on them it is ambiguous (`certainty`). How much arc and area a surface needs is in
 `kinematics.constants`, with the robots that chose it.
 """
@@ -9,6 +10,7 @@ gives; where the answer hangs on them it is ambiguous (`certainty`). How much ar
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import combinations
 
 import numpy as np
 
@@ -44,7 +46,7 @@ def scraps(evidence: Evidence, alignment: float) -> Flags:
             slight[members] = little or _arc(items, line) < constants.SLIVER_ARC_ONE_SIDED
         else:
             slight[members] = little and _arc(items, line) < constants.SLIVER_ARC
-    return slight | narrow(evidence)
+    return slight | narrow(evidence) | _steps(items)
 
 
 def narrow(evidence: Evidence) -> Flags:
@@ -55,6 +57,36 @@ def narrow(evidence: Evidence) -> Flags:
 def _dips(item: Item, contact: float) -> bool:
     """Is it a plane that overlaps the other part deeper than a press would?"""
     return item.patch.kind == "plane" and item.interferes and -item.patch.gap > constants.DIP * contact
+
+
+def _steps(items: Sequence[Item]) -> Flags:
+    """(items,): which patches are the faces of a step that is there only because two edges are drawn into each other.
+
+    Two edges that meet make a step of two faces as soon as they overlap, each as wide as the other is deep.
+    """
+    flags = np.zeros(len(items), dtype=bool)
+    deep = [k for k, item in enumerate(items) if item.patch.gap < 0.0]
+    wide = {k: _width(items[k]) for k in deep} if len(deep) > 1 else {}
+    for k, j in combinations(wide, 2):
+        first, second = items[k].patch, items[j].patch
+        if wide[k] > -constants.STEP_WIDTH * second.gap or wide[j] > -constants.STEP_WIDTH * first.gap:
+            continue
+        if first.parts == second.parts and _are_across(items[k], items[j]):
+            flags[[k, j]] = True
+    return flags
+
+
+def _width(item: Item) -> float:
+    """m: the area of the patch over twice the greatest distance of a sample from the middle, in whatever pose.
+
+    That is the width of a long strip, π times that of a ring, 0.7 of a square's.
+    """
+    return item.patch.area / max(2.0 * float(np.sqrt(((item.points - item.middle) ** 2).sum(axis=1).max())), 1e-300)
+
+
+def _are_across(first: Item, second: Item) -> bool:
+    """Are the normals of the one about perpendicular to those of the other?"""
+    return float(np.abs(first.normals @ second.normals.T).max()) < constants.STEP_CORNER
 
 
 def _arc(items: Sequence[Item], line: Line) -> float:

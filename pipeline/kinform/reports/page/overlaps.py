@@ -9,6 +9,7 @@ from manifold3d import Error, Manifold, Mesh64
 
 from kinform.design import Design
 from kinform.foundation.at_work import at_work_on
+from kinform.foundation.processes import threads_ran
 from kinform.model.assembly import Part
 from kinform.model.contacts import Interference
 from kinform.reports.constants import MOST_OVERLAPS
@@ -58,6 +59,7 @@ def _solid(part: Part, known: dict[str, Manifold | None], centre: np.ndarray, sc
     if mesh is None or not mesh.health.watertight or mesh.health.manifold_status != "NoError":
         return None
     if part.name not in known:
+        threads_ran()
         places = (mesh.vertices @ part.X_WP[:3, :3].T + part.X_WP[:3, 3] - centre) / scale
         faces = mesh.faces if mesh.health.volume >= 0.0 else mesh.faces[:, ::-1]
         solid = Manifold(Mesh64(np.ascontiguousarray(places), np.ascontiguousarray(faces, dtype=np.uint64)))

@@ -51,13 +51,14 @@ def _share(given: Sequence[Answer]) -> float | None:
 
 
 def body_values(design: Design) -> dict[str, Any]:
-    """Bodies, and why each part is in its own where that follows from the function."""
+    """Bodies, and why each part is in its own where that follows from the function. Joints left out are null where
+    nobody looked for them, in results of an older version."""
     kinematics = _kinematics(design)
     return {
         "bodies": [fields(body, "name", "parts", "ground", "merged") for body in kinematics.bodies],
         "membership": [asdict(one) for one in kinematics.membership],
         "unparted": [asdict(one) for one in kinematics.unparted],
-        "left_out": [asdict(one) for one in kinematics.left_out],
+        "left_out": None if kinematics.left_out is None else [asdict(one) for one in kinematics.left_out],
     }
 
 

@@ -75,8 +75,9 @@ def write(group: h5py.Group, design: Design) -> None:
 
 
 def read(group: HeldGroup) -> dict[str, Any]:
-    """The fields of Kinematics that `write` wrote."""
-    return LAYOUT.read_fields(group)
+    """The fields of Kinematics that `write` wrote. Files of older versions do not say which joints were left out."""
+    fields = LAYOUT.read_fields(group)
+    return fields if "left_out" in group else fields | {"left_out": None}
 
 
 def read_bodies(group: HeldGroup) -> tuple[Body, ...]:
