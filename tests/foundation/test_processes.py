@@ -5,6 +5,7 @@ from __future__ import annotations
 import faulthandler
 import os
 import signal
+import time
 
 import pytest
 
@@ -61,3 +62,28 @@ def test_little_work_gets_one_process_and_a_crash_in_it_is_told_alike():
     with pytest.raises(KinformError, match=r"part 5: .*SIGSEGV"):
         come.extend(map_in_processes(ended, [1, 2, 5, 6], jobs=2, name=lambda k: f"part {k}", little=True))
     assert list(map_in_processes(ended, [1, 2, 3], jobs=2, little=True)) == [1, 4, 9]
+
+
+def test_the_heaviest_are_begun_first_and_results_come_in_order(tmp_path):
+    log = tmp_path / "begun"
+
+    def noted(number: int) -> int:
+        with log.open("a") as file:
+            file.write(f"{number}\n")
+        time.sleep(0.05)
+        return number
+
+    assert list(map_in_processes(noted, [1, 2, 3, 4, 5], jobs=2, weights=[1, 2, 5, 4, 3])) == [1, 2, 3, 4, 5]
+    begun = [int(line) for line in log.read_text().split()]
+    assert set(begun[:2]) == {3, 4}
+    assert begun[-1] in (1, 2)
+
+
+def test_something_else_is_done_only_while_several_processes_are_at_work():
+    done: list[int] = []
+    meanwhile = lambda: done.append(os.getpid())
+    for jobs, items, little in ((1, [1, 2], False), (2, [1], False), (2, [1, 2], True)):
+        assert list(map_in_processes(abs, items, jobs, little=little, meanwhile=meanwhile)) == items
+    assert done == []
+    assert list(map_in_processes(abs, [1, 2], 2, meanwhile=meanwhile)) == [1, 2]
+    assert done == [os.getpid()]
