@@ -15,11 +15,13 @@ import numpy as np
 
 from kinform.collisions.constants import CLOSED, LOOP_STOP, TURNED_ROUND
 from kinform.collisions.driving.alone import drive_alone
+from kinform.collisions.driving.apart_for_good import never_meet
 from kinform.collisions.driving.loop_motion import RETURNED, Between, Linkage, Path, follow
 from kinform.collisions.driving.overlaps import Overlap, Pair, overlap_words
 from kinform.collisions.pair.advancement import First, first_crossing
-from kinform.collisions.pair.posed_pairs import Nodes, moving_pairs
+from kinform.collisions.pair.posed_pairs import Moving, Nodes, moving_pairs
 from kinform.collisions.parts.shapes import Shapes
+from kinform.foundation.algebra.displacements import inverse
 from kinform.kinematics.mobility.guides import guide
 from kinform.model.arrays import Array
 from kinform.model.collisions import JointRange, RangeEnd
@@ -123,7 +125,7 @@ def _travelled(shapes: Shapes, kinematics: Kinematics, linkage: Linkage, path: P
     overlaps, rolls = [], ""
     for item in sorted(moving_pairs(shapes, names, kinematics.joints, nodes), key=lambda item: -item.free):
         test = item.test
-        if item.free >= end:
+        if item.free >= end or never_meet(shapes, test, _relative(nodes, item)):
             continue
         first = first_crossing(test, item.course, end, LOOP_STOP, start=item.free)
         rolling = item.rolls and first.at is not None
@@ -145,6 +147,11 @@ def _travelled(shapes: Shapes, kinematics: Kinematics, linkage: Linkage, path: P
     q, s = np.concatenate([path.q[kept], at(end)[None]]), np.append(s[kept], end)
     overlap = overlap_words(overlaps, shapes.assembly.units) if overlaps else rolls
     return _Travelled(q, s, why, parts, place, tuple(sorted(left_out)), overlap)
+
+
+def _relative(nodes: Nodes, item: Moving) -> Array:
+    """(T, 4, 4) of the second body of a pair, as the first sees it."""
+    return inverse(nodes.displacements[:, item.first]) @ nodes.displacements[:, item.second]
 
 
 def _placed(nodes: Nodes, body: int, first: First) -> Array | None:
