@@ -7,7 +7,7 @@ import pytest
 from support.solids import assembly, block, part, random_pose
 
 from kinform import surfaces
-from kinform.collisions.driving.apart_for_good import never_meet, one_motion
+from kinform.collisions.driving.apart_for_good import one_motion, that_can_meet
 from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.displacements import displacement
@@ -77,8 +77,18 @@ def test_parts_beside_each_other_on_an_axis_never_meet_and_others_may(X, scale):
     axis, point = X[:3, 2], X[:3, 3]
     turns = motion(np.append(axis, cross(point, axis)), np.linspace(0.0, 2.0, 30))
     slides = motion(np.append(np.zeros(3), axis), scale * np.linspace(0.0, 30.0, 30))
-    never = {name: never_meet(shapes, pair(shapes, name, "lever"), turns) for name in solids if name != "lever"}
-    assert never == {"above": True, "outside": True, "inside": False, "peg": False}
-    assert not never_meet(shapes, pair(shapes, "above", "lever"), slides)
-    assert never_meet(shapes, pair(shapes, "outside", "lever"), slides)
-    assert not never_meet(shapes, pair(shapes, "above", "lever"), turns @ slides)
+
+    def met(name, way):
+        """Numbers of facets that can meet."""
+        some = that_can_meet(shapes, pair(shapes, name, "lever"), way)
+        return None if some is None else tuple(map(len, some.facets))
+
+    assert {name: met(name, turns) for name in ("above", "outside", "inside")} == {
+        "above": None,
+        "outside": None,
+        "inside": (12, 12),
+    }
+    assert met("peg", turns) == (8, 8)  # its ends lie above and below the lever, whose ends lie beyond it
+    assert met("above", slides) is not None
+    assert met("outside", slides) is None
+    assert met("above", turns @ slides) == (12, 12)

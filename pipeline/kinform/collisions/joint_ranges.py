@@ -59,7 +59,10 @@ def ranges(
     facets = sum(len(part.mesh.faces) for part in assembly.parts if part.mesh is not None)
     shared = jobs if len(together) * facets > SHARED_FACETS else 1
     name = lambda some: f"the range of {joints[some[0]].name}"
-    for found in map_in_processes(of_some, list(together.values()), shared, progress, name, meanwhile=meanwhile):
+    asked = list(together.values())
+    # from both ends of a chain: two processes then have few parts in common, each of which they make ready
+    weights = [float(max(n, len(asked) - 1 - n)) for n in range(len(asked))]
+    for found in map_in_processes(of_some, asked, shared, progress, name, weights=weights, meanwhile=meanwhile):
         out.update(found)
     return tuple(replace(out[k], slides=joints[k].type == "prismatic") for k in driven)
 

@@ -1,5 +1,5 @@
-"""Parts of a block of loops that only turn or slide on each other, however the loops move, and whose facets sweep past
-each other: they never meet, as the leaves of a hinge beside each other do not."""
+"""Parts of a block of loops that only turn or slide on each other, however the loops move: most of their facets sweep
+past each other for good, as those of leaves of a hinge that lie beside each other do, and need not be followed."""
 
 from __future__ import annotations
 
@@ -13,19 +13,22 @@ from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array
 
 
-def never_meet(shapes: Shapes, test: PairTest, relative: Array) -> bool:
-    """Whether the facets of a pair that count can meet nowhere as the second part moves by `relative` (T, 4, 4), in the
-    world at the pose of the meshes. Where points of one are deep inside the other from the start it is not said."""
+def that_can_meet(shapes: Shapes, test: PairTest, relative: Array) -> PairTest | None:
+    """A pair with those of its facets that can meet somewhere as the second part moves by `relative` (T, 4, 4), in the
+    world at the pose of the meshes; None where none can. Where parts overlap from the start, or points of one are deep
+    inside the other, it is as it was."""
     if test.overlapping:
-        return False
+        return test
     meshes = [shapes.mesh(name) for name in test.names]
     places = [mesh.vertices @ X[:3, :3].T + X[:3, 3] for mesh, X in zip(meshes, (test.X_WA, test.X_WB), strict=True)]
     twist = one_motion(relative, places[0].mean(axis=0), shapes.size, ONE_MOTION * MEETING_MARGIN * test.size)
     if twist is None:
-        return False
+        return test
     first, second = (Profile(place, mesh.faces, twist) for place, mesh in zip(places, meshes, strict=True))
     met = meeting(first, second, *test.facets, MEETING_MARGIN * test.size)
-    return not all(map(len, met.facets)) and test.sunk(np.eye(4))[0] <= test.loose
+    if test.sunk(np.eye(4))[0] > test.loose:
+        return test
+    return test.some(met.facets) if all(map(len, met.facets)) else None
 
 
 def one_motion(displacements: Array, middle: Array, size: float, off: float) -> Array | None:

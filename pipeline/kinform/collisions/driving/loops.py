@@ -7,6 +7,7 @@ branches off, or, where it goes on evenly, where a slide or screw leaves its gui
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -15,10 +16,10 @@ import numpy as np
 
 from kinform.collisions.constants import CLOSED, LOOP_STOP, TURNED_ROUND
 from kinform.collisions.driving.alone import drive_alone
-from kinform.collisions.driving.apart_for_good import never_meet
+from kinform.collisions.driving.apart_for_good import that_can_meet
 from kinform.collisions.driving.loop_motion import RETURNED, Between, Linkage, Path, follow
 from kinform.collisions.driving.overlaps import Overlap, Pair, overlap_words
-from kinform.collisions.pair.advancement import First, first_crossing
+from kinform.collisions.pair.advancement import First, Near, first_crossing
 from kinform.collisions.pair.posed_pairs import Moving, Nodes, moving_pairs
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.displacements import inverse
@@ -125,9 +126,11 @@ def _travelled(shapes: Shapes, kinematics: Kinematics, linkage: Linkage, path: P
     overlaps, rolls = [], ""
     for item in sorted(moving_pairs(shapes, names, kinematics.joints, nodes), key=lambda item: -item.free):
         test = item.test
-        if item.free >= end or never_meet(shapes, test, _relative(nodes, item)):
+        met = None if item.free >= end else that_can_meet(shapes, test, _relative(nodes, item))
+        if met is None:
             continue
-        first = first_crossing(test, item.course, end, LOOP_STOP, start=item.free)
+        near = None if met is test else Near(lambda *_, met=met: met, math.inf)
+        first = first_crossing(test, item.course, end, LOOP_STOP, start=item.free, near=near)
         rolling = item.rolls and first.at is not None
         if first.overlaps or rolling:
             left_out.add(test.part_names)
