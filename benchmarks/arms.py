@@ -1,9 +1,10 @@
 """The whole run of real arms, and ranges of their joints: `python benchmarks/arms.py MANIFEST …`, or in the folders of
 KINFORM_ARMS, or so100 and so101 as `geometry` finds robots.
 
-Seconds by the clock of `kinform run` on the processors that there are, and processor seconds of finding how far each
-joint goes, everything before it done. An arm that is not there is left out, and said so. Beside: the processor seconds
-of the run; bare FCL, the trees of all meshes and one distance of each pair.
+Seconds by the clock of `kinform run` on the processors that there are, the bytecode of all packages compiled by a run
+before it, as an installed package has it; and processor seconds of finding how far each joint goes, everything before
+it done. An arm that is not there is left out, and said so. Beside: the processor seconds of the run, and how long the
+first one took; bare FCL, the trees of all meshes and one distance of each pair.
 """
 
 from __future__ import annotations
@@ -30,9 +31,10 @@ ARMS = {"so100": None, "so101": 8.0}
 def whole(manifest: Path) -> Row:
     """The row of the whole run of one manifest."""
     with tempfile.TemporaryDirectory() as scratch:
+        first, _, _ = run(manifest, Path(scratch) / "first.h5")
         seconds, worked, _ = run(manifest, Path(scratch) / "arm.h5")
     name = manifest.parent.name
-    words = f"{worked:.1f} s of {os.cpu_count()} processors"
+    words = f"{worked:.1f} s of {os.cpu_count()} processors; without bytecode {first:.1f} s"
     return Row(f"whole run of {name}", seconds, ARMS.get(name), "s of the clock", words, peak())
 
 

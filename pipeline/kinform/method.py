@@ -57,19 +57,21 @@ def run(
         unchanged = Outcome.unchanged(Path(manifest), Path(output), allow_outside=allow_outside)
         if unchanged is not None:
             return unchanged
-    from kinform import stages  # not before: seeing that nothing changed takes less time than importing them
+    from kinform import ahead, stages  # not before: seeing that nothing changed takes less time than importing them
     from kinform.reuse.ledger import Ledger
 
     earlier = _earlier(output or base, say)
 
     def derived(ledger: Ledger) -> Design:
         design = _import(manifest, units, allow_outside, reading, ledger)
-        design = stages.contacts(design, jobs=jobs, progress=_steps(progress, "contacts"), ledger=ledger)
+        ready = ahead.of(design.assembly)
+        design = stages.contacts(design, jobs=jobs, progress=_steps(progress, "contacts"), ledger=ledger, ahead=ready)
         design = stages.joints(design, ledger=ledger)
-        design = stages.mass(design, ledger=ledger)
+        design = stages.mass(design, ledger=ledger, ahead=ready)
         design = stages.simulate(
-            design, ranges=ranges, jobs=jobs, progress=_steps(progress, "simulation"), say=say, ledger=ledger
-        )
+            design, ranges=ranges, jobs=jobs, progress=_steps(progress, "simulation"), say=say, ledger=ledger,
+            ahead=ready,
+        )  # fmt: skip
         return stages.check(design, ledger=ledger)
 
     ledger = Ledger(earlier)

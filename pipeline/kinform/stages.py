@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -25,6 +26,7 @@ from kinform.reuse.dependence import CONTACTS, FINDINGS, JOINTS, MASS, SIMULATIO
 from kinform.reuse.ledger import Ledger
 
 if TYPE_CHECKING:
+    from kinform.ahead import Ahead
     from kinform.model.assembly import Assembly
     from kinform.model.kinematics import Kinematics
     from kinform.model.simulation import Simulation
@@ -72,21 +74,28 @@ def import_assembly(assembly: Assembly) -> Design:
 
 
 def contacts(
-    design: Design, *, jobs: int = 1, progress: Progress | None = None, ledger: Ledger | None = None
+    design: Design,
+    *,
+    jobs: int = 1,
+    progress: Progress | None = None,
+    ledger: Ledger | None = None,
+    ahead: Ahead | None = None,
 ) -> Design:
     """Analytic surfaces of each mesh, and the contacts between parts.
 
-    Earlier surfaces are reused mesh by mesh, earlier contacts pair by pair.
+    Earlier surfaces are reused mesh by mesh, earlier contacts pair by pair. `ahead` is made ready for later stages
+    while other processes are at work.
     """
     from kinform.reuse import contacts as reuse
 
     ledger = ledger or Ledger()
     view = CONTACTS.view(design.assembly)
     start = without(CONTACTS, design)
-    surfaces, meshes = reuse.surfaces(view, jobs, progress, ledger)
+    surfaces, meshes = reuse.surfaces(view, jobs, progress, ledger, ahead.with_surfaces if ahead else None)
     start = replace(start, surfaces=surfaces)
     mark = fingerprints.mark("contacts", fingerprints.of_stage(CONTACTS, start, {}))
-    patches, pairs = reuse.contacts(view, surfaces, mark, jobs, progress, ledger)
+    meanwhile = partial(ahead.with_contacts, surfaces) if ahead else None
+    patches, pairs = reuse.contacts(view, surfaces, mark, jobs, progress, ledger, meanwhile)
     stages = start.fingerprints.stages | {"surfaces": fingerprints.mark("surfaces", meshes), "contacts": mark}
     marks = replace(start.fingerprints, stages=stages, meshes=meshes, pairs=pairs)
     return replace(start, contacts=patches, fingerprints=descend(marks, CONTACTS))
@@ -117,8 +126,8 @@ def joints(design: Design, *, ledger: Ledger | None = None) -> Design:
     return replace(done, assembly=replace(done.assembly, function=done.assembly.function.with_sides(found)))
 
 
-def mass(design: Design, *, ledger: Ledger | None = None) -> Design:
-    """Mass properties of parts and bodies. Raises StageError without joints."""
+def mass(design: Design, *, ledger: Ledger | None = None, ahead: Ahead | None = None) -> Design:
+    """Mass properties of parts and bodies; of parts those that are known `ahead`. Raises StageError without joints."""
     ledger = ledger or Ledger()
     bodies = _needed(design.kinematics, "kinform mass", "joints").bodies
 
@@ -127,7 +136,7 @@ def mass(design: Design, *, ledger: Ledger | None = None) -> Design:
         from kinform.model.kinematics import only_bodies
         from kinform.reuse.masses import earlier_masses
 
-        earlier = earlier_masses(design, view, ledger)
+        earlier = (ahead.masses if ahead else {}) | earlier_masses(design, view, ledger)
         return Result({"mass": compile_mass(view, only_bodies(bodies), design.surfaces, earlier)})
 
     return advance(MASS, design, weigh, ledger)
@@ -142,12 +151,13 @@ def simulate(
     progress: Progress | None = None,
     say: Callable[[str], None] | None = None,
     ledger: Ledger | None = None,
+    ahead: Ahead | None = None,
 ) -> Design:
     """Motion at the level that is known, or at `level`, with what the parts collide with in it; and how far each joint
     goes, unless `ranges` is False, or None and that would take long: then the run says so, unless the function states
     ranges or requirements. Raises StageError without mass properties.
 
-    `say` is told what takes long besides the steps that `progress` counts.
+    `say` is told what takes long besides the steps that `progress` counts; `ahead` as of `contacts`.
     """
     kinematics = _needed(design.kinematics, "kinform simulate", "joints")
     masses = _needed(design.mass, "kinform simulate", "mass")
@@ -162,7 +172,7 @@ def simulate(
         from kinform import simulation
 
         stopping = view.simulation is not None and view.simulation.stops == "found"
-        reach = _ranges(design, view, jobs) if stopping or wanted else None
+        reach = _ranges(design, view, jobs, ahead) if stopping or wanted else None
         behaviour = simulation.port_model(
             view, kinematics, masses, level=level, contacts=design.contacts, surfaces=design.surfaces,
             reach=reach or (),
@@ -269,10 +279,13 @@ def _unasked(assembly: Assembly, kinematics: Kinematics) -> str:
     return f"how far joints go was not looked for: {why}; --ranges asks" if why else ""
 
 
-def _ranges(design: Design, view: Assembly, jobs: int) -> tuple[JointRange, ...] | None:
+def _ranges(design: Design, view: Assembly, jobs: int, ahead: Ahead | None) -> tuple[JointRange, ...] | None:
     """How far joints go; None where there are no meshes to stop them."""
     if not design.surfaces or design.kinematics is None or all(part.mesh is None for part in view.parts):
         return None
     from kinform import collisions
 
-    return collisions.ranges(view, design.surfaces, design.contacts, design.kinematics, jobs=jobs)
+    meanwhile = ahead.with_ranges if ahead else None
+    return collisions.ranges(
+        view, design.surfaces, design.contacts, design.kinematics, jobs=jobs, meanwhile=meanwhile
+    )  # fmt: skip

@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -131,3 +132,28 @@ def test_a_program_that_has_cut_solids_reads_meshes_with_shared_edges(tmp_path):
         capture_output=True, text=True, timeout=120, env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
     )  # fmt: skip
     assert found.stdout.split("\n")[:2] == ["NoError", "main __main__"], found.stderr
+
+
+def test_the_heaviest_are_begun_first_and_results_come_in_order(tmp_path):
+    log = tmp_path / "begun"
+
+    def noted(number: int) -> int:
+        with log.open("a") as file:
+            file.write(f"{number}\n")
+        time.sleep(0.05)
+        return number
+
+    assert list(map_in_processes(noted, [1, 2, 3, 4, 5], jobs=2, weights=[1, 2, 5, 4, 3])) == [1, 2, 3, 4, 5]
+    begun = [int(line) for line in log.read_text().split()]
+    assert set(begun[:2]) == {3, 4}
+    assert begun[-1] in (1, 2)
+
+
+def test_something_else_is_done_only_while_several_processes_are_at_work():
+    done: list[int] = []
+    meanwhile = lambda: done.append(os.getpid())
+    for jobs, items, little in ((1, [1, 2], False), (2, [1], False), (2, [1, 2], True)):
+        assert list(map_in_processes(abs, items, jobs, little=little, meanwhile=meanwhile)) == items
+    assert done == []
+    assert list(map_in_processes(abs, [1, 2], 2, meanwhile=meanwhile)) == [1, 2]
+    assert done == [os.getpid()]

@@ -16,7 +16,8 @@ another does a part first meet it (`pair`)? The rooms are read in this order:
    one free for the shortest way goes on first. What points keep as they turn or slide tells which of its facets
    can meet (`swept_profiles`), and where (`meeting_spans`, `swept_spheres`): only there the course is followed, and of
    parts that mate with those facets alone that can meet there other than along mates.
-   `loops` drives all joints of a block along its one motion (`loop_motion`).
+   `loops` drives all joints of a block along its one motion (`loop_motion`); of parts that only turn or slide on
+   each other, with those of their facets that can meet (`apart_for_good`).
 
 Less deep than mates may overlap it is a scrape, and none of this counts.
 """

@@ -199,6 +199,13 @@ UNASKED_LOOPS = 8
 UNASKED_FACETS = 30_000_000
 """... and joints times facets: 27 million, of a humanoid of 1.3 million facets, took 9 s, as long as all before."""
 
+# driving/apart_for_good: parts in loops that only turn or slide on each other
+
+ONE_MOTION = 0.1
+"""Share of what swept profiles are apart at least, by which points may leave the one axis or direction."""
+TURNED_LEAST = 1e-3
+"""Sine of the greatest turn, below which an axis is not looked for."""
+
 # driving/loop_motion: the one motion of joints that loops tie together
 
 STEP = 0.04

@@ -6,7 +6,7 @@ are driven together. Of other joints the range is not known, and it is said why.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from kinform.collisions.constants import SHARED_FACETS, UNASKED_FACETS, UNASKED_LOOPS, UNASKED_PAIRS
@@ -33,9 +33,10 @@ def ranges(
     kinematics: Kinematics,
     progress: Progress | None = None,
     jobs: int = 1,
+    meanwhile: Callable[[], None] | None = None,
 ) -> tuple[JointRange, ...]:
     """The range of each joint that is not fixed, in the order of the joints; `jobs` processes share those of many
-    facets."""
+    facets, and `meanwhile` is called while they do."""
     shapes = shapes_of(assembly, surfaces, contacts, kinematics)
     index = {body.name: n for n, body in enumerate(kinematics.bodies)}
     joints = kinematics.joints
@@ -58,7 +59,10 @@ def ranges(
     facets = sum(len(part.mesh.faces) for part in assembly.parts if part.mesh is not None)
     shared = jobs if len(together) * facets > SHARED_FACETS else 1
     name = lambda some: f"the range of {joints[some[0]].name}"
-    for found in map_in_processes(of_some, list(together.values()), shared, progress, name):
+    asked = list(together.values())
+    # from both ends of a chain: two processes then have few parts in common, each of which they make ready
+    weights = [float(max(n, len(asked) - 1 - n)) for n in range(len(asked))]
+    for found in map_in_processes(of_some, asked, shared, progress, name, weights=weights, meanwhile=meanwhile):
         out.update(found)
     return tuple(replace(out[k], slides=joints[k].type == "prismatic") for k in driven)
 

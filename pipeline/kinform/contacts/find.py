@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict, deque
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 from kinform.contacts import constants
@@ -93,19 +93,20 @@ def find(
     reuse: Contacts | None = None,
     reuse_pairs: frozenset[tuple[str, str]] = frozenset(),
     progress: Progress | None = None,
+    meanwhile: Callable[[], None] | None = None,
 ) -> Contacts:
     """All contacts of the assembly at its pose, in the world (SI).
 
     `surfaces` by mesh digest. Pairs of parts without mesh, pairs inside one group, and pairs that an
     assumption declares not to touch are not looked at. Pairs named in `reuse_pairs` (sorted names) are
     taken from `reuse` where it has them. `progress(done, total)` counts pairs. The result does not
-    depend on `jobs`.
+    depend on `jobs`. `meanwhile` is called while other processes are at work.
     """
     tolerance = candidate_pairs(assembly)
     reused = {p for p in reuse.candidates if p in reuse_pairs and p in tolerance} if reuse is not None else set()
     wanted = [pair for pair in tolerance if pair not in reused]
     work = _Work(assembly, surfaces, tolerance, wanted)
-    done = _computed(work, jobs, progress, work.is_little(wanted))
+    done = _computed(work, jobs, progress, meanwhile, work.is_little(wanted))
     if reuse is not None:
         done |= _earlier_contacts(reuse, reused)
     contacts = Contacts(
@@ -124,13 +125,15 @@ def _name_of(pairs: tuple[Pair, ...]) -> str:
     return first if len(pairs) == 1 else f"{first}, or of one of the {len(pairs) - 1} pairs after them"
 
 
-def _computed(work: _Work, jobs: int, progress: Progress | None, little: bool) -> dict[Pair, PairContacts]:
+def _computed(
+    work: _Work, jobs: int, progress: Progress | None, meanwhile: Callable[[], None] | None, little: bool
+) -> dict[Pair, PairContacts]:
     """The contacts of all pairs of the work: of many small ones at once; where a process ends over that, one by one, so
     that it is told which pair it was."""
     share = len(work.order) if jobs <= 1 else len(work.order) // (constants.SHARES * jobs)
     for most in (max(1, min(constants.TOGETHER_PAIRS, share)), 1):
         chunks, done = work.chunks(most), dict[Pair, PairContacts]()
-        computed = map_in_processes(work.contacts, chunks, jobs, None, _name_of, little=little)
+        computed = map_in_processes(work.contacts, chunks, jobs, None, _name_of, little=little, meanwhile=meanwhile)
         try:
             for chunk, found in zip(chunks, computed, strict=True):
                 for pair, of_pair in zip(chunk, found, strict=True):

@@ -59,6 +59,8 @@ def map_in_processes(
     name: Callable[[Item], str] = str,
     *,
     little: bool = False,
+    weights: Sequence[float] | None = None,
+    meanwhile: Callable[[], None] | None = None,
 ) -> Iterator[Result]:
     """The function of each item, in their order, whatever the number of `jobs`; `progress(done, total)` counts items.
 
@@ -66,16 +68,23 @@ def map_in_processes(
     where native threads ran in this process, it does all in turn.
     Raises Crash, with the `name` of the item, where another process ends without an answer: with more than one of the
     `jobs`, also a single item is computed in one. `little`: all of them together take no longer than several processes
-    take to start, and are computed in one.
+    take to start, and are computed in one. Those of the greatest `weights` are begun first, so that none of these is
+    left at the end. `meanwhile` is called here while several processes are at work, and not where they are not.
     """
-    for done, result in enumerate(_results(function, items, jobs, name, little), start=1):
+    for done, result in enumerate(_results(function, items, jobs, name, little, weights, meanwhile), start=1):
         if progress is not None:
             progress(done, len(items))
         yield result
 
 
 def _results(
-    function: Callable[[Item], Result], items: Sequence[Item], jobs: int, name: Callable[[Item], str], little: bool
+    function: Callable[[Item], Result],
+    items: Sequence[Item],
+    jobs: int,
+    name: Callable[[Item], str],
+    little: bool,
+    weights: Sequence[float] | None,
+    meanwhile: Callable[[], None] | None,
 ) -> Iterator[Result]:
     if jobs <= 1 or _threaded:
         for item in items:
@@ -109,9 +118,13 @@ def _results(
         pool, task = ThreadPoolExecutor(jobs), function
     done = 0
     others = set(multiprocessing.active_children())
+    order = range(len(items)) if weights is None else sorted(range(len(items)), key=lambda k: -weights[k])
     try:
-        for result in pool.map(task, items):
-            yield result
+        begun = {k: pool.submit(task, items[k]) for k in order}
+        if meanwhile is not None:
+            meanwhile()
+        for k in range(len(items)):
+            yield begun.pop(k).result()
             done += 1
     except BrokenProcessPool:
         yield from _one_by_one(function, items[done:], name)

@@ -32,16 +32,7 @@ def compile_mass(
     watertight, is wound inconsistently or has no density has no mass, and neither has a body that
     contains it: the reasons are in `problems`. Parts whose properties are `known` are not measured again.
     """
-    shapes: dict[str, _SolidShape] = {}
-    parts = []
-    for part in assembly.parts:
-        if known is not None and part.name in known:
-            parts.append(known[part.name])
-            continue
-        shape = None
-        if part.mesh is not None:
-            shape = _shape(part.mesh, shapes, surfaces, assembly)
-        parts.append(_part_properties(part, shape))
+    parts = masses_of_parts(assembly, surfaces, known)
     by_name = {properties.name: properties for properties in parts}
     stated = {group.name: group for group in assembly.groups if group.override is not None}
     frames = _frames(assembly)
@@ -52,6 +43,25 @@ def compile_mass(
     problems = [(p.name, p.reason) for p in parts if p.mass is None and p.name not in assembly.weighed]
     valid = all(body.mass is not None for body in bodies)
     return MassReport(tuple(sorted(parts, key=lambda p: p.name)), bodies, valid, tuple(sorted(problems)))
+
+
+def masses_of_parts(
+    assembly: Assembly,
+    surfaces: Mapping[str, MeshSurfaces] | None = None,
+    known: Mapping[str, MassProperties] | None = None,
+) -> list[MassProperties]:
+    """Mass, centre of mass and inertia of every part, in the order of the parts, as `compile_mass` gives them."""
+    shapes: dict[str, _SolidShape] = {}
+    parts = []
+    for part in assembly.parts:
+        if known is not None and part.name in known:
+            parts.append(known[part.name])
+            continue
+        shape = None
+        if part.mesh is not None:
+            shape = _shape(part.mesh, shapes, surfaces, assembly)
+        parts.append(_part_properties(part, shape))
+    return parts
 
 
 def _frames(assembly: Assembly) -> frozenset[str]:
@@ -95,7 +105,7 @@ def _group_properties(group: Group, volumes: Sequence[float | None]) -> MassProp
 def _shape(
     mesh: Mesh,
     shapes: dict[str, _SolidShape],
-    surfaces: dict[str, MeshSurfaces] | None,
+    surfaces: Mapping[str, MeshSurfaces] | None,
     assembly: Assembly,
 ) -> _SolidShape:
     """The shape of the mesh, from `shapes` when a part with the same mesh was seen before."""

@@ -7,7 +7,7 @@ the same to the last bit.
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from kinform import contacts as contacts_stage
@@ -30,9 +30,14 @@ Pair = tuple[PartName, PartName]
 
 
 def surfaces(
-    view: Assembly, jobs: int, progress: Progress | None, ledger: Ledger
+    view: Assembly,
+    jobs: int,
+    progress: Progress | None,
+    ledger: Ledger,
+    meanwhile: Callable[[], None] | None = None,
 ) -> tuple[dict[str, MeshSurfaces], dict[str, str]]:
-    """Surfaces and fingerprints by mesh digest, of the assembly as the contacts stage sees it."""
+    """Surfaces and fingerprints by mesh digest, of the assembly as the contacts stage sees it. `meanwhile` is called
+    while other processes look for them."""
     meshes: dict[str, Mesh] = {}
     for part in view.parts:
         if part.mesh is not None:
@@ -53,7 +58,8 @@ def surfaces(
     # the largest first, so that no core is left with one of them at the end
     packs = [[shapes[i] for i in pack] for pack in surfaces_stage.packs([len(meshes[k].faces) for k in shapes], jobs)]
     name = lambda pack: f"surfaces of {few([mesh.path for mesh in pack])}"
-    recovered = map_in_processes(recover, [[meshes[k] for k in pack] for pack in packs], jobs, name=name)
+    wanted_of = [[meshes[k] for k in pack] for pack in packs]
+    recovered = map_in_processes(recover, wanted_of, jobs, name=name, meanwhile=meanwhile)
     done = 0
     for pack, found in zip(packs, recovered, strict=True):
         result.update(zip(pack, found, strict=True))
@@ -73,8 +79,10 @@ def contacts(
     jobs: int,
     progress: Progress | None,
     ledger: Ledger,
+    meanwhile: Callable[[], None] | None = None,
 ) -> tuple[Contacts, dict[Pair, str]]:
-    """Contacts of the assembly and fingerprints by pair; `stage_mark` is the fingerprint of the whole stage."""
+    """Contacts of the assembly and fingerprints by pair; `stage_mark` is the fingerprint of the whole stage.
+    `meanwhile` is called while other processes look for them."""
     before = ledger.fingerprints
     earlier = None if ledger.previous is None else ledger.previous.contacts
     if earlier is not None and before.stages.get("contacts") == stage_mark:
@@ -86,7 +94,9 @@ def contacts(
         return mark("contacts", {"the tolerances": digest(view.tolerances), **parts[pair[0]], **parts[pair[1]]})
 
     same = frozenset(pair for pair, old in before.pairs.items() if parts.keys() >= set(pair) and mark_of(pair) == old)
-    result = contacts_stage.find(view, recovered, jobs=jobs, reuse=earlier, reuse_pairs=same, progress=progress)
+    result = contacts_stage.find(
+        view, recovered, jobs=jobs, reuse=earlier, reuse_pairs=same, progress=progress, meanwhile=meanwhile
+    )  # fmt: skip
     kept = [pair for pair in result.candidates if pair in same]
     wanted = [pair for pair in result.candidates if pair not in same]
     if kept:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 
 from kinform.collisions.constants import (
     CROSSING_LEAST,
@@ -27,7 +28,7 @@ from kinform.collisions.pair.mate_surfaces import Kept
 from kinform.collisions.pair.passages import Path
 from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.parts.shapes import Shapes
-from kinform.foundation.algebra.displacements import displacement
+from kinform.foundation.algebra.displacements import displacements_along
 from kinform.kinematics.mobility.guides import preserved
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
@@ -45,6 +46,8 @@ class Candidate:
         """rad or m to which a stop is found."""
         self.window = math.inf if self.turns is None else WINDOW_TURN if turning else WINDOW_SLIDE * self._size
         """rad or m along which parts that come near are followed with the facets that can meet there."""
+        moved = displacements_along(twist)
+        self._moved = {sign: lru_cache(maxsize=64)(partial(_moved, moved, sign)) for sign in (-1, 1)}
         self._tests: list[PairTest] = []
         self._modelled = 0
         """Facets of models of some so far."""
@@ -67,9 +70,8 @@ class Candidate:
         ]
         along = float(abs(self._twist[:3] @ self._twist[3:]))
         speed = math.hypot(min(radii), along) if self._turning else 1.0
-        moved = lru_cache(maxsize=64)(lambda s: displacement(sign * s * self._twist))
         path = None if self.turns is None else Path(self.profiles[0].frame, self.turns, sign)
-        return Course(moved, lambda s: speed * s, path=path)
+        return Course(self._moved[sign], lambda s: speed * s, path=path)
 
     def wholes(self) -> Wholes:
         """The parts with all their facets."""
@@ -175,6 +177,11 @@ class Candidate:
             for k, (profile, facets) in enumerate(zip(self.profiles, test.facets, strict=True))
         ]
         return meeting_spans(parts, turns, MEETING_MARGIN * test.size, along)
+
+
+def _moved(moved: Callable[[float], Array], sign: int, s: float) -> Array:
+    """(4, 4) of a motion at s to one side."""
+    return moved(sign * s)
 
 
 @dataclass(frozen=True, eq=False)

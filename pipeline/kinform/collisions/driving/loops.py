@@ -7,6 +7,7 @@ branches off, or, where it goes on evenly, where a slide or screw leaves its gui
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -15,11 +16,13 @@ import numpy as np
 
 from kinform.collisions.constants import CLOSED, LOOP_STOP, TURNED_ROUND
 from kinform.collisions.driving.alone import drive_alone
+from kinform.collisions.driving.apart_for_good import that_can_meet
 from kinform.collisions.driving.loop_motion import RETURNED, Between, Linkage, Path, follow
 from kinform.collisions.driving.overlaps import Overlap, Pair, overlap_words
-from kinform.collisions.pair.advancement import First, first_crossing
-from kinform.collisions.pair.posed_pairs import Nodes, moving_pairs
+from kinform.collisions.pair.advancement import First, Near, first_crossing
+from kinform.collisions.pair.posed_pairs import Moving, Nodes, moving_pairs
 from kinform.collisions.parts.shapes import Shapes
+from kinform.foundation.algebra.displacements import inverse
 from kinform.kinematics.mobility.guides import guide
 from kinform.model.arrays import Array
 from kinform.model.collisions import JointRange, RangeEnd
@@ -123,9 +126,11 @@ def _travelled(shapes: Shapes, kinematics: Kinematics, linkage: Linkage, path: P
     overlaps, rolls = [], ""
     for item in sorted(moving_pairs(shapes, names, kinematics.joints, nodes), key=lambda item: -item.free):
         test = item.test
-        if item.free >= end:
+        met = None if item.free >= end else that_can_meet(shapes, test, _relative(nodes, item))
+        if met is None:
             continue
-        first = first_crossing(test, item.course, end, LOOP_STOP, start=item.free)
+        near = None if met is test else Near(lambda *_, met=met: met, math.inf)
+        first = first_crossing(test, item.course, end, LOOP_STOP, start=item.free, near=near)
         rolling = item.rolls and first.at is not None
         if first.overlaps or rolling:
             left_out.add(test.part_names)
@@ -145,6 +150,11 @@ def _travelled(shapes: Shapes, kinematics: Kinematics, linkage: Linkage, path: P
     q, s = np.concatenate([path.q[kept], at(end)[None]]), np.append(s[kept], end)
     overlap = overlap_words(overlaps, shapes.assembly.units) if overlaps else rolls
     return _Travelled(q, s, why, parts, place, tuple(sorted(left_out)), overlap)
+
+
+def _relative(nodes: Nodes, item: Moving) -> Array:
+    """(T, 4, 4) of the second body of a pair, as the first sees it."""
+    return inverse(nodes.displacements[:, item.first]) @ nodes.displacements[:, item.second]
 
 
 def _placed(nodes: Nodes, body: int, first: First) -> Array | None:

@@ -47,9 +47,11 @@ class _Hit(First):
     hit: float
 
 
-def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, start: float = 0.0) -> First:
-    """The first crossing of a pair while s goes from `start` up to `end`, to within `fine`."""
-    return NOTHING if test.empty else Search(test, course, start, end, fine).until(end, end)
+def first_crossing(
+    test: PairTest, course: Course, end: float, fine: float, *, start: float = 0.0, near: Near | None = None
+) -> First:
+    """The first crossing of a pair while s goes from `start` up to `end`, to within `fine`; `near` as of `Search`."""
+    return NOTHING if test.empty else Search(test, course, start, end, fine, near).until(end, end)
 
 
 @dataclass(frozen=True, eq=False)

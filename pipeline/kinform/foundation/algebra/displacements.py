@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+
 import numpy as np
 
 from kinform.foundation.algebra.rotations import matrices, rotation_vectors
@@ -18,6 +21,24 @@ def displacement(twist: Array) -> Array:
     out[:3, :3] += sine * spin + versine * twice
     out[:3, 3] = twist[3:] + versine * (spin @ twist[3:]) + rest * (twice @ twist[3:])
     return out
+
+
+def displacements_along(twist: Array) -> Callable[[float], Array]:
+    """Displacements (4, 4) of a unit twist (ω; v at the origin), |ω| 1 or 0, by how far it goes: many of one motion."""
+    spin = cross_matrix(twist[:3])
+    still, sine, versine, way, rest = np.eye(4), *np.zeros((4, 4, 4))
+    sine[:3, :3], way[:3, 3] = spin, twist[3:]
+    versine[:3, :3], versine[:3, 3] = spin @ spin, spin @ twist[3:]
+    rest[:3, 3] = spin @ versine[:3, 3]
+    # sixteen numbers are summed sooner than five matrices
+    entries = list(zip(*(term.ravel().tolist() for term in (still, sine, versine, way, rest)), strict=True))
+
+    def displaced(s: float) -> Array:
+        turned, versed = math.sin(s), 1.0 - math.cos(s)
+        left = s - turned
+        return np.array([a + turned * b + versed * c + s * d + left * e for a, b, c, d, e in entries]).reshape(4, 4)
+
+    return displaced
 
 
 def identities(*shape: int) -> Array:

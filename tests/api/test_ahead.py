@@ -1,0 +1,30 @@
+"""What is made ready for later stages while processes are at work changes nothing of what these give."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import kinform
+from kinform import ahead, stages
+from kinform.collisions import joint_ranges
+from kinform.contacts import constants
+
+FIXTURE = Path(__file__).parents[2] / "fixtures" / "mechanisms" / "four_bar" / "four_bar.toml"
+
+
+def test_a_run_gives_the_same_with_something_done_ahead_of_it(tmp_path, monkeypatch):
+    alone, shared = tmp_path / "alone.h5", tmp_path / "shared.h5"
+    kinform.run(FIXTURE, alone)
+    monkeypatch.setattr(ahead, "LARGE", 0)
+    monkeypatch.setattr(joint_ranges, "SHARED_FACETS", 0)
+    monkeypatch.setattr(constants, "LITTLE_PAIRS", -1)
+    made = []
+    of = ahead.of
+    monkeypatch.setattr(ahead, "of", lambda assembly: made.append(of(assembly)) or made[-1])
+    outcome = kinform.run(FIXTURE, shared, jobs=2)
+    assert sorted(made[0].masses) == sorted(part.name for part in outcome.design.assembly.parts)
+    assert shared.read_bytes() == alone.read_bytes()
+
+
+def test_nothing_is_done_ahead_of_small_assemblies():
+    assert ahead.of(stages.import_(FIXTURE).assembly) is None
