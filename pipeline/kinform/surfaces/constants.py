@@ -74,8 +74,9 @@ REPEATED = 1e-2
 REPEATED_ROW = 12
 """Vertices in a row that is long."""
 
-RUN_OF_EDGES = 1 << 16
-"""Edges that are worked on at a time, to keep memory small."""
+RUN_OF_EDGES = 1 << 14
+"""Edges that are worked on at a time, so that what is computed of them stays in the processor's cache. It changes no
+bit."""
 
 # ---- polygons.coplanar
 

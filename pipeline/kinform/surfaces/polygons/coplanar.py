@@ -41,16 +41,16 @@ def coplanar_facets(mesh: Facets, scale: Scale, tolerances: Tolerances) -> tuple
         if not bent.any():
             break
         flat = np.where(bent[label[f0]], flat & stricter, flat)
-        label = _linked(f0, f1, flat, len(mesh.faces))
-        found = moments(mesh, label)
+        before, label = label, _linked(f0, f1, flat, len(mesh.faces))
+        found = moments_again(mesh, label, before, found)
     before, label = label, _with_slivers(label, thin, f0, f1, length)
-    found = found if label is before else moments(mesh, label)
+    found = moments_again(mesh, label, before, found)
     for _ in range(constants.JOININGS):
         join = _joined(label.take(f0), label.take(f1), base, found, tolerances.coplanar, scale.noise)
         if not len(join):
             break
-        label = components(label[f0[join]], label[f1[join]], int(label.max()) + 1)[label]
-        found = moments(mesh, label)
+        before, label = label, components(label[f0[join]], label[f1[join]], int(label.max()) + 1)[label]
+        found = moments_again(mesh, label, before, found)
     return label, found
 
 
@@ -129,13 +129,48 @@ def _flatness(mesh: Facets, polygon: Ints, found: Moments) -> Array:
 
 def moments(mesh: Facets, polygon: Ints) -> Moments:
     """Area, unit normal and centroid of each polygon, of the polygons (F,) that facets belong to."""
+    return _moments(polygon, *_of_facets(mesh))
+
+
+def _of_facets(mesh: Facets) -> Moments:
+    """Area (F,), normal (F, 3) and middle (F, 3) of the facets."""
+    return mesh.area, mesh.normal, mesh.middle
+
+
+def _moments(polygon: Ints, area: Array, normal: Array, middle: Array) -> Moments:
+    """Those of polygons (n,) of facets with these."""
     count = int(polygon.max()) + 1 if len(polygon) else 0
-    total: Array = np.bincount(polygon, mesh.area, count).astype(float)
+    total: Array = np.bincount(polygon, area, count).astype(float)
     sums = sums_of(polygon, count)
-    mean = np.ascontiguousarray(sums(mesh.normal.T * mesh.area).T)
-    weight = np.where((total <= 0)[polygon], 1.0, mesh.area)
-    centre = sums(mesh.middle.T * weight) / np.maximum(sums(weight), 1e-300)
+    mean = np.ascontiguousarray(sums(normal.T * area).T)
+    weight = np.where((total <= 0)[polygon], 1.0, area)
+    centre = sums(middle.T * weight) / np.maximum(sums(weight), 1e-300)
     return total, normalised(mean), np.ascontiguousarray(centre.T)
+
+
+def moments_again(mesh: Facets, polygon: Ints, before: Ints, found: Moments) -> Moments:
+    """`moments`, to the same bits, of polygons most of which are what they were `before` (F,), with what was `found`
+    of those: the sums are of each polygon by itself."""
+    if polygon is before:
+        return found
+    count = int(polygon.max()) + 1
+    was = np.empty(count, np.int64)
+    was[polygon] = before
+    same = np.bincount(polygon, minlength=count) == np.bincount(before, minlength=len(found[0])).take(was)
+    same[polygon.take((was.take(polygon) != before).nonzero()[0])] = False
+    kept, fresh = same.nonzero()[0], (~same).nonzero()[0]
+    number = np.full(count, -1)
+    number[fresh] = np.arange(len(fresh))
+    mine = number.take(polygon)
+    facets = (mine >= 0).nonzero()[0]
+    again = _moments(mine.take(facets), *(columns.T.take(facets, axis=-1).T for columns in _of_facets(mesh)))
+    out = []
+    for old, new in zip(found, again, strict=True):
+        both = np.empty((count, *old.shape[1:]))
+        both[kept], both[fresh] = old.take(was.take(kept), axis=0), new
+        out.append(both)
+    area, normal, centre = out
+    return area, normal, centre
 
 
 def _peel(mesh: Facets, label: Ints, f0: Ints, f1: Ints, scale: Scale) -> Ints:
