@@ -34,5 +34,5 @@ from kinform.contacts.find import find
 
 __all__ = ["CODE_VERSION", "find"]
 
-CODE_VERSION: int = 24
+CODE_VERSION: int = 25
 """Raised when the same input would give other contacts."""
