@@ -192,7 +192,7 @@ CROSSED_FEW = 400_000
 many first that it is this. Of 277 bolts in bores that share nothing, with 150,000 to 200,000 each, 40 % of the time."""
 CROSSED_SOME = 64
 """... and no more than one in this many: where nothing crosses, all are asked after them."""
-CULLED_LEAST = 1000
+CULLED_LEAST = 4000
 """Pairs of triangles from which on those that are clearly apart are left out first: nearly all."""
 CLEARLY_APART = 1e-9
 """Share of their coordinates by which they are then apart at least: far more than rounding, ..."""

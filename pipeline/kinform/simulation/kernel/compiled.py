@@ -38,7 +38,7 @@ from kinform.simulation.kernel import (
     tables,
     vectors,
 )
-from kinform.simulation.kernel.sparing import no_machine_code, operators_looked_up_once
+from kinform.simulation.kernel.sparing import no_machine_code, operators_looked_up_once, variables_listed_directly
 
 _MODULES = (vectors, motion, masses, forces, loops, articulated, reduction, equations, crossings, steps, explicit)
 """Functions after those that they call."""
@@ -115,7 +115,7 @@ def compiled_units(*, articulated_bodies: bool) -> types.SimpleNamespace:
     config.OPT = type(config.OPT)(min(config.OPT, 1))
     config.LOOP_VECTORIZE = config.SLP_VECTORIZE = 0
     try:
-        with operators_looked_up_once():
+        with operators_looked_up_once(), variables_listed_directly():
             return _compile(numba, articulated_bodies)
     finally:
         for name, value in before.items():

@@ -1,12 +1,13 @@
 """What numba does and the kernel has no use for, left out while it is compiled.
 
-A third of the time of compiling went into two things. For every operator in every function numba looks for its meaning
+A third of the time of compiling went into three things. For every operator in every function numba looks for its meaning
 anew, through some ten templates: the same few operators of the same few types, five thousand times. And of every
 function it makes machine code, also of those that are compiled into the units that call them, and are called by nobody
-else. What is compiled of the units is the same without (LLVM's assembly of all of them was compared).
+else. What is compiled of the units is the same without (LLVM's assembly of all of them was compared). And which
+variables an instruction names it asks a million times.
 
-As `native`, this rests on numba's internals (`types.Function.get_call_type`, `CPUContext.get_executable`, `_dynfunc`,
-`CPUCodeLibrary` and its steps), of the versions that are named there. Where one of them is not as it was, a compiled
+As `native`, this rests on numba's internals (`types.Function.get_call_type`, `ir.Inst._rec_list_vars`,
+`CPUContext.get_executable`, `_dynfunc`, `CPUCodeLibrary` and its steps), of the versions that are named there. Where one of them is not as it was, a compiled
 function is none, or refers to what is not there, and ends the process: the tests in tests/simulation that compile all
 units and call them would tell.
 """
@@ -40,6 +41,43 @@ def operators_looked_up_once() -> Iterator[None]:
         yield
     finally:
         function.get_call_type = looked_up
+
+
+@contextmanager
+def variables_listed_directly() -> Iterator[None]:
+    """While numba compiles: which variables an instruction names is found by the kinds of what it holds, each judged
+    once. numba asks this of every instruction, in each of its passes again."""
+    from numba.core import ir
+
+    instruction: Any = ir.Inst
+    listed, judged = instruction._rec_list_vars, {}
+
+    def judge(kind: type) -> int:
+        kinds: tuple[Any, ...] = (ir.Var, ir.Inst, (list, tuple), dict)
+        judged[kind] = next((k for k, one in enumerate(kinds) if issubclass(kind, one)), len(kinds))
+        return judged[kind]
+
+    def collect(value: Any, variables: list[Any]) -> None:
+        kind = type(value)
+        what = judged[kind] if kind in judged else judge(kind)
+        if what == 0:
+            variables.append(value)
+        elif what == 1:
+            variables.extend(value.list_vars())
+        elif what < 4:
+            for one in value if what == 2 else value.values():
+                collect(one, variables)
+
+    def list_variables(_: Any, value: Any) -> list[Any]:
+        variables: list[Any] = []
+        collect(value, variables)
+        return variables
+
+    instruction._rec_list_vars = list_variables
+    try:
+        yield
+    finally:
+        instruction._rec_list_vars = listed
 
 
 @contextmanager
