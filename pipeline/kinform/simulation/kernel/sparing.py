@@ -1,15 +1,15 @@
 """What numba does and the kernel has no use for, left out while it is compiled.
 
-A third of the time of compiling went into three things. For every operator in every function numba looks for its meaning
-anew, through some ten templates: the same few operators of the same few types, five thousand times. And of every
-function it makes machine code, also of those that are compiled into the units that call them, and are called by nobody
-else. What is compiled of the units is the same without (LLVM's assembly of all of them was compared). And which
-variables an instruction names it asks a million times.
+A third of the time of compiling went into three things. For every operator in every function numba looks for its
+meaning anew, through some ten templates: the same few operators of the same few types, five thousand times. Which
+variables an instruction names it asks a million times. And of every function it makes machine code, also of those that
+are compiled into the units that call them, and are called by nobody else. What is compiled of the units is the same
+without (LLVM's assembly of all of them was compared for the first and the last).
 
 As `native`, this rests on numba's internals (`types.Function.get_call_type`, `ir.Inst._rec_list_vars`,
-`CPUContext.get_executable`, `_dynfunc`, `CPUCodeLibrary` and its steps), of the versions that are named there. Where one of them is not as it was, a compiled
-function is none, or refers to what is not there, and ends the process: the tests in tests/simulation that compile all
-units and call them would tell.
+`CPUContext.get_executable`, `_dynfunc`, `CPUCodeLibrary` and its steps), of the versions that are named there. Where
+one of them is not as it was, a compiled function is none, or refers to what is not there, and ends the process: the
+tests in tests/simulation that compile all units and call them would tell.
 """
 
 from __future__ import annotations
