@@ -7,7 +7,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from support.assemblies import HERE, assembly
 from support.patches import patch
@@ -42,23 +42,40 @@ def graphs(draw):
 
 
 def reachable(node, seeds, edges):
-    """Seeds that a node touches, itself or through others that are none: it is in no other body than theirs."""
-    near, waiting = {node}, [node]
+    """Seeds that a node touches, itself or through others that are none, and those across a joint that may part such a
+    contact: it is in no other body than theirs."""
+    near, waiting, met = {node}, [node], []
     while waiting:
         here = waiting.pop()
         for edge in edges:
-            new = set(edge.ends) - near if here in edge.ends else set()
-            near |= new
-            waiting += [one for one in new if one >= seeds]
-    return sorted(one for one in near if one < seeds) or [seeds - 1]
+            if here in edge.ends:
+                met.append(edge)
+                new = set(edge.ends) - near
+                near |= new
+                waiting += [one for one in new if one >= seeds]
+    touched = {one for one in near if one < seeds}
+    across = {b for edge in met for a, b in edge.parted if a in touched}
+    return sorted(touched | across) or [seeds - 1]
 
 
 def cost(labels, edges):
     return sum(edge.price(labels[edge.ends[0]], labels[edge.ends[1]]) for edge in edges)
 
 
+ACROSS = (
+    3,
+    1,
+    [
+        Edge((1, 3), {}, 10.0, jammed=frozenset({(1, 2), (2, 1)})),
+        Edge((2, 3), {(0, 2): 1.0, (2, 0): 1.0}, 1000.0),
+    ],
+)
+"""A node that touches two bodies, and is in neither: it is across the joint of one."""
+
+
 @settings(max_examples=150, deadline=None)
 @given(graphs())
+@example(ACROSS)
 def test_no_labels_cost_less(graph):
     seeds, free, edges = graph
     own = {k: k for k in range(seeds)}
