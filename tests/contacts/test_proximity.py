@@ -6,7 +6,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kinform.foundation.meshes.boxes import FlatBoxes
+from kinform.foundation.constants import BOXES_AT_ONCE
+from kinform.foundation.meshes.boxes import FlatBoxes, boxes_within
 from kinform.foundation.meshes.proximity import near_boxes
 
 
@@ -25,6 +26,22 @@ def test_none_that_is_near_is_missed(seed, margin, size):
     keep_a, keep_b = near_boxes(low_a, high_a, low_b, high_b, margin)
     assert keep_a[(apart <= margin).any(axis=1)].all()
     assert keep_b[(apart <= margin).any(axis=0)].all()
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 10**6), st.sampled_from([0.0, 0.01, 0.3]), st.sampled_from([1e-3, 0.02, 0.5]), st.booleans())
+def test_boxes_in_blocks_are_those_of_all_with_all(seed, margin, size, many):
+    rng = np.random.default_rng(seed)
+    counts = (700, 500) if many else (90, 70)
+    assert (counts[0] * counts[1] > BOXES_AT_ONCE) == many
+    # on a grid, so that some are apart by just the margin
+    (low_a, high_a), (low_b, high_b) = (
+        (np.round(low, 2), np.round(high, 2)) for low, high in (boxes(rng, count, 1.0, size) for count in counts)
+    )
+    apart = np.maximum(low_a[:, None] - high_b[None], low_b[None] - high_a[:, None]).max(axis=2)
+    found = boxes_within((low_a, high_a), (low_b, high_b), margin)
+    assert (found == (apart <= margin)).all()
+    assert (boxes_within((low_b, high_b), (low_a, high_a), margin) == found.T).all()
 
 
 def test_what_is_far_is_left_out():

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from kinform.contacts import constants
 from kinform.foundation.algebra.vectors import lengths
+from kinform.foundation.joined import joined
 from kinform.foundation.meshes.boxes import middles
 from kinform.foundation.sorting import heads, numbered
 from kinform.model.arrays import Array, Flags, Ints
@@ -192,11 +193,6 @@ def quadratures(every: Sequence[Cells]) -> list[tuple[Array, Array]]:
         (np.concatenate([mean[i:j], rim]), np.concatenate([total[i:j], shares]))
         for i, j, (rim, shares) in zip(ends[:-1], ends[1:], rims, strict=True)
     ]
-
-
-def joined(arrays: Sequence[Array]) -> Array:
-    """All rows of some arrays."""
-    return arrays[0] if len(arrays) == 1 else np.concatenate(arrays)
 
 
 def _together(every: Sequence[Cells]) -> tuple[Ints, list[int]]:

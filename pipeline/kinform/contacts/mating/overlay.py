@@ -14,10 +14,11 @@ import numpy as np
 from manifold3d import CrossSection, FillRule, triangulate
 
 from kinform.contacts import constants
-from kinform.contacts.mating.cells import Cells, Cut, gathered, joined, signed_areas
+from kinform.contacts.mating.cells import Cells, Cut, gathered, signed_areas
 from kinform.contacts.mating.charts import Chart
 from kinform.contacts.mating.regions import regions
 from kinform.foundation.algebra.vectors import lengths
+from kinform.foundation.joined import joined
 from kinform.foundation.meshes.boxes import triangle_boxes
 from kinform.model.arrays import Array
 

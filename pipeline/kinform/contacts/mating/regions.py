@@ -13,8 +13,9 @@ import numpy as np
 from manifold3d import CrossSection, FillRule
 
 from kinform.contacts import constants
-from kinform.contacts.mating.cells import joined, signed_areas
+from kinform.contacts.mating.cells import signed_areas
 from kinform.foundation.alike import numbered_alike
+from kinform.foundation.joined import joined
 from kinform.foundation.sorting import numbered
 from kinform.model.arrays import Array, Ints
 

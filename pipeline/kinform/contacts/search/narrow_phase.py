@@ -11,14 +11,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from itertools import accumulate
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.contacts.constants import BETWEEN_MARGIN, BETWEEN_SHARE, FACING_LEAST
 from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.joined import joined
 from kinform.foundation.meshes.probes import Cast, Hits, cast_all
 from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
@@ -91,13 +90,13 @@ def verify(pair: PairView, sets: list[Probes], facing: float = FACING_LEAST) -> 
 
 def verify_all(asked: Sequence[tuple[PairView, list[Probes]]], facing: float = FACING_LEAST) -> list[Verdict]:
     """The same of several pairs at once."""
-    joined = [Probes(*(_rows([getattr(p, f.name) for p in sets]) for f in fields(Probes))) for _, sets in asked]
+    together = [Probes(*(joined([getattr(p, f.name) for p in sets]) for f in fields(Probes))) for _, sets in asked]
     casts = [
         Cast(part.region, part.to_part(probes.points), part.turn_to_part(probes.normals), probes.reach)
-        for (pair, _), probes in zip(asked, joined, strict=True)
+        for (pair, _), probes in zip(asked, together, strict=True)
         for part in pair.parts
     ]
-    every = _Joined.of([pair for pair, _ in asked], joined, cast_all(casts))
+    every = _Joined.of([pair for pair, _ in asked], together, cast_all(casts))
     holds, along_a, along_b, cosine = every.verdict(facing)
     ends = list(accumulate(len(p.points) for _, sets in asked for p in sets))
     own = [slice(first, end) for first, end in zip([0, *ends], ends, strict=False)]
@@ -139,14 +138,14 @@ class _Joined:
             own = hits[side::2]
             sides.append(
                 Hits(
-                    _rows([hit.probe + start for hit, start in zip(own, starts, strict=False)]),
-                    *(_rows([getattr(hit, name) for hit in own]) for name in ("facet", "along", "facing")),
+                    joined([hit.probe + start for hit, start in zip(own, starts, strict=False)]),
+                    *(joined([getattr(hit, name) for hit in own]) for name in ("facet", "along", "facing")),
                 )
             )
             labels.append(
-                _rows([p.parts[side].surfaces.labels.take(hit.facet) for p, hit in zip(pairs, own, strict=True)])
+                joined([p.parts[side].surfaces.labels.take(hit.facet) for p, hit in zip(pairs, own, strict=True)])
             )
-        surfaces, gaps = (_rows([getattr(p, name) for p in probes]) for name in ("surfaces", "gaps"))
+        surfaces, gaps = (joined([getattr(p, name) for p in probes]) for name in ("surfaces", "gaps"))
         return _Joined(pairs, starts, surfaces, gaps, (sides[0], sides[1]), (labels[0], labels[1]))
 
     def verdict(self, facing: float) -> tuple[Flags, Array, Array, Array]:
@@ -178,11 +177,6 @@ class _Joined:
         """(k, 3) of the facets of hits `chosen` (k,) of `probes` (k,), ascending, in the frames of their pairs."""
         facets = self.hits[side].facet.take(chosen)
         ends = probes.searchsorted(self.starts).tolist()
-        return _rows(
+        return joined(
             [pair.parts[side].normals(facets[i:j]) for pair, i, j in zip(self.pairs, ends, ends[1:], strict=False)]
         )
-
-
-def _rows(arrays: Sequence[NDArray[Any]]) -> NDArray[Any]:
-    """All rows of some arrays."""
-    return arrays[0] if len(arrays) == 1 else np.concatenate(arrays)

@@ -21,6 +21,7 @@ import numpy as np
 from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.algebra.vectors import cross, dot, lengths
 from kinform.foundation.constants import HITS_A_PROBE, MET_AT_ONCE, SLIVER_WIDTH, STEEP_LEAST
+from kinform.foundation.joined import joined
 from kinform.foundation.meshes.boxes import facet_boxes, triangle_boxes
 from kinform.foundation.meshes.closest import closest_facets
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, fcl_pose, partial_model, point_model
@@ -193,7 +194,7 @@ def cast_all(casts: Sequence[Cast], width: float = SLIVER_WIDTH) -> list[Hits]:
         return out
     ends = [0, *accumulate(len(casts[k].points) for k in some)]
     points, directions, reach = (
-        _joined([getattr(casts[k], name) for k in some]) for name in ("points", "directions", "reach")
+        joined([getattr(casts[k], name) for k in some]) for name in ("points", "directions", "reach")
     )
     across = cross(directions, _UNITS.take(np.abs(directions).argmin(axis=1), axis=0))
     across *= (width * reach / lengths(across))[:, None]
@@ -206,8 +207,8 @@ def cast_all(casts: Sequence[Cast], width: float = SLIVER_WIDTH) -> list[Hits]:
     met = _meetings(regions, [slivers[i:j] for i, j in pairwise(ends)])
     meshes = [region.index.mesh for region in regions]
     probe = np.concatenate([probe + start for (probe, _), start in zip(met, ends, strict=False)])
-    normal = _joined([region.index.normals(facet) for region, (_, facet) in zip(regions, met, strict=True)])
-    corner = _joined(
+    normal = joined([region.index.normals(facet) for region, (_, facet) in zip(regions, met, strict=True)])
+    corner = joined(
         [mesh.vertices.take(mesh.faces[facet, 0], axis=0) for mesh, (_, facet) in zip(meshes, met, strict=True)]
     )
     facing = dot(normal, directions.take(probe, axis=0))
@@ -220,11 +221,6 @@ def cast_all(casts: Sequence[Cast], width: float = SLIVER_WIDTH) -> list[Hits]:
     for k, (i, j), (own, facet) in zip(some, pairwise(hits), met, strict=True):
         out[k] = Hits(own, facet, along[i:j], facing[i:j])
     return out
-
-
-def _joined(arrays: Sequence[Array]) -> Array:
-    """All rows of some arrays."""
-    return arrays[0] if len(arrays) == 1 else np.concatenate(arrays)
 
 
 def _meetings(regions: Sequence[Region], slivers: Sequence[Array]) -> list[tuple[Ints, Ints]]:
