@@ -128,6 +128,8 @@ HIGHER_KINDS = ("point", "line")
 """Patches whose place on the parts changes as they move."""
 LOWER_TYPES = ("revolute", "prismatic", "cylindrical", "spherical", "planar", "screw")
 """Joints whose twists stay the same in both bodies."""
+SPARE_SHARE = 1e-9
+"""Share of the size by which boxes may miss each other and be looked at again."""
 STILL = 1e-9
 """rad, and share of the assembly's size, that bodies at rest to each other move by rounding."""
 REMEMBERED = 64

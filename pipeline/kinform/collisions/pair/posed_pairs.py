@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import product
 
 import numpy as np
 
-from kinform.collisions.constants import CHORD_SLACK, HIGHER_KINDS, LOWER_TYPES, REMEMBERED, STILL
+from kinform.collisions.constants import CHORD_SLACK, HIGHER_KINDS, LOWER_TYPES, REMEMBERED, SPARE_SHARE, STILL
 from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.distance_bounds import Wholes
 from kinform.collisions.pair.prepared_pair import PairTest
@@ -20,6 +19,7 @@ from kinform.foundation.meshes.boxes import box_corners
 from kinform.kinematics.mobility.guides import preserved
 from kinform.model.arrays import Array, Ints
 from kinform.model.kinematics import Joint
+from kinform.model.names import PartName
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,21 +49,90 @@ class Moving:
 def moving_pairs(shapes: Shapes, names: Sequence[str], joints: Sequence[Joint], nodes: Nodes) -> list[Moving]:
     """Pairs of parts of bodies (`names`, in the order of the poses) that move relative to each other and come near."""
     joined = {frozenset(map(str, joint.bodies)): joint for joint in joints}
+    parts = [sorted(shapes.body_parts.get(name, ())) for name in names]
+    near = _Near(shapes, parts, nodes.displacements)
     out: list[Moving] = []
     for a, first in enumerate(names):
         for b in range(a + 1, len(names)):
-            second = names[b]
-            relative = inverse(nodes.displacements[:, a]) @ nodes.displacements[:, b]
-            change = np.abs(relative - relative[0]).max(axis=0)
-            if max(change[:3, :3].max(), change[:3, 3].max() / shapes.size) < STILL:
+            relative = near.relative(a, b)
+            if relative is None:
                 continue
-            joint = joined.get(frozenset((first, second)))
-            parts = (sorted(shapes.body_parts.get(name, ())) for name in (first, second))
-            for one, other in product(*parts):
+            joint = joined.get(frozenset((first, names[b])))
+            for one, other in near.among(a, b):
                 moving = _moving(shapes, joint, (one, other), (a, b), nodes, relative)
                 if moving is not None:
                     out.append(moving)
     return out
+
+
+class _Near:
+    """Which parts of bodies may come near each other: bodies that move as one are looked at together."""
+
+    def __init__(self, shapes: Shapes, parts: Sequence[Sequence[PartName]], displacements: Array) -> None:
+        self._shapes, self._parts, self._displacements = shapes, parts, displacements
+        numbers: dict[bytes, int] = {}
+        self._motion = [
+            numbers.setdefault(displacements[:, n].tobytes(), len(numbers)) for n in range(displacements.shape[1])
+        ]
+        self._relative: dict[tuple[int, int], Array | None] = {}
+        self._among: dict[tuple[int, int], dict[tuple[int, int], list[tuple[PartName, PartName]]]] = {}
+
+    def relative(self, a: int, b: int) -> Array | None:
+        """(T, 4, 4) of the second body, as the first sees it; None where they do not move relative to each other."""
+        key = self._motion[a], self._motion[b]
+        if key not in self._relative:
+            relative = inverse(self._displacements[:, a]) @ self._displacements[:, b]
+            change = np.abs(relative - relative[0]).max(axis=0)
+            still = max(change[:3, :3].max(), change[:3, 3].max() / self._shapes.size) < STILL
+            self._relative[key] = None if still else relative
+        return self._relative[key]
+
+    def among(self, a: int, b: int) -> list[tuple[PartName, PartName]]:
+        """The pairs of parts of two bodies whose boxes meet on the way, and few others, in the order of their names."""
+        key = self._motion[a], self._motion[b]
+        relative = self.relative(a, b)
+        if relative is None:
+            return []
+        if key not in self._among:
+            self._among[key] = self._met(key, relative)
+        return self._among[key].get((a, b), [])
+
+    def _met(self, motions: tuple[int, int], relative: Array) -> dict[tuple[int, int], list[tuple[PartName, PartName]]]:
+        """Those of all bodies of two motions."""
+        every = [
+            [(body, name) for body, own in enumerate(self._motion) if own == motion for name in self._parts[body]]
+            for motion in motions
+        ]
+        out: dict[tuple[int, int], list[tuple[PartName, PartName]]] = {}
+        if not every[0] or not every[1]:
+            return out
+        fixed = np.array([_corners(self._shapes, name) for _, name in every[0]])
+        moved = np.array([_corners(self._shapes, name) for _, name in every[1]])
+        for rows, column in _meeting(relative, fixed, moved, SPARE_SHARE * self._shapes.size):
+            body, other = every[1][column]
+            for row in rows.tolist():
+                first, one = every[0][row]
+                if first < body:
+                    out.setdefault((first, body), []).append((one, other))
+        return {bodies: sorted(pairs) for bodies, pairs in out.items()}
+
+
+def _meeting(relative: Array, fixed: Array, moved: Array, spare: float) -> Iterator[tuple[Ints, int]]:
+    """Which boxes of corners (n, 8, 3) those of each of (m, 8, 3) that move by (T, 4, 4) meet, as `_steps` tells it,
+    and those that they miss by no more than `spare` (m)."""
+    low, high = fixed.min(axis=1) - spare, fixed.max(axis=1) + spare
+    for column, corners in enumerate(moved):
+        places, steps = _moved(relative, corners)
+        margin = np.append(steps, 0.0)[:, None]
+        lowest, highest = places.min(axis=1) - margin, places.max(axis=1) + margin
+        rows = np.flatnonzero((lowest.min(axis=0) <= high).all(axis=1) & (highest.max(axis=0) >= low).all(axis=1))
+        if not len(rows):
+            continue
+        meets = np.ones((len(relative), len(rows)), dtype=bool)
+        for axis in range(3):
+            meets &= lowest[:, axis, None] <= high[rows, axis]
+            meets &= highest[:, axis, None] >= low[rows, axis]
+        yield rows[meets.any(axis=0)], column
 
 
 def _moving(
@@ -87,11 +156,17 @@ def _moving(
 def _steps(relative: Array, fixed: Array, moved: Array) -> Array | None:
     """(T-1,) m that the corners (8, 3) of a box move between displacements (T, 4, 4); None where it stays out of
     another."""
-    places = np.einsum("tij,nj->tni", relative[:, :3, :3], moved) + relative[:, None, :3, 3]
-    steps = np.linalg.norm(np.diff(places, axis=0), axis=2).max(axis=1)
+    places, steps = _moved(relative, moved)
     low, high, margin = fixed.min(axis=0), fixed.max(axis=0), np.append(steps, 0.0)[:, None]
     near = (places.min(axis=1) - margin <= high) & (places.max(axis=1) + margin >= low)
     return np.asarray(steps) if near.all(axis=1).any() else None
+
+
+def _moved(relative: Array, corners: Array) -> tuple[Array, Array]:
+    """Where displacements (T, 4, 4) take corners (n, 3), (T, n, 3), and how far the corners move between them at most,
+    (T-1,)."""
+    places = np.einsum("tij,nj->tni", relative[:, :3, :3], corners) + relative[:, None, :3, 3]
+    return places, np.linalg.norm(np.diff(places, axis=0), axis=2).max(axis=1)
 
 
 def _corners(shapes: Shapes, name: str, facets: Ints | None = None) -> Array:
