@@ -37,7 +37,7 @@ def graphs(draw):
                 parted[(a, b)] = parted[(b, a)] = price
         jams = draw(st.lists(st.tuples(st.integers(0, seeds - 1), st.integers(0, seeds - 1)), max_size=2))
         jammed = {two for a, b in jams if a != b for two in ((a, b), (b, a))} - parted.keys()
-        edges.append(Edge(ends, parted, draw(st.sampled_from([10.0, 1000.0, 6000.0])), jammed=frozenset(jammed)))
+        edges.append(Edge(ends, parted, draw(st.sampled_from([10.0, 1000.0, 6000.0])), jointed=frozenset(jammed)))
     return seeds, free, edges
 
 
@@ -66,7 +66,7 @@ ACROSS = (
     3,
     1,
     [
-        Edge((1, 3), {}, 10.0, jammed=frozenset({(1, 2), (2, 1)})),
+        Edge((1, 3), {}, 10.0, jointed=frozenset({(1, 2), (2, 1)})),
         Edge((2, 3), {(0, 2): 1.0, (2, 0): 1.0}, 1000.0),
     ],
 )

@@ -199,8 +199,7 @@ def _edges(
         for joint, price in parted.items():
             for labels in (sides[joint], sides[joint][::-1]):
                 table[labels] = min(price + touch, table.get(labels, np.inf))
-        jammed = joined - table.keys()
-        edges.append(Edge(ends, table, costs.held[pair] + touch, costs.hints.get(pair, 0.0), jammed))
+        edges.append(Edge(ends, table, costs.held[pair] + touch, costs.hints.get(pair, 0.0), joined))
     return edges
 
 

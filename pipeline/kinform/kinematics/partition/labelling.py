@@ -30,30 +30,24 @@ class Edge:
     """Price for any other two labels."""
     hint: float = 0.0
     """What of these prices is there because something suggests that its ends are fastened."""
-    jammed: frozenset[Labels] = frozenset()
-    """Labels of bodies with joints, none of which may part it: it would be in the way of them."""
+    jointed: frozenset[Labels] = frozenset()
+    """Labels of bodies with joints: where none of these may part it, it would be in the way of them."""
 
     def price(self, first: int, second: int) -> float:
         """What it costs that its ends have these labels."""
         if first == second:
             return 0.0
-        jam = constants.JAMMED if (first, second) in self.jammed else 0.0
-        return min(self.parted.get((first, second), self.broken), self.broken) + jam
+        parted = self.parted.get((first, second))
+        return self.broken + self.jam(first, second) if parted is None else min(parted, self.broken)
+
+    def jam(self, first: int, second: int) -> float:
+        """What of that is there because it is in the way of joints."""
+        jams = first != second and (first, second) in self.jointed and (first, second) not in self.parted
+        return constants.JAMMED if jams else 0.0
 
     def plain(self, first: int, second: int) -> float:
         """The same by contact alone, whatever suggests that its ends are fastened."""
         return 0.0 if first == second else self.price(first, second) - self.hint
-
-    def relabelled(self, new: Sequence[int]) -> Edge:
-        """The same with label k called new[k]; a joint within one body parts nothing."""
-        table: dict[Labels, float] = {}
-        for (first, second), price in self.parted.items():
-            ends = (new[first], new[second])
-            if ends[0] != ends[1]:
-                table[ends] = min(price, table.get(ends, price))
-        jammed = {(new[first], new[second]) for first, second in self.jammed}
-        jammed = {ends for ends in jammed if ends[0] != ends[1] and ends not in table}
-        return Edge(self.ends, table, self.broken, self.hint, frozenset(jammed))
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,63 +59,46 @@ class Labelling:
     """Whether the integer programs were solved to the end."""
 
 
-Solved = dict[object, tuple[dict[int, int], bool]]
-"""Labels of regions, by all that decides them."""
-
-
-def label_all(nodes: int, seeds: Mapping[int, int], edges: Sequence[Edge], solved: Solved | None = None) -> Labelling:
-    """Labels of all nodes that make the sum of the prices least; `seeds` have theirs. What was `solved` is not solved
-    again."""
-    solved = {} if solved is None else solved
+def label_all(nodes: int, seeds: Mapping[int, int], edges: Sequence[Edge]) -> Labelling:
+    """Labels of all nodes that make the sum of the prices least; `seeds` have theirs."""
     labels: list[int | None] = [seeds.get(node) for node in range(nodes)]
     proven = True
-    around: dict[int, list[int]] = {}
-    for number, edge in enumerate(edges):
-        for end in set(edge.ends):
-            around.setdefault(end, []).append(number)
-    for members in regions(nodes, seeds, edges):
-        near = [edges[number] for number in sorted({k for node in members for k in around.get(node, ())})]
+    for members, near in regions(nodes, seeds, edges):
         touched = {seeds[n] for edge in near for n in edge.ends if n in seeds}
         # a body that touches nothing here may be on the other side of a joint that does
         candidates = sorted(touched | {b for edge in near for a, b in edge.parted if a in touched})
-        if not candidates:
-            continue
-        if len(candidates) == 1:
-            for node in members:
-                labels[node] = candidates[0]
-            continue
-        key = _question(members, candidates, near, seeds)
-        if key not in solved:
-            solved[key] = _solve(members, candidates, near, seeds)
-        found, sure = solved[key]
-        proven &= sure
-        for node, label in found.items():
-            labels[node] = label
+        if candidates:
+            found, sure = labels_of(members, candidates, near, seeds)
+            proven &= sure
+            for node, label in found.items():
+                labels[node] = label
     return Labelling(tuple(labels), proven)
 
 
-def _question(
-    members: Sequence[int], candidates: Sequence[int], edges: Sequence[Edge], seeds: Mapping[int, int]
-) -> object:
-    """All that decides the labels of a region."""
-    among = set(candidates)
-    ends = ((edge.ends, edge.broken, *(seeds.get(node) for node in edge.ends)) for edge in edges)
-    tables = (tuple(sorted(item for item in edge.parted.items() if among.issuperset(item[0]))) for edge in edges)
-    jams = (tuple(sorted(item for item in edge.jammed if among.issuperset(item))) for edge in edges)
-    return tuple(members), tuple(candidates), tuple(zip(ends, tables, jams, strict=True))
-
-
-def regions(nodes: int, seeds: Mapping[int, int], edges: Sequence[Edge]) -> list[list[int]]:
-    """Nodes without a seed, those together that contacts without seeds connect."""
+def regions(nodes: int, seeds: Mapping[int, int], edges: Sequence[Edge]) -> list[tuple[list[int], list[Edge]]]:
+    """Nodes without a seed, those together that contacts without seeds connect, with all contacts around them."""
     sets = UnionFind(nodes)
     for edge in edges:
-        if not set(edge.ends) & set(seeds):
+        if seeds.keys().isdisjoint(edge.ends):
             sets.union(*edge.ends)
-    out: dict[int, list[int]] = {}
+    out: dict[int, tuple[list[int], list[Edge]]] = {}
     for node in range(nodes):
         if node not in seeds:
-            out.setdefault(sets.find(node), []).append(node)
-    return sorted(out.values())
+            out.setdefault(sets.find(node), ([], []))[0].append(node)
+    for edge in edges:
+        free = next((node for node in edge.ends if node not in seeds), None)
+        if free is not None:
+            out[sets.find(free)][1].append(edge)
+    return [out[root] for root in sorted(out)]
+
+
+def labels_of(
+    members: Sequence[int], candidates: Sequence[int], edges: Sequence[Edge], seeds: Mapping[int, int]
+) -> tuple[dict[int, int], bool]:
+    """The labels of a region's nodes among some, sorted, and whether they are proven; `edges` are those around it."""
+    if len(candidates) == 1:
+        return dict.fromkeys(members, candidates[0]), True
+    return _solve(members, candidates, edges, seeds)
 
 
 def _solve(
@@ -165,14 +142,15 @@ def _solve(
                 cost[place[free] * wide + c] += edge.price(*ends)
             continue
         allowed = [(a, a) for a in candidates]
-        allowed += sorted(ends for ends in edge.parted if set(ends) <= set(number) and edge.price(*ends) < edge.broken)
+        pairs = [(a, b) for a in candidates for b in candidates if a != b]
+        allowed += [ends for ends in pairs if ends in edge.parted and edge.price(*ends) < edge.broken]
         at = len(cost)
         cost += [edge.price(*ends) - edge.broken for ends in allowed]
         for side, node in enumerate((first, second)):
             for label, c in number.items():
                 terms = [(at + k, 1.0) for k, ends in enumerate(allowed) if ends[side] == label]
                 constrain([*terms, (place[node] * wide + c, -1.0)], -np.inf, 0.0)
-        for one, other in sorted(ends for ends in edge.jammed if set(ends) <= set(number)):
+        for one, other in (ends for ends in pairs if edge.jam(*ends)):
             both = (place[first] * wide + number[one], place[second] * wide + number[other])
             constrain([(both[0], 1.0), (both[1], 1.0), (len(cost), -1.0)], -np.inf, 1.0)
             cost.append(constants.JAMMED)
