@@ -103,3 +103,17 @@ def test_points_are_as_deep_by_some_facets_at_a_time_as_by_all(seed):
     index, order = MeshIndex(mesh), rng.permutation(len(points))
     assert index.depths(points[order[:7]]).tobytes() == expected[order[:7]].tobytes()
     assert index.depths(points[order]).tobytes() == expected[order].tobytes()
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_points_that_are_not_beside_a_facet_are_further_from_all(seed):
+    rng = np.random.default_rng(seed)
+    mesh = mesh_of(perforated()) if seed % 2 else strewn(rng, 900)
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    on = samples(rng, mesh.vertices, mesh.faces, 40)
+    points = np.concatenate([rng.uniform(low, high, (60, 3)), on, on + 1e-9 * mesh.diagonal, [3 * high]])
+    index = MeshIndex(mesh)
+    for reach in (1e-9 * mesh.diagonal, 1e-3 * mesh.diagonal):
+        beside, near = index.beside(points, reach), index.depths(points) <= reach
+        assert beside[near].all() and near.sum() >= 40
+        assert not beside.all()

@@ -47,6 +47,9 @@ PLACE_BITS = 10
 
 DEPTH_FACETS = 128
 """Facets of a group."""
+ABOUT_FACET = 1e-6
+"""Share of a mesh's size beyond a facet's box from which on a point is clear of it: far more than what its measured
+distance is rounded by."""
 
 # meshes/index
 

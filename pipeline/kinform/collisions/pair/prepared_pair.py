@@ -317,6 +317,9 @@ class PairTest:
         within = np.column_stack([first.contains(points), second.contains(other)])
         for index, places, k in ((first, points, 0), (second, other, 1)):
             asked = np.flatnonzero(within[:, 1 - k] & ~within[:, k])
+            if len(asked) > constants.DEPTH_MEASURED:
+                # most are clear of what they are not in
+                asked = asked[index.beside(places[asked], least)]
             if len(asked):
                 within[asked, k] = index.depths(places[asked]) <= least
         return np.flatnonzero(within.all(axis=1))
@@ -329,8 +332,10 @@ class PairTest:
         asked = np.flatnonzero(near > constants.CERTAIN * least)
         first, second = self._shapes.index(self.names[0]), self._shapes.index(self.names[1])
         with at_work_on(*self.names):
-            total = first.depths(middles[asked]) + second.depths(other[asked])
-            asked = asked[total > least]
+            if len(asked) > constants.DEPTH_MEASURED:
+                asked = asked[self._in_both(first, second, middles[asked], other[asked])]
+                return bool((first.depths(middles[asked]) + second.depths(other[asked]) > least).any())
+            asked = asked[first.depths(middles[asked]) + second.depths(other[asked]) > least]
             return bool(len(asked)) and len(self._in_both(first, second, middles[asked], other[asked])) > 0
 
     def depth(self, D: Array, segments: Array, least: float = 0.0, finer: int = 1) -> float:

@@ -3,13 +3,15 @@ together, each when a point first comes nearer to its box than to what is neares
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import fcl
 import numpy as np
 
-from kinform.foundation.constants import DEPTH_FACETS
+from kinform.foundation.constants import ABOUT_FACET, DEPTH_FACETS
 from kinform.foundation.meshes.boxes import along_curve, facet_boxes
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, partial_model, point_model
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
 
 
@@ -46,9 +48,37 @@ class Depths:
             out[k] = distance
         return out
 
+    @cached_property
+    def _corners(self) -> Ints:
+        """(3, g, DEPTH_FACETS) vertices of the facets of each group; the last of all fills its group."""
+        order = np.concatenate(self._facets)
+        order = np.append(order, np.repeat(order[-1:], -len(order) % DEPTH_FACETS))
+        return np.ascontiguousarray(self._mesh.faces[order].T).reshape(3, -1, DEPTH_FACETS)
+
+    def beside(self, points: Array, reach: float) -> Flags:
+        """(n,) which points (n, 3) of the part frame are about the box of any facet: none of the others is found as
+        near as a small `reach` (m) by `of`."""
+        wide = reach + ABOUT_FACET * float(np.linalg.norm(self._high.max(axis=0) - self._low.min(axis=0)))
+        point, group = np.nonzero(_beside(self._low, self._high, points[:, None], wide))
+        one, two, three = (self._mesh.vertices.take(c, axis=0) for c in self._corners.take(group, axis=1))
+        low, high = (f(f(one, two), three) for f in (np.minimum, np.maximum))
+        near = _beside(low, high, points[point, None], wide).any(axis=1)
+        out = np.zeros(len(points), dtype=bool)
+        out[point[near]] = True
+        return out
+
     def _object(self, n: int) -> fcl.CollisionObject:
         known = self._objects[n]
         if known is None:
             model = partial_model(self._mesh.vertices, self._mesh.faces[self._facets[n]])
             known = self._objects[n] = fcl.CollisionObject(model)
         return known
+
+
+def _beside(low: Array, high: Array, points: Array, wide: float) -> Flags:
+    """Whether points (…, 3) are in boxes (…, 3), or no more than `wide` beside them along each axis."""
+    out = np.asarray((points[..., 0] >= low[..., 0] - wide) & (points[..., 0] <= high[..., 0] + wide))
+    for axis in (1, 2):
+        out &= points[..., axis] >= low[..., axis] - wide
+        out &= points[..., axis] <= high[..., axis] + wide
+    return out

@@ -213,9 +213,17 @@ class MeshIndex:
 
     def depths(self, points: Array) -> Array:
         """(n,) m distances of points (n, 3) of the part frame from the mesh: as of `whole`, without a model of it."""
+        return self._measured().of(points)
+
+    def beside(self, points: Array, reach: float) -> Flags:
+        """(n,) which points (n, 3) of the part frame may be found by `depths` to be no further than a small `reach` (m)
+        from the mesh."""
+        return self._measured().beside(points, reach)
+
+    def _measured(self) -> Depths:
         if self._depths is None:
             self._depths = Depths(self.mesh)
-        return self._depths.of(points)
+        return self._depths
 
     def away(self, points: Array) -> Array:
         """(n,) m that points (n, 3) of the part frame keep from the mesh at least: less than their distance, and
