@@ -19,7 +19,6 @@ from kinform.foundation.meshes.boxes import box_corners
 from kinform.kinematics.mobility.guides import preserved
 from kinform.model.arrays import Array, Ints
 from kinform.model.kinematics import Joint
-from kinform.model.names import PartName
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,14 +67,14 @@ def moving_pairs(shapes: Shapes, names: Sequence[str], joints: Sequence[Joint], 
 class _Near:
     """Which parts of bodies may come near each other: bodies that move as one are looked at together."""
 
-    def __init__(self, shapes: Shapes, parts: Sequence[Sequence[PartName]], displacements: Array) -> None:
+    def __init__(self, shapes: Shapes, parts: Sequence[Sequence[str]], displacements: Array) -> None:
         self._shapes, self._parts, self._displacements = shapes, parts, displacements
         numbers: dict[bytes, int] = {}
         self._motion = [
             numbers.setdefault(displacements[:, n].tobytes(), len(numbers)) for n in range(displacements.shape[1])
         ]
         self._relative: dict[tuple[int, int], Array | None] = {}
-        self._among: dict[tuple[int, int], dict[tuple[int, int], list[tuple[PartName, PartName]]]] = {}
+        self._among: dict[tuple[int, int], dict[tuple[int, int], list[tuple[str, str]]]] = {}
 
     def relative(self, a: int, b: int) -> Array | None:
         """(T, 4, 4) of the second body, as the first sees it; None where they do not move relative to each other."""
@@ -87,7 +86,7 @@ class _Near:
             self._relative[key] = None if still else relative
         return self._relative[key]
 
-    def among(self, a: int, b: int) -> list[tuple[PartName, PartName]]:
+    def among(self, a: int, b: int) -> list[tuple[str, str]]:
         """The pairs of parts of two bodies whose boxes meet on the way, and few others, in the order of their names."""
         key = self._motion[a], self._motion[b]
         relative = self.relative(a, b)
@@ -97,13 +96,13 @@ class _Near:
             self._among[key] = self._met(key, relative)
         return self._among[key].get((a, b), [])
 
-    def _met(self, motions: tuple[int, int], relative: Array) -> dict[tuple[int, int], list[tuple[PartName, PartName]]]:
+    def _met(self, motions: tuple[int, int], relative: Array) -> dict[tuple[int, int], list[tuple[str, str]]]:
         """Those of all bodies of two motions."""
         every = [
             [(body, name) for body, own in enumerate(self._motion) if own == motion for name in self._parts[body]]
             for motion in motions
         ]
-        out: dict[tuple[int, int], list[tuple[PartName, PartName]]] = {}
+        out: dict[tuple[int, int], list[tuple[str, str]]] = {}
         if not every[0] or not every[1]:
             return out
         fixed = np.array([_corners(self._shapes, name) for _, name in every[0]])
