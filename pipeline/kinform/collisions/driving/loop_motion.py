@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -86,15 +87,27 @@ class Linkage:
         across: dict[int, Array] = {}
         for n, k in enumerate(self.owner):
             across[k] = across[k] @ moves[:, n] if k in across else moves[:, n]
-        out = np.broadcast_to(np.eye(4), (len(q), len(self.tree.parent), 4, 4)).copy()
+        motions, moved = self._motions
+        out = np.broadcast_to(np.eye(4), (len(q), 1 + len(moved), 4, 4)).copy()
+        for n, (up, k, back) in enumerate(moved, 1):
+            out[:, n] = out[:, up] @ (inverse(across[k]) if back else across[k])
+        return np.asarray(out[:, motions])
+
+    @cached_property
+    def _motions(self) -> tuple[list[int], list[tuple[int, int, bool]]]:
+        """The motion of each body, as most hang on others without a joint of the block; and of each motion after the
+        first, which is rest, the one that it moves on, the joint between, and whether that is passed from its second
+        body to its first."""
+        motion, moved = [0] * len(self.tree.parent), []
         for node in self.tree.order:
             up, k = self.tree.parent[node], self.tree.edge[node]
-            if up >= 0:
-                move = across.get(k)
-                if move is not None and self.edges[k][1] != node:
-                    move = inverse(move)
-                out[:, node] = out[:, up] if move is None else out[:, up] @ move
-        return out
+            if up < 0:
+                continue
+            motion[node] = motion[up]
+            if k in self.owner:
+                moved.append((motion[up], k, self.edges[k][1] != node))
+                motion[node] = len(moved)
+        return motion, moved
 
     def closed(self, q: Array) -> Array | None:
         """The nearest coordinates at which the loops close."""
