@@ -194,3 +194,24 @@ def test_what_joining_two_bodies_costs_stays_until_a_body_is_joined_that_it_depe
         for other in data.draw(st.permutations(sorted(known)))[:8]:
             if known[other].met.isdisjoint(pair):
                 assert cuts.joining(after, *other).cost == known[other].cost
+
+
+def test_what_joining_costs_hangs_on_the_bodies_that_a_joint_connects_with_either():
+    """A and X have joints with D, and a region that touches neither also C: when C and D are one it touches both."""
+    a, x, c, d, e, one, other = range(7)
+    joints = [(a, d), (x, d), (c, e)]
+    jams = frozenset({(c, e), (e, c)})
+    edges = [
+        Edge((c, one), {(a, d): 1.0, (d, a): 1.0}, 20000.0, 0.0, jams),
+        Edge((c, other), {(x, d): 1.0, (d, x): 1.0}, 20000.0, 0.0, jams),
+        Edge((e, one), {}, 1000.0, 0.0, jams),
+        Edge((e, other), {}, 1000.0, 0.0, jams),
+        Edge((one, other), {}, 500.0),
+    ]
+    cuts = Joining({k: k for k in range(5)}, edges, joints, None).cuts
+    cut = cuts.cut(range(5))
+    known = cuts.joining(cut, a, x)
+    assert not known.cost
+    later = cuts.joining(cuts.after(cut, cuts.joining(cut, c, d)), a, x)
+    assert Fraction(later.cost, 2**52) == 2 * (1.0 - constants.JAMMED)
+    assert not known.met.isdisjoint((c, d))
