@@ -1,28 +1,37 @@
-"""Boxes of all parts of two motions at once, against one pair after the other."""
+"""Bodies that move as one, and boxes of all their parts, at once, against one pair after the other."""
 
 from __future__ import annotations
+
+from itertools import combinations, product
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from kinform.collisions.pair import posed_pairs
+from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.meshes.boxes import box_corners
 
 
-def boxes(rng, count):
-    low = rng.uniform(-1.0, 1.0, (count, 3))
+def boxes(rng, count, reach=1.0):
+    low = rng.uniform(-reach, reach, (count, 3))
     return np.array([box_corners(a, a + rng.uniform(0.01, 0.4, 3), np.eye(4)) for a in low])
+
+
+def turned(rng, count):
+    """(count, 4, 4) displacements of a screw, from rest."""
+    axis, turns = rng.normal(size=3), np.linspace(0.0, rng.uniform(0.1, 1.5), count)
+    out = np.tile(np.eye(4), (count, 1, 1))
+    out[:, :3, :3] = Rotation.from_rotvec(turns[:, None] * axis / np.linalg.norm(axis)).as_matrix()
+    out[:, :3, 3] = turns[:, None] * rng.normal(size=3)
+    return out
 
 
 @pytest.mark.parametrize("seed", range(8))
 def test_boxes_that_meet_on_the_way_are_those_of_each_pair(seed):
     rng = np.random.default_rng(seed)
-    axis, count = rng.normal(size=3), 25
-    relative = np.tile(np.eye(4), (count, 1, 1))
-    turns = np.linspace(0.0, rng.uniform(0.1, 1.5), count)
-    relative[:, :3, :3] = Rotation.from_rotvec(turns[:, None] * axis / np.linalg.norm(axis)).as_matrix()
-    relative[:, :3, 3] = turns[:, None] * rng.normal(size=3)
+    relative = turned(rng, 25)
     fixed, moved = boxes(rng, 30), boxes(rng, 25)
     found = {(int(row), column) for rows, column in posed_pairs._meeting(relative, fixed, moved, 1e-12) for row in rows}
     each = {
@@ -33,3 +42,31 @@ def test_boxes_that_meet_on_the_way_are_those_of_each_pair(seed):
     }
     assert found == each
     assert 0 < len(each) < len(fixed) * len(moved)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_parts_of_bodies_that_move_as_one_meet_those_that_each_of_them_meets(seed):
+    rng = np.random.default_rng(seed)
+    motions = [np.tile(np.eye(4), (15, 1, 1)), turned(rng, 15), turned(rng, 15)]
+    displacements = np.stack([motions[k] for k in rng.permutation([0, 0, 0, 1, 1, 1, 2, 2])], axis=1)
+    corners = {f"{body}{k}": box for body in range(8) for k, box in enumerate(boxes(rng, 4, 0.6))}
+    parts = [[f"{body}{k}" for k in range(1 + body % 4)] for body in range(8)]
+    shapes = SimpleNamespace(
+        size=1.0,
+        mesh=lambda name: SimpleNamespace(vertices=corners[name]),
+        part=lambda _: SimpleNamespace(X_WP=np.eye(4)),
+    )
+    near = posed_pairs._Near(shapes, parts, displacements)
+    count = 0
+    for a, b in combinations(range(8), 2):
+        relative = inverse(displacements[:, a]) @ displacements[:, b]
+        still = np.array_equal(displacements[:, a], displacements[:, b])
+        each = [
+            (one, other)
+            for one, other in product(parts[a], parts[b])
+            if not still and posed_pairs._steps(relative, corners[one], corners[other]) is not None
+        ]
+        assert near.among(a, b) == each
+        assert (near.relative(a, b) is None) == still
+        count += len(each)
+    assert count > 10
