@@ -7,7 +7,7 @@ function. `--rings`: four-bars of such decks instead, with cages in their bearin
 their joints name the largest part of either side. `--sides 1`: joints name one side only, `--sides 0` none; where it is
 not clear what they part, which is an error that lists the ways, it counts as asked. `--size 0.001`: each so large (m),
 else 0.1 to 10 mm a unit at random.
-`--parts 1000` instead derives one chain of about so many parts, and prints how long contacts and bodies take.
+`--parts 1000` instead derives one chain of decks of about so many parts, and prints the row of each of its stages.
 Exit 0: at least 99 % exact or asked, none fused.
 """
 
@@ -15,21 +15,28 @@ from __future__ import annotations
 
 import argparse
 import sys
-import time
+from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "fixtures"))
 
 from random_assemblies.draw import Draw
 from random_assemblies.machine_verdict import assembly_of, judge
 from random_assemblies.machines import machine
 from random_assemblies.rings import ring
+from table import HEADER, Row, line, peak, processor
 
-from kinform import contacts, kinematics, surfaces
+from kinform import collisions, contacts, kinematics, surfaces
 from kinform.errors import OpenSidesError
 from kinform.kinematics import propose
 from kinform.kinematics.partition import Proposal, partition
 from kinform.model.function import IntendedJoint
+
+PAIR = 4.0
+"""Aim of contacts (ms a pair)."""
 
 
 def main() -> int:
@@ -42,7 +49,12 @@ def main() -> int:
     parser.add_argument("--sides", type=int, choices=(0, 1, 2), default=2)
     parser.add_argument("--size", type=float, help="m, of each machine's box; else at random")
     options = parser.parse_args()
-    return large(options.parts) if options.parts else cases(options)
+    if not options.parts:
+        return cases(options)
+    print(HEADER)
+    for _, row in large(options.parts):
+        print(line(row), flush=True)
+    return 0
 
 
 def cases(options: argparse.Namespace) -> int:
@@ -84,20 +96,37 @@ def _on(way: Proposal, joint: IntendedJoint) -> bool:
     return abs(float(way.axis @ joint.axis)) > 0.9998 and off < 1e-6
 
 
-def large(parts: int) -> int:
-    """One long chain of decks."""
+def large(parts: int) -> Iterator[tuple[str, Row]]:
+    """(stage, row) of one long chain of decks: contacts, bodies from function, all of kinematics, ranges by default."""
     made = machine(Draw([1]), decks=max(2, parts // 9))
     assembly = assembly_of(made, 1)
+    what = f"chain of decks, {len(assembly.parts)} parts"
     found = {p.mesh.digest: surfaces.recover(p.mesh, assembly.tolerances) for p in assembly.parts if p.mesh}
-    begun = time.perf_counter()
-    touching = contacts.find(assembly, found)
-    between = time.perf_counter()
-    bodies = partition(assembly, touching, assembly.function.joints, found)
-    done = time.perf_counter()
-    print(f"{len(assembly.parts)} parts, {len(made.joints)} joints, {len(bodies.names)} bodies")
-    first, second = between - begun, done - between
-    print(f"contacts {first:.1f} s, bodies {second:.1f} s, ratio {second / first:.2f}")
-    return 0
+    seconds, touching = processor(lambda: contacts.find(assembly, found))
+    pairs = len(touching.candidates)
+    words = f"{seconds:.2f} s, {pairs} pairs, {len(touching.patches)} patches"
+    yield "contacts", Row(f"contacts of a {what}", 1e3 * seconds / pairs, PAIR, "ms a pair", words, peak())
+    seconds, bodies = processor(lambda: partition(assembly, touching, assembly.function.joints, found))
+    words = f"{len(made.joints)} joints, {len(bodies.names)} bodies"
+    yield "bodies", Row(f"bodies from function of a {what}", seconds, None, "s", words, peak())
+    seconds, derived = processor(lambda: kinematics.derive(assembly, found, touching))
+    yield "kinematics", Row(f"all of kinematics of a {what}", seconds, None, "s", "the bodies among it", peak())
+    seconds, reach = processor(lambda: collisions.ranges(assembly, found, touching, derived))
+    words = f"{sum(end.status == 'found' for item in reach for end in (item.lower, item.upper))} ends found"
+    yield "ranges", Row(f"ranges of a {what}", seconds, None, "s", words, peak())
+
+
+def rows(quick: bool) -> Iterator[Row]:
+    """The rows of chains of decks of some sizes, and how each stage grows with their parts."""
+    sizes = (36, 72) if quick else (100, 200, 400, 800)
+    took: dict[str, list[float]] = {}
+    for size in sizes:
+        for stage, row in large(size):
+            took.setdefault(stage, []).append(row.value)
+            yield row
+    for stage, seconds in took.items():
+        power = float(np.polyfit(np.log(sizes), np.log(seconds), 1)[0]) + (stage == "contacts")
+        yield Row(f"chain of decks: {stage} grow with parts to the power", power, None, "")
 
 
 if __name__ == "__main__":
