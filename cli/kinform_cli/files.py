@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from kinform.foundation.regular import not_a_file
+from kinform.foundation.regular import no_folder, not_a_file
 from kinform_cli import console
 from kinform_cli.errors import refuse
 from kinform_cli.progress import Working
@@ -81,11 +81,8 @@ def check_text_output(path: Path, *, inputs: Iterable[Path] = ()) -> None:
     if fault is not None:
         raise refuse(fault, file=path, remedy="name a file")
     if not path.parent.is_dir():
-        raise refuse(
-            f"the folder {path.parent} does not exist",
-            file=path,
-            remedy=f"create it: {command('mkdir', '-p', path.parent)}",
-        )
+        fault, remedy = no_folder(path.parent)
+        raise refuse(fault, file=path, remedy=remedy)
     _try_writing(path)
 
 

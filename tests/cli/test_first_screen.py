@@ -55,7 +55,9 @@ def test_several_formats_go_to_files_and_one_to_stdout(ran):
         (("-v", "-f", "md"), "both go to stdout"),
         (("-f", "json=a", "-f", "md=a"), "two formats go to a"),
         (("-f", "json=r.h5",), "would be overwritten"),
-        (("-f", "json=nowhere/a.json",), "does not exist"),
+        (("-f", "json=nowhere/a b/a.json",), "does not exist\n  remedy: create it: mkdir -p 'nowhere/a b'\n"),
+        (("-f", "json=r.h5/a/a.json",), "r.h5 is a file, not a folder"),
+        (("-o", "r.h5/a/b.h5"), "r.h5 is a file, not a folder"),
     ],
 )  # fmt: skip
 def test_formats_that_cannot_be_are_refused_before_the_work(asked, told, ran):

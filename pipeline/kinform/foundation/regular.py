@@ -4,11 +4,20 @@ from __future__ import annotations
 
 import hashlib
 import os
+import shlex
 import stat
 from pathlib import Path
 
 AS_A_FILE = "write what comes through it to a file, and name that file"
 """What to do about it."""
+
+
+def no_folder(folder: Path) -> tuple[str, str]:
+    """(what is wrong, what to do) where a file cannot be written because its folder is none."""
+    blocking = next((p for p in (folder, *folder.parents) if p.exists() and not p.is_dir()), None)
+    if blocking is not None:
+        return f"{blocking} is a file, not a folder", "name a file in a folder"
+    return f"the folder {folder} does not exist", f"create it: mkdir -p {shlex.quote(str(folder))}"
 
 
 def not_a_file(path: str | Path) -> str | None:

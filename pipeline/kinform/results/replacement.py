@@ -18,6 +18,7 @@ except ImportError:  # Windows: files that are left behind stay
     fcntl = None  # type: ignore[assignment]
 
 from kinform.errors import Problem, ResultsError
+from kinform.foundation.regular import no_folder
 
 _PREFIX, _SUFFIX = ".kinform-", ".tmp"
 
@@ -33,8 +34,7 @@ def check_target(path: str | Path) -> None:
     if target.is_dir():
         raise refuse(path, "this is a folder, not a file", f"name a file in it, such as {Path(path) / 'results.h5'}")
     if not target.parent.is_dir():
-        missing = Path(path).parent
-        raise refuse(path, f"the folder {missing} does not exist", f"create it: mkdir -p {missing}")
+        raise refuse(path, *no_folder(Path(path).parent))
     if target.exists() and not target.is_file():
         raise refuse(path, "this is a device or a pipe, not a file", "name a regular file")
     if target.exists() and not _may(target, os.W_OK):
