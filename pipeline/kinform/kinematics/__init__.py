@@ -57,7 +57,7 @@ __all__ = [
     "stated_proposals",
 ]
 
-CODE_VERSION = 46
+CODE_VERSION = 47
 """Bumped when the results of this stage change for the same input."""
 
 __getattr__ = first_used(

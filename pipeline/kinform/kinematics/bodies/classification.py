@@ -11,6 +11,7 @@ from kinform.kinematics.answers import Answers, ask
 from kinform.kinematics.bodies.complete import without_effect
 from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.bodies.merging import Merger
+from kinform.kinematics.bodies.overlaps import deepest_overlaps, with_overlap
 from kinform.kinematics.bodies.stated_joints import Pair, stated_roots
 from kinform.kinematics.pair.evidence import Evidence, Member, gather
 from kinform.kinematics.pair.question import Answer, Question, answer_each, joint_between
@@ -35,6 +36,7 @@ class Pairs:
     ):
         self.assembly, self.patches = assembly, patches
         self._tolerance, self._extents, self._answers = contacts.tolerance, extents, answers
+        self.interferences = contacts.interferences
         self.extremes: dict[int, Ints] = {}
         """Samples that bound the patches that were looked at."""
 
@@ -87,6 +89,7 @@ def decide_all(pairs: Pairs, merger: Merger, *, fusing: bool = True) -> dict[Pai
         new = {key: pair for pair, key in keys.items() if key not in known_answers}
         decided = pairs.decide([(touching[pair], [of_name[n] for n in pair]) for pair in new.values()])
         known_answers |= zip(new, decided, strict=True)
+        overlaps = deepest_overlaps(pairs.interferences, of_part)
         out: dict[Pair, tuple[Answer, Joint]] = {}
         fused = False
         for pair, key in keys.items():
@@ -95,6 +98,8 @@ def decide_all(pairs: Pairs, merger: Merger, *, fusing: bool = True) -> dict[Pai
                 continue
             places = [index for index, _, _ in members]
             joint = joint_between(answer.joint, pair, places)
+            if pair in overlaps:
+                joint = with_overlap(joint, overlaps[pair])
             if answer.other is not None:
                 answer = replace(answer, other=joint_between(answer.other, pair, places))
             out[pair] = answer, joint
