@@ -1,9 +1,9 @@
 """Bodies that overlap where nothing mates: what touches there is drawn into the other, and may hold what the found
 contact leaves.
 
-A cone in a bottom of too few facets is no contact, but an overlap: the shaft would seem to slide. A joint of one freedom
-is not doubted, because it would be none: a horn that is drawn into its motor turns. Nor is a ball, whose neck may be
-drawn into the rim of its socket.
+A cone in a bottom of too few facets is no contact, but an overlap: the shaft would seem to slide. A joint of one
+freedom is not doubted, because it would be none: a horn that is drawn into its motor turns. Nor is a ball, whose neck
+may be drawn into the rim of its socket.
 """
 
 from __future__ import annotations
