@@ -138,3 +138,5 @@ HEXAGON = 0.02
 """By how much the cosine between faces of a hexagon may be off."""
 NAMED_HOLDS = 3
 """Of the parts that hold another in its body, or that it was parted from, so many are named."""
+NUMBERS_AT_ONCE = 8192
+"""Joints times points of a contact that are looked at together: their columns stay in the cache."""

@@ -12,10 +12,11 @@ from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.partition import constants
+from kinform.kinematics.partition.contact import PartPair
 from kinform.kinematics.partition.labelling import Edge, Labels
 from kinform.kinematics.partition.loops import Loops
 from kinform.kinematics.partition.one_body import Hold, joined_by_cost, one_body
-from kinform.kinematics.partition.parting import PartPair, Prices, joint_twists, prices
+from kinform.kinematics.partition.parting import Prices, joint_twists, prices
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.function import IntendedJoint

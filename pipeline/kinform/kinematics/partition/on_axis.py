@@ -11,9 +11,10 @@ from dataclasses import replace
 
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.partition import constants
+from kinform.kinematics.partition.contact import PartPair, contact_of_pairs
 from kinform.kinematics.partition.graph import Graph, graph_of
 from kinform.kinematics.partition.labelling import Labelling, label_all
-from kinform.kinematics.partition.parting import PartPair, Prices, contact_of_pairs, hints_of
+from kinform.kinematics.partition.parting import Prices, hints_of
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.function import IntendedJoint
