@@ -15,6 +15,7 @@ from support.solids import box, part, random_pose, rod
 
 from kinform import contacts, kinematics, surfaces
 from kinform.kinematics.partition import partition
+from kinform.kinematics.partition.contact import Asked, Contact
 from kinform.kinematics.partition.labelling import Edge, label_all, margins
 from kinform.kinematics.partition.parting import joint_twists, prices
 from kinform.model.function import Function, IntendedJoint
@@ -257,3 +258,28 @@ def test_a_flat_with_a_gap_that_is_wide_by_its_size_holds_little(gap, price):
     flat = patch(corners, (0, 0, 1), "plane", area=16e-6, gap=gap)
     turn = joint("turn", ("a", "b"), point=(0.05, 0, 0))
     assert prices([turn], [joint_twists(turn)], [flat], ()).by_joint == {("a", "b"): {0: price}}
+
+
+@given(st.integers(0, 10_000), st.sampled_from(["cylinder", "other"]))
+@settings(max_examples=40, deadline=None)
+def test_what_a_joint_costs_does_not_hang_on_those_that_are_asked_with_it(seed, kind):
+    """A ring of contact on a flat; axes and centres on it, beside it and far away, of every type of joint."""
+    draw = np.random.default_rng(seed)
+    angle = np.linspace(0.0, 2.0 * np.pi, 36, endpoint=False)
+    radial = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(36)])
+    ring = patch(5e-3 * radial, radial, kind, area=2e-5, radii=(5e-3, 5e-3))
+    flat = patch(8e-3 * radial, (0, 0, 1), "plane", area=float(draw.choice([1e-6, 2e-5])))
+    kinds = ("revolute", "cylindrical", "prismatic", "planar", "spherical", "screw")
+    joints = []
+    for k in range(24):
+        axis = (np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0]), draw.normal(size=3))[draw.integers(3)]
+        point = draw.choice([0.0, 3e-3, 5e-2]) * draw.normal(size=3)
+        turn = joint(f"turn_{k}", ("a", "b"), point=point)
+        joints.append(replace(turn, type=kinds[k % 6], axis=axis / np.linalg.norm(axis), pitch=1e-3))
+    contact = Contact.of([ring, flat])
+    twists = [joint_twists(one) for one in joints]
+    together = contact.costs(Asked.of(joints, twists))
+    alone = [contact.costs(Asked.of([one], [motions])).get(0) for one, motions in zip(joints, twists, strict=True)]
+    assert [together.get(k) for k in range(24)] == alone
+    centred = [k for k in range(0, 24, 6) if not joints[k].point.any() and abs(joints[k].axis[2]) == 1.0]
+    assert all(together[k] == (40.0 if kind == "cylinder" else 30.0) for k in centred)

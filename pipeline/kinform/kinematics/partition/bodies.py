@@ -14,6 +14,7 @@ from kinform.foundation.graphs.graph import UnionFind, shortest_path
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_model, fcl_pose
 from kinform.foundation.words import counted, quoted
 from kinform.kinematics.partition import constants
+from kinform.kinematics.partition.contact import PartPair
 from kinform.kinematics.partition.graph import Graph, graph_of, stated_merger
 from kinform.kinematics.partition.labelling import Labelling, Margin, label_all, margins
 from kinform.kinematics.partition.on_axis import cut_on_axes
@@ -179,11 +180,15 @@ def _unparted(
 ) -> dict[str, tuple[PartName, ...]]:
     """Of joints that may not part all that touches between their bodies, the shortest chain of parts that holds the
     two sides together, from one to the other."""
+    between: dict[frozenset[int], list[PartPair]] = {}
+    for pair in graph.prices.by_joint:
+        between.setdefault(frozenset(placed[part].body for part in pair), []).append(pair)
     out = {}
     for number, (joint, ends) in enumerate(zip(joints, graph.sides, strict=True)):
+        within = {frozenset(bodies) for bodies in (ends, ends[:1], ends[1:])}
         near: dict[PartName, list[PartName]] = {}
-        for pair, parted in sorted(graph.prices.by_joint.items()):
-            if number not in parted and {placed[part].body for part in pair} <= set(ends):
+        for pair in sorted(pair for bodies in within for pair in between.get(bodies, ())):
+            if number not in graph.prices.by_joint[pair]:
                 for one, other in (pair, pair[::-1]):
                     near.setdefault(one, []).append(other)
         chain = shortest_path(near, *graph.named[number])

@@ -84,6 +84,12 @@ NEAREST_TRIED = 6
 """Of so many parts whose boxes are nearest to one that touches nothing, the nearest surface is looked for."""
 MOST_SECONDS = 60.0
 """s: what the integer program may take before the best answer so far is taken and said to be unproven."""
+CLEARLY_LESS = 1e-4
+"""Cost by which the best labels are better than all others where no solver can take others for as good: a hundred times
+what the integer program may miss. Sums of prices are known to 1e-10."""
+MOST_IN_TABLE = 50_000
+"""Numbers in a table of costs, of all labels of a few nodes together, up to which nodes are eliminated: beyond, the
+integer program is as quick."""
 PROPOSED = (100.0, 310.0, np.inf)
 """Greatest prices of parting a pair at which a joint is looked for where no function is: journals, faces round the axis
 and serrations; where that parts nothing, flats beside it, too; then all that the turn leaves free."""
@@ -138,3 +144,5 @@ HEXAGON = 0.02
 """By how much the cosine between faces of a hexagon may be off."""
 NAMED_HOLDS = 3
 """Of the parts that hold another in its body, or that it was parted from, so many are named."""
+NUMBERS_AT_ONCE = 8192
+"""Joints times points of a contact that are looked at together: their columns stay in the cache."""

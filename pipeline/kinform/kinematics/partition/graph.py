@@ -12,10 +12,11 @@ from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.partition import constants
+from kinform.kinematics.partition.contact import PartPair
 from kinform.kinematics.partition.labelling import Edge, Labels
 from kinform.kinematics.partition.loops import Loops
 from kinform.kinematics.partition.one_body import Hold, joined_by_cost, one_body
-from kinform.kinematics.partition.parting import PartPair, Prices, joint_twists, prices
+from kinform.kinematics.partition.parting import Prices, joint_twists, prices
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.function import IntendedJoint
@@ -189,6 +190,7 @@ def _edges(
     area = _areas(patches)
     largest = max(area.values(), default=1.0)
     joined = frozenset(labels for a, b in sides if a != b for labels in ((a, b), (b, a)))
+    ways = [((a, b), (b, a)) for a, b in sides]
     edges = []
     for pair, parted in costs.by_joint.items():
         ends = (piece_of[pair[0]], piece_of[pair[1]])
@@ -197,8 +199,10 @@ def _edges(
         touch = constants.TOUCH_WORTH * area[pair] / largest
         table: dict[Labels, float] = {}
         for joint, price in parted.items():
-            for labels in (sides[joint], sides[joint][::-1]):
-                table[labels] = min(price + touch, table.get(labels, np.inf))
+            cost = price + touch
+            for labels in ways[joint]:
+                if table.get(labels, np.inf) > cost:
+                    table[labels] = cost
         edges.append(Edge(ends, table, costs.held[pair] + touch, costs.hints.get(pair, 0.0), joined))
     return edges
 

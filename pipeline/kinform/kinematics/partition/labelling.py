@@ -2,7 +2,8 @@
 
 Nodes are what is one body anyway; some are seeds, whose body is known. Every edge says what it costs to put its two
 ends into two bodies: less where a joint of these two bodies may part it. A node that no seed's contacts reach has no
-label. What seeds separate is solved on its own, so that programs stay small.
+label. What seeds separate is solved on its own, so that programs stay small; most are so clear that nodes are
+eliminated instead (`elimination`).
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics.partition import constants
+from kinform.kinematics.partition.elimination import clear_labels
 from kinform.model.arrays import Array
 
 Labels = tuple[int, int]
@@ -98,7 +100,32 @@ def labels_of(
     """The labels of a region's nodes among some, sorted, and whether they are proven; `edges` are those around it."""
     if len(candidates) == 1:
         return dict.fromkeys(members, candidates[0]), True
+    clear = clear_labels(*_costs(members, candidates, edges, seeds))
+    if clear is not None:
+        return {node: candidates[k] for node, k in zip(members, clear, strict=True)}, True
     return _solve(members, candidates, edges, seeds)
+
+
+def _costs(
+    members: Sequence[int], candidates: Sequence[int], edges: Sequence[Edge], seeds: Mapping[int, int]
+) -> tuple[Array, dict[Labels, Array]]:
+    """What labels cost each node (nodes, labels), by its contacts with seeds, and each two nodes (labels, labels)."""
+    place = {node: k for k, node in enumerate(members)}
+    own = np.zeros((len(members), len(candidates)))
+    pairs: dict[Labels, Array] = {}
+    for edge in edges:
+        first, second = edge.ends
+        if first in seeds:
+            own[place[second]] += [edge.price(seeds[first], label) for label in candidates]
+        elif second in seeds:
+            own[place[first]] += [edge.price(label, seeds[second]) for label in candidates]
+        else:
+            cost = np.array([[edge.price(a, b) for b in candidates] for a in candidates])
+            ends = place[first], place[second]
+            if ends[0] > ends[1]:
+                ends, cost = ends[::-1], cost.T
+            pairs[ends] = pairs[ends] + cost if ends in pairs else cost
+    return own, pairs
 
 
 def _solve(

@@ -11,9 +11,10 @@ from dataclasses import replace
 
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.partition import constants
+from kinform.kinematics.partition.contact import PartPair, contact_of_pairs
 from kinform.kinematics.partition.graph import Graph, graph_of
 from kinform.kinematics.partition.labelling import Labelling, label_all
-from kinform.kinematics.partition.parting import PartPair, Prices, contact_of_pairs, hints_of
+from kinform.kinematics.partition.parting import Prices, hints_of
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.function import IntendedJoint
@@ -47,22 +48,28 @@ def _bodies(cut: Cut, pair: PartPair) -> tuple[int | None, ...]:
     return tuple(labelling.labels[graph.piece_of[name]] for name in pair)
 
 
-def _across(cut: Cut, number: int) -> list[PartPair]:
-    """The pairs between the two sides of a joint that it may part."""
+def _across(cut: Cut) -> dict[int, list[PartPair]]:
+    """The pairs between the two sides of each joint that it may part, of joints that have such."""
     graph = cut[0]
-    ends = set(graph.sides[number])
-    by_joint = graph.prices.by_joint
-    return [pair for pair, parted in by_joint.items() if number in parted and set(_bodies(cut, pair)) == ends]
+    between: dict[frozenset[int | None], list[int]] = {}
+    for number, ends in enumerate(graph.sides):
+        between.setdefault(frozenset(ends), []).append(number)
+    out: dict[int, list[PartPair]] = {}
+    for pair, parted in graph.prices.by_joint.items():
+        for number in between.get(frozenset(_bodies(cut, pair)), ()):
+            if number in parted:
+                out.setdefault(number, []).append(pair)
+    return out
 
 
 def _beside(joints: Sequence[IntendedJoint], cut: Cut, hints: dict[PartPair, float]) -> dict[int, tuple[PartPair, ...]]:
     """What each joint parts that parts flats beside its axis only."""
-    out = {}
-    for number, joint in enumerate(joints):
-        pairs = _across(cut, number) if joint.type not in ("prismatic", "planar") else []
-        if pairs and all(_plain(cut, number, pair, hints) > constants.SERRATED for pair in pairs):
-            out[number] = tuple(pairs)
-    return out
+    return {
+        number: tuple(pairs)
+        for number, pairs in sorted(_across(cut).items())
+        if joints[number].type not in ("prismatic", "planar")
+        and all(_plain(cut, number, pair, hints) > constants.SERRATED for pair in pairs)
+    }
 
 
 def _plain(cut: Cut, number: int, pair: PartPair, hints: dict[PartPair, float]) -> float:
@@ -107,4 +114,4 @@ def _broken(cut: Cut) -> int:
 
 def _parts(cut: Cut, number: int) -> bool:
     """Whether the joint is between two bodies, and parts something."""
-    return len(set(cut[0].sides[number])) == 2 and bool(_across(cut, number))
+    return len(set(cut[0].sides[number])) == 2 and number in _across(cut)

@@ -23,7 +23,7 @@ from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import forest
 from kinform.foundation.words import counted, length, number, quoted
 from kinform.kinematics.partition import constants
-from kinform.kinematics.partition.parting import ROUND
+from kinform.kinematics.partition.contact import ROUND
 from kinform.kinematics.partition.ways import Names, Way, Ways
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts

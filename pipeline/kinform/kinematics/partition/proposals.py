@@ -20,7 +20,8 @@ from kinform.foundation.words import counted, quoted
 from kinform.kinematics.part_volumes import volumes
 from kinform.kinematics.partition import constants
 from kinform.kinematics.partition.bodies import partition
-from kinform.kinematics.partition.parting import ROUND, Contact, PartPair, contact_of_pairs, hints_of, joint_twists
+from kinform.kinematics.partition.contact import ROUND, Asked, Contact, PartPair, contact_of_pairs
+from kinform.kinematics.partition.parting import hints_of, joint_twists
 from kinform.kinematics.partition.standard_parts import HOLDERS, standard_parts
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
@@ -230,11 +231,10 @@ def _freed(
 ) -> frozenset[PartPair]:
     """Pairs that a joint may part at `most` at this price."""
     out = []
-    motions = joint_twists(joint)
-    assert motions is not None
+    asked = Asked.of([joint], [joint_twists(joint)])
     for pair, contact in pairs.items():
         if most > constants.PROPOSED[0] or contact.near(joint):
-            price = contact.price(joint, motions)
+            price = contact.costs(asked).get(0)
             if price is not None and price + hints.get(pair, 0.0) <= most:
                 out.append(pair)
     return frozenset(out)

@@ -18,9 +18,10 @@ from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.part_volumes import volumes
 from kinform.kinematics.partition import constants
+from kinform.kinematics.partition.contact import PartPair, contact_of_pairs
 from kinform.kinematics.partition.graph import graph_of, stated_merger
 from kinform.kinematics.partition.labelling import Labels, label_all
-from kinform.kinematics.partition.parting import PartPair, Prices, contact_of_pairs, hints_of, joint_twists, prices
+from kinform.kinematics.partition.parting import Prices, hints_of, joint_twists, prices
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.function import IntendedJoint
