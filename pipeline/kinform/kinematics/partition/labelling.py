@@ -8,11 +8,12 @@ label. What seeds separate is solved on its own, so that programs stay small.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from kinform.foundation.graphs.graph import UnionFind
+from kinform.frozen import dataclass
 from kinform.kinematics.partition import constants
 from kinform.model.arrays import Array
 
