@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kinform.foundation.words import counted
+from kinform.frozen import dataclass
 from kinform_cli import console, files
 from kinform_cli.errors import FINDINGS
 from kinform_cli.options import FindingsFormat, Printed, Severity

@@ -8,10 +8,10 @@ import re
 import shlex
 import textwrap
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from kinform.foundation import words
+from kinform.frozen import dataclass
 from kinform_cli.constants import FEW, FINE, LARGE, MANY, NO_LENGTH, NO_VALUE, ROUNDING
 
 if TYPE_CHECKING:

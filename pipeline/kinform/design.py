@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
+from kinform.frozen import dataclass
 from kinform.model.fingerprints import Fingerprints
 
 if TYPE_CHECKING:

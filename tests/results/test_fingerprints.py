@@ -82,7 +82,7 @@ def _imports(package: str) -> set[str]:
                 found.add(node.module.split(".")[1])
             elif isinstance(node, ast.ImportFrom) and node.module == "kinform":
                 found |= {alias.name for alias in node.names}
-    return found - {package, "model", "design", "errors"}
+    return found - {package, "frozen", "model", "design", "errors"}
 
 
 @pytest.mark.parametrize("stage", ["surfaces", "contacts", "joints", "mass", "simulation", "findings"])

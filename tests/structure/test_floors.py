@@ -12,9 +12,10 @@ import pytest
 ROOT = Path(__file__).parents[2]
 SOURCES = {"kinform": ROOT / "pipeline", "kinform_cli": ROOT / "cli"}
 FLOORS = (
-    "version", "errors", "model", "foundation", "form", "surfaces", "contacts", "kinematics", "mass", "function",
-    "behaviour", "collisions", "simulation", "design", "statics", "consistency", "reuse", "results", "exports",
-    "reports", "changes", "catalog", "ahead", "stages", "api", "method", "batch", "study", "kinform", "kinform_cli",
+    "version", "frozen", "errors", "model", "foundation", "form", "surfaces", "contacts", "kinematics", "mass",
+    "function", "behaviour", "collisions", "simulation", "design", "statics", "consistency", "reuse", "results",
+    "exports", "reports", "changes", "catalog", "ahead", "stages", "api", "method", "batch", "study", "kinform",
+    "kinform_cli",
 )  # fmt: skip
 """Rooms from the ground up: what stands later may import what stands earlier, never the reverse."""
 

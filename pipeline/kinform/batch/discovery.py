@@ -11,7 +11,6 @@ import fnmatch
 import os
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +19,7 @@ from kinform.errors import InputError, Problem
 from kinform.form.constants import MANIFEST_BYTES
 from kinform.form.sources import states_units
 from kinform.foundation.regular import not_a_file
+from kinform.frozen import dataclass
 
 DESCRIPTIONS = (".urdf", ".xacro", ".sdf", ".world", ".mjcf", ".xml")
 """Suffixes of files that are looked into, beside manifests."""

@@ -6,11 +6,12 @@ from __future__ import annotations
 import dataclasses
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
 from kinform.errors import InputError, Problem
+from kinform.frozen import dataclass
 from kinform.model.findings import SEVERITIES
 from kinform.results import replace_file
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +16,7 @@ from kinform.batch.record import Record, Row
 from kinform.batch.task import INPUT, UNLIMITED, Answer, Failure, Limits, Task
 from kinform.batch.unchanged import row_if_unchanged
 from kinform.errors import InputError, Problem, ResultsError
+from kinform.frozen import dataclass
 
 
 @dataclass(frozen=True)

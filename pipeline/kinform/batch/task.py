@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 from kinform.errors import Problem
+from kinform.frozen import dataclass
 
 DIED, TIME, MEMORY, INPUT, INTERNAL = "worker died", "time limit", "memory limit", "input", "internal error"
 """Why a task has no result."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from string import ascii_lowercase
 
 import numpy as np
@@ -34,6 +34,7 @@ from kinform.behaviour.shafts import (
 )
 from kinform.behaviour.signals import STEADY, Constant, Signal, signal
 from kinform.behaviour.sliding import Sliding
+from kinform.frozen import dataclass
 from kinform.function import FREEDOMS, acted_freedom
 from kinform.model.assembly import Assembly
 from kinform.model.function import Coupling, Drive, Load

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import Annotated
 
@@ -15,6 +15,7 @@ from kinform.behaviour.constants import LEAST_GAS
 from kinform.behaviour.joints import JointGeometry, JointKind
 from kinform.behaviour.ports import FRAME, Component, Node, Port
 from kinform.behaviour.signals import STEADY, Signal
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.quantities import MATRIX, XYZ, Direction, Inertia, JointValue, Metres, Place, Ratio
 

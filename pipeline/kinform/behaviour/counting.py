@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from kinform.behaviour.components import System
+from kinform.frozen import dataclass
 
 
 @dataclass(frozen=True)

@@ -9,12 +9,12 @@ housing, the side wheels of a differential. Cams are not: their ratio is another
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.behaviour import constants
 from kinform.foundation.graphs.graph import UnionFind
+from kinform.frozen import dataclass
 from kinform.function import resolve_joint
 from kinform.kinematics import is_higher
 from kinform.model.arrays import Array

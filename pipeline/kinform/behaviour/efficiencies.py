@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from kinform.behaviour.components import Gear
 from kinform.behaviour.coupled import Imposed
+from kinform.frozen import dataclass
 from kinform.function import resolve_joint
 from kinform.model.assembly import Assembly
 from kinform.model.function import Coupling

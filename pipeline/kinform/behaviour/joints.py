@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.behaviour.constants import PARALLEL_AXES
 from kinform.behaviour.primitives import Ball, OneFreedom, Primitive
 from kinform.foundation.algebra.vectors import perpendicular
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.quantities import Direction, Metres, Place
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,6 +19,7 @@ from kinform.behaviour.ports import Component, Node
 from kinform.behaviour.shafts import EndStop
 from kinform.behaviour.sliding import sliding_joints
 from kinform.foundation.words import quoted
+from kinform.frozen import dataclass
 from kinform.function import resolve_joint, stated_ranges
 from kinform.kinematics import is_higher
 from kinform.model.assembly import Assembly

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
+
+from kinform.frozen import dataclass
 
 FRAME = 6
 """Across: a twist (ω; v). Through: a wrench (τ; f)."""

@@ -11,11 +11,10 @@ with three constant matrices, so that all primitives of a mechanism move in one 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross_matrix
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 

@@ -11,12 +11,13 @@ Engineering Design (chapter 8, power screws) follow, with cos α where he has th
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
 
 from kinform.behaviour.joints import JointGeometry, JointKind
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Annotated, ClassVar
 
 import numpy as np
 
 from kinform.behaviour.ports import Component, Port
 from kinform.behaviour.signals import Signal
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.quantities import XYZ, Direction, JointValue, Metres, Ratio
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import bisect
 import math
-from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
 
 from kinform.behaviour.constants import OVERSHOOT, SPLINE_SAMPLES, STRAIGHT
+from kinform.frozen import dataclass
 from kinform.model.function import Law
 
 

@@ -11,13 +11,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 
 from kinform.behaviour.constants import ALIKE_RADII, ALONG_AXIS, MATERIAL_PAIRS
 from kinform.behaviour.rubbing import Rubs
 from kinform.foundation.words import listed
+from kinform.frozen import dataclass
 from kinform.kinematics.mobility.guides import span_along
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly

@@ -6,13 +6,13 @@ import hashlib
 import os
 import shlex
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from kinform import results
 from kinform.catalog.entry import Entry, entry_of
 from kinform.catalog.store import Catalog
 from kinform.errors import InputError, Problem, ResultsError, StageError
+from kinform.frozen import dataclass
 
 _ENDINGS = (".h5", ".hdf5")
 

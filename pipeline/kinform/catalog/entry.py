@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from kinform.consistency import verdict
 from kinform.design import Design
 from kinform.errors import StageError
 from kinform.foundation.graphs.graph import forest
+from kinform.frozen import dataclass
 from kinform.function import resolve_joint
 from kinform.function.amounts import amount_of
 from kinform.model.assembly import Assembly

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +14,7 @@ from kinform.catalog import constants
 from kinform.catalog.build import digest_of
 from kinform.catalog.entry import CatalogJoint, Entry
 from kinform.catalog.store import entry_from, open_catalog
+from kinform.frozen import dataclass
 
 JOINT_TYPES = (
     "fixed", "revolute", "prismatic", "cylindrical", "spherical", "planar", "screw", "universal", "general",

@@ -11,13 +11,14 @@ import functools
 import sqlite3
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 from kinform.catalog.entry import CatalogJoint, CatalogRequirement, Entry, Triple
 from kinform.errors import InputError, Problem
 from kinform.foundation.regular import not_a_file
+from kinform.frozen import dataclass
 from kinform.results import replace_file
 
 SCHEMA = "kinform/catalog/2"

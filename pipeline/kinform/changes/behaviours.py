@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.design import Design
+from kinform.frozen import dataclass
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.kinematics import Joint
 from kinform.model.mass import MassProperties

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
 from kinform.changes import constants
 from kinform.changes.behaviours import Snapshot
@@ -18,6 +17,7 @@ from kinform.changes.matching import new_names
 from kinform.changes.shapes import displacement, moved, reshaped
 from kinform.design import Design
 from kinform.foundation.words import number
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Part
 

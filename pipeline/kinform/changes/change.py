@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
 from kinform.changes.behaviours import Axis, Vector
 from kinform.changes.tolerance import Tolerance
 from kinform.foundation.words import counted, direction, length, place
+from kinform.frozen import dataclass
 
 
 @dataclass(frozen=True)

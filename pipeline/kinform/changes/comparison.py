@@ -8,7 +8,7 @@ way their directions point.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from kinform.changes.behaviours import Snapshot, snapshot
 from kinform.changes.causes import Cause, Consequences, causes_of, grouped, renames
@@ -18,6 +18,7 @@ from kinform.changes.masses import mass_changes
 from kinform.changes.matching import holder, new_names, same_bodies, with_names
 from kinform.changes.tolerance import Tolerance
 from kinform.design import Design
+from kinform.frozen import dataclass
 
 NEW = "ranges"
 """What earlier versions did not compute unasked: where only the later side knows it, it is new, not in doubt."""

@@ -11,7 +11,6 @@ import json
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from kinform.changes.behaviours import Axis, BodyMass, JointState, Snapshot, Vector
@@ -22,6 +21,7 @@ from kinform.changes.tolerance import Tolerance
 from kinform.design import Design
 from kinform.errors import InputError, Problem
 from kinform.foundation.texts import parse_json
+from kinform.frozen import dataclass
 from kinform.model.findings import CheckReport, Finding
 
 if TYPE_CHECKING:

@@ -11,12 +11,13 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from kinform.consistency.control import outcome_without
 from kinform.errors import InputError, Problem
 from kinform.foundation.texts import parse_json
+from kinform.frozen import dataclass
 from kinform.model.findings import SEVERITIES, CheckReport, Finding, Ignored
 
 SCHEMA = "kinform/baseline/1"

@@ -7,7 +7,7 @@ hands on (`lacks`). Properties that give the result of a stage may be read where
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import Literal, TypeVar
 
@@ -22,6 +22,7 @@ from kinform.consistency.constants import DAMPED_UNSEEN
 from kinform.consistency.outcome import Answer, Outcome, inconclusive, skipped, triple
 from kinform.design import Design
 from kinform.foundation.meshes.shell_faults import ShellFaults, shell_faults
+from kinform.frozen import dataclass
 from kinform.model.assembly import Assembly, MassOverride, Mesh, Part
 from kinform.model.checks import Ignore
 from kinform.model.contacts import Contacts

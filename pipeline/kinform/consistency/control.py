@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from kinform.consistency.constants import FEW_WARNINGS, NAMED_WARNINGS, WORST_WARNINGS
 from kinform.consistency.context import Unused
@@ -11,6 +11,7 @@ from kinform.consistency.outcome import Outcome
 from kinform.consistency.profiles import SETTLED, at_most
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted
+from kinform.frozen import dataclass
 from kinform.model.checks import CheckSettings, Ignore
 from kinform.model.findings import Finding, Ignored, RuleOutcome
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
+from kinform.frozen import dataclass
 from kinform.model.findings import Finding
 
 

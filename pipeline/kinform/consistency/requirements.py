@@ -7,7 +7,6 @@ name stands for, values in words.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TypeVar
 
 from kinform.consistency.constants import NO_EFFORT
@@ -15,6 +14,7 @@ from kinform.consistency.context import Context, Need
 from kinform.consistency.outcome import Answer, Outcome, decided, skipped, undecided
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import angle, counted, length, number
+from kinform.frozen import dataclass
 from kinform.function import resolve_joint
 from kinform.function.requirement_kinds import Kind
 from kinform.model.function import Requirement

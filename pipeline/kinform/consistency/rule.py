@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Protocol
 
 from kinform.consistency.context import Context, Need
 from kinform.consistency.outcome import Outcome, decided, triple
+from kinform.frozen import dataclass
 from kinform.model.findings import SEVERITIES, Finding
 
 Findings = Iterable[Finding]

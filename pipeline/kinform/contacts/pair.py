@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from kinform.contacts.overlap.solids import SolidStore
 from kinform.contacts.search.pair_view import PairView, pair_view
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.meshes.index import MeshStore
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, freeze
 from kinform.model.assembly import Part
 from kinform.model.contacts import Interference, Patch

@@ -4,7 +4,6 @@ formats of trees of links cannot say."""
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from kinform.behaviour import DcMotor, EffortDrive, MotionDrive, Servo
 from kinform.behaviour.primitives import Ball, OneFreedom
 from kinform.exports.names import free_name
 from kinform.exports.robot import Driver, Robot, RobotLink
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 _DRIVES: dict[type[Driver], str] = {

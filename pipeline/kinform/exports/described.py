@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -25,6 +24,7 @@ from kinform.form.descriptions.elements import xml_bytes
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.robot import At, Inertial, Robot, RobotJoint
 from kinform.form.problems import Problems
+from kinform.frozen import dataclass
 from kinform.mass.shapes import solid_of
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Part

@@ -11,7 +11,7 @@ simulation uses. The coordinates that are left free are chosen so that they stay
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import field, fields, replace
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from kinform.exports.model import ExportModel
 from kinform.exports.motors import left_out
 from kinform.exports.tree import Closing, Tree, grow
 from kinform.foundation.algebra.vectors import perpendicular
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.mechanism.closure import rank_of
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from kinform.errors import KinformError
+from kinform.frozen import dataclass
 from kinform.results.replacement import replace_file
 
 

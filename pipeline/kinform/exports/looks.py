@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from kinform.exports.model import ExportModel
 from kinform.exports.names import FILES, identifiers
 from kinform.foundation.colours import shares
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.assembly import Part
 

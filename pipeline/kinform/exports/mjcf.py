@@ -10,7 +10,7 @@ they must not collide.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
 import numpy as np
@@ -25,6 +25,7 @@ from kinform.exports.robot import Robot, RobotLink, robot_of
 from kinform.exports.text import render, vector
 from kinform.exports.tree import Closing, Link, Motion
 from kinform.foundation.algebra.spatial import to_matrix
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 CLOSABLE = ("spherical", "revolute", "fixed")

@@ -7,7 +7,6 @@ same thing: the same joints, drives and initial values.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,6 +19,7 @@ from kinform.design import Design
 from kinform.errors import StageError
 from kinform.foundation.algebra.spatial import quaternions
 from kinform.foundation.words import quoted
+from kinform.frozen import dataclass
 from kinform.function import resolve_joint, stated_ranges
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly

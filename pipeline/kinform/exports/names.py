@@ -10,7 +10,8 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Container, Iterable
-from dataclasses import dataclass
+
+from kinform.frozen import dataclass
 
 
 @dataclass(frozen=True)

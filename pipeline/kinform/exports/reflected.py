@@ -7,13 +7,12 @@ energy at unit rate is the inertia that the motion reflects to the joint, and th
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from kinform.behaviour import RigidBody
 from kinform.exports.constants import LOCKED_SHARE
 from kinform.exports.model import ExportModel
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.simulation.mechanism.states import states_at
 

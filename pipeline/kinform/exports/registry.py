@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
-from dataclasses import dataclass
 from importlib import import_module
 
 from kinform.design import Design
 from kinform.exports.exported import Exported, ExportError, LostError
 from kinform.exports.model import ExportModel, export_model
+from kinform.frozen import dataclass
 
 
 @dataclass(frozen=True)

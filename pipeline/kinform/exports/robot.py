@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from kinform.exports.looks import Shape, shapes_of, stl
 from kinform.exports.model import ExportModel, Limits
 from kinform.exports.names import FILES, XML, Language, identifiers
 from kinform.exports.tree import Closing, Link, Tree, coordinate_names, grow
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 Driver = MotionDrive | EffortDrive | Servo | DcMotor

@@ -9,7 +9,7 @@ it. What a robot description states is a limit, and without one there is none.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from kinform.behaviour.joints import KINDS
 from kinform.behaviour.primitives import OneFreedom
@@ -20,6 +20,7 @@ from kinform.exports.model import ExportModel
 from kinform.exports.names import SDF, free_name
 from kinform.exports.robot import Robot, RobotLink, robot_of
 from kinform.exports.text import render
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 

@@ -8,13 +8,13 @@ run through from its second body has its motions reversed: the axes change sign,
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.behaviour import Ground, JointComponent, RigidBody, System
 from kinform.behaviour.primitives import Ball, Primitive
 from kinform.foundation.graphs.graph import UnionFind, neighbours
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.simulation.mechanism.topology import arrange
 

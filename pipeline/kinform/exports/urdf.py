@@ -7,8 +7,6 @@ without mass between them; a screw is a turn and a slide that mimics it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from kinform.behaviour.joints import KINDS
 from kinform.exports.chains import Hinge, chain, tree_losses
 from kinform.exports.constants import UNLIMITED
@@ -17,6 +15,7 @@ from kinform.exports.model import ExportModel, Limits
 from kinform.exports.names import XML
 from kinform.exports.robot import Robot, RobotLink, robot_of
 from kinform.exports.text import render
+from kinform.frozen import dataclass
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,6 @@ coordinate sum to the joint's. A motor has an electric terminal, at which its su
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 from kinform.behaviour import Actor, Damper, DcMotor, EffortDrive, Gear, MotionDrive, Servo, Spring, VoltageController
 from kinform.behaviour.shafts import Controller
@@ -15,6 +14,7 @@ from kinform.behaviour.signals import Signal, Spline, Table
 from kinform.exports.equations import law_numbers, polynomials
 from kinform.exports.text import number
 from kinform.exports.vhdl_structure import Part, Scope, Writer
+from kinform.frozen import dataclass
 
 Values = dict[str, str]
 """Generics by name, as text."""

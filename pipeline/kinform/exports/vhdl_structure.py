@@ -6,7 +6,7 @@ Names are chosen here, and equations are counted: as many as unknowns, in every 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from string import ascii_lowercase
 from typing import Any
 
@@ -15,6 +15,7 @@ from kinform.exports.equations import Equations
 from kinform.exports.model import ExportModel
 from kinform.exports.names import VHDL, identifiers
 from kinform.exports.text import vector
+from kinform.frozen import dataclass
 
 COUNT = {
     "ground": 16, "rigid_body": 34, "massless_frame": 22, "fixed_joint": 36, "revolute_joint": 47,

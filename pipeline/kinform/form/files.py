@@ -6,7 +6,6 @@ import hashlib
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from pathlib import Path
 
 from kinform.form.constants import HASHED_AT_ONCE
@@ -16,6 +15,7 @@ from kinform.form.sources import AS_IT_IS, Reading, is_scene
 from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.foundation.regular import AS_A_FILE, listing, not_a_file
 from kinform.foundation.units import metres_per
+from kinform.frozen import dataclass
 from kinform.model.assembly import Assembly, Mesh, Part
 
 MESHES = (".stl", ".obj")

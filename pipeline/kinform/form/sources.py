@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from kinform.frozen import dataclass
 
 if TYPE_CHECKING:
     from kinform.form.descriptions.facts import Facts

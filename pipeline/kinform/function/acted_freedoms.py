@@ -11,12 +11,12 @@ The freedoms of the assembly (`Mobility.named`) say how each joint moves in each
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.words import counted
+from kinform.frozen import dataclass
 from kinform.function.constants import FREEDOM_AT_REST
 from kinform.function.joint_names import Resolution, resolve_joint
 from kinform.model.arrays import Array

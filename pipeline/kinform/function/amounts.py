@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross
+from kinform.frozen import dataclass
 from kinform.mass import weighed_together
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly

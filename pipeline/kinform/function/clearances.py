@@ -11,7 +11,6 @@ surfaces are compared, not solids.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import fcl
 import numpy as np
@@ -19,6 +18,7 @@ import numpy as np
 from kinform.foundation.at_work import at_work_on
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_model, fcl_pose
 from kinform.foundation.meshes.index import MeshIndex
+from kinform.frozen import dataclass
 from kinform.function.constants import GRID
 from kinform.model.arrays import Array, Flags
 from kinform.model.assembly import Assembly, Mesh, Part

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -17,6 +16,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, scaled
 from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.graphs.graph import blocks
+from kinform.frozen import dataclass
 from kinform.function import constants
 from kinform.function.joint_names import stated_ranges
 from kinform.kinematics.loops.loop_kinematics import LoopSystem, loop_system

@@ -8,13 +8,12 @@ configuration. One that is not was not found from that many starts: the nearest 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.algebra.vectors import cross
+from kinform.frozen import dataclass
 from kinform.function import constants
 from kinform.function.configurations import Chain, close
 from kinform.model.arrays import Array, Flags

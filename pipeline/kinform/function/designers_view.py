@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.function.joint_names import resolve_joint
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly

@@ -7,8 +7,8 @@ are taken in pairs: what one side opens the other closes, and their sum is the c
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
 
+from kinform.frozen import dataclass
 from kinform.function.constants import OPPOSED
 from kinform.model.arrays import Array
 from kinform.model.contacts import Contacts, Patch

@@ -7,10 +7,10 @@ designer may list the bodies in the other order and turn the axis round; each re
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.model.assembly import Assembly
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint, Kinematics

@@ -7,10 +7,9 @@ miss is bounded by the difference from straight lines where the path's time lies
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 

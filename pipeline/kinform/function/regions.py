@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import perpendicular
+from kinform.frozen import dataclass
 from kinform.function.constants import ALONG, INSIDE, RIM
 from kinform.function.requirement_kinds import Box, Cone, Region
 from kinform.model.arrays import Array

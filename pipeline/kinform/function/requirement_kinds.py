@@ -8,11 +8,12 @@ newer table has besides are left aside.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 

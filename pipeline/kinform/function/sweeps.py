@@ -12,12 +12,13 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from kinform.foundation.algebra.displacements import displacement, inverse, twist_of
 from kinform.foundation.algebra.vectors import cross
+from kinform.frozen import dataclass
 from kinform.function.clearances import Apart, Nearest
 from kinform.function.configurations import Chain
 from kinform.function.constants import BUDGET, FIRST, FLOOR, FLOOR_TOGETHER

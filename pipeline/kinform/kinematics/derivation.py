@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 
 from kinform.foundation.memory import uncollected
+from kinform.frozen import dataclass
 from kinform.kinematics.answers import Answers
 from kinform.kinematics.axes.bounds import move_bounds, uncertainties
 from kinform.kinematics.axes.equal_lengths import equalise_lengths

@@ -6,10 +6,10 @@ Each closed part counts as full, and what parts share counts twice: a density th
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.mass.constants import FLAT
 from kinform.mass.solids import integrate_solid
 from kinform.model.arrays import Array

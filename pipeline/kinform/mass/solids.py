@@ -12,12 +12,11 @@ is estimated from the turn of the surface across its smooth edges.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.meshes.edges import shared_edges
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces

@@ -5,12 +5,13 @@ Arrays are float64 and read-only. `X_WP` is the pose of the part frame P in the 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from typing import Annotated
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.model.checks import CheckSettings
 from kinform.model.descriptions import Description

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated
 
+from kinform.frozen import dataclass
 from kinform.model.names import JointName, PartName
 from kinform.model.quantities import JointValue, Metres, PartPair, Place
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.names import PartName
 from kinform.model.quantities import Direction, Lead, Metres, PartPair, Place, Radians, SquareMetres, columns

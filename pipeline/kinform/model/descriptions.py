@@ -6,9 +6,10 @@ as a sub-assembly, names have its prefix and poses are in the world.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Annotated
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.quantities import MATRIX, Direction, JointValue, Metres, Place, Ratio, columns
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Annotated, Any
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.quantities import XYZ, Direction, Metres, Place, Ratio, columns
 from kinform.model.sensors import Sensor

@@ -5,11 +5,11 @@ Twists are (ω; v), v the velocity of the point at the world's origin.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.model.names import BodyName, JointName, PartName
 from kinform.model.quantities import (

@@ -9,9 +9,9 @@ Nothing here knows how or where records are written: that is `kinform.results`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.names import PartName
 

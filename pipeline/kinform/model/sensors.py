@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from kinform.frozen import dataclass
 from kinform.model.quantities import Direction, Place
 
 

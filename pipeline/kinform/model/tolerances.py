@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
+from kinform.frozen import dataclass
 from kinform.model.quantities import Metres, Radians, Ratio
 
 DEGREE = math.pi / 180.0

@@ -9,11 +9,11 @@ from __future__ import annotations
 import textwrap
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from itertools import groupby
 
 from kinform.design import Design
 from kinform.foundation.words import counted, one_line, shortened, shortened_ends
+from kinform.frozen import dataclass
 from kinform.function.body_titles import body_titles
 from kinform.model.findings import CheckReport, Finding
 from kinform.reports import constants

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.frozen import dataclass
 from kinform.results import schema
 from kinform.results.held import HeldDataset, HeldGroup
 from kinform.results.schema import Form, Last, Length

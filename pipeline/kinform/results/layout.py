@@ -23,12 +23,13 @@ not written.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, is_dataclass
+from dataclasses import is_dataclass
 from typing import Any, Protocol
 
 import h5py
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import freeze
 from kinform.results.held import HeldGroup
 from kinform.results.records import Hint, columns_of, defaults, hint, hints, record_maker, record_values

@@ -11,11 +11,12 @@ import functools
 import types
 import typing
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import MISSING, dataclass, fields, is_dataclass, replace
+from dataclasses import MISSING, fields, is_dataclass, replace
 from typing import Annotated, Any, NewType
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.model.quantities import Columns
 from kinform.results.table import Column, flag, inline, integer, numbers, real, text, texts, values
 

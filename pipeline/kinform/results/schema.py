@@ -7,8 +7,7 @@ anything is made of it: a digest proves that a file is as somebody wrote it, not
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from kinform.frozen import dataclass
 from kinform.model.collisions import RANGE_STATUSES
 from kinform.model.findings import OUTCOMES, SEVERITIES
 from kinform.model.kinematics import JOINT_TYPES, STATUSES

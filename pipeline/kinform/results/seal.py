@@ -13,9 +13,9 @@ from __future__ import annotations
 import hashlib
 import os
 import re
-from dataclasses import dataclass
 from io import BufferedReader
 
+from kinform.frozen import dataclass
 from kinform.results import constants
 
 _MARK = b"kinform results\n"

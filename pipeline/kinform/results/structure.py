@@ -9,7 +9,6 @@ What of it would read other files, or take more memory than the file has bytes, 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from io import BufferedReader
 from typing import Any
 
@@ -17,6 +16,7 @@ import h5py
 import numpy as np
 from h5py import h5a, h5d, h5g, h5l, h5o, h5s, h5t
 
+from kinform.frozen import dataclass
 from kinform.results import constants
 
 _SIMPLE = frozenset((h5t.INTEGER, h5t.FLOAT, h5t.ENUM, h5t.STRING))

@@ -16,7 +16,6 @@ from __future__ import annotations
 import json
 import struct
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from operator import is_
 from typing import Any
@@ -26,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.errors import ResultsError
+from kinform.frozen import dataclass
 from kinform.model.arrays import freeze
 from kinform.results.held import HeldDataset, HeldGroup
 from kinform.results.texts import has_surrogates, stored_text

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
 from kinform.design import Design
+from kinform.frozen import dataclass
 from kinform.model.assembly import Assembly
 from kinform.model.fingerprints import Fingerprints
 from kinform.reuse import fingerprints, lineage

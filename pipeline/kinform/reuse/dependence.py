@@ -6,10 +6,10 @@ Fingerprints, lineage, what a stage sees and why it is computed again all follow
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from kinform.design import Design
+from kinform.frozen import dataclass
 from kinform.model.assembly import Assembly
 from kinform.reuse import views
 

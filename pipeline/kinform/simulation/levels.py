@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 
 from kinform.behaviour import Behaviour, EndStop, Friction, RigidBody, System
+from kinform.frozen import dataclass
 from kinform.function import FREEDOMS, acted_freedom, acting_by_force, resolve_joint, stated_ranges
 from kinform.model.assembly import Assembly
 from kinform.model.function import Drive

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from kinform.behaviour.components import Ground, System
 from kinform.behaviour.diagnosis import faults
 from kinform.behaviour.nested import flat
 from kinform.foundation.progress import Progress, Say
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.simulation import Simulation
 from kinform.simulation.constants import INERTIA_ROUNDING, LAST_OUTPUT, OUTPUT_NUMBERS, OUTPUT_TIMES

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.function import resolve_joint
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly

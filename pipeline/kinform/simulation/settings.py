@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from kinform.foundation.progress import Progress, Say
+from kinform.frozen import dataclass
 
 
 @dataclass(frozen=True)

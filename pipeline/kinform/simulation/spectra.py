@@ -10,10 +10,10 @@ Algorithms for Discrete Fourier Transforms of Weighted Signals, IEEE Trans. Inst
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.simulation import constants
 

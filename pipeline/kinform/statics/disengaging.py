@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from kinform.design import Design
+from kinform.frozen import dataclass
 from kinform.kinematics.mobility.guides import guide
 from kinform.kinematics.separation.contact_rows import is_stated
 from kinform.model.arrays import Array

@@ -9,13 +9,13 @@ Of a power screw these are the formulas of the handbooks.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.behaviour import RigidBody
 from kinform.behaviour.signals import Constant
 from kinform.design import Design
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.function import SimulationRequest
 from kinform.simulation import SolverSettings, port_model

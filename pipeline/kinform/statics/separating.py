@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -17,6 +16,7 @@ from kinform.design import Design
 from kinform.foundation.algebra.displacements import inverse, poses
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import cross
+from kinform.frozen import dataclass
 from kinform.kinematics.mobility.guides import span_along
 from kinform.kinematics.separation.contact_rows import ContactRows, is_stated
 from kinform.model.arrays import Array

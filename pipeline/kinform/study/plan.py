@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from kinform.errors import InputError, Problem
 from kinform.form.keys import steps_of
 from kinform.form.stated import stated_value, toml_of
+from kinform.frozen import dataclass
 from kinform.study import constants, fits
 
 METHODS = ("grid", "one-at-a-time", "latin-hypercube", "sobol", "monte-carlo")

@@ -8,7 +8,6 @@ import os
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +18,7 @@ from kinform.batch.session import Settings
 from kinform.batch.task import INPUT, Task
 from kinform.errors import InputError, Problem
 from kinform.form.keys import steps_of
+from kinform.frozen import dataclass
 from kinform.study.plan import Plan
 from kinform.study.sampling import samples
 

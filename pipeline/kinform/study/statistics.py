@@ -8,11 +8,11 @@ count in the yield; sensitivities leave them out, and indices are not said where
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from scipy import stats
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.study import constants
 from kinform.study.session import Outcome

@@ -9,13 +9,13 @@ from __future__ import annotations
 import hashlib
 import itertools
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinform.foundation.algebra.vectors import canonical_sign
 from kinform.foundation.records import altered
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, freeze
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface

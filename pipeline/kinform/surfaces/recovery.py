@@ -7,13 +7,13 @@ neither the size of a part nor the order in its file changes what is found.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import box
 from kinform.foundation.records import made
 from kinform.foundation.sorting import ascending, coarse
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints, freeze
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface

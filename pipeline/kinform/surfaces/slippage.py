@@ -9,11 +9,10 @@ extrusion shifts, a helicoid screws; planes, spheres and cylinders do it in seve
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.surfaces.groups import group_mean, sums_of
 from kinform.surfaces.polygons.patchwork import Patchwork

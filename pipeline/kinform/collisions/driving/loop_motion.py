@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -18,6 +17,7 @@ from kinform.collisions import constants
 from kinform.foundation.algebra.displacements import exponentials, inverse
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.graphs.graph import forest
+from kinform.frozen import dataclass
 from kinform.kinematics.loops.loop_kinematics import LoopSystem, loop_system
 from kinform.model.arrays import Array, Flags
 from kinform.model.kinematics import Freedom, Kinematics

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -23,6 +22,7 @@ from kinform.collisions.pair.advancement import First, Near, first_crossing
 from kinform.collisions.pair.posed_pairs import Moving, Nodes, moving_pairs
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.displacements import inverse
+from kinform.frozen import dataclass
 from kinform.kinematics.mobility.guides import guide
 from kinform.model.arrays import Array
 from kinform.model.collisions import JointRange, RangeEnd

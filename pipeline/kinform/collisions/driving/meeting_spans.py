@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -30,6 +29,7 @@ from kinform.collisions.constants import (
 )
 from kinform.collisions.driving.swept_profiles import TURN, nearest, spanned
 from kinform.foundation.meshes.boxes import along_curve, triangle_boxes
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 
 Along = Callable[[Ints, Ints, Array, Array], Flags]

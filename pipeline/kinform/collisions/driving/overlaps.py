@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from kinform.foundation.words import counted, length, place
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.names import PartName
 

@@ -7,7 +7,6 @@ shadow: facets whose boxes in these coordinates are apart never meet, over the w
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -16,6 +15,7 @@ from kinform.collisions.constants import CHUNK, LEVEL
 from kinform.foundation.algebra.vectors import cross, perpendicular
 from kinform.foundation.meshes.boxes import along_curve, bounds, facet_boxes
 from kinform.foundation.meshes.proximity import near_boxes
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
 TURN = 2.0 * math.pi

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection
-from dataclasses import dataclass
 from functools import cached_property, partial
 
 import numpy as np
@@ -19,6 +18,7 @@ from kinform.collisions.pair.course import Course, narrowed
 from kinform.collisions.pair.deep_entry import Entry, Inside
 from kinform.collisions.pair.mate_surfaces import SurfacePair
 from kinform.collisions.pair.prepared_pair import NONE, Crossing, PairTest
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.collisions.pair.passages import Path
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 

@@ -7,14 +7,13 @@ end of one is then inside the other. Points lie inside of facets, spread over ea
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from kinform.collisions.constants import POINTS_FAR, POINTS_FINE, POINTS_PART, POINTS_SURFACE
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.meshes.index import MeshIndex, inner_weights, longest_sides
 from kinform.foundation.sorting import ascending
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 

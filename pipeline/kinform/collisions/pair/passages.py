@@ -8,13 +8,13 @@ high above it as the plane's distance asks for, A cos ψ + B sin ψ = C. A point
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.collisions.constants import PASSAGE_ROUNDING
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.meshes.boxes import FlatBoxes, triangle_boxes
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
 

@@ -8,7 +8,6 @@ points lie on a mating surface to within the errors of the pair, are no collisio
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import fcl
@@ -25,6 +24,7 @@ from kinform.foundation.at_work import at_work_on
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_pose
 from kinform.foundation.meshes.index import MeshIndex
 from kinform.foundation.sorting import distinct
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.names import PartName

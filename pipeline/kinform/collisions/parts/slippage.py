@@ -11,7 +11,6 @@ slippage analysis (Gelfand and Guibas 2004).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +18,7 @@ from numpy.typing import NDArray
 from kinform.collisions.constants import DRIFT, EVEN
 from kinform.foundation.algebra.vectors import cross, perpendiculars
 from kinform.foundation.sorting import ascending, heads
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface

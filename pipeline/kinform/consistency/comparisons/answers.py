@@ -12,13 +12,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.consistency.comparisons.intended_joints import Comparison, compare_joint
 from kinform.design import Design
 from kinform.foundation.words import counted
+from kinform.frozen import dataclass
 from kinform.kinematics.bodies.as_stated import leaves_free
 from kinform.kinematics.partition.parting import joint_twists
 from kinform.model.assembly import Assembly

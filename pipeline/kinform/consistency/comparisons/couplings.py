@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from kinform.consistency import constants
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.words import rate
+from kinform.frozen import dataclass
 from kinform.function import resolve_joint
 from kinform.kinematics import coupling_aside, is_higher
 from kinform.model.assembly import Assembly

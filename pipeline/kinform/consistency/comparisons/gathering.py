@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from kinform.consistency.constants import ALIKE_MOST
 from kinform.foundation.words import counted, quoted
+from kinform.frozen import dataclass
 from kinform.model.findings import Finding
 
 

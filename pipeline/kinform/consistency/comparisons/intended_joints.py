@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.consistency.constants import SHARED_MOTION
 from kinform.foundation.algebra.vectors import cross
+from kinform.frozen import dataclass
 from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.partition.parting import joint_twists
 from kinform.kinematics.questions.through_helpers import motion_through_helpers

@@ -8,7 +8,6 @@ What is shorter than the output step is not seen.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from kinform.consistency.context import Context
 from kinform.consistency.outcome import Answer, Margin, met, undecided, violated
 from kinform.consistency.requirements import simulated, single_joint
 from kinform.foundation.words import number, quoted, telling
+from kinform.frozen import dataclass
 from kinform.function.amounts import Amount, amount_of
 from kinform.function.requirement_kinds import JointLimit, TorqueSpeed
 from kinform.model.arrays import Array

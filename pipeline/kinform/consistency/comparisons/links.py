@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from kinform.foundation.meshes.hulls import Hull, hull_of
+from kinform.frozen import dataclass
 from kinform.mass.principal import impossible
 from kinform.mass.shapes import Solid, solid_of
 from kinform.model.arrays import Array

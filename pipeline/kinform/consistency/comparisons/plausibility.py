@@ -15,7 +15,6 @@ any size, and no size proves a mistake; nothing but these doubts depends on it:
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -33,6 +32,7 @@ from kinform.consistency.constants import (
     WRONG_SCALE,
 )
 from kinform.foundation.words import length, mass, number, quoted, volume
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Part, Source
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 from kinform.consistency import constants
 from kinform.consistency.comparisons.intended_joints import Comparison, bodies_of
 from kinform.consistency.context import Context
 from kinform.foundation.words import angle, length, quoted
+from kinform.frozen import dataclass
 from kinform.model.collisions import RangeEnd
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint

@@ -10,13 +10,13 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.consistency import constants
 from kinform.consistency.comparisons.links import Weighed
 from kinform.foundation.algebra.vectors import cross
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.descriptions import DescribedLink, Description
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import fields
 
 import numpy as np
 
 from kinform.contacts.constants import AXES_COAXIAL, AXES_PARALLEL, HOLE_SINK, ROUND_SWEEP, SHAFT_COSINE
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Part
 from kinform.model.contacts import Patch

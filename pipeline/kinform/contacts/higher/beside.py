@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.contacts.search.pair_view import NearSurfaces
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.model.surfaces import KINDS
 

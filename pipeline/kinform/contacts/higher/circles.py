@@ -7,7 +7,6 @@ arcs are there. The chords of its edges are not the rim.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from kinform.contacts.mating.charts import perpendicular
 from kinform.contacts.search.pair_view import NearSurfaces, PairView
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.sorting import heads
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.surfaces import KINDS
 

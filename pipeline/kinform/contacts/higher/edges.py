@@ -7,7 +7,6 @@ its edges do; of a rim, which is an edge that bends, only the lowest place count
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,6 +15,7 @@ from kinform.contacts.higher.sharp import ConvexEdges, on_surface
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.pair_view import PairView, PartView
 from kinform.foundation.algebra.vectors import dot
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.contacts.constants import RIM_STEPS
 from kinform.contacts.higher.beside import Beside, beside
 from kinform.contacts.search.pair_view import NearSurfaces
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 
 

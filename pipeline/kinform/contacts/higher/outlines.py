@@ -9,7 +9,6 @@ short ones, and where an exact cylinder begins.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -24,6 +23,7 @@ from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import shared_edges
 from kinform.foundation.meshes.near import Near
 from kinform.foundation.sorting import ascending, heads
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.surfaces import KINDS
 

@@ -9,7 +9,7 @@ are within 1 % of the contact tolerance of each other.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.narrow_phase import Probes, verify
 from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.foundation.algebra.vectors import cross
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS

@@ -9,7 +9,7 @@ then give rows that are exactly dependent, as those of true flanks are.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from kinform.contacts.search.pair_view import NearSurfaces, PairView, PartView, 
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.meshes.boxes import meeting_box
 from kinform.foundation.meshes.proximity import near_boxes
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from kinform.contacts.search.pair_view import PairView, PartView, near_facets
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.meshes.edges import shared_edges
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 
 

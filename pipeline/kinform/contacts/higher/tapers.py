@@ -4,7 +4,6 @@ side by side and in their rings, or at a point, where they cross."""
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from kinform.contacts.higher.beside import beside
 from kinform.contacts.higher.meeting import Meeting
 from kinform.contacts.search.pair_view import SurfacePair
 from kinform.foundation.algebra.vectors import cross, foot
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 

@@ -3,12 +3,11 @@ share of the contact tolerance of each other."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from kinform.contacts.mating.patches import classify_fit
 from kinform.contacts.search.pair_view import PairView
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 

@@ -10,7 +10,6 @@ of them does not depend on the others, to the last bit.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +19,7 @@ from kinform.foundation.algebra.vectors import lengths
 from kinform.foundation.joined import joined
 from kinform.foundation.meshes.boxes import middles
 from kinform.foundation.sorting import heads, numbered
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 
 

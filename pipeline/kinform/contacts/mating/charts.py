@@ -8,7 +8,6 @@ point that the projection cannot show, lies opposite. Lengths in m, one frame th
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
@@ -18,6 +17,7 @@ from kinform.contacts.constants import CHART_ARC, CHART_FAR, HINT_LEAST, POLE_SE
 from kinform.foundation.algebra import vectors
 from kinform.foundation.algebra.vectors import cross, lengths, norm
 from kinform.foundation.meshes.boxes import middles
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
 

@@ -17,7 +17,7 @@ flats that a bore or a shaft encloses within the tolerance is a cylinder here, w
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 
 import numpy as np
 
@@ -29,6 +29,7 @@ from kinform.contacts.search.pair_view import NearSurfaces, PairView, PartView, 
 from kinform.foundation.meshes.boxes import facet_boxes
 from kinform.foundation.meshes.rings import Ring
 from kinform.foundation.meshes.surface_table import SurfaceTable
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS

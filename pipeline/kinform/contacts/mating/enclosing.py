@@ -9,8 +9,6 @@ is a stop, and says nothing of what holds.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from kinform.contacts import constants
@@ -23,6 +21,7 @@ from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import meeting_box, middles, triangle_boxes
 from kinform.foundation.meshes.probes import Region
 from kinform.foundation.sorting import distinct
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS

@@ -6,7 +6,7 @@ uncertainties.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 
 import numpy as np
@@ -15,6 +15,7 @@ from kinform.contacts import constants
 from kinform.contacts.mating.charts import Chart
 from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.foundation.algebra.vectors import cross, norm
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 

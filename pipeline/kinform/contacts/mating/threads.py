@@ -9,7 +9,6 @@ profiles, and so the common screw motion is left exactly free.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from kinform.contacts.mating.mate import Axes, aligned, mean_axes
 from kinform.contacts.mating.patches import classify_fit
 from kinform.contacts.search.pair_view import PairView, PartView, SurfacePair
 from kinform.foundation.algebra.vectors import cross, dot
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 

@@ -8,7 +8,6 @@ where it is deeper than the chord errors of the surfaces that bound it.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,6 +19,7 @@ from kinform.contacts.presses import beyond_press
 from kinform.contacts.search.pair_view import PairView, PartView, near_facets
 from kinform.foundation.meshes.boxes import middles
 from kinform.foundation.meshes.parity import winding
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints, freeze
 from kinform.model.contacts import Interference, Patch
 

@@ -7,7 +7,7 @@ before the boolean, because manifold3d's tolerances are relative to the size of 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 from manifold3d import Error, Manifold, Mesh64
@@ -17,6 +17,7 @@ from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.graphs.components import components
 from kinform.foundation.processes import threads_ran
 from kinform.foundation.sorting import ascending, heads
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 

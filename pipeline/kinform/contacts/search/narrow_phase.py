@@ -9,7 +9,7 @@ touch there.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from itertools import accumulate
 
 import numpy as np
@@ -20,6 +20,7 @@ from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.joined import joined
 from kinform.foundation.meshes.probes import Cast, Hits, cast_all
 from kinform.foundation.sorting import heads
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 
 

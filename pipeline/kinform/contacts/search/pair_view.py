@@ -8,7 +8,7 @@ take; `SurfacePair` one surface of either part that may touch.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -22,6 +22,7 @@ from kinform.foundation.meshes.probes import Region
 from kinform.foundation.meshes.proximity import near_boxes
 from kinform.foundation.meshes.surface_table import SurfaceTable
 from kinform.foundation.sorting import heads
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Part
 from kinform.model.names import PartName

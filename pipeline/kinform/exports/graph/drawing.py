@@ -7,7 +7,6 @@ is for Graphviz and whatever reads its language.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from html import escape
 
 import numpy as np
@@ -17,6 +16,7 @@ from kinform.exports.graph.layout import box_centres
 from kinform.foundation.graphs.cycles import short_cycles
 from kinform.foundation.graphs.graph import blocks
 from kinform.foundation.words import counted, one_line
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Kinematics
 

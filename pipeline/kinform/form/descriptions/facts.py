@@ -7,11 +7,12 @@ rules ask about these, and an export writes back what was not touched.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
 from kinform.form.descriptions.robot import Link, Robot, RobotJoint, Shape, Stated
+from kinform.frozen import dataclass
 from kinform.model.descriptions import DescribedJoint, DescribedLink, Description, StatedMass
 
 

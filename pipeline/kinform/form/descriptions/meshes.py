@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import unquote
 
 from kinform.form.constants import ENTRIES_MOST, PACKAGE_LEVELS
+from kinform.frozen import dataclass
 
 _PACKAGE = re.compile(r"(?:package|model)://([^/]*)/?(.*)", re.DOTALL)
 _PACKAGE_FILES = ("package.xml", "model.config")

@@ -8,7 +8,7 @@ frame, stays behind.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +19,7 @@ from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.robot import Link, Ratio, RobotJoint, Shape
 from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 SUFFIX = "{urn:kinform}suffix"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +14,7 @@ from kinform.form.descriptions.elements import FILE, Element, Xml, parse_xml, ta
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.poses import about, pose, quaternion, turn
 from kinform.foundation.meant import in_quotes
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 

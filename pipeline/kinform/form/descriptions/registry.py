@@ -5,12 +5,12 @@ from __future__ import annotations
 import importlib
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.robot import Robot
 from kinform.form.problems import Problems
+from kinform.frozen import dataclass
 
 Read = Callable[[Path, bytes, str, Problems, MeshFiles], Robot | None]
 

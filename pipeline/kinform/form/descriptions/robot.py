@@ -7,10 +7,11 @@ The frame F is that of the description: of its root link, or of its world. A rea
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
 from kinform.form.constants import NO_BOUND
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 

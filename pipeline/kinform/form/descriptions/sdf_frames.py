@@ -6,13 +6,12 @@ Names are full ones, "outer::inner::name", as SDFormat scopes them; "" is the wo
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from kinform.form.descriptions.elements import Element, Xml
 from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 WORLD = ""

@@ -7,7 +7,7 @@ or below folders that the user names, and at most so deep in each other.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +19,7 @@ from kinform.form.descriptions.sdf_frames import MODEL, WORLD, Frame, Frames
 from kinform.form.descriptions.sdf_text import Included
 from kinform.form.descriptions.sdf_values import Values
 from kinform.foundation.meant import in_quotes
+from kinform.frozen import dataclass
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,12 +10,12 @@ import copy
 import os
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from lxml import etree
 
 from kinform.form.descriptions.elements import FILE, Element, tag_of, xml_text
+from kinform.frozen import dataclass
 
 MODERN = (1, 7)
 """The version from which on poses and axes are said in the same way."""

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.form.descriptions.robot import At, Ratio
 from kinform.form.problems import Problems
 from kinform.foundation.meant import did_you_mean, first_names, in_quotes
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 Edge = tuple[str, str, str, Array, At]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import re
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,7 @@ from kinform.form.descriptions.meshes import MeshFiles, files_below
 from kinform.form.descriptions.robot import Robot
 from kinform.form.problems import Problems
 from kinform.foundation.processes import Crash, in_own_process
+from kinform.frozen import dataclass
 
 
 def read(path: Path, data: bytes, file: str, problems: Problems, meshes: MeshFiles) -> Robot | None:

@@ -6,12 +6,12 @@ every problem can be given the line of its own key.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 from kinform.form.constants import LARGEST_NUMBER, NAME_LENGTH, PATH_LENGTH
+from kinform.frozen import dataclass
 
 Finite = Annotated[float, Field(ge=-LARGEST_NUMBER, le=LARGEST_NUMBER, allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, le=LARGEST_NUMBER, allow_inf_nan=False)]

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinform.form.constants import LARGEST_NUMBER
+from kinform.frozen import dataclass
 
 REEXPORT = "export the mesh again"
 """The remedy where nothing else helps."""

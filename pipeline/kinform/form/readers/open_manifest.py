@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +27,7 @@ from kinform.form.sources import SourceTables, is_scene, is_source, source_table
 from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.foundation.texts import TextError, read_text
 from kinform.foundation.units import UNITS, metres_per
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.assembly import Source
 

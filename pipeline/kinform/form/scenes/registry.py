@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
 from kinform.form.meshes.raw import Fault, MeshError
 from kinform.form.scenes.scene import EXPORT, Scene
 from kinform.form.sources import AS_IT_IS, Reading
+from kinform.frozen import dataclass
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ A node gives its name to what lies below it. A root that is alone and has no mes
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +14,7 @@ from kinform.form.constants import PARTS_MOST, SCENE_DEEP, SCENE_NODES, SHEAR, U
 from kinform.form.descriptions.tree import distinct
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, prevailing
 from kinform.foundation.meant import in_quotes
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 EXPORT = "export the file again"

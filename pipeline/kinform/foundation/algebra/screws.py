@@ -8,12 +8,12 @@ constraint rows compare rotations with translations at the size of the contact.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import box, cross, norm
 from kinform.foundation.constants import ROUNDINGS
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 

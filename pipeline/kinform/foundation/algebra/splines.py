@@ -7,11 +7,11 @@ assembly.
 from __future__ import annotations
 
 from bisect import bisect_right
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TypeVar
+
+from kinform.frozen import dataclass
 
 Edge = tuple[int, int]
 Node = TypeVar("Node", bound=Hashable)

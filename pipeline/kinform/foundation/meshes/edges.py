@@ -8,7 +8,6 @@ at and then by facet.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -16,6 +15,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.alike import numbered_alike
 from kinform.foundation.sorting import ascending, heads
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 
 _FOLLOWING = np.array([1, 2, 0])

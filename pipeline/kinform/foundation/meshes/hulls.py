@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from kinform.foundation import constants
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 

@@ -10,7 +10,6 @@ the mesh's own frame: the BVH never has to be built again for another pose.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate, pairwise
 from typing import Protocol
@@ -27,6 +26,7 @@ from kinform.foundation.meshes.closest import closest_facets
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, fcl_pose, partial_model, point_model
 from kinform.foundation.meshes.slivers import beside, crossings, meetings
 from kinform.foundation.sorting import distinct
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 

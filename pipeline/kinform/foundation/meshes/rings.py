@@ -8,8 +8,6 @@ two parts decides what that means there.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from kinform.foundation import constants
@@ -18,6 +16,7 @@ from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import SharedEdges
 from kinform.foundation.meshes.surface_table import SurfaceTable
 from kinform.foundation.sorting import distinct, heads, median, numbered
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import KINDS, MeshSurfaces

@@ -6,8 +6,6 @@ below one of a solid is material, once; above one of a cavity is none. Shells th
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
@@ -16,6 +14,7 @@ from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
 from kinform.foundation.meshes.index import inner_weights
 from kinform.foundation.meshes.parity import Ray
 from kinform.foundation.meshes.shells import shells_of
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from functools import cached_property
 from operator import attrgetter
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.model.surfaces import KINDS, MeshSurfaces
 

@@ -12,12 +12,13 @@ are shifted by no more than they are uncertain at the point where they meet, whi
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import box, norm
+from kinform.frozen import dataclass
 from kinform.kinematics.constants import EXACT_AXIS, SIGMAS
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch

@@ -8,12 +8,12 @@ by more than its uncertainty is touched, and nothing is shifted by more than its
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, foot, norm, perpendicular
 from kinform.foundation.graphs.graph import UnionFind
+from kinform.frozen import dataclass
 from kinform.kinematics.constants import FIRST_LOOK, LEAST_CROSSING, MET, RCOND
 from kinform.model.arrays import Array, Flags, Ints
 

@@ -14,13 +14,14 @@ with all sides that need them, and the rest is tried again.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, norm, perpendicular
 from kinform.foundation.graphs.graph import blocks
+from kinform.frozen import dataclass
 from kinform.kinematics import constants
 from kinform.kinematics.axes.bounds import MoveBounds
 from kinform.kinematics.axes.snapping import LINES

@@ -9,13 +9,14 @@ kept, and the spaces of the higher pairs are turned until they contain them.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, scaled, span
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.graphs.graph import UnionFind
+from kinform.frozen import dataclass
 from kinform.kinematics.constants import AT_REST, DOUBTFUL_MOTION, MOST_TURNED, NEARLY_LEFT, SIGMAS
 from kinform.kinematics.loops.assembly_closure import body_twists
 from kinform.kinematics.loops.joint_graph import JointGraph

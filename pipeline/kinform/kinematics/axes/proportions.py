@@ -12,7 +12,7 @@ exponentials formula, 1994).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -21,6 +21,7 @@ from kinform.foundation.algebra.displacements import adjoint, displacement
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import cross, cross_matrix, norm
 from kinform.foundation.graphs.graph import blocks
+from kinform.frozen import dataclass
 from kinform.kinematics import constants
 from kinform.kinematics.axes.bounds import MoveBounds
 from kinform.kinematics.loops.joint_graph import JointGraph

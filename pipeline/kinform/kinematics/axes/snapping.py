@@ -11,12 +11,13 @@ would have to move by more is left out of what is made to agree, the worst first
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical, cross, norm, perpendicular, sine
 from kinform.foundation.records import altered
+from kinform.frozen import dataclass
 from kinform.kinematics.axes.bounds import MoveBounds
 from kinform.kinematics.axes.concurrence import Locus, meeting_shifts
 from kinform.kinematics.constants import DIRECTION_DECIMALS, MET, RCOND, SIGMAS

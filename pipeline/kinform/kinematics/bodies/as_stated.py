@@ -12,12 +12,13 @@ stated joints move relative to each other, without one of their own, constrains 
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.words import counted, quoted
+from kinform.frozen import dataclass
 from kinform.kinematics.bodies.complete import complete_joints, without_effect
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.bodies.stated_joints import Pair, joint_form, pair_between

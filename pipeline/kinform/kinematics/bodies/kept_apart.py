@@ -10,10 +10,10 @@ between two nodes of a graph run through the block of an edge between them, and 
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass
 from itertools import combinations
 
 from kinform.foundation.graphs.graph import UnionFind, blocks
+from kinform.frozen import dataclass
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Suggestion
 from kinform.model.names import PartName

@@ -7,12 +7,12 @@ closure equations). The room's docstring has an example.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kinform.foundation.graphs.graph import Forest, blocks, forest
+from kinform.frozen import dataclass
 from kinform.kinematics.constants import FEW_RATES
 from kinform.kinematics.loops.block_closure import Block, Solution, close_block
 from kinform.model.arrays import Array

@@ -8,13 +8,13 @@ pivoting, from all that depend on them; what is left are the freedoms. Equations
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, scaled
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.graphs.cycles import Cycle, short_cycles
+from kinform.frozen import dataclass
 from kinform.kinematics import constants
 from kinform.model.arrays import Array, Ints
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
+from kinform.frozen import dataclass
 from kinform.kinematics.loops.assembly_closure import Closure, close
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Body, Joint

@@ -12,7 +12,6 @@ Leading axes of arrays are batches of configurations. No forces, no names, no de
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +21,7 @@ from kinform.foundation.algebra.screws import Frame, bracket, scaled
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import forest
 from kinform.foundation.records import altered
+from kinform.frozen import dataclass
 from kinform.kinematics.constants import FAR_AXIS
 from kinform.model.arrays import Array, Flags
 

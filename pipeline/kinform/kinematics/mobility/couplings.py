@@ -7,12 +7,12 @@ ratio. It is read out of the motions that all joints together leave: value(a) = 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.meshes.edges import shared_edges
+from kinform.frozen import dataclass
 from kinform.kinematics.axes.higher_pairs import is_higher
 from kinform.kinematics.constants import FIXED_RATIO, TOOTHED_TURNS
 from kinform.kinematics.loops.assembly_closure import Closure

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Generator, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import UnionFind, blocks
 from kinform.foundation.in_step import in_step
 from kinform.foundation.words import counted, listed
+from kinform.frozen import dataclass
 from kinform.kinematics.constants import LEAST_FRAME, MOST_BATCH_NUMBERS, MOST_BLOCK_WORK, MOST_STATEMENTS, MOVING_JOINT
 from kinform.kinematics.loops.loop_kinematics import LoopSystem, loop_system
 from kinform.kinematics.mobility.local_dimension import LocalMotions, local_motions_of_each

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.kinematics import constants
 from kinform.kinematics.loops.loop_kinematics import Form, LoopSystem, stacked
 from kinform.kinematics.mobility.second_order import Pose

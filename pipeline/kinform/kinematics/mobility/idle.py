@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, rotation, scaled, span, twist_at_origin
 from kinform.foundation.algebra.vectors import cross, dot, norm, sine, widest_gap
+from kinform.frozen import dataclass
 from kinform.kinematics import constants
 from kinform.kinematics.bodies.stated_joints import Pair, pair_between
 from kinform.kinematics.loops.joint_graph import JointGraph

@@ -15,7 +15,7 @@ Three tests, none of which needs another's result:
 from __future__ import annotations
 
 from collections.abc import Generator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TypeVar
 
 import numpy as np
@@ -23,6 +23,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import bracket
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.in_step import in_step
+from kinform.frozen import dataclass
 from kinform.kinematics import constants
 from kinform.kinematics.loops.loop_kinematics import LoopSystem
 from kinform.kinematics.mobility.gauss_newton import Ends, Walk, ends, solve

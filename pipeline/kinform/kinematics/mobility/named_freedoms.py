@@ -7,13 +7,13 @@ other drivers rest. Idle turns take the place of one freedom each, so that the o
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical, cross, foot, norm
 from kinform.foundation.graphs.graph import Forest, forest
+from kinform.frozen import dataclass
 from kinform.kinematics.constants import (
     AT_REST,
     EXCHANGED,

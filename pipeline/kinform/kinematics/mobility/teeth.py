@@ -10,12 +10,12 @@ axes, and of teeth that do not come at even distances.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, norm, perpendicular
 from kinform.foundation.sorting import median
+from kinform.frozen import dataclass
 from kinform.kinematics.constants import EVEN_TEETH, FEWEST_TEETH, IN_PLANE, RATIO_AGREES, TIP_MARGIN, TOOTH_POSES
 from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh

@@ -10,13 +10,14 @@ end stops (`stops`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import sqrt
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, perpendicular, sine
 from kinform.foundation.words import counted, quoted
+from kinform.frozen import dataclass
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.pair.freedoms import freedoms, freedoms_beyond

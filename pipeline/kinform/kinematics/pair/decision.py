@@ -8,12 +8,12 @@ when they are a small part of the contact; the answer is then `blocked`. The roo
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import norm, sine
 from kinform.foundation.in_step import in_step
+from kinform.frozen import dataclass
 from kinform.kinematics import constants
 from kinform.kinematics.pair.certainty import Certainty, certainty, momentary
 from kinform.kinematics.pair.evidence import COAXIAL, GUIDES, Evidence, Item

@@ -8,7 +8,7 @@ weights serve.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from itertools import accumulate
 
@@ -16,6 +16,7 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import cross
+from kinform.frozen import dataclass
 from kinform.kinematics.constants import GAP_BANDS, LOOSE_ANGLE, SIGMAS, STRAY_SHARE, TOUCHING_GAP, UNKNOWN_DIRECTION
 from kinform.kinematics.pair.lower_pairs import JointForm, name_space
 from kinform.model.arrays import Array, Flags, Ints

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
 
 from kinform.foundation.algebra.screws import rotation, translation
 from kinform.foundation.algebra.vectors import canonical, cross, foot, norm, perpendicular, sine, weighted_mean
+from kinform.frozen import dataclass
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item, Line
 from kinform.kinematics.wording import components

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Generator, Sequence
-from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
 
 from kinform.foundation.algebra.screws import spans
+from kinform.frozen import dataclass
 from kinform.kinematics import constants
 from kinform.model.arrays import Array
 

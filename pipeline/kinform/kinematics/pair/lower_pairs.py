@@ -7,12 +7,12 @@ tell them (Hervé 1978; Gelfand and Guibas 2004). Anything else is `general`.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, rotation, translation
 from kinform.foundation.algebra.vectors import canonical, cross, cross_matrix, norm, perpendicular
+from kinform.frozen import dataclass
 from kinform.kinematics.constants import EXACT_PAIR, NEAR_PAIR
 from kinform.model.arrays import Array
 

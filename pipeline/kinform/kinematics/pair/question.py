@@ -7,11 +7,11 @@ A `Question` does not hold which surfaces of a mesh touch, nor the names of the 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import islice
 
 from kinform.foundation.algebra.screws import twist_at_origin
 from kinform.foundation.records import altered
+from kinform.frozen import dataclass
 from kinform.kinematics.constants import MOST_IN_STEP
 from kinform.kinematics.pair.decision import Decision, decide_each
 from kinform.kinematics.pair.evidence import Evidence, gather

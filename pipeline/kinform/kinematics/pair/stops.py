@@ -19,11 +19,10 @@ at its edges then holds any load beside its axis (W. Beitz, K.-H. Küttner, Dubb
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, perpendicular, sine, widest_turn
+from kinform.frozen import dataclass
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.pair.freedoms import freedoms_beyond

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import fcl
 import numpy as np
@@ -13,6 +13,7 @@ from kinform.foundation.at_work import at_work_on
 from kinform.foundation.graphs.graph import UnionFind, shortest_path
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_model, fcl_pose
 from kinform.foundation.words import counted, quoted
+from kinform.frozen import dataclass
 from kinform.kinematics.partition import constants
 from kinform.kinematics.partition.contact import PartPair
 from kinform.kinematics.partition.graph import Graph, graph_of, stated_merger

@@ -14,8 +14,8 @@ order.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence, Set
-from dataclasses import dataclass
 
+from kinform.frozen import dataclass
 from kinform.kinematics.partition import constants
 from kinform.kinematics.partition.labelling import Edge, Labels, labels_of, regions
 

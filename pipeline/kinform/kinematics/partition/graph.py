@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import UnionFind
+from kinform.frozen import dataclass
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.partition import constants
 from kinform.kinematics.partition.contact import PartPair

@@ -9,11 +9,12 @@ eliminated instead (`elimination`).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from kinform.foundation.graphs.graph import UnionFind
+from kinform.frozen import dataclass
 from kinform.kinematics.partition import constants
 from kinform.kinematics.partition.elimination import clear_labels
 from kinform.model.arrays import Array

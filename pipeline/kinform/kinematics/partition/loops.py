@@ -9,7 +9,6 @@ its twists generate has dimensions (Hervé 1978): a planar loop of four joints, 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from kinform.foundation.algebra.screws import Frame, bracket, scaled, span
 from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.graphs.cycles import Cycle, short_cycles
 from kinform.foundation.graphs.graph import blocks
+from kinform.frozen import dataclass
 from kinform.kinematics.loops.block_closure import axes_frame, loop_matrix
 from kinform.kinematics.partition import constants
 from kinform.model.arrays import Array

@@ -8,11 +8,12 @@ face without a journal may be a flange; a flat beside the axis that a turn leave
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence, Set
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, norm, perpendicular
+from kinform.frozen import dataclass
 from kinform.kinematics.partition import constants
 from kinform.kinematics.partition.contact import Asked, PartPair, contact_of_pairs
 from kinform.model.arrays import Array

@@ -10,13 +10,14 @@ only screws, pins or balls turn about. Sliders are not looked for.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical_sign, norm
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.words import counted, quoted
+from kinform.frozen import dataclass
 from kinform.kinematics.part_volumes import volumes
 from kinform.kinematics.partition import constants
 from kinform.kinematics.partition.bodies import partition

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.words import counted
+from kinform.frozen import dataclass
 from kinform.kinematics.partition import constants
 from kinform.kinematics.partition.standard_names import kind_by_name
 from kinform.model.arrays import Array

@@ -8,13 +8,14 @@ screws only are one, the cheapest.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import norm, perpendicular
 from kinform.foundation.graphs.graph import UnionFind
+from kinform.frozen import dataclass
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.part_volumes import volumes
 from kinform.kinematics.partition import constants

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.kinematics.constants import AT_REST
 from kinform.kinematics.pair.joint import twists_of
 from kinform.kinematics.questions.derived import Derived

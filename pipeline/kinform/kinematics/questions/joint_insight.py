@@ -7,11 +7,11 @@ the candidate motions say: a motion becomes free once every patch that it would 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.foundation.meant import did_you_mean
+from kinform.frozen import dataclass
 from kinform.kinematics.bodies.classification import evidence_between
 from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.constants import MOST_PATCH_SETS, MOST_PATCHES

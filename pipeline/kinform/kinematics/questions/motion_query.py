@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from kinform.foundation.algebra.screws import Frame, rows, scaled, span
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.meant import did_you_mean
 from kinform.foundation.words import counted
+from kinform.frozen import dataclass
 from kinform.kinematics.constants import AT_REST, BLOCKING_SPEED, MOTION_THERE
 from kinform.kinematics.mobility.named_freedoms import Motions
 from kinform.kinematics.questions.derived import Derived

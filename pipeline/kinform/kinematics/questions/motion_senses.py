@@ -8,7 +8,6 @@ that have s > 0; those of them that can be put back are, one by one. The others 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -17,6 +16,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, scaled
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import blocks
+from kinform.frozen import dataclass
 from kinform.kinematics.constants import MOST_CONTACTS_TRIED, MOST_PROGRAM_ROWS, MOST_ROWS_TRIED, MOTION_THERE
 from kinform.kinematics.loops.joint_graph import JointGraph
 from kinform.kinematics.separation.contact_rows import ContactRows, is_stated

@@ -11,12 +11,13 @@ like any other (`mobility.local_dimension`): what only turns a lock into a shaky
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import norm, perpendicular
 from kinform.foundation.graphs.graph import blocks
+from kinform.frozen import dataclass
 from kinform.kinematics import constants
 from kinform.kinematics.axes.snapping import LINES
 from kinform.kinematics.loops.joint_graph import JointGraph

@@ -8,11 +8,11 @@ direct contact and the helpers that connect them, everything else left out.
 from __future__ import annotations
 
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, scaled, span
+from kinform.frozen import dataclass
 from kinform.kinematics.loops.assembly_closure import body_twists, close
 from kinform.kinematics.pair.lower_pairs import JointForm, name_space
 from kinform.model.arrays import Array

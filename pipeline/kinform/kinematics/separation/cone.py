@@ -11,10 +11,10 @@ bodies and no patches.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.kinematics import constants
 from kinform.model.arrays import Array, Flags, Ints
 

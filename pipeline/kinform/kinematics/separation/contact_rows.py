@@ -7,13 +7,13 @@ count too. Joints that somebody stated, or that an axis suggested by rims made, 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import cross
+from kinform.frozen import dataclass
 from kinform.kinematics.constants import CONE_FREE
 from kinform.kinematics.pair.extremes import extreme_samples
 from kinform.kinematics.separation.cone import grams, held_for_certain, split_directions, unit_rows_of

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, twist_at_origin
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.records import altered
+from kinform.frozen import dataclass
 from kinform.kinematics import constants
 from kinform.kinematics.separation.cone import extreme_rays, held_for_certain, opening, unit_rows
 from kinform.kinematics.separation.contact_rows import Cone

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Generator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,6 +22,7 @@ from kinform.foundation.algebra.screws import Frame, scaled, twist_at_origin
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.graphs.graph import UnionFind, blocks
 from kinform.foundation.in_step import in_step
+from kinform.frozen import dataclass
 from kinform.kinematics.answers import Answers, ask
 from kinform.kinematics.constants import (
     CONE_HELD,

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from kinform.consistency import Comparison, compare_joint
 from kinform.design import Design
 from kinform.foundation import words
+from kinform.frozen import dataclass
 from kinform.function import resolve_joint
 from kinform.model.collisions import RangeEnd
 from kinform.model.function import IntendedJoint, Requirement

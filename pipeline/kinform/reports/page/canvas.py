@@ -6,11 +6,11 @@ A layer is (height, width, 4) of 0 … 1, colours not multiplied by their weight
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.reports import constants
 from kinform.reports.page.figures import Figure, Floats, Samples, bands, dot

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from html import escape
 from typing import Any
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.reports import constants
 

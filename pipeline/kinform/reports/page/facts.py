@@ -4,11 +4,12 @@ assumptions, rules."""
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from kinform.consistency import explain
 from kinform.design import Design
 from kinform.foundation import words
+from kinform.frozen import dataclass
 from kinform.function import as_intended, designers_joints
 from kinform.model.collisions import RangeEnd
 from kinform.model.findings import SEVERITIES, RuleOutcome

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.reports import constants
 from kinform.reports.page.meshes import Shape

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.design import Design
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.findings import Finding
 from kinform.reports.page.movements import Mark, Movement

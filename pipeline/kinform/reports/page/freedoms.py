@@ -8,13 +8,13 @@ closed by Gauss–Newton steps with the driver held. What does not close is not 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import reduce
 
 import numpy as np
 
 from kinform.foundation.algebra.displacements import carry, displacement, exponentials, inverse
 from kinform.foundation.graphs.graph import forest
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Freedom, Joint, Kinematics
 from kinform.reports import constants

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from kinform.consistency.comparisons.answers import Answer, answers
 from kinform.design import Design
 from kinform.foundation import words
+from kinform.frozen import dataclass
 from kinform.reports.page.phrases import axis_words, point_words
 
 SIGNS = {"agrees": "✓", "not held": "▲", "contradicts": "✕", "no contact": "▲", "undecided": "?"}

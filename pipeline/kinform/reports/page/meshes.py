@@ -5,7 +5,6 @@ Which facets belong together the recovered surfaces say; where there are none, t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import shared_edges
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces

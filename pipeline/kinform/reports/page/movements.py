@@ -6,7 +6,7 @@ asks for, and else a little to both sides. Marks name where parts run into each 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -14,6 +14,7 @@ import numpy as np
 from kinform.design import Design
 from kinform.foundation import words
 from kinform.foundation.algebra.spatial import quaternions, to_matrix
+from kinform.frozen import dataclass
 from kinform.function import DesignersJoint, designers_joints, stated_ranges
 from kinform.model.arrays import Array
 from kinform.model.collisions import Collision, RangeEnd

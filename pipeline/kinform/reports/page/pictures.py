@@ -8,11 +8,12 @@ are put together from it (`canvas`).
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.reports import constants
 from kinform.reports.page.canvas import Shown, coarse, layer, nearness, over, paint, smaller, whole_numbers

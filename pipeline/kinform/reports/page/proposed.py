@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from kinform.design import Design
 from kinform.form.without_manifest import joint_lines
 from kinform.foundation.algebra.displacements import displacement
 from kinform.foundation.algebra.spatial import quaternions
+from kinform.frozen import dataclass
 from kinform.kinematics import stated_proposals
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Body

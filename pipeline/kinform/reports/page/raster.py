@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import struct
 import zlib
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.reports.constants import EYE_RISE, EYE_TURN, PNG_EFFORT, PORTION, VIEW_MARGIN
 

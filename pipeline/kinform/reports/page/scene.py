@@ -3,12 +3,12 @@ show."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from kinform.design import Design
+from kinform.frozen import dataclass
 from kinform.function.body_titles import body_titles
 from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh

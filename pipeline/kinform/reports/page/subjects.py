@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from weakref import WeakKeyDictionary
 
 from kinform.design import Design
+from kinform.frozen import dataclass
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
 from kinform.model.names import PartName

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import importlib
 import json
-from dataclasses import dataclass
 from typing import Any
 
 from kinform.design import Design
 from kinform.errors import StageError
+from kinform.frozen import dataclass
 from kinform.reports.values.plain import fields, plain
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import h5py
 import numpy as np
 
 from kinform.design import Design
+from kinform.frozen import dataclass
 from kinform.model.arrays import freeze
 from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.tolerances import Tolerances

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import h5py
 
+from kinform.frozen import dataclass
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.names import JointName
 from kinform.model.simulation import Simulation

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import h5py
 
 from kinform.design import Design
+from kinform.frozen import dataclass
 from kinform.model.kinematics import Body, Kinematics
 from kinform.results.held import HeldGroup
 from kinform.results.layout import Layout, Ragged, Row, Table, Texts

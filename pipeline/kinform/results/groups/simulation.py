@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import h5py
 import numpy as np
 
 from kinform.design import Design
+from kinform.frozen import dataclass
 from kinform.function import DesignersJoint, designers_joints
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.simulation import Simulation

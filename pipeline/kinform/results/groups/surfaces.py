@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import h5py
 
 from kinform.design import Design
+from kinform.frozen import dataclass
 from kinform.model.surfaces import MeshSurfaces
 from kinform.results.held import HeldGroup
 from kinform.results.layout import Layout, Ragged, Table

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.simulation.kernel import equations, explicit, layout
 from kinform.simulation.kernel.tables import Tables, address, addresses
 

@@ -6,13 +6,13 @@ Compiled functions get addresses in the place of arrays: see `native` for the ot
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import copy
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from kinform.behaviour import shafts
 from kinform.behaviour.components import System
 from kinform.behaviour.signals import STEADY, Constant, Signal, Spline, smooth
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.kernel import layout
 from kinform.simulation.mechanism.elastic import Between

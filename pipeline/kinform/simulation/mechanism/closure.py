@@ -6,10 +6,9 @@ afterwards uses so many singular values, never a tolerance of its own.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.constants import EVEN, FALLEN, REMEMBERED
 from kinform.simulation.mechanism.mechanism import Mechanism

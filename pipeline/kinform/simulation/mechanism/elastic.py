@@ -7,12 +7,11 @@ that turns of any size, up to half a turn, store what they take.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from kinform.behaviour.components import Bushing, Elastic, GasSpring, SpringDamper
 from kinform.foundation.algebra.spatial import rotation_vector
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.simulation.kernel import layout
 

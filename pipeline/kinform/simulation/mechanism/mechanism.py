@@ -11,7 +11,6 @@ Positions q hold four numbers for a ball, rates v three; otherwise they agree.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -19,6 +18,7 @@ import numpy as np
 from kinform.behaviour.joints import JointKind
 from kinform.behaviour.primitives import OneFreedom
 from kinform.foundation.algebra.spatial import along_motion, multiply, rotation_vector, to_matrix
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.constants import AT_LIMIT, AT_LIMIT_SHARE, CORNER_MARGIN, LENGTHS_ROUNDED
 

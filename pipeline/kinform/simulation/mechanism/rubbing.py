@@ -6,7 +6,6 @@ for the opposite wrench. `solver.slip` rests on that.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -15,6 +14,7 @@ from kinform.behaviour.components import JointComponent, System
 from kinform.behaviour.rubbing import is_round
 from kinform.behaviour.shafts import Friction
 from kinform.foundation.algebra.vectors import cross_matrix
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.simulation.mechanism.mechanism import Mechanism
 

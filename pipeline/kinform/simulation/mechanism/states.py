@@ -5,11 +5,10 @@ World axes about the mechanism's centre; the same kinematics as `Mechanism` and 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from kinform.foundation.algebra.spatial import along_motion, cross_motion, rotation_vector
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.simulation.mechanism.mechanism import Mechanism
 

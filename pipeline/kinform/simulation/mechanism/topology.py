@@ -7,9 +7,9 @@ node up by one joint; the joints left over close loops.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from kinform.foundation.graphs.graph import UnionFind, forest
+from kinform.frozen import dataclass
 
 
 @dataclass(frozen=True)

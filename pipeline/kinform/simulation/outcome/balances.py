@@ -8,12 +8,11 @@ teeth pass on among shafts is whatever their ratios allow.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from kinform.behaviour.components import System
 from kinform.foundation.algebra.vectors import cross
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.simulation.constants import DEPENDENT_GEARS, VANISHING_WRENCH
 from kinform.simulation.mechanism.dynamics import Dynamics

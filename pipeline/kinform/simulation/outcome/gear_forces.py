@@ -8,11 +8,11 @@ Theory, 2004, chapter 10). The force is taken in the middle of the width, withou
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.behaviour.components import Gear, System
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.losses import multipliers

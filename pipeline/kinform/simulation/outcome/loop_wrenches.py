@@ -9,12 +9,12 @@ by side cost n times what one costs, not n³. How many conditions are independen
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross_matrix
 from kinform.foundation.graphs.graph import UnionFind
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.simulation.constants import UNDETERMINED_SHARE, UNSEEN
 

@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 
 from kinform.foundation.algebra.spatial import cross_force
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.simulation.constants import CHUNK
 from kinform.simulation.mechanism.closure import rank_of

@@ -7,11 +7,12 @@ frame they are those of a point in rotating axes: less the frame's own motion, t
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from kinform.foundation.algebra.spatial import quaternions
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.model.sensors import Reading
 from kinform.model.simulation import Simulation

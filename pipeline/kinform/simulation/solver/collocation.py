@@ -12,11 +12,11 @@ Nodes and weights are made of sums of Legendre polynomials in plain floats: the 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.simulation.constants import COLLOCATION_ROUNDS, COLLOCATION_SETTLED, NODE_ROUNDING
 from kinform.simulation.solver.run_state import Run

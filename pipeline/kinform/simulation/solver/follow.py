@@ -8,10 +8,10 @@ ends the path: beyond it two assemblies of the loop meet, and choosing one would
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.constants import DETERMINED
 from kinform.simulation.mechanism.closure import factor, rank_of, settle

@@ -7,11 +7,11 @@ the explicit path (Hairer and Wanner, Solving Ordinary Differential Equations II
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.simulation import constants
 from kinform.simulation.kernel import layout

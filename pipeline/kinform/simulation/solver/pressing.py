@@ -7,11 +7,11 @@ wrenches of some trials say all of it.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.kernel import layout
 from kinform.simulation.mechanism.dynamics import Dynamics

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.model.simulation import Damping
 

@@ -15,12 +15,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import norm
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.simulation.constants import (
     DEPENDENT_GEARS,

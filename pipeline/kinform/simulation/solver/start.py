@@ -4,11 +4,11 @@ way of a motion from there."""
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.foundation.meant import first_names
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.simulation import constants
 from kinform.simulation.mechanism.actuation import Actuation

@@ -10,13 +10,14 @@ friction in motion has a known direction, its size follows from the loads (`slip
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from kinform.behaviour.signals import Sine
 from kinform.foundation.algebra.vectors import norm
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.simulation import constants
 from kinform.simulation.kernel import layout

@@ -9,11 +9,11 @@ an end stop, the group is held too, and does not go beyond it (`friction_stops`)
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.behaviour.signals import Constant
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.simulation import constants
 from kinform.simulation.mechanism.actuation import Actuation, Stop

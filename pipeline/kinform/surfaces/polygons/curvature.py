@@ -9,12 +9,12 @@ whether polygons belong to a surface is decided by their vertices.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.polygons.patchwork import Patchwork

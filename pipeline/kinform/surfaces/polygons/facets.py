@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross_columns, dot
 from kinform.foundation.meshes.edges import edge_table
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 
 

@@ -10,12 +10,12 @@ scatter that repeats itself.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross_columns, dot
 from kinform.foundation.graphs.components import components
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import constants

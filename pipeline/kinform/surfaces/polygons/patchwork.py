@@ -8,7 +8,6 @@ each joins the polygon across its longest edge, in whose plane it lies to within
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -16,6 +15,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross_columns, dot
 from kinform.foundation.sorting import distinct
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces.constants import FLAT_NOISES, MOST_SLACK, SLACK_ROUNDINGS

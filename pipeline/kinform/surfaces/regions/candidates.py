@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.sorting import heads
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.constants import FACET_ROUNDING, NORMAL_SLACK, TYPICAL_WIDTH, WIDER, WIDEST
 from kinform.surfaces.groups import columns_of, in_order, ordered_quantile, quantile

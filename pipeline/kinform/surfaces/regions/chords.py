@@ -8,10 +8,11 @@ its facets are, is a cylinder; arcs are left alone, because a tooth's flank is n
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from kinform.frozen import dataclass
 from kinform.model.arrays import Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.describe import angles_covered

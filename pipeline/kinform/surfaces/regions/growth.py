@@ -6,12 +6,13 @@ small neighbourhood, whose fit is coarse, only has to predict a region about twi
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.sorting import among, heads
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.kinds.batch import Batch, Params

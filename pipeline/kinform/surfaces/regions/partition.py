@@ -7,7 +7,6 @@ from seeds. Larger regions win; what nothing explains is a plane where it stands
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -15,6 +14,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.graphs.components import components
 from kinform.foundation.sorting import distinct, heads
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.groups import quantile, renumbered

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from kinform.foundation.graphs.components import components
 from kinform.foundation.sorting import among, distinct, heads
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.groups import Ragged, parted
 from kinform.surfaces.kinds.batch import Batch

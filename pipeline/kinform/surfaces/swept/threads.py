@@ -10,13 +10,14 @@ what is left (see `lines`); a least squares over the polylines then gives axis a
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical_sign, cross, dot, perpendicular
 from kinform.foundation.graphs.components import components
 from kinform.foundation.sorting import among, distinct, median
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.describe import Description, standoffs
