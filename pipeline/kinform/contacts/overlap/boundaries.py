@@ -16,8 +16,9 @@ from kinform.model.contacts import Patch
 def first_crossings(asked: Sequence[tuple[PairView, list[Patch]]]) -> list[bool | None]:
     """What is asked first of pairs with their patches, of all at once: whether their boundaries cross, the second part
     moved off plane contacts where it has any; None where nothing is asked, as they have no overlap that counts."""
-    questions = {k: _first(pair, patches) for k, (pair, patches) in enumerate(asked) if _may_overlap(pair)}
-    told = dict(zip(questions, crossings_of(list(questions.values())), strict=True))
+    may = [k for k, (pair, _) in enumerate(asked) if _may_overlap(pair)]
+    questions = {k: _first(*asked[k]) for k in may if not asked[k][0].apart}
+    told = dict.fromkeys(may, False) | dict(zip(questions, crossings_of(list(questions.values())), strict=True))
     return [told.get(k) for k in range(len(asked))]
 
 
@@ -50,6 +51,8 @@ def boundaries_cross(pair: PairView, patches: list[Patch], first: bool) -> bool:
     Parts that a move by less than what counts as an overlap sets free of each other do not. Faces that coincide cross
     or do not as rounding has it, so the question is put once more with the second part moved by as much.
     """
+    if pair.apart:
+        return False
     shift = constants.EXACT_OVERLAP * pair.tolerance * np.array([0.61, 0.53, 0.59])
     moves = [shift, -shift]
     if _parting(patches) is not None:
