@@ -299,6 +299,9 @@ SURELY_SLIGHT = 1e-6
 """Share of a volume by which it is surely less than another: far more than rounding."""
 EXACT_OVERLAP = 0.02
 """An overlap below this is none: rounding of coordinates."""
+CUT_FEW = 1500
+"""Facets of either part up to which a cut takes no longer, 2 ms, than it takes to see that none is needed, where round
+surfaces touch and one mostly is."""
 THINNER = 0.25
 """Share of what counts as an overlap by which a solid is made thinner to see that it shares nothing with another. No
 depth is more than that then, and no ball that both share is larger, so that pieces of the overlap are no thicker than
@@ -342,7 +345,7 @@ POCKET_GAP = math.pi - 0.05
 """rad: walls with no wider gap between them leave no way aside."""
 # find: pairs side by side
 
-TOGETHER_PAIRS = 32
+TOGETHER_PAIRS = 64
 """Pairs whose decisions are taken together: numpy takes as long to begin as to go through hundreds of numbers, ..."""
 TOGETHER_FACETS = 50_000
 """... as long as no more facets come to those of the first pair: what is known of one takes about half a kilobyte."""

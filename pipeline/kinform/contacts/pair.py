@@ -110,8 +110,8 @@ def touching(mates: Mated) -> list[Patch]:
 
 
 def pair_contacts(mates: Mated, patches: list[Patch], crosses: bool | None, solids: SolidStore) -> PairContacts:
-    """Contacts of a pair, of its mates and all patches that are `touching`, in the world; `crosses` is what its
-    interference asks first."""
+    """Contacts of a pair, of its mates and all patches that are `touching`, in the world; `crosses` is whether
+    their boundaries cross."""
     pair, X_WF, mated = mates.pair, mates.X_WF, mates.patches
     interference = find_interference(pair, patches, solids, crosses)
     if not patches and interference is None and not pair.apart:

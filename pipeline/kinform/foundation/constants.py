@@ -218,6 +218,8 @@ CROSSED_MOST = 20
 
 APART_MOST = 20
 """Pairs of triangles near each other, in all triangles, beyond which it is not asked whether all keep apart."""
+APART_SOME = 32
+"""Of these at most so many are asked first."""
 APART_AT_ONCE = 4096
 """Pairs of triangles that are looked at in one pass."""
 APART_ROUNDED = 1e-6

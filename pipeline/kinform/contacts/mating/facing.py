@@ -19,7 +19,7 @@ def may_face(pair: PairView, unread: Flags) -> bool:
     """Whether any two surfaces flagged in `unread` (s, t) may have facets that face each other within the tolerance:
     planes that do not oppose each other have none, nor have planes and cylinders across them, nor what keeps more than
     the tolerance from a plane, balls and cylinders whose surfaces are further apart, nor cylinders about one axis, or
-    side by side, that are."""
+    side by side, that are, and bores about one axis."""
     (a, b) = pair.near
     rows, columns = np.nonzero(unread)
     if not len(rows):
@@ -92,4 +92,7 @@ def _apart(pair: PairView, row: int, column: int) -> float:
     tilt = norm(cross(first, second))
     between = norm(feet[1] - feet[0])
     gap = max(abs(radii[0] - radii[1]) - between, between - sum(radii))
+    if surfaces.sides[0] == surfaces.sides[1]:
+        # two bores face each other across their middles only
+        gap = max(gap, max(radii) - between)
     return gap - tilt * whole - surfaces.slack

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.foundation.constants import APART_AT_ONCE, APART_MOST, APART_ROUNDED, BOXES_MATRIX
+from kinform.foundation.constants import APART_AT_ONCE, APART_MOST, APART_ROUNDED, APART_SOME, BOXES_MATRIX
 from kinform.foundation.joined import joined
 from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import triangle_boxes
@@ -23,22 +23,16 @@ from kinform.model.arrays import Array, Flags, Ints
 def keep_apart(asked: Sequence[tuple[Array, Array, float]]) -> list[bool]:
     """Whether it is sure that no triangle (n, 3, 3) of the first comes within a distance (m) of one (m, 3, 3) of the
     second, for each of these three."""
-    out, left = [False] * len(asked), []
-    firsts, seconds, owners = [], [], []
+    out, near = [False] * len(asked), {}
     for k, (first, second, distance) in enumerate(asked):
-        near = _near(first, second, distance)
-        if near is None:
-            continue
-        one, two = near
-        out[k] = True
-        if len(one):
-            left.append(k)
-            firsts.append(first.take(one, axis=0))
-            seconds.append(second.take(two, axis=0))
-            owners.append(np.full(len(one), k))
-    if left:
-        distances = np.array([distance for *_, distance in asked])
-        for k in _not_parted(joined(firsts), joined(seconds), joined(owners), distances):
+        met = _near(first, second, distance)
+        if met is not None:
+            out[k] = True
+            near[k] = met
+    # some are asked before all are, which settles it where much is near
+    for most in (APART_SOME, None):
+        left = {k: met for k, met in near.items() if out[k] and len(met[0])}
+        for k in _not_parted(asked, left, most):
             out[k] = False
     return out
 
@@ -52,16 +46,25 @@ def _near(first: Array, second: Array, distance: float) -> tuple[Ints, Ints] | N
     return None if near is None or len(near[0]) > APART_MOST * (len(first) + len(second)) else near
 
 
-def _not_parted(first: Array, second: Array, owner: Ints, distances: Array) -> list[int]:
-    """Of which sets (c,) some pair of triangles (c, 3, 3) is not parted."""
-    out: set[int] = set()
+def _not_parted(
+    asked: Sequence[tuple[Array, Array, float]], near: dict[int, tuple[Ints, Ints]], most: int | None
+) -> list[int]:
+    """Of which sets some of those pairs of triangles that are near each other, at most so many, are not parted."""
+    some = {k: slice(None, None, -(-len(one) // most) if most else None) for k, (one, _) in near.items()}
+    pairs = {k: (one[some[k]], two[some[k]]) for k, (one, two) in near.items()}
+    if not pairs:
+        return []
+    first = joined([asked[k][0].take(one, axis=0) for k, (one, _) in pairs.items()])
+    second = joined([asked[k][1].take(two, axis=0) for k, (_, two) in pairs.items()])
+    owner = np.repeat(list(pairs), [len(one) for one, _ in pairs.values()])
+    distances, out = np.array([distance for *_, distance in asked]), set[int]()
     for start in range(0, len(owner), APART_AT_ONCE):
-        some = slice(start, start + APART_AT_ONCE)
-        one, two = (np.ascontiguousarray(side[some].transpose(1, 2, 0)) for side in (first, second))
+        part = slice(start, start + APART_AT_ONCE)
+        one, two = (np.ascontiguousarray(side[part].transpose(1, 2, 0)) for side in (first, second))
         origin = one[0].copy()
         one -= origin
         two -= origin
-        of, far = owner[some], distances.take(owner[some])
+        of, far = owner[part], distances.take(owner[part])
         for _ in range(2):
             left = np.flatnonzero(~_parted(one, two, far))
             # once more by the directions of the other

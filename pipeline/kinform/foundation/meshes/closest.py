@@ -73,6 +73,11 @@ def distances_from(point: Array, corners: Array) -> Array:
     return _from_origin(np.ascontiguousarray((corners - point).transpose(1, 2, 0)))
 
 
+def distances_between(points: Array, corners: Array) -> Array:
+    """(k,) distances of points (k, 3) from triangles (k, 3, 3), one unit of length."""
+    return _from_origin(np.ascontiguousarray((corners - points[:, None]).transpose(1, 2, 0)))
+
+
 def _from_origin(triangles: Array) -> Array:
     """(k,) distances of the origin from triangles (3, 3, k): corner, coordinate, triangle."""
     sides = triangles[[1, 2, 0]] - triangles
