@@ -52,6 +52,7 @@ def test_faces_that_look_the_same_way_are_left_out(monkeypatch):
         left.append(len(points) - len(able))
         return able, region
 
+    monkeypatch.setattr(enclosing, "may_face", lambda pair, unread: bool(unread.any()))
     monkeypatch.setattr(enclosing, "_can_hit", watched)
     pin = rod(3.0, 0, 5, 24) + rod(4.5, 5, 7, 24)
     derived(random_pose(np.random.default_rng(5)), plate=box(-9, 9, -9, 9, 0, 5) - rod(3.05, -1, 6, 24), pin=pin)
@@ -59,10 +60,11 @@ def test_faces_that_look_the_same_way_are_left_out(monkeypatch):
 
 
 def test_surfaces_that_never_face_each_other_have_no_facets_that_do(monkeypatch):
-    """Pins with a neck in one bore, and shafts with collars in stepped ones: what is passed over has nothing near."""
+    """Pins with a neck in one bore, shafts with collars in stepped ones, balls in seats, shafts whose vertices scatter:
+    what is passed over has nothing near."""
     rng = np.random.default_rng(5)
     said = []
-    asked = enclosing._may_face
+    asked = enclosing.may_face
 
     def watched(pair, unread):
         may = asked(pair, unread)
@@ -71,11 +73,14 @@ def test_surfaces_that_never_face_each_other_have_no_facets_that_do(monkeypatch)
         said.append((may, near is None))
         return may
 
-    monkeypatch.setattr(enclosing, "_may_face", watched)
+    monkeypatch.setattr(enclosing, "may_face", watched)
     for play, pose in product((0.02, 0.3, 0.48, 0.52, 0.8), (np.eye(4), random_pose(rng))):
         shaft = rod(3.0, -6, 9, 24) + rod(4.0, 4, 6, 24)
         block = box(-8, 8, -8, 8, -5, 8) - rod(3.05, -7, 5, 28) - rod(4.0 + play, 4 - play, 9, 24)
         derived(pose, block=block, shaft=shaft)
         pin = rod(3.0, 0, 2.5, 24) + rod(3.05 - play, 2.5, 5, 24)
         derived(pose, plate=box(-9, 9, -9, 9, 0, 5) - rod(3.05, -1, 6, 24), pin=pin)
+        ball = Manifold.sphere(3.0, 32).translate((0.4, 0.2, 3.0 + 0.3 * play))
+        derived(pose, block=box(-8, 8, -8, 8, -5, 4) - rod(3.5 + play, 0, 9, 40), ball=ball)
+        derived(pose, block=block, shaft=crumpled(rod(2.99, -6, 9, 24) + rod(3.9, 4, 6, 24), rng, 0.04))
     assert {may for may, _ in said} == {True, False}

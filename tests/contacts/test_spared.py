@@ -6,8 +6,10 @@ import dataclasses
 
 import numpy as np
 import pytest
+from manifold3d import Manifold
 from support.solids import box, derived, extrusion, random_pose, rod
 
+from kinform.contacts import pair as one_pair
 from kinform.contacts.higher import outlines, profiles
 from kinform.contacts.mating import freeform, one_sided
 
@@ -33,6 +35,13 @@ def pairs(rng):
     yield {"ball": scattered(rod(3.0, 0, 3, 20), rng, 0.01).translate((0, 0, 3.95)), "block": block}
     cam = extrusion(ellipse(6.0, 4.0, 60, 0.2), -2, 2)
     yield {"cam": cam, "other": extrusion(ellipse(5.0, 3.0, 48, 0.4), -1, 3).translate((11.0, 0, 0))}
+    table = box(-5, 5, -5, 5, -2, 0)
+    yield {"table": table, "tower": box(-5, 5, -5, 5, 0, 2) + box(-1, 1, -1, 1, 2, 4)}
+    for away in rng.uniform(0.0, 0.5, 8):
+        # the boxes of what stands askew meet, and of what is in a bore
+        yield {"table": table, "above": box(-2, 2, -2, 2, 0, 2).rotate((4.0, 3.0, 0.0)).translate((0, 0, 0.3 + away))}
+        yield {"block": block, "rod": rod(2.25 - 2.5 * away, -6, 6, 20)}
+        yield {"block": block, "ball": Manifold.sphere(2.2 - 2.0 * away, 24).translate((0.1, 0.0, 1.0))}
     yield {"cam": cam, "table": box(-20, 20, -9, -3.99, -3, 3) + rod(1.0, -3, 3, 16).translate((-9, -3.2, 0))}
 
 
@@ -46,8 +55,9 @@ def of_all(contacts):
 
 def everything(monkeypatch):
     """Has all of it asked, and returns how much each of the tests would have passed over."""
-    spared = {"rest": 0, "face": 0, "curve": 0}
+    spared = {"rest": 0, "face": 0, "curve": 0, "far": 0, "straight": 0}
     rest, face, curve = one_sided._may_rest, freeform._may_face, outlines.may_curve
+    far, bulge = one_pair.far_apart, profiles.bulge_of
 
     def all_rest(view, rows, facets, normals):
         spared["rest"] += np.count_nonzero(~rest(view, rows, facets, normals))
@@ -67,6 +77,16 @@ def everything(monkeypatch):
         spared["curve"] += np.count_nonzero(~may)
         return np.ones_like(may)
 
+    def all_near(pairs):
+        spared["far"] += sum(far(pairs))
+        return [False] * len(pairs)
+
+    def all_bent(part, smooth):
+        spared["straight"] += not bulge(part, smooth)
+        return 1.0
+
+    monkeypatch.setattr(one_pair, "far_apart", all_near)
+    monkeypatch.setattr(profiles, "bulge_of", all_bent)
     monkeypatch.setattr(one_sided, "_may_rest", all_rest)
     monkeypatch.setattr(freeform, "_may_face", all_face)
     monkeypatch.setattr(profiles, "may_curve", all_curve)

@@ -35,6 +35,13 @@ BETWEEN_SHARE = 0.05
 PROBE_SPARE = 0.05
 """By so much further than a facet is expected at most it is looked for."""
 
+APART_FACETS = 10_000
+"""Facets of a part up to which it is asked whether it keeps apart from another: no chain of facets of one plane makes a
+turn of so few."""
+TOUCHING_WITHIN = 0.6
+"""Facets on both sides of a point in which parts touch are within this of each other, and what they stand off their
+surfaces: `CAPTIVE`, and thrice `PROBE_SPARE`."""
+
 # mating/charts, overlay: surfaces drawn in a plane, and what both parts cover of them
 
 CHART_ARC = math.radians(15.0)
@@ -96,6 +103,8 @@ tessellated by tangents: the chord error is most of it then."""
 
 TOUCHING = ("point", "line")
 """Kinds of higher pairs."""
+OPPOSED_LEVEL = 0.99999
+"""Cosine between opposed planes from which on they are as good as parallel, 0.26°."""
 FACING_NEVER = 0.25
 """Cosine between normals of surfaces up to which none of their facets face each other, whose normals scatter: half of
 what a probe asks for."""
@@ -286,8 +295,13 @@ DEPTH_SAMPLES_LEAST = 16
 """The same of one piece of it, at least."""
 BESIDE_DEEPEST = 100
 """Points beside the deepest one that are measured too."""
+SURELY_SLIGHT = 1e-6
+"""Share of a volume by which it is surely less than another: far more than rounding."""
 EXACT_OVERLAP = 0.02
 """An overlap below this is none: rounding of coordinates."""
+CUT_FEW = 1500
+"""Facets of either part up to which a cut takes no longer, 2 ms, than it takes to see that none is needed, where round
+surfaces touch and one mostly is."""
 THINNER = 0.25
 """Share of what counts as an overlap by which a solid is made thinner to see that it shares nothing with another. No
 depth is more than that then, and no ball that both share is larger, so that pieces of the overlap are no thicker than
@@ -331,7 +345,7 @@ POCKET_GAP = math.pi - 0.05
 """rad: walls with no wider gap between them leave no way aside."""
 # find: pairs side by side
 
-TOGETHER_PAIRS = 32
+TOGETHER_PAIRS = 64
 """Pairs whose decisions are taken together: numpy takes as long to begin as to go through hundreds of numbers, ..."""
 TOGETHER_FACETS = 50_000
 """... as long as no more facets come to those of the first pair: what is known of one takes about half a kilobyte."""

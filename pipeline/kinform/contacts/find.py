@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from kinform.contacts import constants
 from kinform.contacts.fastening import suggest
-from kinform.contacts.overlap.boundaries import first_crossings
+from kinform.contacts.overlap.boundaries import boundaries_cross
 from kinform.contacts.overlap.solids import SolidStore
 from kinform.contacts.pair import PairContacts, mated_pairs, pair_contacts, touching
 from kinform.contacts.search.candidates import Pair, candidate_pairs
@@ -53,7 +53,7 @@ class _Work:
             if mates is not None:
                 with at_work_on(_name_of((pair,))):
                     begun.append((k, mates, touching(mates)))
-        told = first_crossings([(mates.pair, patches) for _, mates, patches in begun])
+        told = boundaries_cross([(mates.pair, patches) for _, mates, patches in begun])
         for (k, mates, patches), crosses in zip(begun, told, strict=True):
             with at_work_on(_name_of((pairs[k],))):
                 out[k] = pair_contacts(mates, patches, crosses, self.solids)

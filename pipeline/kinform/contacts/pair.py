@@ -23,6 +23,7 @@ from kinform.contacts.mating.patches import in_world, mated_patches_of
 from kinform.contacts.mating.threads import threaded_patches
 from kinform.contacts.overlap.interference import find_interference
 from kinform.contacts.overlap.solids import SolidStore
+from kinform.contacts.search.apart import far_apart
 from kinform.contacts.search.pair_view import PairView, pair_view
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.meshes.index import MeshStore
@@ -58,7 +59,7 @@ class Mated:
 
 
 def mated_pairs(
-    asked: Sequence[tuple[tuple[Part, Part], float]],
+    wanted: Sequence[tuple[tuple[Part, Part], float]],
     surfaces: dict[str, MeshSurfaces],
     store: MeshStore,
     tolerances: Tolerances,
@@ -66,7 +67,7 @@ def mated_pairs(
     """What mates of several pairs of meshed parts (sorted by name), within a tolerance (m) each, at once; None of a
     pair of which no facets are near each other. `surfaces` by mesh digest. What comes of a pair does not depend on
     the others."""
-    views = [pair_view(parts, surfaces, store, tolerance, tolerances) for parts, tolerance in asked]
+    views = [pair_view(parts, surfaces, store, tolerance, tolerances) for parts, tolerance in wanted]
     met = [view for view in views if view is not None]
     overlaps = [pair.overlap(MATING_REACH * pair.tolerance) for pair, _, _ in met]
     mates = [
@@ -74,13 +75,22 @@ def mated_pairs(
         for (pair, _, reach), overlap in zip(met, overlaps, strict=True)
     ]
     patches = mated_patches_of([(pair, own) for (pair, _, _), own in zip(met, mates, strict=True)])
-    found = iter([Mated(*view, flags, own) for view, flags, own in zip(met, overlaps, patches, strict=True)])
+    asked = [k for k, own in enumerate(patches) if not own]
+    apart = {k for k, far in zip(asked, far_apart([met[k][0] for k in asked]), strict=True) if far}
+    found = iter(
+        [
+            Mated(replace(pair, apart=True) if k in apart else pair, X_WF, reach, flags, own)
+            for k, ((pair, X_WF, reach), flags, own) in enumerate(zip(met, overlaps, patches, strict=True))
+        ]
+    )
     return [None if view is None else next(found) for view in views]
 
 
 def touching(mates: Mated) -> list[Patch]:
     """All patches of a pair of which it is known what mates, in its frame, but narrow ones and unknown touches."""
     pair, reach, overlap, mated = mates.pair, mates.reach, mates.overlap, mates.patches
+    if pair.apart and not rounded(pair, [], reach):
+        return []
     patches = [patch for patch in mated if not patch.narrow]
     screwed = threaded_patches(pair, overlap)
     patches += freeform_patches(pair, overlap)
@@ -101,11 +111,11 @@ def touching(mates: Mated) -> list[Patch]:
 
 
 def pair_contacts(mates: Mated, patches: list[Patch], crosses: bool | None, solids: SolidStore) -> PairContacts:
-    """Contacts of a pair, of its mates and all patches that are `touching`, in the world; `crosses` is what its
-    interference asks first."""
+    """Contacts of a pair, of its mates and all patches that are `touching`, in the world; `crosses` is whether
+    their boundaries cross."""
     pair, X_WF, mated = mates.pair, mates.X_WF, mates.patches
     interference = find_interference(pair, patches, solids, crosses)
-    if not patches and interference is None:
+    if not patches and interference is None and not pair.apart:
         patches = unknown_touches(pair)
     least = NARROW_SHARE * sum(patch.area for patch in patches)
     if patches:

@@ -214,6 +214,29 @@ TOLD_AT_ONCE = 4096
 CROSSED_MOST = 20
 """The same where it is only asked whether any meet: two trees for it take longer than one of few slivers does."""
 
+# meshes/apart
+
+APART_MOST = 20
+"""Pairs of triangles near each other, in all triangles, beyond which it is not asked whether all keep apart."""
+APART_SOME = 32
+"""Of these at most so many are asked first."""
+APART_AT_ONCE = 4096
+"""Pairs of triangles that are looked at in one pass."""
+APART_ROUNDED = 1e-6
+"""Share of a distance by which what keeps it is further apart."""
+
+# meshes/bulges
+
+BULGE = 0.35
+"""Share of a chord by which a smooth curve may stand off it: cubic curves through 32° and lengths of one to three come
+to 0.3 at worst."""
+BENDS_LEAST = 1e-12
+"""By which the cosine between two planes is less than 1 where they are no continuation of each other."""
+BENDS_MOST = 1.05
+"""Share of the angle of a smooth edge up to which planes may meet smoothly, as an outline is not quite across them."""
+BENDS_PLANES = 1000
+"""Planes from which on it is not asked which of them do."""
+
 # meshes/closest
 AS_NEAR = 1e-9
 """Share of their distance by which facets may be farther than the nearest and still as near, ..."""
@@ -223,6 +246,9 @@ CLOSEST_SOME = 60_000
 """Points times the corners that bound how far they are off: nearer bounds cost more than they leave to be measured."""
 CLOSEST_MOST = 1_000_000
 """Points times the facets near each up to which all are measured: 0.1 s, and 0.2 GB."""
+CLOSEST_SIFTED = 8
+"""Facets near each point from which on it is asked first which of their boxes are no farther than the nearest facet:
+that takes a tenth of measuring them, and leaves a few."""
 
 SEEN_AT_ONCE = 4096
 """Points times the facets whose solid angles are had at once: what is had of them stays in the cache."""

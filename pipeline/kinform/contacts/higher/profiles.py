@@ -18,6 +18,7 @@ from kinform.contacts.higher.closest_places import closest_places
 from kinform.contacts.higher.outlines import Curve, Sheet, curves, may_curve, segments
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.mating.charts import plane_basis
+from kinform.contacts.search.apart import bulge_of
 from kinform.contacts.search.pair_view import NearSurfaces, PairView, PartView, near_facets
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.meshes.boxes import meeting_box
@@ -59,6 +60,8 @@ def profile_contacts(
     """Line contacts between outlines that are no plane and no cylinder, in the frame of the pair, and the surfaces
     of a and b that are pieces of the curves that touch. `along`: the only direction to look along."""
     box = pair.common_box()
+    if not any(bulge_of(part, pair.tolerances.smooth_edge) for part in pair.parts):
+        box = None
     directions = [] if box is None else [along] if along is not None else _directions(pair.near)
     sheets = [] if box is None else [_sheet(part, *box, pair.tolerances) for part in pair.parts]
     for direction in directions:

@@ -60,6 +60,9 @@ class _Round:
 
 def rounded(pair: PairView, patches: list[Patch], reach: float) -> list[Patch]:
     """The patches, with those of rings of flats that are or may be cylinders in place of what their flats say."""
+    ringed = [part.index.rings(part.surfaces) for part in pair.parts]
+    if not any(ringed) and not _any_by_tangents(pair):
+        return patches
     sides = [_rounds(part, near) for part, near in zip(pair.parts, pair.near, strict=True)]
     for first, second in _coaxial(sides, reach):
         patches = _read(pair, patches, first, second)
@@ -156,6 +159,23 @@ def _by_tangents(pair: PairView, bar: _Round, socket: _Round) -> bool:
     apart = abs(socket.corner - bar.corner)
     near = abs(socket.flats[1] - bar.corner)
     return apart > radial_limit(pair.play, bar.corner) and near <= constants.TANGENT_SHARE * apart
+
+
+def _any_by_tangents(pair: PairView) -> bool:
+    """Whether that is so of any two of the near cylinders, wherever they are."""
+    a, b = pair.near
+    rows, columns = a.of_kind("cylinder"), b.of_kind("cylinder")
+    if not len(rows) or not len(columns):
+        return False
+    first, second, senses = a.radii[rows][:, None], b.radii[columns][None], a.sides[rows][:, None] * b.sides[columns]
+    inner = a.sides[rows][:, None] > 0.0
+    bar, bore = np.where(inner, first, second), np.where(inner, second, first)
+    flats = bore - np.where(inner, b.chords[columns][None], a.chords[rows][:, None])
+    apart = np.abs(bore - bar)
+    play = np.maximum(pair.play, constants.CLEARANCE_SHARE * bar)
+    limit = constants.MATING_REACH * np.minimum(play, bar / constants.HALF_RADIUS_SHARE)
+    by_tangents = (apart > limit) & (np.abs(flats - bar) <= constants.TANGENT_SHARE * apart)
+    return bool((by_tangents & (senses <= 0.0)).any())
 
 
 def _between(patch: Patch, first: _Round, second: _Round) -> bool:

@@ -12,10 +12,11 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.contacts import constants
+from kinform.contacts.mating.facing import may_face
 from kinform.contacts.mating.patches import classify_fit
 from kinform.contacts.search.pair_view import PairView, boxes_of
 from kinform.foundation.algebra.screws import Frame, rows
-from kinform.foundation.algebra.vectors import cross, dot, foot, norm
+from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.constants import SLIVER_WIDTH
 from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import meeting_box, middles, triangle_boxes
@@ -24,7 +25,6 @@ from kinform.foundation.sorting import distinct
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
-from kinform.model.surfaces import KINDS
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +55,7 @@ def enclosing_patches(pair: PairView, patches: list[Patch]) -> list[Patch]:
     if not kinds or ("line" in kinds and kinds <= set(constants.TOUCHING)):
         return []
     unread = _unread(pair, patches)
-    if not _may_face(pair, unread):
+    if not may_face(pair, unread):
         return []
     near = _near(pair, unread)
     if near is None or not _encloses(near, patches, pair.tolerance):
@@ -78,41 +78,6 @@ def _unread(pair: PairView, patches: list[Patch]) -> Flags:
             about = b.index.neighbours(b.surfaces, j)
             flags[rows_[i], [column for k, column in columns.items() if k in about]] = False
     return flags
-
-
-def _may_face(pair: PairView, unread: Flags) -> bool:
-    """Whether any two surfaces flagged in `unread` (s, t) may have facets that face each other within the tolerance:
-    planes that do not oppose each other have none, nor have planes and cylinders across them, nor cylinders about one
-    axis, or side by side, that are further apart."""
-    (a, b), plane, cylinder = pair.near, KINDS.index("plane"), KINDS.index("cylinder")
-    rows_, columns = np.nonzero(unread)
-    if not len(rows_):
-        return False
-    kinds = a.kinds[rows_], b.kinds[columns]
-    cosine = dot(a.axes[rows_], b.axes[columns])
-    flat, straight = (kinds[0] == plane) & (kinds[1] == plane), (kinds[0] == cylinder) & (kinds[1] == cylinder)
-    across = ((kinds[0] == plane) & (kinds[1] == cylinder)) | ((kinds[0] == cylinder) & (kinds[1] == plane))
-    sine = np.sqrt(np.maximum(1.0 - cosine * cosine, 0.0))
-    never = (flat & (cosine > -constants.FACING_NEVER)) | (across & (sine < constants.FACING_NEVER))
-    if not (never | straight).all():
-        return True
-    for i, j in zip(rows_[~never].tolist(), columns[~never].tolist(), strict=True):
-        if _apart(pair, i, j) <= constants.MATING_REACH * pair.tolerance:
-            return True
-    return False
-
-
-def _apart(pair: PairView, row: int, column: int) -> float:
-    """m that the facets of two cylinders are apart at least; not positive where that is not known."""
-    surfaces, (a, b) = pair.surfaces(row, column), pair.parts
-    (first, second), (on_first, on_second), radii = surfaces.axes, surfaces.points, surfaces.radii
-    low, high = np.minimum(a.low, b.low), np.maximum(a.high, b.high)
-    middle, whole = 0.5 * (low + high), norm(high - low)
-    feet = [foot(point, axis, middle) for point, axis in ((on_first, first), (on_second, second))]
-    tilt = norm(cross(first, second))
-    between = norm(feet[1] - feet[0])
-    gap = max(abs(radii[0] - radii[1]) - between, between - sum(radii))
-    return gap - tilt * whole - surfaces.slack
 
 
 def _near(pair: PairView, unread: Flags) -> _Near | None:

@@ -1,8 +1,9 @@
-"""Whether the boundaries of two parts cross: what is asked first, of many pairs at once, and what then of one."""
+"""Whether the boundaries of two parts cross, of many pairs at once."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,12 +14,44 @@ from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 
 
-def first_crossings(asked: Sequence[tuple[PairView, list[Patch]]]) -> list[bool | None]:
-    """What is asked first of pairs with their patches, of all at once: whether their boundaries cross, the second part
-    moved off plane contacts where it has any; None where nothing is asked, as they have no overlap that counts."""
-    questions = {k: _first(pair, patches) for k, (pair, patches) in enumerate(asked) if _may_overlap(pair)}
-    told = dict(zip(questions, crossings_of(list(questions.values())), strict=True))
-    return [told.get(k) for k in range(len(asked))]
+def boundaries_cross(asked: Sequence[tuple[PairView, list[Patch]]]) -> list[bool | None]:
+    """Whether the boundaries of pairs cross, beside their patches, of all at once; None of those that have no overlap
+    that counts, as their boxes have none.
+
+    Parts that a move by less than what counts as an overlap sets free of each other do not. Faces that coincide cross
+    or do not as rounding has it, so the question is put once more with the second part moved by as much.
+    """
+    out: list[bool | None] = [False if _may_overlap(pair) else None for pair, _ in asked]
+    moves = {k: _moves(*asked[k]) for k, may in enumerate(out) if may is not None and not asked[k][0].apart}
+    while moves:
+        told = crossings_of([_moved(*asked[k][0].parts, left.first) for k, left in moves.items()])
+        moves, before = {}, moves
+        for (k, left), crosses in zip(before.items(), told, strict=True):
+            if crosses == left.ends:
+                out[k] = crosses
+            elif left.more:
+                moves[k] = _Moves(left.more[0], left.more[1:], True)
+    return out
+
+
+@dataclass(frozen=True, eq=False)
+class _Moves:
+    """Moves (3,) m of the second part at which it is asked whether boundaries cross, one after the other."""
+
+    first: Array
+    more: list[Array]
+    ends: bool
+    """The answer to the first that is the last word; after others they are asked on, and do not cross at the end."""
+
+
+def _moves(pair: PairView, patches: list[Patch]) -> _Moves:
+    """Those of a pair."""
+    least = constants.EXACT_OVERLAP * pair.tolerance
+    shift = least * np.array([0.61, 0.53, 0.59])
+    apart = _parting(patches)
+    if apart is None:
+        return _Moves(np.zeros(3), [shift, -shift], True)
+    return _Moves(constants.PARTING_TRIED * least * apart, [np.zeros(3), shift, -shift], False)
 
 
 def _may_overlap(pair: PairView) -> bool:
@@ -30,35 +63,12 @@ def _may_overlap(pair: PairView) -> bool:
     return not (high - low).min() < constants.EXACT_OVERLAP * pair.tolerance
 
 
-def _first(pair: PairView, patches: list[Patch]) -> tuple[Region, Region, Array]:
-    """Both regions, and the pose (4, 4) of the second part in the frame of the first at which they are asked first."""
-    apart = _parting(patches)
-    least = constants.EXACT_OVERLAP * pair.tolerance
-    return _moved(*pair.parts, np.zeros(3) if apart is None else constants.PARTING_TRIED * least * apart)
-
-
 def _moved(a: PartView, b: PartView, move: Array) -> tuple[Region, Region, Array]:
-    """The same with the second part moved (3,) m in the frame of the pair."""
+    """Both regions, and the pose (4, 4) of the second part in the frame of the first, with the second part moved (3,) m
+    in the frame of the pair."""
     X_AF, X_FB = np.eye(4) if a.at_home else np.linalg.inv(a.X_FP), b.X_FP.copy()
     X_FB[:3, 3] += move
     return a.region, b.region, X_AF @ X_FB
-
-
-def boundaries_cross(pair: PairView, patches: list[Patch], first: bool) -> bool:
-    """Whether the two boundaries cross, of parts whose boxes overlap; `first` as `first_crossings` says.
-
-    Parts that a move by less than what counts as an overlap sets free of each other do not. Faces that coincide cross
-    or do not as rounding has it, so the question is put once more with the second part moved by as much.
-    """
-    shift = constants.EXACT_OVERLAP * pair.tolerance * np.array([0.61, 0.53, 0.59])
-    moves = [shift, -shift]
-    if _parting(patches) is not None:
-        if not first:
-            return False
-        moves = [np.zeros(3), *moves]
-    elif first:
-        return True
-    return any(region.crosses(other, X_AB) for region, other, X_AB in (_moved(*pair.parts, move) for move in moves))
 
 
 def _parting(patches: list[Patch]) -> Array | None:

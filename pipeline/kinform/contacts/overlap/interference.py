@@ -12,10 +12,10 @@ import math
 import numpy as np
 
 from kinform.contacts import constants
-from kinform.contacts.overlap.boundaries import boundaries_cross
+from kinform.contacts.overlap.samples import Allowance, Samples, inset, joined_samples, measured, measured_on
 from kinform.contacts.overlap.shrunk import are_within
+from kinform.contacts.overlap.slight import counts_of, is_slight
 from kinform.contacts.overlap.solids import Piece, SolidStore, bounds_volume
-from kinform.contacts.presses import beyond_press
 from kinform.contacts.search.pair_view import PairView, PartView, near_facets
 from kinform.foundation.meshes.boxes import middles
 from kinform.foundation.meshes.parity import winding
@@ -24,83 +24,26 @@ from kinform.model.arrays import Array, Flags, Ints, freeze
 from kinform.model.contacts import Interference, Patch
 
 
-@dataclass(frozen=True, eq=False)
-class _Samples:
-    """Points on the boundary of one part inside the other: depth, and the surfaces on both sides."""
-
-    points: Array
-    depth: Array
-    surfaces: Ints
-    """(n, 2) of the first and the second part."""
-
-    def where(self, rows: Flags) -> _Samples:
-        """Some of them."""
-        return _Samples(self.points[rows], self.depth[rows], self.surfaces[rows])
-
-
-@dataclass(frozen=True, eq=False)
-class _Allowance:
-    """What depth the surfaces explain: chord errors and uncertainty, and which of them mate."""
-
-    chords: tuple[Array, Array]
-    """Chord error and residual of each surface of both parts (m)."""
-    mates: dict[tuple[int, int], Patch]
-    floor: float
-    tolerance: float
-
-    def chords_of(self, samples: _Samples) -> Array:
-        """(n,) m: depth that the chord errors of the surfaces on both sides explain."""
-        i, j = samples.surfaces.T
-        return np.asarray(self.chords[0][i] + self.chords[1][j] + self.floor)
-
-    def unexplained(self, samples: _Samples) -> tuple[Flags, bool]:
-        """Samples deeper than what tessellation explains, and whether they all lie at mates that can be pressed."""
-        i, j = samples.surfaces.T
-        present = (set(i.tolist()), set(j.tolist()))
-        mates = [p for (s, t), p in self.mates.items() if s in present[0] and t in present[1]]
-        allowed = self.chords_of(samples)
-        for patch in mates:
-            allowed = np.maximum(allowed, patch.chord + patch.uncertainty[1] + self.floor)
-        deep = samples.depth > allowed
-        at_mate = np.array([pair in self.mates for pair in zip(i.tolist(), j.tolist(), strict=True)], bool)
-        pressed = max((p.chord - min(p.gap, 0.0) + p.offset for p in mates), default=-1.0) + self.floor
-        mated = bool(mates) and not any(beyond_press(patch) for patch in mates)
-        mated &= bool(
-            (
-                (samples.depth[deep] <= constants.MATING_REACH * self.tolerance)
-                & (at_mate[deep] | (samples.depth[deep] <= pressed))
-            ).all()
-        )
-        return deep, mated
-
-
 def find_interference(
     pair: PairView, patches: list[Patch], solids: SolidStore, crosses: bool | None
 ) -> Interference | None:
     """Overlap of two solids beyond the chord errors of their surfaces, in the frame of the pair; `crosses` as
-    `first_crossings` says."""
+    `boundaries_cross` says."""
     a, b = pair.parts
     least = constants.EXACT_OVERLAP * pair.tolerance
-    if crosses is None or not (boundaries_cross(pair, patches, crosses) or _holds(a, b) or _holds(b, a)):
+    if crosses is None or not (crosses or _holds(a, b) or _holds(b, a)):
         return None
     closed = bounds_volume(a.index.mesh) and bounds_volume(b.index.mesh)
-    if closed and are_within(a, b, constants.THINNER * least):
+    # facets of round surfaces cross by their chord errors as a rule
+    cross = any(patch.kind != "plane" for patch in patches)
+    few = cross and max(len(part.faces) for part in pair.parts) <= constants.CUT_FEW
+    if closed and not few and are_within(a, b, constants.THINNER * least):
         return None
-    allowance = _Allowance(
-        chords=(_chords(a), _chords(b)),
-        mates={p.surfaces: p for p in patches if not p.one_sided},
-        floor=least,
-        tolerance=pair.tolerance,
-    )
-    pieces = solids.overlap(a, b, allowance.floor**3) if closed else None
-    if pieces is None:
+    allowance = Allowance.of(pair, patches, least)
+    overlap = solids.overlap(a, b, allowance.floor**3) if closed else None
+    if overlap is None:
         return _by_facets(a, b, allowance)
-    return _by_volume(a, b, pieces, allowance)
-
-
-def _chords(part: PartView) -> Array:
-    """(s,) m that each surface may be off its facets."""
-    return part.table.slacks + part.table.point_uncertainty
+    return None if is_slight(a, b, overlap, allowance) else _by_volume(a, b, overlap.pieces, allowance)
 
 
 def _holds(outer: PartView, inner: PartView) -> bool:
@@ -127,23 +70,7 @@ def _surely(part: PartView, points: Array, crossed: Flags) -> Flags:
     return out
 
 
-def _measured(owner: PartView, other: PartView, points: Array, facets: Ints, first: bool) -> _Samples:
-    """Depth of points on the owner's facets below the surface of the other part."""
-    depth, nearest = other.depths(points)
-    sides = [owner.surfaces.labels[facets], other.surfaces.labels[nearest]]
-    return _Samples(points, depth, np.stack(sides if first else sides[::-1], axis=1))
-
-
-def _joined(samples: list[_Samples]) -> _Samples:
-    """All samples as one set."""
-    return _Samples(
-        np.concatenate([s.points for s in samples]),
-        np.concatenate([s.depth for s in samples]),
-        np.concatenate([s.surfaces for s in samples]),
-    )
-
-
-def _sampled(a: PartView, b: PartView, pieces: list[Piece], counts: list[int]) -> list[_Samples]:
+def _sampled(a: PartView, b: PartView, pieces: list[Piece], counts: list[int]) -> list[Samples]:
     """Depths at about so many points of each piece: middles of its facets, and just inside their corners."""
     chosen = []
     for piece, count in zip(pieces, counts, strict=True):
@@ -154,22 +81,22 @@ def _sampled(a: PartView, b: PartView, pieces: list[Piece], counts: list[int]) -
         return []
     points, part, facet = (np.concatenate(columns) for columns in zip(*chosen, strict=True))
     number = np.repeat(np.arange(len(chosen)), [len(one[0]) for one in chosen])
-    all_ = _measured_on(a, b, points, part, facet)
+    all_ = measured_on(a, b, points, part, facet)
     # those on facets of the first part come before those on facets of the second
     number = np.concatenate([number[part == 0], number[part == 1]])
     return [
-        _Samples(all_.points[number == k], all_.depth[number == k], all_.surfaces[number == k])
+        Samples(all_.points[number == k], all_.depth[number == k], all_.surfaces[number == k])
         for k in range(len(chosen))
     ]
 
 
-def _deepest(a: PartView, b: PartView, piece: Piece, samples: _Samples, deep: Flags) -> float:
+def _deepest(a: PartView, b: PartView, piece: Piece, samples: Samples, deep: Flags) -> float:
     """Greatest depth (m) of the piece: of the deep samples, and of the points beside the deepest of them."""
     best = int(np.argmax(np.where(deep, samples.depth, -math.inf)))
     points, part, facet = _points_of(piece)
     off = np.linalg.norm(points - samples.points[best], axis=1)
     beside = np.lexsort((np.arange(len(off)), off))[: constants.BESIDE_DEEPEST]
-    more = _measured_on(a, b, points[beside], part[beside], facet[beside])
+    more = measured_on(a, b, points[beside], part[beside], facet[beside])
     return max(float(samples.depth[best]), float(more.depth.max()))
 
 
@@ -177,36 +104,16 @@ def _points_of(piece: Piece) -> tuple[Array, Ints, Ints]:
     """Middles of the facets of a piece, and points just inside their corners; of which part and facet each is."""
     middle = middles(piece.corners)
     part, facet = (np.concatenate([numbers, np.repeat(numbers, 3)]) for numbers in (piece.part, piece.facet))
-    return _within(piece.corners, middle), part, facet
+    return inset(piece.corners, middle), part, facet
 
 
-def _within(corners: Array, middle: Array) -> Array:
-    """(4 n, 3) the middles (n, 3) of facets (n, 3, 3), and points just inside their corners."""
-    return np.concatenate(
-        [middle, (constants.SHELL_INSET * corners + (1.0 - constants.SHELL_INSET) * middle[:, None]).reshape(-1, 3)]
-    )
-
-
-def _measured_on(a: PartView, b: PartView, points: Array, part: Ints, facet: Ints) -> _Samples:
-    """Depths of points on facets of either part (0, 1)."""
-    return _joined(
-        [
-            _measured(a, b, points[part == 0], facet[part == 0], True),
-            _measured(b, a, points[part == 1], facet[part == 1], False),
-        ]
-    )
-
-
-def _by_volume(a: PartView, b: PartView, pieces: list[Piece], allowance: _Allowance) -> Interference | None:
+def _by_volume(a: PartView, b: PartView, pieces: list[Piece], allowance: Allowance) -> Interference | None:
     """The pieces of the overlap that are deeper than the surfaces explain, as one interference."""
     volume, depth, moment, mated = 0.0, 0.0, np.zeros(3), True
-    facets = sum(len(piece.corners) for piece in pieces)
     # Faces that coincide leave sheets of no thickness: they need no measuring.
     thick_ones = [piece for piece in pieces if piece.volume > allowance.floor**3]
-    counts = [
-        max(constants.DEPTH_SAMPLES_LEAST, round(constants.DEPTH_SAMPLES * len(piece.corners) / facets))
-        for piece in thick_ones
-    ]
+    facets = sum(len(piece.corners) for piece in pieces)
+    counts = counts_of([len(piece.corners) for piece in thick_ones], facets)
     for piece, samples in zip(thick_ones, _sampled(a, b, thick_ones, counts), strict=True):
         deep, at_mates = allowance.unexplained(samples)
         thick = 2.0 * piece.volume / piece.area
@@ -226,10 +133,10 @@ def _by_volume(a: PartView, b: PartView, pieces: list[Piece], allowance: _Allowa
     return _interference(a, b, volume, depth, moment / volume, mated, "manifold")
 
 
-def _by_facets(a: PartView, b: PartView, allowance: _Allowance) -> Interference | None:
+def _by_facets(a: PartView, b: PartView, allowance: Allowance) -> Interference | None:
     """Overlap of meshes that bound no volume: points of either inside the other, by counting crossings."""
     sides = ((a, b, True), (b, a, False))
-    every = [_measured(owner, other, *_crossed(owner, other), first) for owner, other, first in sides]
+    every = [measured(owner, other, *_crossed(owner, other), first) for owner, other, first in sides]
     # what goes round a point is asked of those first that would count: mostly none of them is inside
     counts = [samples.depth > allowance.chords_of(samples) for samples in every]
     inside = [
@@ -241,7 +148,7 @@ def _by_facets(a: PartView, b: PartView, allowance: _Allowance) -> Interference 
         sure | _surely(other, samples.points, ~some)
         for (_, other, _), samples, some, sure in zip(sides, every, counts, inside, strict=True)
     ]
-    joined = _joined([samples.where(sure) for samples, sure in zip(every, inside, strict=True)])
+    joined = joined_samples([samples.where(sure) for samples, sure in zip(every, inside, strict=True)])
     deep, mated = allowance.unexplained(joined)
     if not deep.any():
         return None
@@ -254,7 +161,7 @@ def _crossed(owner: PartView, other: PartView) -> tuple[Array, Ints]:
     """Points on the owner's facets that are inside the other part by counting crossings, and their facets."""
     near, _, _ = near_facets(owner, other.low, other.high)
     corners = owner.vertices.take(owner.faces[near], axis=0)
-    points, facets = _within(corners, middles(corners)), np.concatenate([near, np.repeat(near, 3)])
+    points, facets = inset(corners, middles(corners)), np.concatenate([near, np.repeat(near, 3)])
     within = np.nonzero(((points > other.low) & (points < other.high)).all(axis=1))[0]
     chosen = within[:: max(1, math.ceil(len(within) / constants.DEPTH_SAMPLES))]
     points, facets = points[chosen], facets[chosen]

@@ -24,15 +24,19 @@ from kinform.model.arrays import Array, Ints
 def are_within(a: PartView, b: PartView, least: float) -> bool:
     """Whether two closed solids are sure to have no point of their surfaces deeper than `least` (m) in each other, and
     to share no ball of a greater radius. Of solids that do, and of some that do not, it is not sure."""
-    if not (_outside(a, b, least) and _outside(b, a, least)):
-        return False
+    first, second = a, b
     low, high = np.maximum(a.low, b.low) - least, np.minimum(a.high, b.high) + least
     facets_a, facets_b = _beside(a, low, high), _beside(b, low, high)
     if len(facets_a) > len(facets_b):
         a, b, facets_a, facets_b = b, a, facets_b, facets_a
-    thinner = _corners(a, facets_a) - least * _outward(a, facets_a)
-    told = None if a.index.is_large or b.index.is_large else crossing(thinner, _corners(b, facets_b))
-    return not (b.region.meets(b.to_part(thinner)) if told is None else told)
+    told: bool | None = False
+    if len(facets_a) and len(facets_b):
+        thinner = _corners(a, facets_a) - least * _outward(a, facets_a)
+        told = None if a.index.is_large or b.index.is_large else crossing(thinner, _corners(b, facets_b))
+    # mostly some cross, which is seen sooner than where shells are
+    if told or not (_outside(first, second, least) and _outside(second, first, least)):
+        return False
+    return told is False or not b.region.meets(b.to_part(thinner))
 
 
 def _outside(inner: PartView, outer: PartView, least: float) -> bool:

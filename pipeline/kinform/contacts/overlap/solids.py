@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import field
+from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from manifold3d import Error, Manifold, Mesh64
@@ -40,6 +42,48 @@ class Piece:
     """(t,) index of that facet in the part's mesh."""
 
 
+@dataclass(frozen=True, eq=False)
+class Overlap:
+    """An overlap in its connected pieces, the facets of each in an order of their own, as it was cut: centred and
+    scaled."""
+
+    cut: Array
+    """(t, 3, 3) corners of all facets, piece by piece."""
+    part: Ints
+    facet: Ints
+    """(t,) as of `Piece`."""
+    ends: list[int]
+    """Where the facets of each piece begin, and where all end."""
+    middle: Array
+    scale: float
+    """(3,) m and m: where the origin of what was cut is, and its unit."""
+
+    @property
+    def pieces(self) -> list[Piece]:
+        """Its pieces in the frame of the pair, largest first."""
+        every = [
+            _piece(self.cut[i:j], self.part[i:j], self.facet[i:j], self.middle, self.scale)
+            for i, j in pairwise(self.ends)
+        ]
+        return sorted(every, key=lambda piece: (-piece.volume, tuple(piece.centroid)))
+
+    @property
+    def corners(self) -> Array:
+        """(t, 3, 3) m of all facets, piece by piece."""
+        return np.asarray(self.cut * self.scale + self.middle)
+
+    @cached_property
+    def sizes(self) -> tuple[Array, Array]:
+        """(p,) m³ and (p,) m² of the pieces, but for rounding."""
+        starts = self.ends[:-1]
+        origins = np.repeat(self.cut[starts, 0], np.diff(self.ends), axis=0)
+        a, b, c = (self.cut[:, k] - origins for k in range(3))
+        volumes = np.add.reduceat(dot(a, cross(b, c)), starts) / 6.0
+        spans = cross(b - a, c - a)
+        areas = 0.5 * np.add.reduceat(np.sqrt(dot(spans, spans)), starts)
+        return volumes * self.scale**3, areas * self.scale**2
+
+
 def _scaling(mesh: Mesh) -> tuple[Array, float]:
     """Centre (3,) and scale (a power of two) that bring a mesh to the order of 1."""
     middle = 0.5 * (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0))
@@ -52,9 +96,9 @@ class SolidStore:
 
     solids: dict[tuple[str, int], Manifold | None] = field(default_factory=dict)
 
-    def overlap(self, a: PartView, b: PartView, least: float) -> list[Piece] | None:
-        """Pieces of the overlap of two meshes that bound volumes, of more than `least` (m³), largest first; None where
-        manifold3d does not take one."""
+    def overlap(self, a: PartView, b: PartView, least: float) -> Overlap | None:
+        """The overlap of two meshes that bound volumes, in pieces of more than `least` (m³); None where manifold3d does
+        not take one."""
         home, guest, roles = (a, b, (0, 1)) if a.at_home else (b, a, (1, 0))
         first, second = self._solid(home.index.mesh, roles[0]), self._solid(guest.index.mesh, roles[1])
         if first is None or second is None:
@@ -63,8 +107,7 @@ class SolidStore:
         guest_middle, guest_scale = _scaling(guest.index.mesh)
         R, p = guest.X_FP[:3, :3], guest.X_FP[:3, 3]
         place = np.concatenate([R * guest_scale, (R @ guest_middle + p - middle)[:, None]], axis=1) / scale
-        pieces = _pieces(first ^ second.transform(place), 0.5 * least / scale**3, middle, scale)
-        return sorted(pieces, key=lambda piece: (-piece.volume, tuple(piece.centroid)))
+        return _overlap(first ^ second.transform(place), 0.5 * least / scale**3, middle, scale)
 
     def forget(self, digest: str) -> None:
         """What is known of a mesh that is asked no more."""
@@ -101,13 +144,14 @@ def _solid(mesh: Mesh, role: int) -> Manifold | None:
     return solid if solid.status() == Error.NoError and not solid.is_empty() else None
 
 
-def _pieces(solid: Manifold, least: float, middle: Array, scale: float) -> list[Piece]:
-    """The connected pieces, of more than `least`, in the frame of the pair, of a solid that is centred on `middle` (3,)
-    and scaled. manifold3d's own `decompose` goes through all of it for each of them."""
+def _overlap(solid: Manifold, least: float, middle: Array, scale: float) -> Overlap:
+    """The connected pieces, of more than `least`, of a solid that is centred on `middle` (3,) and scaled. manifold3d's
+    own `decompose` goes through all of it for each of them."""
     mesh = solid.to_mesh64()
     vertices, faces = np.asarray(mesh.vert_properties)[:, :3], np.asarray(mesh.tri_verts, dtype=np.int64)
     if not len(faces):
-        return []
+        none = np.zeros(0, np.int64)
+        return Overlap(np.zeros((0, 3, 3)), none, none, [0], middle, scale)
     owners, runs = (np.asarray(column, dtype=np.int64) for column in (mesh.run_original_id, mesh.run_index))
     part, facet = np.repeat(owners, np.diff(runs // 3)), np.asarray(mesh.face_id, dtype=np.int64)
     piece = components(faces[:, :2].ravel(), faces[:, 1:].ravel(), len(vertices))[faces[:, 0]]
@@ -115,16 +159,16 @@ def _pieces(solid: Manifold, least: float, middle: Array, scale: float) -> list[
     corners, part, facet = vertices[faces[order]], part[order], facet[order]
     ends = [*heads(piece[order]).nonzero()[0].tolist(), len(faces)]
     a, b, c = (corners[:, k] - corners[0, 0] for k in range(3))
+    counts = np.diff(ends)
     large = np.add.reduceat(dot(a, cross(b, c)) / 6.0, ends[:-1]) > least
-    every = [slice(ends[k], ends[k + 1]) for k in np.flatnonzero(large)]
-    return [_piece(corners[rows], part[rows], facet[rows], middle, scale) for rows in every]
+    rows, number = np.flatnonzero(np.repeat(large, counts)), np.repeat(np.arange(int(large.sum())), counts[large])
+    # Facets in an order of their own, so that sums do not depend on how manifold3d went about it.
+    rows = rows[np.lexsort((*corners[rows].reshape(-1, 9).T[::-1], number))]
+    return Overlap(corners[rows], part[rows], facet[rows], [0, *np.cumsum(counts[large]).tolist()], middle, scale)
 
 
 def _piece(corners: Array, part: Ints, facet: Ints, middle: Array, scale: float) -> Piece:
     """A connected piece in the frame of the pair, of its facets' corners (t, 3, 3), parts and numbers (t,)."""
-    # Facets in an order of their own, so that sums do not depend on how manifold3d went about it.
-    order = np.lexsort(tuple(corners.reshape(len(corners), 9).T[::-1]))
-    corners, part, facet = corners[order], part[order], facet[order]
     origin = corners.reshape(-1, 3).mean(axis=0)
     a, b, c = (corners[:, k] - origin for k in range(3))
     volumes = dot(a, cross(b, c)) / 6.0

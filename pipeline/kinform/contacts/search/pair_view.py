@@ -315,6 +315,8 @@ class PairView:
     play: float
     """m: the same of round surfaces, as far as it does not hang on their radii."""
     tolerances: Tolerances
+    apart: bool = False
+    """Whether it is known that no facets of both are as near as parts that touch are."""
 
     @property
     def parts(self) -> tuple[PartView, PartView]:

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.constants import AS_NEAR, CLOSEST_MOST, CLOSEST_ROUNDING, CLOSEST_SOME
+from kinform.foundation.constants import AS_NEAR, CLOSEST_MOST, CLOSEST_ROUNDING, CLOSEST_SIFTED, CLOSEST_SOME
 from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import meeting_box, triangle_boxes
 from kinform.foundation.meshes.near import Nearest
+from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 
 
@@ -32,9 +33,10 @@ def closest_facets(points: Array, corners: Array) -> tuple[Array, Ints] | None:
     if candidates is None or len(candidates[0]) > CLOSEST_MOST:
         return None
     point, facet = candidates
-    triangles = np.ascontiguousarray(corners.transpose(1, 2, 0)).take(facet, axis=2)
-    triangles -= np.ascontiguousarray(points.T).take(point, axis=1)
-    away = _from_origin(triangles)
+    columns, places = np.ascontiguousarray(corners.transpose(1, 2, 0)), np.ascontiguousarray(points.T)
+    if len(point) > CLOSEST_SIFTED * len(points):
+        point, facet = _sifted(columns, places, point, facet, rounding)
+    away = _from_origin(columns.take(facet, axis=2) - places.take(point, axis=1))
     # the box of a corner touches that of its facet, so that every point has candidates, in their order
     starts = np.searchsorted(point, np.arange(len(points)))
     distance = np.minimum.reduceat(away, starts)
@@ -43,9 +45,37 @@ def closest_facets(points: Array, corners: Array) -> tuple[Array, Ints] | None:
     return distance, beside[facet[first]]
 
 
+def _sifted(corners: Array, places: Array, point: Ints, facet: Ints, rounding: float) -> tuple[Ints, Ints]:
+    """Those of pairs of points `point` (k,) of (3, n), ascending, each of which there is, and triangles `facet` (k,) of
+    (3, 3, m), whose boxes are no farther off than the triangle whose box is nearest: all that may be nearest."""
+    lows, highs = (least(least(corners[0], corners[1]), corners[2]) for least in (np.minimum, np.maximum))
+    square = np.zeros(len(point))
+    for low, high, place in zip(lows, highs, places, strict=True):
+        here = place.take(point)
+        off = np.maximum(low.take(facet) - here, here - high.take(facet))
+        np.maximum(off, 0.0, out=off)
+        off *= off
+        square += off
+    starts = np.flatnonzero(heads(point))
+    least_of = np.minimum.reduceat(square, starts)
+    nearest = np.flatnonzero(square == least_of.take(point))
+    nearest = nearest.take(np.flatnonzero(heads(point.take(nearest))))
+    most = _from_origin(corners.take(facet.take(nearest), axis=2) - places)
+    most *= (1.0 + AS_NEAR) ** 2
+    most += 2.0 * rounding
+    most *= most
+    kept = np.flatnonzero(square <= most.take(point))
+    return point.take(kept), facet.take(kept)
+
+
 def distances_from(point: Array, corners: Array) -> Array:
     """(m,) distances of a point (3,) from triangles (m, 3, 3), one unit of length."""
     return _from_origin(np.ascontiguousarray((corners - point).transpose(1, 2, 0)))
+
+
+def distances_between(points: Array, corners: Array) -> Array:
+    """(k,) distances of points (k, 3) from triangles (k, 3, 3), one unit of length."""
+    return _from_origin(np.ascontiguousarray((corners - points[:, None]).transpose(1, 2, 0)))
 
 
 def _from_origin(triangles: Array) -> Array:

@@ -20,6 +20,7 @@ from kinform.foundation.constants import (
 )
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
+from kinform.foundation.meshes.bulges import bulge_of
 from kinform.foundation.meshes.depths import Depths
 from kinform.foundation.meshes.edges import SharedEdges, shared_edges
 from kinform.foundation.meshes.fcl_adapter import fcl_model, partial_model
@@ -56,6 +57,7 @@ class MeshIndex:
         self._depths: Depths | None = None
         self._table: SurfaceTable | None = None
         self._rings: tuple[Ring, ...] | None = None
+        self._bulge: float | None = None
         self.low: Array = mesh.vertices.min(axis=0)
         self.high: Array = mesh.vertices.max(axis=0)
         """(3,) m, box in the part frame."""
@@ -186,6 +188,14 @@ class MeshIndex:
         if self._rings is None:
             self._rings = rings_of(self.mesh, surfaces, self.table(surfaces), self.edges, self.borders(surfaces))
         return self._rings
+
+    def bulge(self, surfaces: MeshSurfaces, exact: Flags, smooth: float) -> float:
+        """m by which smooth curves through its outlines may stand off its facets; `exact` (s,) surfaces need none, and
+        edges are smooth below `smooth` (rad)."""
+        if self._bulge is None:
+            corners = self.mesh.vertices.take(self.mesh.faces, axis=0)
+            self._bulge = bulge_of(corners, surfaces.labels, self.table(surfaces), exact, smooth)
+        return self._bulge
 
     @property
     def shells(self) -> Ints:

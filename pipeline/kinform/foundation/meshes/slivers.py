@@ -137,7 +137,7 @@ def _told(first: Array, second: Array, one: Ints, two: Ints, size: Array) -> tup
     the other: by more than rounding, so that all directions together say the same. That is most of them. `size` (m,)
     bounds all coordinates of what each of the second is asked with."""
     # what is asked of a triangle is computed once for all of its pairs
-    sides, apart, met = _sides(second, size), np.empty(len(one), bool), np.empty(len(one), bool)
+    sides, apart, met = sides_of(second, size), np.empty(len(one), bool), np.empty(len(one), bool)
     for start in range(0, len(one), TOLD_AT_ONCE):
         some = slice(start, start + TOLD_AT_ONCE)
         apart[some], met[some] = _told_of(first.take(one[some], axis=2), *(of.take(two[some], axis=-1) for of in sides))
@@ -164,7 +164,7 @@ def _told_of(first: Array, axes: Array, reach: Array, spare: Array, square: Arra
     return apart, met
 
 
-def _sides(triangles: Array, size: Array) -> tuple[Array, Array, Array, Array]:
+def sides_of(triangles: Array, size: Array) -> tuple[Array, Array, Array, Array]:
     """Of triangles (3, 3, n) the normal and what lies across each edge (3, 4, n), how far along these they reach
     (4, n), what is more than rounding there (4, n), `size` (n,) being the bound of all coordinates, and the square (n,)
     of what is steep along the normal."""

@@ -1,0 +1,112 @@
+"""Depths of points on the boundary of either of two solids below that of the other, and what depth their surfaces
+explain."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.contacts import constants
+from kinform.contacts.presses import beyond_press
+from kinform.contacts.search.pair_view import PairView, PartView
+from kinform.model.arrays import Array, Flags, Ints
+from kinform.model.contacts import Patch
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """Points on the boundary of one part inside the other: depth, and the surfaces on both sides."""
+
+    points: Array
+    depth: Array
+    surfaces: Ints
+    """(n, 2) of the first and the second part."""
+
+    def where(self, rows: Flags) -> Samples:
+        """Some of them."""
+        return Samples(self.points[rows], self.depth[rows], self.surfaces[rows])
+
+
+@dataclass(frozen=True, eq=False)
+class Allowance:
+    """What depth the surfaces explain: chord errors and uncertainty, and which of them mate."""
+
+    chords: tuple[Array, Array]
+    """Chord error and residual of each surface of both parts (m)."""
+    mates: dict[tuple[int, int], Patch]
+    floor: float
+    tolerance: float
+
+    @staticmethod
+    def of(pair: PairView, patches: list[Patch], floor: float) -> Allowance:
+        """What the surfaces of a pair explain, with its patches, beside `floor` (m)."""
+        return Allowance(
+            chords=(_part_chords(pair.a), _part_chords(pair.b)),
+            mates={p.surfaces: p for p in patches if not p.one_sided},
+            floor=floor,
+            tolerance=pair.tolerance,
+        )
+
+    def chords_of(self, samples: Samples) -> Array:
+        """(n,) m: depth that the chord errors of the surfaces on both sides explain."""
+        i, j = samples.surfaces.T
+        return np.asarray(self.chords[0][i] + self.chords[1][j] + self.floor)
+
+    def unexplained(self, samples: Samples) -> tuple[Flags, bool]:
+        """Samples deeper than what tessellation explains, and whether they all lie at mates that can be pressed."""
+        i, j = samples.surfaces.T
+        present = (set(i.tolist()), set(j.tolist()))
+        mates = [p for (s, t), p in self.mates.items() if s in present[0] and t in present[1]]
+        allowed = self.chords_of(samples)
+        for patch in mates:
+            allowed = np.maximum(allowed, patch.chord + patch.uncertainty[1] + self.floor)
+        deep = samples.depth > allowed
+        at_mate = np.array([pair in self.mates for pair in zip(i.tolist(), j.tolist(), strict=True)], bool)
+        pressed = max((p.chord - min(p.gap, 0.0) + p.offset for p in mates), default=-1.0) + self.floor
+        mated = bool(mates) and not any(beyond_press(patch) for patch in mates)
+        mated &= bool(
+            (
+                (samples.depth[deep] <= constants.MATING_REACH * self.tolerance)
+                & (at_mate[deep] | (samples.depth[deep] <= pressed))
+            ).all()
+        )
+        return deep, mated
+
+
+def _part_chords(part: PartView) -> Array:
+    """(s,) m that each surface may be off its facets."""
+    return part.table.slacks + part.table.point_uncertainty
+
+
+def measured(owner: PartView, other: PartView, points: Array, facets: Ints, first: bool) -> Samples:
+    """Depth of points on the owner's facets below the surface of the other part."""
+    depth, nearest = other.depths(points)
+    sides = [owner.surfaces.labels[facets], other.surfaces.labels[nearest]]
+    return Samples(points, depth, np.stack(sides if first else sides[::-1], axis=1))
+
+
+def measured_on(a: PartView, b: PartView, points: Array, part: Ints, facet: Ints) -> Samples:
+    """Depths of points on facets of either part (0, 1)."""
+    return joined_samples(
+        [
+            measured(a, b, points[part == 0], facet[part == 0], True),
+            measured(b, a, points[part == 1], facet[part == 1], False),
+        ]
+    )
+
+
+def joined_samples(samples: list[Samples]) -> Samples:
+    """All samples as one set."""
+    return Samples(
+        np.concatenate([s.points for s in samples]),
+        np.concatenate([s.depth for s in samples]),
+        np.concatenate([s.surfaces for s in samples]),
+    )
+
+
+def inset(corners: Array, middle: Array) -> Array:
+    """(4 n, 3) the middles (n, 3) of facets (n, 3, 3), and points just inside their corners."""
+    return np.concatenate(
+        [middle, (constants.SHELL_INSET * corners + (1.0 - constants.SHELL_INSET) * middle[:, None]).reshape(-1, 3)]
+    )

@@ -1,0 +1,158 @@
+"""Whether an overlap is slight: none of its pieces deeper than what tessellation explains, of all pieces at once.
+
+Two tessellations of a shaft and its bore share a sliver for each facet, dozens of them, of which none counts. All are
+asked at the points at which they would be measured one by one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.contacts import constants
+from kinform.contacts.overlap.samples import Allowance, measured_on
+from kinform.contacts.overlap.solids import Overlap
+from kinform.contacts.search.pair_view import PartView
+from kinform.foundation.meshes.boxes import middles
+from kinform.foundation.meshes.closest import distances_between
+from kinform.foundation.sorting import distinct
+from kinform.model.arrays import Array, Ints
+
+
+def counts_of(own: list[int], facets: int) -> list[int]:
+    """How many points of each piece are measured, of its `own` facets, of so many facets of all pieces."""
+    return [max(constants.DEPTH_SAMPLES_LEAST, round(constants.DEPTH_SAMPLES * number / facets)) for number in own]
+
+
+def is_slight(a: PartView, b: PartView, overlap: Overlap, allowance: Allowance) -> bool:
+    """Whether it is sure that no piece counts as an overlap."""
+    own = np.diff(overlap.ends)
+    if not len(own):
+        return True
+    volumes, areas = overlap.sizes
+    thick = np.flatnonzero(volumes > (1.0 - constants.SURELY_SLIGHT) * allowance.floor**3)
+    if not len(thick):
+        return True
+    counts = np.array(counts_of(own[thick].tolist(), len(overlap.cut)))
+    chosen = _chosen(np.array(overlap.ends)[thick], own[thick], counts)
+    row, _, piece = chosen
+    part, facet = overlap.part[row], overlap.facet[row]
+    points = _places(overlap.corners, row, chosen[1])
+    thickness = 2.0 * volumes[thick] / ((1.0 - constants.SURELY_SLIGHT) * areas[thick])
+    first = _Told(points, part, _labels(a, b, part, facet), piece)
+    if _is_within(a, b, overlap, thick, first, thickness, allowance):
+        return True
+    samples = measured_on(a, b, points, part, facet)
+    piece = np.concatenate([piece[part == 0], piece[part == 1]])
+    chords = allowance.chords_of(samples)
+    if (samples.depth > _allowed(allowance, samples.surfaces, chords, piece, len(thick))).any():
+        return False
+    # two boundaries that coincide have no depth below each other: a part placed twice
+    return bool((thickness <= _greatest(chords, piece, len(thick))).all())
+
+
+@dataclass(frozen=True, eq=False)
+class _Told:
+    """What is known of samples before they are measured."""
+
+    points: Array
+    part: Ints
+    """(n,) 0 or 1: on whose facets they are."""
+    labels: Ints
+    """(n,) of these facets."""
+    piece: Ints
+    """(n,) number of the piece."""
+
+
+def _labels(a: PartView, b: PartView, part: Ints, facet: Ints) -> Ints:
+    """(n,) surfaces of facets (n,) of either part (0, 1)."""
+    out = np.empty(len(part), np.int64)
+    for k, own in enumerate((a, b)):
+        of = np.flatnonzero(part == k)
+        out[of] = own.surfaces.labels[facet[of]]
+    return out
+
+
+def _is_within(
+    a: PartView, b: PartView, overlap: Overlap, thick: Ints, told: _Told, thickness: Array, allowance: Allowance
+) -> bool:
+    """Whether the facets of the other part that bound the same piece are near enough to all samples, whichever facet is
+    the nearest: mostly they are, and no others need to be looked for."""
+    pieces, chords = len(thick), np.full(len(told.part), allowance.floor)
+    surfaces = np.full((len(told.part), 2), -1)
+    for k, mine in enumerate(allowance.chords):
+        of = np.flatnonzero(told.part == k)
+        chords[of] += mine[told.labels[of]] + allowance.chords[1 - k].min(initial=0.0)
+        surfaces[of, k] = told.labels[of]
+    if (thickness > _greatest(chords, told.piece, pieces)).any():
+        return False
+    allowed = _allowed(allowance, surfaces, chords, told.piece, pieces)
+    # the distinct facets of each part that bound each piece
+    number = np.full(len(overlap.ends) - 1, -1)
+    number[thick] = np.arange(pieces)
+    bounding = np.repeat(number, np.diff(overlap.ends))
+    kept = np.flatnonzero(bounding >= 0)
+    count = np.int64(max(len(a.faces), len(b.faces)))
+    keys = distinct((2 * bounding[kept] + overlap.part[kept]) * count + overlap.facet[kept])
+    side, facet = np.divmod(keys, count)
+    begin, end = side.searchsorted(wanted := 2 * told.piece + 1 - told.part), side.searchsorted(wanted, side="right")
+    if (begin == end).any():
+        return False
+    of = np.repeat(np.arange(len(begin)), end - begin)
+    at = np.arange(len(of)) - np.repeat(np.cumsum(end - begin) - (end - begin), end - begin) + begin[of]
+    corners = np.empty((len(keys), 3, 3))
+    for k, part in enumerate((a, b)):
+        some = np.flatnonzero(side % 2 == k)
+        corners[some] = part.vertices.take(part.faces[facet[some]], axis=0)
+    away = distances_between(told.points[of], corners[at])
+    starts = np.cumsum(end - begin) - (end - begin)
+    return bool((np.minimum.reduceat(away, starts) <= (1.0 - constants.SURELY_SLIGHT) * allowed).all())
+
+
+def _greatest(values: Array, piece: Ints, pieces: int) -> Array:
+    """(p,) the greatest of values (n,) of each of so many pieces, or nothing."""
+    out = np.zeros(pieces)
+    np.maximum.at(out, piece, values)
+    return out
+
+
+def _chosen(starts: Ints, own: Ints, counts: Ints) -> tuple[Ints, Ints, Ints]:
+    """Of pieces of `own` (p,) facets that begin at `starts` (p,), each of which has its middles and then three points
+    beside corners for each facet: those evenly chosen of which there are about `counts` (p,), as the row of the facet,
+    the corner (−1: the middle), and the number of the piece."""
+    steps = np.maximum(1, -(-4 * own // counts))
+    numbers = -(-4 * own // steps)
+    piece = np.repeat(np.arange(len(own)), numbers)
+    place = np.arange(len(piece)) - np.repeat(np.cumsum(numbers) - numbers, numbers)
+    place *= steps[piece]
+    beside = place - own[piece]
+    row, corner = np.divmod(beside, 3)
+    middle = beside < 0
+    row[middle], corner[middle] = place[middle], -1
+    return row + starts[piece], corner, piece
+
+
+def _places(corners: Array, row: Ints, corner: Ints) -> Array:
+    """(n, 3) those points, of facets (t, 3, 3), as `inset` has them."""
+    chosen = corners.take(row, axis=0)
+    middle = middles(chosen)
+    beside = np.flatnonzero(corner >= 0)
+    inner = constants.SHELL_INSET * chosen[beside, corner[beside]]
+    out = middle.copy()
+    out[beside] = inner + (1.0 - constants.SHELL_INSET) * middle[beside]
+    return out
+
+
+def _allowed(allowance: Allowance, surfaces: Ints, chords: Array, piece: Ints, pieces: int) -> Array:
+    """(n,) m: depth that is explained at samples of so many pieces, on `surfaces` (n, 2) of both parts as far as these
+    are known, as `Allowance.unexplained` has it."""
+    i, j = surfaces.T
+    out = chords.copy()
+    for (s, t), patch in allowance.mates.items():
+        there = np.zeros((2, pieces), bool)
+        there[0, piece[i == s]] = True
+        there[1, piece[j == t]] = True
+        at = (there[0] & there[1])[piece]
+        out[at] = np.maximum(out[at], patch.chord + patch.uncertainty[1] + allowance.floor)
+    return out

@@ -1,0 +1,72 @@
+"""Which pairs keep so far from each other that nothing of them touches, which is asked before it is looked for how they
+touch: of parts whose boxes meet, many do.
+
+Surfaces further apart than the contact tolerance do not touch, and no facet stands further off its surface than the
+slack that is known of it. So parts whose facets keep a distance have none of these: points and lines, which are within
+a share of the tolerance of both surfaces, with facets of both beside them; rims and edges, which are nearer still;
+freeform faces, whose facets are within the tolerance; outlines, whose curves are, and stand off their segments by no
+more than a bulge. Mates may be further apart: parts of which some are known are not asked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from kinform.contacts import constants
+from kinform.contacts.search.pair_view import PairView, PartView, near_facets
+from kinform.foundation.meshes.apart import keep_apart
+from kinform.model.arrays import Array, Flags
+from kinform.model.surfaces import KINDS
+
+_CYLINDER = KINDS.index("cylinder")
+
+
+def far_apart(pairs: Sequence[PairView]) -> list[bool]:
+    """Whether it is sure of each pair that no facets are so near each other that anything touches but surfaces that
+    mate, or rings that stand for them: of all at once, and of one whatever the others are."""
+    asked = {k: (*_facets(pair, far), far) for k, pair in enumerate(pairs) if (far := _distance(pair)) is not None}
+    told = dict(zip(asked, keep_apart(list(asked.values())), strict=True))
+    return [told.get(k, False) for k in range(len(pairs))]
+
+
+def _distance(pair: PairView) -> float | None:
+    """m: parts whose facets keep it do not touch; None of large parts, and where threads meet, whose flanks may be
+    further apart."""
+    a, b = pair.near
+    if max(len(part.faces) for part in pair.parts) > constants.APART_FACETS:
+        return None
+    if "helicoid" in a.present and "helicoid" in b.present:
+        return None
+    bulges = [bulge_of(part, pair.tolerances.smooth_edge) for part in pair.parts]
+    slacks = pair.a.table.slack + pair.b.table.slack
+    beside = float(a.slacks.max(initial=0.0)) + float(b.slacks.max(initial=0.0))
+    outlines = sum(bulges) + slacks if any(bulges) else 0.0
+    points = constants.TOUCHING_WITHIN * pair.tolerance + beside
+    return max(constants.MATING_REACH * pair.tolerance + outlines, points)
+
+
+def bulge_of(part: PartView, smooth: float) -> float:
+    """m by which curves through its outlines may stand off them; 0 of a part that has no smooth outline but round
+    ones. Edges are smooth below `smooth` (rad)."""
+    return part.index.bulge(part.surfaces, exact_cylinders(part), smooth)
+
+
+def exact_cylinders(part: PartView) -> Flags:
+    """(s,) which surfaces are cylinders whose fit is better than any curve through their vertices."""
+    table = part.table
+    return np.asarray((table.kinds == _CYLINDER) & (table.residuals < constants.CYLINDER_EXACT * table.chords))
+
+
+def _facets(pair: PairView, far: float) -> tuple[Array, Array]:
+    """(n, 3, 3) and (m, 3, 3) m: facets of both parts, all that come within a distance (m) of the other part among
+    them."""
+    (a, b), out = pair.parts, []
+    for part, other in ((a, b), (b, a)):
+        if far <= part.clear:
+            faces = part.faces if part.region.facets is None else part.faces.take(part.region.facets, axis=0)
+        else:
+            faces = part.faces.take(near_facets(part, other.low - far, other.high + far)[0], axis=0)
+        out.append(part.vertices.take(faces, axis=0))
+    return out[0], out[1]

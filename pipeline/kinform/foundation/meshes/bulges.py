@@ -1,0 +1,42 @@
+"""How far smooth curves through the outlines of a part may stand off its facets.
+
+An outline bends smoothly along facets of curved surfaces, and from plane to plane where these meet, or might, at a
+slight angle. A cubic curve through points whose chords turn by no more than at smooth edges, none of them three times
+as long as the next, stays within a third of a chord's length of it. Cylinders that fit exactly need no curve: they
+stand off by their chord error.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from kinform.foundation.constants import BENDS_LEAST, BENDS_MOST, BENDS_PLANES, BULGE
+from kinform.foundation.meshes.surface_table import SurfaceTable
+from kinform.model.arrays import Array, Flags, Ints
+from kinform.model.surfaces import KINDS
+
+_PLANE = KINDS.index("plane")
+
+
+def bulge_of(corners: Array, labels: Ints, table: SurfaceTable, exact: Flags, smooth: float) -> float:
+    """m, of facets (F, 3, 3) of surfaces `labels` (F,), of which some are `exact` cylinders (s,). Edges are smooth
+    below `smooth` (rad)."""
+    bent = ~exact
+    plane = np.flatnonzero(table.kinds == _PLANE)
+    bent[plane] = _bending(table.axes.take(plane, axis=0), smooth)
+    facets = np.flatnonzero(bent.take(labels))
+    if not len(facets):
+        return 0.0
+    corners = corners.take(facets, axis=0)
+    sides = corners - corners[:, [1, 2, 0]]
+    return BULGE * math.sqrt(float(np.einsum("nij,nij->ni", sides, sides).max()))
+
+
+def _bending(normals: Array, smooth: float) -> Flags:
+    """(n,) which of planes with these normals (n, 3) may meet another one smoothly."""
+    if len(normals) > BENDS_PLANES:
+        return np.ones(len(normals), bool)
+    cosine = normals @ normals.T
+    return np.asarray(((cosine < 1.0 - BENDS_LEAST) & (cosine > math.cos(BENDS_MOST * smooth))).any(axis=1))
