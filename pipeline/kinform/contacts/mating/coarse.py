@@ -26,8 +26,9 @@ from kinform.contacts.mating.analytic import cylinder_mate
 from kinform.contacts.mating.mate import Mate, radial_limit
 from kinform.contacts.mating.patches import mated_patches
 from kinform.contacts.search.pair_view import NearSurfaces, PairView, PartView, SurfacePair
+from kinform.foundation.constants import RING_SPARE
 from kinform.foundation.meshes.boxes import facet_boxes
-from kinform.foundation.meshes.rings import Ring
+from kinform.foundation.meshes.rings import Ring, RingRow
 from kinform.foundation.meshes.surface_table import SurfaceTable
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
@@ -60,10 +61,11 @@ class _Round:
 
 def rounded(pair: PairView, patches: list[Patch], reach: float) -> list[Patch]:
     """The patches, with those of rings of flats that are or may be cylinders in place of what their flats say."""
-    ringed = [part.index.rings(part.surfaces) for part in pair.parts]
-    if not any(ringed) and not _any_by_tangents(pair):
+    found = [_near_rows(part, near) for part, near in zip(pair.parts, pair.near, strict=True)]
+    if not any(found) and not _any_by_tangents(pair):
         return patches
-    sides = [_rounds(part, near) for part, near in zip(pair.parts, pair.near, strict=True)]
+    rows, cylinders = [[row for row, _ in side] for side in found], [_cylinders(near) for near in pair.near]
+    sides = [_with_rings(pair, k, patches, found[k], cylinders, rows) for k in (0, 1)]
     for first, second in _coaxial(sides, reach):
         patches = _read(pair, patches, first, second)
     for k in (0, 1):
@@ -72,45 +74,99 @@ def rounded(pair: PairView, patches: list[Patch], reach: float) -> list[Patch]:
     return patches
 
 
+def _with_rings(
+    pair: PairView, k: int, patches: list[Patch], found: list[tuple[RingRow, list[int]]], cylinders: list[list[_Round]],
+    rows: list[list[RingRow]],
+) -> list[_Round]:  # fmt: skip
+    """The cylinders of part k, with those of its rings that anything may be said of."""
+    out, lying = list(cylinders[k]), _lying(patches, k) if found else set()
+    fit = _that_fit(pair, k, rows[k], cylinders[1 - k], rows[1 - k])
+    for (row, at), fits in zip(found, fit, strict=True):
+        if (fits or (len(row.surfaces) > constants.PRISM_SIDES and _are_torn(lying, row.surfaces))) and row.ring:
+            one = _ring(pair.parts[k], pair.near[k], row.ring, at)
+            out += [] if one is None else [one]
+    return out
+
+
 def _torn(patches: list[Patch], ring: _Round, k: int) -> list[Patch]:
     """The patches; flats of a ring of part k that lie on flats of the other part, which are no ring there (a relief or
     a slot may have torn it), say how many `sides` the ring has."""
     if ring.sides <= constants.PRISM_SIDES:
         return patches
-    lies = [p.kind == "plane" and not p.one_sided and p.surfaces[k] in ring.surfaces for p in patches]
-    on = {p.surfaces[k] for p, flat in zip(patches, lies, strict=True) if flat}
-    if len(on) < constants.TORN_FLATS:
+    if not _are_torn(_lying(patches, k), ring.surfaces):
         return patches
+    lies = [_lies(p) and p.surfaces[k] in ring.surfaces for p in patches]
     return [replace(p, sides=ring.sides) if flat else p for p, flat in zip(patches, lies, strict=True)]
 
 
-def _rounds(part: PartView, near: NearSurfaces) -> list[_Round]:
-    """Cylinders and rings of one part that have facets near the other."""
-    out = [
+def _lies(patch: Patch) -> bool:
+    """Whether it is of planes that lie on each other."""
+    return patch.kind == "plane" and not patch.one_sided
+
+
+def _lying(patches: list[Patch], k: int) -> set[int]:
+    """Planes of part k that lie on planes of the other part."""
+    return {patch.surfaces[k] for patch in patches if _lies(patch)}
+
+
+def _are_torn(lying: set[int], planes: Ints) -> bool:
+    """Whether so many of the planes of a ring lie on others that these go round it."""
+    return len(lying) >= constants.TORN_FLATS and len(lying.intersection(planes.tolist())) >= constants.TORN_FLATS
+
+
+def _cylinders(near: NearSurfaces) -> list[_Round]:
+    """Cylinders of one part that have facets near the other."""
+    return [
         _Round(
             near.axes[k], near.points[k], float(near.radii[k]), (float(near.radii[k] - near.chords[k]),) * 2,
             float(near.sides[k]), 0, near.ids[k : k + 1], near.lows[k], near.highs[k], int(k),
         )
         for k in near.of_kind("cylinder")
     ]  # fmt: skip
-    ids = near.ids.tolist()
-    R_FP, p_FP = part.X_FP[:3, :3], part.X_FP[:3, 3]
-    for ring in part.index.rings(part.surfaces):
-        rows = [ids.index(k) for k in ring.surfaces.tolist() if k in ids]
-        if not rows:
-            continue
-        facets = np.concatenate([near.facets[k] for k in rows])
-        facets = facets[np.isin(facets, ring.facets)]
-        if not len(facets):
-            continue
-        low, high = facet_boxes(part.vertices, part.faces[facets])
-        out.append(
-            _Round(
-                R_FP @ ring.axis, R_FP @ ring.point + p_FP, ring.corner, ring.flats, float(ring.side), ring.sides,
-                ring.surfaces, low.min(axis=0), high.max(axis=0), -1, ring, facets,
-            )
-        )  # fmt: skip
+
+
+def _near_rows(part: PartView, near: NearSurfaces) -> list[tuple[RingRow, list[int]]]:
+    """Rows of flats of one part that may be rings, of which some planes have facets near the other; and where these
+    planes are among the near surfaces."""
+    rows = part.index.ring_rows(part.surfaces)
+    place = {k: row for row, k in enumerate(near.ids.tolist())} if rows else {}
+    every = [(row, [place[k] for k in row.surfaces.tolist() if k in place]) for row in rows]
+    return [(row, at) for row, at in every if at]
+
+
+def _that_fit(
+    pair: PairView, k: int, rows: list[RingRow], cylinders: list[_Round], others: list[RingRow]
+) -> list[bool]:
+    """Which rows of part k may, by radii and axes at first sight, be in a cylinder or a ring of the other part or about
+    one: most are not, and need not be looked at."""
+    if not rows or not (cylinders or others):
+        return [False] * len(rows)
+    turns = [part.X_FP[:3, :3] for part in pair.parts]
+    axes = np.array([*(one.axis for one in cylinders), *(turns[1 - k] @ row.axis for row in others)])
+    side = np.array([*(one.side for one in cylinders), *(row.side for row in others)])
+    corner = np.array([*(one.corner for one in cylinders), *(row.corner for row in others)])
+    flat = np.array([*(one.flats[1] for one in cylinders), *(row.flat for row in others)])
+    least, out = np.cos(constants.TILT_LIKELY * constants.MATING_TILT) - 1e-6, []
+    for row in rows:
+        gap = np.minimum(np.minimum(np.abs(corner - row.corner), np.abs(flat - row.corner)), np.abs(row.flat - corner))
+        rough = 2.0 * RING_SPARE * (row.corner + corner)
+        off = gap > radial_limit(pair.play, (1.0 + RING_SPARE) * max(row.corner, row.flat)) + rough
+        out.append(bool((~off & (row.side * side <= 0.0) & (np.abs(axes @ (turns[k] @ row.axis)) >= least)).any()))
     return out
+
+
+def _ring(part: PartView, near: NearSurfaces, ring: Ring, at: list[int]) -> _Round | None:
+    """A ring that has flats `at` these places of the near surfaces; None where no facets there are its own."""
+    facets = np.concatenate([near.facets[k] for k in at])
+    facets = facets[np.isin(facets, ring.facets)]
+    if not len(facets):
+        return None
+    R_FP, p_FP = part.X_FP[:3, :3], part.X_FP[:3, 3]
+    low, high = facet_boxes(part.vertices, part.faces[facets])
+    return _Round(
+        R_FP @ ring.axis, R_FP @ ring.point + p_FP, ring.corner, ring.flats, float(ring.side), ring.sides,
+        ring.surfaces, low.min(axis=0), high.max(axis=0), -1, ring, facets,
+    )  # fmt: skip
 
 
 def _coaxial(sides: list[list[_Round]], reach: float) -> Iterator[tuple[_Round, _Round]]:

@@ -167,7 +167,8 @@ def _evenly(areas: Array, count: int) -> tuple[Ints, Array]:
     reached = np.cumsum(areas)
     shares = (np.arange(count) + 0.5) / count * reached[-1]
     chosen = np.unique(np.searchsorted(reached, shares).clip(0, len(areas) - 1))
-    following = np.searchsorted(reached[chosen], reached).clip(0, len(chosen) - 1)
+    ends = [0, *np.searchsorted(reached, reached[chosen], side="right").tolist(), len(areas)]
+    following = np.repeat(np.arange(len(ends) - 1), np.diff(ends)).clip(0, len(chosen) - 1)
     return chosen, np.bincount(following, areas, len(chosen)).astype(np.float64)
 
 

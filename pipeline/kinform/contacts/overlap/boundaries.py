@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.contacts import constants
 from kinform.contacts.search.pair_view import PairView, PartView
 from kinform.foundation.meshes.probes import Region, crossings_of
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 

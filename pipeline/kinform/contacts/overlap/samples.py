@@ -3,13 +3,12 @@ explain."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from kinform.contacts import constants
 from kinform.contacts.presses import beyond_press
 from kinform.contacts.search.pair_view import PairView, PartView
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 

@@ -6,8 +6,6 @@ asked at the points at which they would be measured one by one.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from kinform.contacts import constants
@@ -17,6 +15,7 @@ from kinform.contacts.search.pair_view import PartView
 from kinform.foundation.meshes.boxes import middles
 from kinform.foundation.meshes.closest import distances_between
 from kinform.foundation.sorting import distinct
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
 

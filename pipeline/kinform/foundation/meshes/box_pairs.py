@@ -52,24 +52,25 @@ def _that_meet(first: Boxes, second: Boxes, one: Ints, two: Ints) -> tuple[Ints,
 
 
 def _compared(first: Boxes, second: Boxes) -> tuple[Ints, Ints]:
-    """The same as `meeting_boxes`, of few: numpy compares small integers six times as fast as floating numbers, and
-    boxes that meet do so in steps of a scale, too."""
+    """The same as `meeting_boxes`, of few: numpy compares bytes eight times as fast as floating numbers, and boxes that
+    meet do so in steps of a scale, too."""
     columns = [np.ascontiguousarray(side.T) for side in (*first, *second)]
     if len(first[0]) * len(second[0]) <= BOXES_EXACT:
         return _all_compared(columns)
     least = np.minimum(columns[0].min(axis=1), columns[2].min(axis=1))
     most = np.maximum(columns[1].max(axis=1), columns[3].max(axis=1))
-    step = ((2**16 - 1) / np.maximum(most - least, 1e-290))[:, None]
-    rough = [((column - least[:, None]) * step).astype(np.uint16) for column in columns]
+    step = ((2**8 - 1) / np.maximum(most - least, 1e-290))[:, None]
+    rough = [((column - least[:, None]) * step).astype(np.uint8) for column in columns]
     return _that_meet(first, second, *_all_compared(rough))
 
 
 def _all_compared(columns: list[NDArray[Any]]) -> tuple[Ints, Ints]:
     """Pairs that meet, of boxes by lower and upper corners, (3, n) each, of the first and (3, m) of the second."""
     low, high, low_other, high_other = columns
-    meets = np.ones((low.shape[1], low_other.shape[1]), dtype=bool)
+    meets = np.less_equal(low[0][:, None], high_other[0])
     along = np.empty_like(meets)
-    for axis in range(3):
+    meets &= np.less_equal(low_other[0], high[0][:, None], out=along)
+    for axis in (1, 2):
         meets &= np.less_equal(low[axis][:, None], high_other[axis], out=along)
         meets &= np.less_equal(low_other[axis], high[axis][:, None], out=along)
     one, two = np.divmod(np.flatnonzero(meets), np.int64(max(meets.shape[1], 1)))

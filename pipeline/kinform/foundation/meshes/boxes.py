@@ -99,13 +99,15 @@ class FacetBoxes:
         self.low, self.high = low, high
         self._asked = 0
         self._order: Ints | None = None
+        self._columns: tuple[Array, Array] | None = None
 
     def meeting(self, low: Array, high: Array) -> Ints:
         """Facets whose boxes meet the box from `low` to `high` (d,), ascending."""
         self._asked += 1
-        if self._asked <= constants.OFTEN or len(self.low) <= constants.CHUNK:
-            return np.flatnonzero(meeting_box(self.low, self.high, low, high))
+        if self._asked <= constants.OFTEN or len(self.low) <= constants.CHUNKED_LEAST:
+            return np.flatnonzero(self._meeting(low, high))
         if self._order is None:
+            self._columns = None
             self._order = together(self.low, self.high)
             self._starts = np.arange(0, len(self.low), constants.CHUNK)
             self._chunk_low = np.minimum.reduceat(self.low[self._order], self._starts)
@@ -114,6 +116,14 @@ class FacetBoxes:
         at = (self._starts[chunks, None] + np.arange(constants.CHUNK)).ravel()
         facets = np.sort(self._order[at[at < len(self._order)]])
         return np.asarray(facets[meeting_box(self.low[facets], self.high[facets], low, high)])
+
+    def _meeting(self, low: Array, high: Array) -> Flags:
+        """(n,) of all boxes, asked column by column where these can be kept."""
+        if len(self.low) > constants.COLUMNS_MOST:
+            return meeting_box(self.low, self.high, low, high)
+        if self._columns is None:
+            self._columns = np.ascontiguousarray(self.low.T), np.ascontiguousarray(self.high.T)
+        return meeting_box(self._columns[0].T, self._columns[1].T, low, high)
 
 
 class FlatBoxes:
@@ -192,12 +202,12 @@ class FlatBoxes:
             return which, near[facets]
         # numpy compares small integers faster than floating numbers, and what holds a point does so in steps, too
         least, most = np.array([least_x, least_y]), np.array([most_x, most_y])
-        step = (2**16 - 1) / np.maximum(most - least, 1e-290)
+        step = (2**8 - 1) / np.maximum(most - least, 1e-290)
         rough = [
-            ((np.clip(side, least[k % 2], most[k % 2]) - least[k % 2]) * step[k % 2]).astype(np.uint16)
+            ((np.clip(side, least[k % 2], most[k % 2]) - least[k % 2]) * step[k % 2]).astype(np.uint8)
             for k, side in enumerate(sides)
         ]
-        which, facets = _held(((places - least[:, None]) * step[:, None]).astype(np.uint16), rough)
+        which, facets = _held(((places - least[:, None]) * step[:, None]).astype(np.uint8), rough)
         for k in (0, 1):
             place = places[k].take(which)
             kept = sides[k].take(facets) <= place

@@ -28,7 +28,7 @@ from kinform.foundation.meshes.near import Nearest
 from kinform.foundation.meshes.parity import Ray
 from kinform.foundation.meshes.probes import Region
 from kinform.foundation.meshes.proximity import near_boxes
-from kinform.foundation.meshes.rings import Ring, rings_of
+from kinform.foundation.meshes.rings import Ring, RingRow, ring_rows
 from kinform.foundation.meshes.surface_table import SurfaceTable
 from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Flags, Ints
@@ -56,7 +56,7 @@ class MeshIndex:
         self._near: list[tuple[Nearest, float]] | None = None
         self._depths: Depths | None = None
         self._table: SurfaceTable | None = None
-        self._rings: tuple[Ring, ...] | None = None
+        self._rows: tuple[RingRow, ...] | None = None
         self._bulge: float | None = None
         self.low: Array = mesh.vertices.min(axis=0)
         self.high: Array = mesh.vertices.max(axis=0)
@@ -183,11 +183,15 @@ class MeshIndex:
             known = self._neighbours[surface] = frozenset(borders[first:last, 1].tolist())
         return known
 
+    def ring_rows(self, surfaces: MeshSurfaces) -> tuple[RingRow, ...]:
+        """Rows of flats that may be rings, as they look at first sight."""
+        if self._rows is None:
+            self._rows = ring_rows(self.mesh, surfaces, self.table(surfaces), self.edges, self.borders(surfaces))
+        return self._rows
+
     def rings(self, surfaces: MeshSurfaces) -> tuple[Ring, ...]:
         """Rings of flats, which may be meant as round."""
-        if self._rings is None:
-            self._rings = rings_of(self.mesh, surfaces, self.table(surfaces), self.edges, self.borders(surfaces))
-        return self._rings
+        return tuple(row.ring for row in self.ring_rows(surfaces) if row.ring is not None)
 
     def bulge(self, surfaces: MeshSurfaces, exact: Flags, smooth: float) -> float:
         """m by which smooth curves through its outlines may stand off its facets; `exact` (s,) surfaces need none, and

@@ -8,6 +8,9 @@ two parts decides what that means there.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cached_property, partial
+
 import numpy as np
 
 from kinform.foundation import constants
@@ -68,11 +71,34 @@ class _Ridges:
         return _Ridges(*(getattr(self, name)[rows] for name in self.__dataclass_fields__))
 
 
-def rings_of(
+@dataclass(frozen=True, eq=False)
+class RingRow:
+    """A row of flats that may be a ring, as it looks at first sight: distances to a share of `RING_SPARE` of that of
+    the corners."""
+
+    surfaces: Ints
+    """The planes that the flats belong to, ascending."""
+    side: int
+    """As of the ring."""
+    axis: Array
+    """(3,) unit, of either sign."""
+    corner: float
+    """m, of the corners from the axis."""
+    flat: float
+    """m, of the farthest flat from the axis."""
+    look: Callable[[], Ring | None]
+
+    @cached_property
+    def ring(self) -> Ring | None:
+        """The ring; None where it is none after all."""
+        return self.look()
+
+
+def ring_rows(
     mesh: Mesh, surfaces: MeshSurfaces, table: SurfaceTable, edges: SharedEdges, borders: Ints
-) -> tuple[Ring, ...]:
-    """The rings among the planes of a mesh with the table of its surfaces, these shared edges (by corner), and surfaces
-    (k, 2) that share some, by direction, sense and lowest facet."""
+) -> tuple[RingRow, ...]:
+    """The rows of flats that may be rings among the planes of a mesh with the table of its surfaces, these shared edges
+    (by corner), and surfaces (k, 2) that share some, by direction, sense and lowest facet."""
     plane = table.kinds == KINDS.index("plane")
     if plane.sum() < constants.RING_SIDES or not _any_bent(table, borders, plane):
         return ()
@@ -84,12 +110,16 @@ def rings_of(
     label = np.zeros(int(piece.max()) + 1, np.int64)
     label[piece] = surfaces.labels
     rows = _rows_of_flats(ridges, family)
-    found = [
-        _ring(mesh, surfaces, piece, row, label[row.pieces])
-        for row, plausible in zip(rows, _may_be_round(mesh, surfaces.noise, table, rows, label), strict=True)
-        if plausible
-    ]
-    return tuple(ring for ring in found if ring is not None)
+    if not rows:
+        return ()
+    sights = _first_sights(mesh, table, rows, label)
+    out = []
+    for k in np.flatnonzero(_may_be_round(sights, surfaces.noise)).tolist():
+        planes, circles = sights.planes[k], sights.circles
+        look = partial(_ring, mesh, surfaces, piece, rows[k], planes)
+        corner, flat = float(circles.radius[k]), float(sights.reach[1][k])
+        out.append(RingRow(planes, int(sights.sides[k]), circles.axis[k], corner, flat, look))
+    return tuple(out)
 
 
 def _bent(sine: Array, cosine: Array) -> Flags:
@@ -155,7 +185,15 @@ class _Row:
 
     pieces: Ints
     """Ascending."""
-    ridges: _Ridges
+    every: _Ridges
+    """Those of all rows."""
+    edges: Ints
+    """Those of them that are of this one, ascending."""
+
+    @property
+    def ridges(self) -> _Ridges:
+        """Its own."""
+        return self.every.where(self.edges)
 
 
 def _rows_of_flats(ridges: _Ridges, family: Ints) -> list[_Row]:
@@ -176,7 +214,7 @@ def _rows_of_flats(ridges: _Ridges, family: Ints) -> list[_Row]:
     wide = np.sort(wide[np.arange(len(wide)) - first < constants.MOST_RINGS])
     wide = wide[_closed(number, of_edge, len(nodes))[wide]]
     edges, pieces = _members(of_edge, wide), _members(group, wide)
-    return [_Row(nodes[p] % count, ridges.where(e)) for e, p in zip(edges, pieces, strict=True)]
+    return [_Row(nodes[p] % count, ridges, e) for e, p in zip(edges, pieces, strict=True)]
 
 
 def _members(group: Ints, wanted: Ints) -> list[Ints]:
@@ -215,14 +253,13 @@ class _Circles:
 def _circles(mesh: Mesh, rows: list[_Row]) -> _Circles:
     """The circles of all rows at once, by sums over their corners about their middles."""
     count = len(rows)
-    row = np.repeat(np.arange(count), [len(r.ridges.length) for r in rows])
-    direction = np.concatenate([r.ridges.direction for r in rows])
-    length = np.concatenate([r.ridges.length for r in rows])
+    row = np.repeat(np.arange(count), [len(r.edges) for r in rows])
+    ridges = rows[0].every.where(np.concatenate([r.edges for r in rows]))
+    direction, length, ends = ridges.direction, ridges.length, ridges.ends
     lead = direction[np.flatnonzero(heads(row))]
     sense = np.sign(dot(direction, lead[row]))
     axis = normalised(np.add.reduceat((sense * length)[:, None] * direction, np.flatnonzero(heads(row))))
     vertices = np.int64(len(mesh.vertices))
-    ends = np.concatenate([r.ridges.ends for r in rows])
     row, vertex = np.divmod(distinct((row[:, None] * vertices + ends).ravel()), vertices)
     starts = np.flatnonzero(heads(row))
     number = np.bincount(row, minlength=count)
@@ -244,27 +281,47 @@ def _circles(mesh: Mesh, rows: list[_Row]) -> _Circles:
     return _Circles(axis, middle + one[:, None] * u + two[:, None] * v, radius, off)
 
 
-def _may_be_round(mesh: Mesh, noise: float, table: SurfaceTable, rows: list[_Row], label: Ints) -> Flags:
-    """(r,) rows that are not left out at first sight: most are boxes, pockets and steps. `label` (pieces,) tells the
-    plane of each piece."""
-    if not rows:
-        return np.zeros(0, bool)
-    circles = _circles(mesh, rows)
-    spare = 1.0 + constants.RING_SPARE
+@dataclass(frozen=True, eq=False)
+class _Sights:
+    """How rows of flats look at first sight."""
+
+    circles: _Circles
+    planes: list[Ints]
+    """The planes of each, ascending."""
+    sides: Array
+    """(r,) 1 convex, −1 concave."""
+    reach: tuple[Array, Array]
+    """(r,) m of the nearest and the farthest flat from the axis, negative where they look the other way."""
+    open: Array
+    """(r,) rad: the widest angle about the axis without a flat."""
+
+
+def _first_sights(mesh: Mesh, table: SurfaceTable, rows: list[_Row], label: Ints) -> _Sights:
+    """Of all rows at once. `label` (pieces,) tells the plane of each piece."""
     with np.errstate(invalid="ignore"):
-        out = ~(circles.off > spare * (constants.RING_ROUND * circles.radius + constants.RING_NOISES * noise))
+        circles = _circles(mesh, rows)
         planes = [np.unique(label[r.pieces]) for r in rows]
         sizes = np.array([len(p) for p in planes])
         row, starts = np.repeat(np.arange(len(rows)), sizes), np.cumsum(sizes) - sizes
         every = np.concatenate(planes)
         axes, points = table.axes[every], table.points[every]
-        side = np.array([1.0 if r.ridges.convex[0] else -1.0 for r in rows])
-        reach = side[row] * dot(points - circles.centre[row], axes)
+        sides = np.where(rows[0].every.convex[[r.edges[0] for r in rows]], 1.0, -1.0)
+        reach = sides[row] * dot(points - circles.centre[row], axes)
         low, high = np.minimum.reduceat(reach, starts), np.maximum.reduceat(reach, starts)
+        return _Sights(circles, planes, sides, (low, high), _widest_gaps(axes, circles.axis, row, starts))
+
+
+def _may_be_round(sights: _Sights, noise: float) -> Flags:
+    """(r,) rows that are not left out at first sight: most are boxes, pockets and steps."""
+    circles, (low, high) = sights.circles, sights.reach
+    few = np.array([len(planes) <= constants.RING_FEW for planes in sights.planes])
+    spare = 1.0 + constants.RING_SPARE
+    with np.errstate(invalid="ignore"):
+        out = ~(circles.off > spare * (constants.RING_ROUND * circles.radius + constants.RING_NOISES * noise))
         out &= ~(low < -constants.RING_SPARE * circles.radius)
-        out &= ~((sizes <= constants.RING_FEW) & (high - low > spare * constants.RING_EVEN * circles.radius))
-        out &= ~(_widest_gaps(axes, circles.axis, row, starts) > constants.RING_OPEN + constants.RING_SPARE)
-    return out
+        out &= ~(few & (high - low > spare * constants.RING_EVEN * circles.radius))
+        out &= ~(sights.open > constants.RING_OPEN + constants.RING_SPARE)
+    return np.asarray(out)
 
 
 def _widest_gaps(vectors: Array, axes: Array, row: Ints, starts: Ints) -> Array:
@@ -280,9 +337,9 @@ def _widest_gaps(vectors: Array, axes: Array, row: Ints, starts: Ints) -> Array:
 
 
 def _ring(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, row: _Row, labels: Ints) -> Ring | None:
-    """The ring of a row of flats, pieces of the planes `labels`, unless their corners are on no circle or do not go
-    round it."""
-    ridges, labels = row.ridges, np.unique(labels)
+    """The ring of a row of flats, pieces of the planes `labels` (ascending), unless their corners are on no circle or
+    do not go round it."""
+    ridges = row.ridges
     sense = np.sign(ridges.direction @ ridges.direction[0])
     axis = canonical((sense * ridges.length) @ ridges.direction)
     corners = mesh.vertices[np.unique(ridges.ends)]

@@ -59,8 +59,8 @@ class SurfaceTable:
         columns = dict(zip(_SCALARS, np.ascontiguousarray(numbers), strict=True))
         return SurfaceTable(
             kinds=np.array([_NUMBER[s.kind] for s in every], dtype=np.int64),
-            axes=np.array([s.axis for s in every], dtype=np.float64).reshape(-1, 3),
-            points=np.array([s.point for s in every], dtype=np.float64).reshape(-1, 3),
+            axes=_rows([s.axis for s in every]),
+            points=_rows([s.point for s in every]),
             radii=columns["radius"],
             minor_radii=columns["minor_radius"],
             half_angles=columns["half_angle"],
@@ -72,7 +72,7 @@ class SurfaceTable:
             chords=columns["chord"],
             residuals=columns["residual"],
             rims=rims,
-            extents=np.array([s.extent for s in every], dtype=np.float64).reshape(-1, 2),
+            extents=np.array([end for s in every for end in s.extent], dtype=np.float64).reshape(-1, 2),
             areas=columns["area"],
         )
 
@@ -92,6 +92,11 @@ class SurfaceTable:
     def radius(self) -> float:
         """The greatest of `radii`."""
         return float(self.radii.max(initial=0.0))
+
+
+def _rows(vectors: list[Array]) -> Array:
+    """(s, 3) of vectors (3,): numpy joins arrays ten times as fast as it looks into a list of them."""
+    return np.concatenate(vectors).reshape(-1, 3) if vectors else np.zeros((0, 3))
 
 
 _COLUMNS = tuple(field.name for field in fields(SurfaceTable))

@@ -7,12 +7,12 @@ told does not depend on those that are asked with it.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import norm, widest_gap
+from kinform.frozen import dataclass
 from kinform.kinematics.partition import constants
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
