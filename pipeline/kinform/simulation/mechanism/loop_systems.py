@@ -11,6 +11,7 @@ import numpy as np
 
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.model.arrays import Array, Ints
+from kinform.simulation.constants import UNSEEN
 from kinform.simulation.mechanism.mechanism import Mechanism
 
 
@@ -56,10 +57,25 @@ def loop_values(mechanism: Mechanism, screws: Array) -> Array:
     parts = []
     for rates, loops in alike(*systems_of_loops(moves.T)):
         share = moves[loops[:, :, None], rates[:, None, :]]
-        rows = share[:, :, None, :] * scaled[:, rates].swapaxes(-1, -2)[:, :, None]
+        rows = _short(share[:, :, None, :] * scaled[:, rates].swapaxes(-1, -2)[:, :, None], share)
         values = np.linalg.svd(rows.reshape(len(screws), len(loops), -1, rates.shape[1]), compute_uv=False)
         parts.append(values.reshape(len(screws), -1))
     out = np.zeros((len(screws), min(6 * len(moves), mechanism.rates)))
     every = np.concatenate(parts, axis=1)
     out[:, : every.shape[1]] = -np.sort(-every, axis=1)
+    return out
+
+
+def _short(rows: Array, share: Array) -> Array:
+    """(T, G, c, r, m) as few rows of each loop as its rates can move, with the singular values of the six (T, G, c, 6,
+    m) but for rounding; `share` (G, c, m), nought where a rate is none of the loop's."""
+    count = int(np.count_nonzero(share, axis=2).max())
+    if share.shape[1] == 1 or count >= share.shape[2]:
+        return rows
+    own = np.argsort(share == 0.0, axis=2, kind="stable")[None, :, :, None, :count]
+    _, values, right = np.linalg.svd(np.take_along_axis(rows, own, axis=4), full_matrices=False)
+    least = UNSEEN * values.max(axis=(1, 2, 3), initial=0.0, keepdims=True)
+    many = max(1, int(np.count_nonzero(values > least, axis=3).max()))
+    out = np.zeros((*rows.shape[:3], many, rows.shape[4]))
+    np.put_along_axis(out, own, values[..., :many, None] * right[..., :many, :], axis=4)
     return out

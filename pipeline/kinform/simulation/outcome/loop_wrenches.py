@@ -17,6 +17,7 @@ from kinform.foundation.algebra.vectors import cross_matrix
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.simulation.constants import UNDETERMINED_SHARE, UNSEEN
 from kinform.simulation.mechanism.loop_systems import alike, systems_of_loops
+from kinform.simulation.outcome.loop_freedoms import least_wrenches
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,7 +225,12 @@ def _added(
     of_loop = (one.seen.loops == np.arange(share.shape[2])[:, None]).astype(np.float64)
     known = share @ (of_loop @ (answer.known[..., None] * one.seen.wrenches))
     known[..., :3] -= (turn @ known[..., 3:, None])[..., 0]
-    out: Array = (whole[:, joints] + known / unit).reshape(len(whole), systems, -1)
+    borne = whole[:, joints] + known / unit
+    if len(one.unseen.loops) and not answer.free.shape[2]:
+        least_of = least_wrenches(borne, share, one.unseen.loops, one.unseen.wrenches / unit, lever)
+        if least_of is not None:
+            return least_of[0], least_of[1] > UNDETERMINED_SHARE, least_of[2]
+    out: Array = borne.reshape(len(whole), systems, -1)
     freedom = on_joints(one.unseen).reshape(*out.shape, -1)
     held = np.zeros((*freedom.shape[:2], freedom.shape[3]))
     if answer.free.shape[2]:
