@@ -7,6 +7,7 @@ import pytest
 from scipy.linalg import null_space
 from scipy.spatial.transform import Rotation
 
+from kinform.simulation.outcome import loop_freedoms
 from kinform.simulation.outcome.loop_wrenches import Shares, about, add_loops
 
 LENGTH = 0.4
@@ -66,10 +67,12 @@ def by_least_squares(carried, shares, screws, points, effort):
     return out, open_, rank
 
 
+@pytest.mark.parametrize("few_meet", [0.0, 1.0])
 @pytest.mark.parametrize("planar", [False, True])
 @pytest.mark.parametrize("coaxial", [False, True])
 @pytest.mark.parametrize("seed", range(4))
-def test_wrenches_round_loops_are_the_least_over_all_joints(planar, coaxial, seed):
+def test_wrenches_round_loops_are_the_least_over_all_joints(monkeypatch, few_meet, planar, coaxial, seed):
+    monkeypatch.setattr(loop_freedoms, "FEW_MEET", few_meet)
     rng = np.random.default_rng(seed)
     shares, screws, points = posed(rng, coaxial, planar)
     carried, effort = rng.normal(size=points.shape[:2] + (6,)), rng.normal(size=points.shape[:2])

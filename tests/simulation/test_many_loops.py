@@ -9,6 +9,8 @@ from support.port_models import DOWN, Model, four_bars
 from kinform.simulation import Course, simulate_system
 from kinform.simulation.constants import EVEN, FALLEN
 from kinform.simulation.mechanism.closure import counted
+from kinform.simulation.mechanism.construction import assemble
+from kinform.simulation.mechanism.loop_systems import loop_values
 
 COURSE = Course(0.1, 0.02, DOWN)
 
@@ -64,3 +66,14 @@ def test_singular_values_count_by_their_share_or_as_they_go_on(values, expected)
     stacked = counted(np.array([values, values]), 1e-4)
     assert stacked.tolist() == [expected, expected]
     assert FALLEN < EVEN
+
+
+@pytest.mark.parametrize("system", [separate(3), four_bars(5).system(), separate(1)], ids=["apart", "row", "one"])
+def test_singular_values_of_loops_are_those_of_all_their_conditions(system):
+    mechanism = assemble(system)[0]
+    q = mechanism.start + 0.1 * np.random.default_rng(0).normal(size=(3, len(mechanism.start)))
+    screws = np.array([mechanism.screws(mechanism.poses(one)) for one in q])
+    expected = np.linalg.svd(mechanism.closure(screws) * mechanism.scale, compute_uv=False)
+    got = loop_values(mechanism, screws)
+    assert got.shape == expected.shape
+    assert np.allclose(got, expected, rtol=0, atol=1e-13 * expected.max())

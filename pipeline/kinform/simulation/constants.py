@@ -330,6 +330,8 @@ UNDETERMINED_SHARE = 1e-6
 """A component of a wrench that the choice of λ changes by more than this share of itself is not determined."""
 UNSEEN = 1e-13
 """Of the most that a condition sees of a wrench in a loop: less of a direction of it is rounding, and none is seen."""
+FEW_MEET = 0.05
+"""Share of all products of two directions in a joint up to which those that are not nought are summed one by one."""
 CHUNK = 128
 """Times whose reactions are solved at once."""
 RANK_CHUNK = 256

@@ -212,10 +212,14 @@ class Mechanism:
         if len(self.closures) == 0:
             return np.broadcast_to(self.gear_v, (*screws.shape[:-2], *self.gear_v.shape))
         difference = self.moves[self.closures[:, 1]] - self.moves[self.closures[:, 0]]
-        rows = difference[:, None, :] * (screws / self._row_scale).swapaxes(-1, -2)[..., None, :, :]
+        rows = difference[:, None, :] * self.loop_screws(screws).swapaxes(-1, -2)[..., None, :, :]
         rows = rows.reshape(*screws.shape[:-2], -1, self.rates)
         gears = np.broadcast_to(self.gear_v, (*screws.shape[:-2], *self.gear_v.shape))
         return np.concatenate([rows, gears], axis=-2)
+
+    def loop_screws(self, screws: Array) -> Array:
+        """(…, n, 6) what the rates at these screws do to loops that they are in: displacements over `length`."""
+        return np.asarray(screws / self._row_scale)
 
     def closure_at(self, q: Array) -> Array:
         """(6C + G, n) derivative of the gap by the rates at positions (nq,)."""

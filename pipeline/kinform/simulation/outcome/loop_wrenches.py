@@ -13,10 +13,11 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross_matrix
-from kinform.foundation.graphs.graph import UnionFind
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.simulation.constants import UNDETERMINED_SHARE, UNSEEN
+from kinform.simulation.mechanism.loop_systems import alike, systems_of_loops
+from kinform.simulation.outcome.loop_freedoms import least_wrenches
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,21 +127,8 @@ def _stacks(shares: Shares) -> Iterator[_Stack]:
     if len(shares.gears):
         yield _Stack(*(np.arange(many)[None] for many in (len(shares.owner), loops, joints)))
         return
-    sets, of_joint = UnionFind(loops), np.full(joints, -1)
-    first: dict[int, int] = {}
-    rows, columns = np.nonzero(shares.by_loops)
-    for joint, loop in zip(rows.tolist(), columns.tolist(), strict=True):
-        sets.union(first.setdefault(joint, loop), loop)
-    # systems are numbered as their first loops are
-    roots, of_loop = np.unique([sets.find(loop) for loop in range(loops)], return_inverse=True)
-    count = len(roots)
-    of_joint[rows] = of_loop[columns]
-    of_rate = of_joint[shares.owner]
-    lists = [[np.flatnonzero(of == k) for of in (of_rate, of_loop, of_joint)] for k in range(count)]
-    sizes = [tuple(len(numbers) for numbers in system) for system in lists]
-    for size in sorted(set(sizes)):
-        alike = [system for system, other in zip(lists, sizes, strict=True) if other == size]
-        yield _Stack(*(np.stack(numbers) for numbers in zip(*alike, strict=True)))
+    of_joint, of_loop = systems_of_loops(shares.by_loops)
+    yield from (_Stack(*numbers) for numbers in alike(of_joint[shares.owner], of_loop, of_joint))
 
 
 def _conditions(shares: Shares, stack: _Stack, S: Array, points: Array, rest: Array, unit: Array) -> _Conditions:
@@ -237,7 +225,12 @@ def _added(
     of_loop = (one.seen.loops == np.arange(share.shape[2])[:, None]).astype(np.float64)
     known = share @ (of_loop @ (answer.known[..., None] * one.seen.wrenches))
     known[..., :3] -= (turn @ known[..., 3:, None])[..., 0]
-    out: Array = (whole[:, joints] + known / unit).reshape(len(whole), systems, -1)
+    borne = whole[:, joints] + known / unit
+    if len(one.unseen.loops) and not answer.free.shape[2]:
+        least_of = least_wrenches(borne, share, one.unseen.loops, one.unseen.wrenches / unit, lever)
+        if least_of is not None:
+            return least_of[0], least_of[1] > UNDETERMINED_SHARE, least_of[2]
+    out: Array = borne.reshape(len(whole), systems, -1)
     freedom = on_joints(one.unseen).reshape(*out.shape, -1)
     held = np.zeros((*freedom.shape[:2], freedom.shape[3]))
     if answer.free.shape[2]:

@@ -14,6 +14,7 @@ from kinform.model.simulation import Simulation
 from kinform.simulation.constants import LEAST_DRIFT, OTHER_WAY, RANK_CHUNK, SNUG, SUMMED_DRIFT, TRUSTED_DRIFT
 from kinform.simulation.mechanism.closure import counted
 from kinform.simulation.mechanism.dynamics import Dynamics
+from kinform.simulation.mechanism.loop_systems import loop_values
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.states import States, states_at
 from kinform.simulation.outcome.balances import imbalance
@@ -225,6 +226,5 @@ def _ranks(mechanism: Mechanism, states: States, free: float) -> Ints:
         return out
     for first in range(0, len(out), RANK_CHUNK):
         times = slice(first, first + RANK_CHUNK)
-        values = np.linalg.svd(mechanism.closure(states.screws[times]) * mechanism.scale, compute_uv=False)
-        out[times] = counted(np.asarray(values, dtype=np.float64), free)
+        out[times] = counted(loop_values(mechanism, states.screws[times]), free)
     return out
