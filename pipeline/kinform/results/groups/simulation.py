@@ -23,7 +23,6 @@ from kinform.results.datasets import TEXT
 from kinform.results.groups.collisions import COLLISIONS
 from kinform.results.held import HeldGroup
 from kinform.results.layout import Layout, Numbers, Row, Rows, Table, Texts, WholeColumns
-from kinform.results.table import TEXT
 
 
 class _EnergyColumns:
