@@ -27,10 +27,11 @@ from numpy.typing import NDArray
 from kinform.errors import ResultsError
 from kinform.frozen import dataclass
 from kinform.model.arrays import freeze
+from kinform.results import datasets
+from kinform.results.datasets import TEXT
 from kinform.results.held import HeldDataset, HeldGroup
 from kinform.results.texts import has_surrogates, stored_text
 
-TEXT = h5py.string_dtype()
 FACETS = "<i4"
 """Numbers of facets, vertices and surfaces of one mesh: most of a file, and fewer than two thousand millions."""
 _MISSING_NUMBER = 0x7FF8_0000_0000_0000 | 1954
@@ -229,8 +230,7 @@ def write_columns(group: h5py.Group, name: str, columns: Mapping[str, tuple[str,
     table = np.zeros(len(next(iter(columns.values()))[1]), dtype=dtype)
     for label, (_, data) in columns.items():
         table[label] = data
-    dataset = group.create_dataset(name, data=table, dtype=dtype, track_times=False)
-    dataset.attrs["units"] = np.array([unit for unit, _ in columns.values()], dtype=TEXT)
+    datasets.create(group, name, table, [unit for unit, _ in columns.values()])
 
 
 def read_columns(group: HeldGroup, name: str, labels: Sequence[str] | None = None) -> Any:
@@ -319,12 +319,9 @@ def _lacks(values: Iterable[Any]) -> bool:
     return any(map(_IS_NONE, values))
 
 
-def write_array(group: h5py.Group, name: str, array: NDArray[Any], unit: str, dtype: str = "<f8") -> h5py.Dataset:
+def write_array(group: h5py.Group, name: str, array: NDArray[Any], unit: str, dtype: str = "<f8") -> None:
     """Write one array, contiguous and uncompressed."""
-    data = np.ascontiguousarray(array, dtype=dtype).reshape(np.shape(array))
-    dataset = group.create_dataset(name, data=data, track_times=False)
-    dataset.attrs["units"] = unit
-    return dataset
+    datasets.create(group, name, np.ascontiguousarray(array, dtype=dtype).reshape(np.shape(array)), unit)
 
 
 def read_array(group: HeldGroup, name: str) -> NDArray[Any]:
@@ -337,11 +334,7 @@ def read_array(group: HeldGroup, name: str) -> NDArray[Any]:
 
 def write_texts(group: h5py.Group, name: str, items: Sequence[str]) -> None:
     """Write a list of texts."""
-    data = np.array([stored_text(item) for item in items], dtype=object)
-    dataset = group.create_dataset(name, shape=data.shape, dtype=TEXT, track_times=False)
-    if len(items):
-        dataset[...] = data
-    dataset.attrs["units"] = ""
+    datasets.create(group, name, np.array([stored_text(item) for item in items], dtype=TEXT), "")
 
 
 def read_texts(group: HeldGroup, name: str) -> tuple[Any, ...]:

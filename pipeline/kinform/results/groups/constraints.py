@@ -13,9 +13,10 @@ from kinform.design import Design
 from kinform.model.arrays import freeze
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import ConstraintMatrix
+from kinform.results.datasets import TEXT
 from kinform.results.held import HeldGroup
 from kinform.results.layout import Layout, Numbers, Row, Rows, Texts
-from kinform.results.table import TEXT, read_columns, write_columns
+from kinform.results.table import read_columns, write_columns
 from kinform.results.texts import stored_text
 
 

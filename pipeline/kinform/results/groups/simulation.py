@@ -19,10 +19,10 @@ from kinform.frozen import dataclass
 from kinform.function import DesignersJoint, designers_joints
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.simulation import Simulation
+from kinform.results.datasets import TEXT
 from kinform.results.groups.collisions import COLLISIONS
 from kinform.results.held import HeldGroup
 from kinform.results.layout import Layout, Numbers, Row, Rows, Table, Texts, WholeColumns
-from kinform.results.table import TEXT
 
 
 class _EnergyColumns:
