@@ -54,8 +54,10 @@ def test_few_and_many_are_answered_alike(compared, monkeypatch):
     before = closest_facets(points, corners)
     monkeypatch.setattr(box_pairs, "BOXES_MATRIX", compared)
     monkeypatch.setattr(closest, "CLOSEST_SOME", 1000)
-    after = closest_facets(points, corners)
-    assert [found.tobytes() for found in after] == [found.tobytes() for found in before]
+    for sifted in (0, closest.CLOSEST_SIFTED, 10**9):
+        monkeypatch.setattr(closest, "CLOSEST_SIFTED", sifted)
+        after = closest_facets(points, corners)
+        assert [found.tobytes() for found in after] == [found.tobytes() for found in before]
 
 
 def test_of_facets_as_near_as_each_other_it_is_the_first():

@@ -21,6 +21,9 @@ other, deeper than chord errors and mates explain: `boundaries` says whether the
 nothing all the same, `solids` cuts, `interference` measures. `fastening` reads the patches for hints that parts are
 one body, which nobody has to believe.
 
+Of parts whose boxes meet, most do not touch: `search.apart` says so of many pairs at once before 5 is begun, of those
+that have no mates.
+
 An example, `fixtures/pairs/cylindrical_gap_015`: a shaft of 10 mm radius in a bore of 10.15 mm. Their boxes meet; the
 tolerance is 0.5 mm. The mate of the shaft's cylinder (124 facets) with the bore's has a gap of 0.15 mm, three times
 the chord errors, within its limit of 0.51 mm. Unrolled about the mean of both axes, the facets of both sides cover

@@ -23,12 +23,14 @@ def boundaries_cross(asked: Sequence[tuple[PairView, list[Patch]]]) -> list[bool
     """
     out: list[bool | None] = [False if _may_overlap(pair) else None for pair, _ in asked]
     moves = {k: _moves(*asked[k]) for k, may in enumerate(out) if may is not None and not asked[k][0].apart}
+    curved = {k: found for k in moves if (found := _curved(*asked[k])) is not None}
     while moves:
-        told = crossings_of([_moved(*asked[k][0].parts, left.first) for k, left in moves.items()])
+        questions = {k: _moved(*asked[k][0].parts, left.first) for k, left in moves.items()}
+        told = _crossing(questions, curved)
         moves, before = {}, moves
-        for (k, left), crosses in zip(before.items(), told, strict=True):
-            if crosses == left.ends:
-                out[k] = crosses
+        for k, left in before.items():
+            if told[k] == left.ends:
+                out[k] = told[k]
             elif left.more:
                 moves[k] = _Moves(left.more[0], left.more[1:], True)
     return out
@@ -52,6 +54,35 @@ def _moves(pair: PairView, patches: list[Patch]) -> _Moves:
     if apart is None:
         return _Moves(np.zeros(3), [shift, -shift], True)
     return _Moves(constants.PARTING_TRIED * least * apart, [np.zeros(3), shift, -shift], False)
+
+
+def _crossing(
+    questions: dict[int, tuple[Region, Region, Array]], curved: dict[int, tuple[Region, Region]]
+) -> dict[int, bool]:
+    """Whether facets of regions cross: of those with `curved` surfaces in contact, whose facets cross by their chord
+    errors as a rule, these are asked first."""
+    few = {k: (*regions, questions[k][2]) for k, regions in curved.items() if k in questions}
+    out = {k: crosses for k, crosses in zip(few, crossings_of(list(few.values())), strict=True) if crosses}
+    rest = {k: question for k, question in questions.items() if k not in out}
+    return out | dict(zip(rest, crossings_of(list(rest.values())), strict=True))
+
+
+def _curved(pair: PairView, patches: list[Patch]) -> tuple[Region, Region] | None:
+    """The near facets of either part whose surfaces have curved patches with a gap in which facets cross; None without,
+    and where that is most."""
+    tight = [
+        patch for patch in patches if patch.kind in ("cylinder", "cone", "sphere") and 2.0 * patch.gap <= patch.chord
+    ]
+    if not tight:
+        return None
+    ids = [{patch.surfaces[k] for patch in tight} for k in (0, 1)]
+    out = []
+    for part, near, chosen in zip(pair.parts, pair.near, ids, strict=True):
+        facets = [near.facets[k] for k, number in enumerate(near.ids.tolist()) if number in chosen]
+        out.append(Region(part.index, np.sort(np.concatenate([np.zeros(0, np.int64), *facets]))))
+    every = [len(part.faces) if part.region.facets is None else len(part.region.facets) for part in pair.parts]
+    less = 2 * sum(len(region.facets) for region in out if region.facets is not None) <= sum(every)
+    return (out[0], out[1]) if less else None
 
 
 def _may_overlap(pair: PairView) -> bool:
