@@ -15,16 +15,20 @@ from kinform.model.arrays import Ints
 def components(a: Ints, b: Ints, count: int) -> Ints:
     """(count,) number of the connected component of each node under the links a–b, (n,) each; components are numbered
     by their first node."""
-    every = np.arange(count)
-    root = every.copy()
+    root = roots(a, b, count)
+    return np.asarray((np.cumsum(root == np.arange(count)) - 1).take(root))
+
+
+def roots(a: Ints, b: Ints, count: int) -> Ints:
+    """(count,) first node of the component of each."""
+    root = np.arange(count)
     while True:
-        a, b = root.take(a), root.take(b)
         apart = np.flatnonzero(a != b)
         if not len(apart):
-            break
+            return root
         a, b = a.take(apart), b.take(apart)
         np.minimum.at(root, np.maximum(a, b), np.minimum(a, b))
         higher = root.take(root)
         while (higher != root).any():
             root, higher = higher, higher.take(higher)
-    return np.asarray((np.cumsum(root == every) - 1).take(root))
+        a, b = root.take(a), root.take(b)

@@ -128,10 +128,10 @@ class FacetBoxes:
 
 class FlatBoxes:
     """Boxes (F, 2) of facets in a plane, listed by the cells of a grid once many points are asked: which points are in
-    which of them."""
+    which of them. With `tops` (F,), which a point must not be above, those below it need not be told."""
 
-    def __init__(self, low: Array, high: Array):
-        self.low, self.high = low, high
+    def __init__(self, low: Array, high: Array, tops: Array | None = None):
+        self.low, self.high, self._tops = low, high, tops
         self._sides = [np.ascontiguousarray(side) for side in (*low.T, *high.T)]
         self._left = constants.UNLISTED * len(low)
         """Comparisons that cost less than the list does."""
@@ -164,10 +164,11 @@ class FlatBoxes:
         key = self._keys(points)
         return int((self._starts[key + 1] - self._starts[key]).sum())
 
-    def around(self, points: Array) -> tuple[Ints, Ints]:
-        """Indices of points (n, 2), ascending, and of facets whose box they are in, ascending for each."""
+    def around(self, points: Array, heights: Array | None = None) -> tuple[Ints, Ints]:
+        """Indices of points (n, 2), ascending, and of facets whose box they are in, ascending for each; some facets
+        whose tops are below the points' `heights` (n,) are left out."""
         if self._left > 0:
-            few = self._among(points)
+            few = self._among(points, heights)
             if few is not None:
                 return few
             self._list()
@@ -185,11 +186,14 @@ class FlatBoxes:
         """(n,) the cell of each point (n, 2)."""
         return np.asarray(self._cells(points[:, 0], 0) * self._side + self._cells(points[:, 1], 1))
 
-    def _among(self, points: Array) -> tuple[Ints, Ints] | None:
+    def _among(self, points: Array, heights: Array | None) -> tuple[Ints, Ints] | None:
         """As above by comparison with all boxes about the points; None where that has come to cost more than a list."""
         left, lower, right, upper = self._sides
         (least_x, least_y), (most_x, most_y) = points.min(axis=0, initial=np.inf), points.max(axis=0, initial=-np.inf)
-        near = np.flatnonzero((left <= most_x) & (right >= least_x) & (lower <= most_y) & (upper >= least_y))
+        beside = (left <= most_x) & (right >= least_x) & (lower <= most_y) & (upper >= least_y)
+        if heights is not None and self._tops is not None:
+            beside &= self._tops >= heights.min(initial=np.inf)
+        near = np.flatnonzero(beside)
         compared = len(points) * len(near)
         exact = compared > constants.BOXES_COMPARED or compared <= constants.BOXES_EXACT
         self._left -= len(left) + (compared if exact else compared // constants.STEPS_QUICKER)

@@ -25,12 +25,13 @@ class Ray:
         self._columns = np.ascontiguousarray(vertices.T)
         faces = once(mesh.faces) if mesh.health.duplicate_facets else mesh.faces
         self._corners = np.ascontiguousarray(faces.T)
-        self._boxes = FlatBoxes(*facet_boxes(vertices[:, :2], faces))
+        self._boxes = FlatBoxes(*facet_boxes(vertices[:, :2], faces), facet_boxes(self._columns[2], faces)[1])
 
     def crossings(self, points: Array) -> Array:
         """(n,) facets that the ray from each point (n, 3) leaves through, less those that it enters through."""
         seen = points @ self._frame.T
-        which, facets = self._boxes.around(seen[:, :2])
+        # of a facet that lies behind a point, all three terms of its place along the ray are below 0
+        which, facets = self._boxes.around(seen[:, :2], seen[:, 2])
         (ax, ay), (bx, by), (cx, cy) = (self._from(seen, which, facets, corner, (0, 1)) for corner in range(3))
         a, b, c = bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx
         held = np.flatnonzero(((a > 0) & (b > 0) & (c > 0)) | ((a < 0) & (b < 0) & (c < 0)))
