@@ -372,6 +372,10 @@ LEAST_CHORDS = 8
 ROUND_CHORDS: float = float(np.radians(170.0))
 """Angle about its axis that it covers at least: arcs of less are flanks of teeth as well."""
 
+TURNED_CHORDS: float = (ROUND_CHORDS - WIDEST) / 2
+"""Angle to the middle normal of a piece that one of its normals makes at least where a round is in it: they are those
+of the middles of strips, the outermost of which are no wider than WIDEST."""
+
 ON_CHORD = 1.0
 """Chord errors of its middle facet by which its vertices are off, at most."""
 

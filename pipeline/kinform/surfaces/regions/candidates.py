@@ -69,31 +69,36 @@ class Candidates:
         """A polygon conforms where its vertices lie on the surface, its middle no deeper than a chord of the widest
         facet, and its normal is that of the surface to within half a facet."""
         work, region, polygon = batch.patchwork, batch.region, batch.polygon
-        count = len(region)
+        count, owner = len(region), batch.corners[0]
         group, held = self.kind.held(batch, self.params)
-        chord = (1 - np.cos(np.minimum(reach, np.pi) / 2)).take(group)
-        chord *= held.curvature_radius
-        limit = self.tolerance.take(group)
-        chord += limit
-        np.negative(chord, out=chord)
-        deep = held.distance <= chord
+        limit, chord = self.tolerance.take(group), 1 - np.cos(np.minimum(reach, np.pi) / 2)
         # a flat has all its vertices on the surface, but is wider than the facets of it
-        fits = ~deep[:count]
-        if self.kind.saddle:
-            deep = held.distance <= -limit
-        outside = deep[count:]
-        if not self.kind.saddle:
-            cut = np.zeros(count, bool)
-            cut[batch.corners[0].take((held.distance[count:] <= -limit[count:]).nonzero()[0])] = True
-            rows = (cut & fits).nonzero()[0]
-            fits[rows] = self.kind.cuts(batch, self.params, rows, limit.take(rows))
-        outside |= held.distance[count:] >= limit[count:]
-        fits[batch.corners[0].take(outside.nonzero()[0])] = False
+        least = chord.take(region)
+        least *= held.curvature_radius[:count]
+        least += limit[:count]
+        fits: Flags = ~(held.distance[:count] <= np.negative(least, out=least))
         cosine = dot(held.normal[:count], work.normals(polygon))
         cosine *= self.side.take(region)
         widest = (0.5 * reach + NORMAL_SLACK).take(region)
         widest += work.slack.take(polygon)
         fits &= cosine > np.cos(np.minimum(widest, WIDEST, out=widest), out=widest)
+        corner, allowed = held.distance[count:], limit[count:]
+        fits[owner.take((corner >= allowed).nonzero()[0])] = False
+        low = (corner <= -allowed).nonzero()[0]
+        mine = owner.take(low)
+        if self.kind.saddle or not len(low):
+            fits[mine] = False
+            return fits
+        at = low + count
+        depth = chord.take(group.take(at))
+        depth *= held.curvature_radius.take(at)
+        depth += allowed.take(low)
+        cut = np.zeros(count, bool)
+        cut[mine] = True
+        fits[mine.take((corner.take(low) <= np.negative(depth, out=depth)).nonzero()[0])] = False
+        rows = (cut & fits).nonzero()[0]
+        if len(rows):
+            fits[rows] = self.kind.cuts(batch, self.params, rows, limit.take(rows))
         return fits
 
     def scatter(self, batch: Batch) -> Array:

@@ -12,11 +12,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import dot, normalised
 from kinform.frozen import dataclass
 from kinform.model.arrays import Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.describe import angles_covered
-from kinform.surfaces.groups import columns_of, quantile
+from kinform.surfaces.groups import columns_of, group_sum, quantile
 from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.kinds.cylinder import Cylinder
 from kinform.surfaces.polygons.noise import Scales
@@ -34,9 +35,19 @@ class Rounds:
 
     @classmethod
     def of(cls, kind: Cylinder, batch: Batch, side: Ints) -> Rounds:
-        """Those of the pieces that have polygons enough."""
-        large, number = batch.where(batch.size >= constants.LEAST_CHORDS).compact()
+        """Those of the pieces that have polygons enough, and normals that differ enough."""
+        large, number = batch.where((batch.size >= constants.LEAST_CHORDS) & _turns(batch)).compact()
         return cls(large, side[number], kind.propose(large))
+
+
+def _turns(batch: Batch) -> Flags:
+    """(R,) which pieces have a normal so far off the middle one as a round has."""
+    work, count = batch.patchwork, batch.count
+    normal = work.normals(batch.polygon)
+    middle = normalised(group_sum(batch.region, normal * work.area.take(batch.polygon)[:, None], count))
+    least = np.ones(count)
+    np.minimum.at(least, batch.region, dot(normal, columns_of(middle, batch.region)))
+    return np.asarray(least <= np.cos(constants.TURNED_CHORDS))
 
 
 def decimated(territory: Territory, kind: Cylinder, rounds: Rounds, factor: float) -> Growth:
