@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from support.solids import assembly, block, part, random_pose
+from support.solids import assembly, block, part, random_pose, rod
 
-from kinform import surfaces
+from kinform import contacts, surfaces
 from kinform.collisions.driving.apart_for_good import one_motion, that_can_meet
 from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.displacements import displacement
 from kinform.foundation.algebra.vectors import cross
+from kinform.kinematics.mobility.guides import preserved
 
 MIDDLE = np.array([3.0, -20.0, 100.0])
 AXIS = np.array([2.0, -1.0, 2.0]) / 3.0
@@ -92,3 +93,24 @@ def test_parts_beside_each_other_on_an_axis_never_meet_and_others_may(X, scale):
     assert met("above", slides) is not None
     assert met("outside", slides) is None
     assert met("above", turns @ slides) == (12, 12)
+
+
+@pytest.mark.parametrize("X", [np.eye(4), random_pose(np.random.default_rng(6))])
+def test_a_collar_that_only_turns_on_its_deck_never_meets_it_and_its_tooth_may(X):
+    """A bush in a bore may turn and slide; where its loop only turns it, its collar slides along itself."""
+    bore = block(40, 40, 10) - rod(5, -6, 6)
+    bush = rod(5, -5, 5) + rod(8, 5, 8)
+    peg = block(2, 2, 4).translate((12, 0, 6.5))
+    decks = {"plain": bore, "pegged": bore + peg, "beyond": bore + peg.translate((4, 0, 0))}
+    for name, deck in decks.items():
+        toothed = bush + block(6, 2, 2).translate((10, 0, 6.5)).rotate((0, 0, 90))
+        made = assembly(part("deck", deck, X), part("bush", toothed, X), ground=None)
+        known = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
+        shapes = Shapes(made, known, contacts.find(made, known))
+        axis, point = X[:3, 2], X[:3, 3]
+        twists = np.array([np.append(axis, cross(point, axis)), np.append(np.zeros(3), axis)])
+        mates = [patch for patch in shapes.patches("deck", "bush") if preserved(patch, twists)]
+        test = PairTest(shapes, "deck", "bush", shapes.moved_facets("deck", "bush", twists), mates)
+        met = that_can_meet(shapes, test, motion(twists[0], np.linspace(0.0, 2.0, 30)))
+        assert mates
+        assert (met is not None) == (name == "pegged")

@@ -6,11 +6,12 @@ another does a part first meet it (`pair`)? The rooms are read in this order:
 
 1. `parts`: what is asked of one part. `slippage` says which of its surfaces a motion maps onto themselves; their facets
    are left out, so that journals, guides and threads need not be told from collisions by any depth.
-   `coarse_meshes` gives it fewer facets, for how far away it is.
+   `coarse_meshes` gives it fewer facets, for how far away it is; `probes` are points on it, which may come to be inside
+   of others.
 2. `pair`: a `Course` is how one part moves relative to another. `distance_bounds` goes along it in steps as long as the
    parts are apart. `advancement` then halves what is left of it with the facets that count (`prepared_pair`) until it
    has the first crossing that no mate explains (`facet_crossings`, `mate_surfaces`), or a point that came to be deep
-   inside (`deep_entry`, `flush_entry`): of a turn or a slide it is told once where points pass through facets
+   inside (`deep_entry`): of a turn or a slide it is told once where points pass through facets
    (`passages`). `posed_pairs` makes courses of poses of bodies.
 3. `driving`: `alone` drives a joint that no loop closes over. Of pairs that come near each other (`candidates`), the
    one free for the shortest way goes on first. What points keep as they turn or slide tells which of its facets

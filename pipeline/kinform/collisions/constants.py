@@ -40,7 +40,7 @@ CERTAIN = 1.0 - 1e-6
 WHOLES_TOUCH = 1e-6
 """Wholes nearer to each other than this share of a short step touch."""
 
-# pair/flush_entry, deep_entry: points of one part inside the other
+# parts/probes, pair/deep_entry: points of one part inside the other
 
 POINTS_SURFACE = 24
 """Points on one surface."""

@@ -56,6 +56,8 @@ DEPTH_FACETS = 128
 ABOUT_FACET = 1e-6
 """Share of a mesh's size beyond a facet's box from which on a point is clear of it: far more than what its measured
 distance is rounded by."""
+PLANE_ROUNDING = 1e-14
+"""Of the product of a facet's sides and of how far a point is from a corner: what their volume is rounded by."""
 
 # meshes/index
 

@@ -1,5 +1,7 @@
 """Parts of a block of loops that only turn or slide on each other, however the loops move: most of their facets sweep
-past each other for good, as those of leaves of a hinge that lie beside each other do, and need not be followed."""
+past each other for good, as those of leaves of a hinge that lie beside each other do, and need not be followed. What
+they mate by may leave more free than the loops do, as a bush in its bore does: by the motion that is left, its ends
+only slide along themselves."""
 
 from __future__ import annotations
 
@@ -25,10 +27,17 @@ def that_can_meet(shapes: Shapes, test: PairTest, relative: Array) -> PairTest |
     if twist is None:
         return test
     first, second = (Profile(place, mesh.faces, twist) for place, mesh in zip(places, meshes, strict=True))
-    met = meeting(first, second, *test.facets, MEETING_MARGIN * test.size)
+    margin = MEETING_MARGIN * test.size
+    facets = meeting(first, second, *test.facets, margin).facets
     if test.sunk(np.eye(4))[0] > test.loose:
         return test
-    return test.some(met.facets) if all(map(len, met.facets)) else None
+    if test.mates:
+        # no more is made of that than that none can meet: where some do is asked of all of them
+        moved = shapes.moved_facets(*test.names, twist[None])
+        one, other = (np.intersect1d(*sides, assume_unique=True) for sides in zip(facets, moved, strict=True))
+        if not all(map(len, meeting(first, second, one, other, margin).facets)):
+            return None
+    return test.some(facets) if all(map(len, facets)) else None
 
 
 def one_motion(displacements: Array, middle: Array, size: float, off: float) -> Array | None:

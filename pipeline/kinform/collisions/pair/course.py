@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from bisect import bisect_right
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -21,6 +22,9 @@ class Course:
     """m that no point has travelled more than, up to s: it grows with s."""
     nodes: Array | None = None
     """(T,) parameters, ascending, at which displacements cost little."""
+
+    ways: Sequence[float] | None = None
+    """(T,) m travelled up to each of the nodes, if it grows evenly from one to the next."""
 
     meets: Callable[[float], tuple[bool, float]] | None = None
     """Whether facets that count can meet at s, and up to where that stays so; None: not known."""
@@ -48,6 +52,8 @@ class Course:
         """About the greatest parameter between two up to which points have not travelled more than `travel` (m)."""
         if self.travel(high) <= travel:
             return high
+        if self.nodes is not None and self.ways is not None:
+            return self._reached(self.nodes, self.ways, travel, low, high)
         start = low
         for _ in range(40):
             middle = 0.5 * (low + high)
@@ -56,6 +62,16 @@ class Course:
             return low
         node = float(self.nodes[max(int(np.searchsorted(self.nodes, low, side="right")) - 1, 0)])
         return node if node > start else low
+
+    @staticmethod
+    def _reached(nodes: Array, ways: Sequence[float], travel: float, low: float, high: float) -> float:
+        """The last node after `low` up to which points have not travelled more; without one, where they have."""
+        n = min(max(bisect_right(ways, travel) - 1, 0), len(ways) - 2)
+        node, following = float(nodes[n]), float(nodes[n + 1])
+        if node > low:
+            return node
+        share = (travel - ways[n]) / max(ways[n + 1] - ways[n], 1e-300)
+        return min(max(node + share * (following - node), low), high)
 
 
 def narrowed(left: float, right: float, fine: float, met: Callable[[float], bool]) -> tuple[float, float]:

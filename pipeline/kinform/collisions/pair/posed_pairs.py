@@ -214,4 +214,4 @@ def _course(bodies: tuple[int, int], nodes: Nodes, steps: Array) -> Course:
         share = (s - nodes_s[n]) / (nodes_s[n + 1] - nodes_s[n])
         return float(way[n] + min(max(share, 0.0), 1.0) * (way[n + 1] - way[n]))
 
-    return Course(displacement, travel, nodes.s)
+    return Course(displacement, travel, nodes.s, way)

@@ -15,9 +15,9 @@ import numpy as np
 
 from kinform.collisions import constants
 from kinform.collisions.pair.facet_crossings import crossings
-from kinform.collisions.pair.flush_entry import Probes, probes
 from kinform.collisions.pair.mate_surfaces import Mates, SurfacePair
 from kinform.collisions.pair.passages import Passages, Path, passages
+from kinform.collisions.parts.probes import Probes
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.vectors import dot, perpendicular
 from kinform.foundation.at_work import at_work_on
@@ -200,10 +200,7 @@ class PairTest:
     @cached_property
     def probes(self) -> tuple[Probes, Probes]:
         """Points on the facets that count."""
-        first, second = (
-            probes(mesh, surfaces.labels, facets)
-            for mesh, surfaces, facets in zip(self._meshes, self._surfaces, self.facets, strict=True)
-        )
+        first, second = (self._shapes.probes(n, f) for n, f in zip(self.names, self.facets, strict=True))
         return first, second
 
     @cached_property

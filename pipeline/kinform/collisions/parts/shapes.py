@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from hashlib import blake2b
 
 import fcl
 import numpy as np
 
 from kinform.collisions.constants import SCRAPE, SCRAPE_ANGLES
 from kinform.collisions.parts.coarse_meshes import coarse_mesh
+from kinform.collisions.parts.probes import Probes, probes
 from kinform.collisions.parts.slippage import Allowed, OwnMotions, Slippage
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.meshes.boxes import box_corners
@@ -34,6 +36,7 @@ class Shapes:
     _slippage: dict[tuple[str, bytes], Slippage] = field(default_factory=dict)
     _borders: dict[str, list[set[int]]] = field(default_factory=dict)
     _models: dict[tuple[str, bytes], fcl.BVHModel] = field(default_factory=dict)
+    _probes: dict[tuple[str, bytes], Probes] = field(default_factory=dict)
     _store: MeshStore = field(default_factory=MeshStore)
     _coarse: dict[str, tuple[fcl.BVHModel, float]] = field(default_factory=dict)
     _patches: dict[tuple[str, str], list[Patch]] | None = None
@@ -114,6 +117,14 @@ class Shapes:
         if key not in self._models:
             self._models[key] = partial_model(mesh.vertices, mesh.faces[facets])
         return self._models[key]
+
+    def probes(self, name: str, facets: Ints) -> Probes:
+        """Points on some facets of a part: of the same mesh the same."""
+        mesh = self.mesh(name)
+        key = (mesh.digest, blake2b(facets.tobytes()).digest())
+        if key not in self._probes:
+            self._probes[key] = probes(mesh, self.surfaces_of(name).labels, facets)
+        return self._probes[key]
 
     def coarse(self, name: str) -> tuple[fcl.BVHModel, float]:
         """FCL's model of a part by few facets, and how far (m) the part is off these at most; part frame."""

@@ -8,7 +8,8 @@ from functools import cached_property
 import fcl
 import numpy as np
 
-from kinform.foundation.constants import ABOUT_FACET, DEPTH_FACETS
+from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.constants import ABOUT_FACET, DEPTH_FACETS, PLANE_ROUNDING
 from kinform.foundation.meshes.boxes import along_curve, facet_boxes
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, partial_model, point_model
 from kinform.model.arrays import Array, Flags, Ints
@@ -49,20 +50,32 @@ class Depths:
         return out
 
     @cached_property
-    def _corners(self) -> Ints:
-        """(3, g, DEPTH_FACETS) vertices of the facets of each group; the last of all fills its group."""
+    def _grouped(self) -> tuple[Ints, list[Array], list[Array]]:
+        """(g, DEPTH_FACETS) facets of each group, and their boxes along each axis; the last facet fills its group."""
         order = np.concatenate(self._facets)
-        order = np.append(order, np.repeat(order[-1:], -len(order) % DEPTH_FACETS))
-        return np.ascontiguousarray(self._mesh.faces[order].T).reshape(3, -1, DEPTH_FACETS)
+        facets = np.append(order, np.repeat(order[-1:], -len(order) % DEPTH_FACETS)).reshape(-1, DEPTH_FACETS)
+        low, high = facet_boxes(self._mesh.vertices, self._mesh.faces)
+        return facets, [column[facets] for column in low.T], [column[facets] for column in high.T]
 
     def beside(self, points: Array, reach: float) -> Flags:
-        """(n,) which points (n, 3) of the part frame are about the box of any facet: none of the others is found as
-        near as a small `reach` (m) by `of`."""
+        """(n,) which points (n, 3) of the part frame are about the box of any facet and its plane: none of the others
+        is found as near as a small `reach` (m) by `of`."""
         wide = reach + ABOUT_FACET * float(np.linalg.norm(self._high.max(axis=0) - self._low.min(axis=0)))
         point, group = np.nonzero(_beside(self._low, self._high, points[:, None], wide))
-        one, two, three = (self._mesh.vertices.take(c, axis=0) for c in self._corners.take(group, axis=1))
-        low, high = (f(f(one, two), three) for f in (np.minimum, np.maximum))
-        near = _beside(low, high, points[point, None], wide).any(axis=1)
+        facets, low, high = self._grouped
+        held = np.ones((len(point), DEPTH_FACETS), dtype=bool)
+        for axis in range(3):
+            place = points[point, axis, None]
+            held &= low[axis].take(group, axis=0) <= place + wide
+            held &= high[axis].take(group, axis=0) >= place - wide
+        row, column = np.nonzero(held)
+        point, facet = point[row], facets[group[row], column]
+        first, second, third = (self._mesh.vertices.take(c, axis=0) for c in self._mesh.faces[facet].T)
+        one, other, away = second - first, third - first, points[point] - first
+        normal = cross(one, other)
+        # rounding of a sliver's normal may turn it anywhere
+        rounding = PLANE_ROUNDING * np.sqrt(dot(one, one) * dot(other, other) * dot(away, away))
+        near = np.abs(dot(normal, away)) <= wide * np.sqrt(dot(normal, normal)) + rounding
         out = np.zeros(len(points), dtype=bool)
         out[point[near]] = True
         return out
