@@ -20,6 +20,8 @@ from kinform.model.names import PartName
 from kinform.model.quantities import XYZ, Direction, Inertia, Metres, Place, columns
 from kinform.model.tolerances import PartSize, Tolerances
 
+_UNTURNED = np.eye(3).tolist()
+
 
 @dataclass(frozen=True)
 class Source:
@@ -109,7 +111,7 @@ class Mesh:
         known, key = self._placed, X_WP.tobytes()
         if key not in known:
             R_WP, p_WP = X_WP[:3, :3], X_WP[:3, 3]
-            if np.array_equal(R_WP, np.eye(3)) or not len(self.vertices):
+            if R_WP.tolist() == _UNTURNED or not len(self.vertices):
                 low, high = self.box  # to the last bit what placing all vertices would give
                 known[key] = (low + p_WP, high + p_WP) if len(self.vertices) else (low, high)
             else:

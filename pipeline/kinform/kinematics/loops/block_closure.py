@@ -123,7 +123,8 @@ def _by_turn(space: Array) -> Array:
 
 def _slowest(spaces: Sequence[Array]) -> Array:
     """(3,) the point that all the twists together move least: beside their axes, wherever in the world these are."""
-    omega, velocity = np.split(np.concatenate([np.zeros((0, 6)), *spaces]), 2, axis=1)
+    twists = np.concatenate([np.zeros((0, 6)), *spaces])
+    omega, velocity = twists[:, :3], twists[:, 3:]
     across = (omega**2).sum() * np.eye(3) - omega.T @ omega
     return np.asarray(np.linalg.lstsq(across, cross(omega, velocity).sum(axis=0), rcond=constants.AXES_RANK)[0])
 

@@ -35,7 +35,7 @@ def redundancies_of_loops(joints: Sequence[Joint], closure: Closure, size: float
         count = 6 * len(block.cycles) - rates + int(mobility)
         if count <= 0:
             continue
-        alone = [item for item in (_of_loop(members, cycle, size) for cycle in block.cycles) if item is not None]
+        alone = [item for item in (_of_loop(members, cycle, block, size) for cycle in block.cycles) if item is not None]
         rest = count - sum(item.rows for item in alone)
         if rest < 0:
             out.append(_of_block(members, count))
@@ -48,11 +48,11 @@ def redundancies_of_loops(joints: Sequence[Joint], closure: Closure, size: float
     return tuple(out)
 
 
-def _of_loop(joints: Sequence[Joint], cycle: Cycle, size: float) -> Redundancy | None:
-    """What the joints of one loop do not give way to."""
+def _of_loop(joints: Sequence[Joint], cycle: Cycle, block: Block, size: float) -> Redundancy | None:
+    """What the joints of one loop of a block do not give way to."""
     members = [joints[k] for k, _ in cycle]
     spaces = [joint.twists for joint in members]
-    frame = axes_frame(spaces, size)
+    frame = axes_frame(spaces, size) if len(block.cycles) > 1 else block.frame
     columns = np.hstack([scaled(s.T, frame) for s in spaces])
     columns = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
     if columns.shape[1] > 6:

@@ -27,10 +27,9 @@ def joint_uncertainty(items: Sequence[Item], form: JointForm) -> tuple[float, fl
     0 where the joint has no direction or no place, and where no patch says it: planes alone that make a hinge.
     """
     angles = [angle for item in items if (angle := _angle(item, form)) is not None]
-    shifts = [shift for item in items if (shift := _shift(item, form)) is not None]
+    shifts = [_shift(item, form) for item in items] if form.type in PLACED else []
     direction = min(angles, default=0.0) if form.axis is not None else 0.0
-    place = min(shifts, default=0.0) if form.type in PLACED else 0.0
-    return direction, place
+    return direction, min((shift for shift in shifts if shift is not None), default=0.0)
 
 
 def disagreement(items: Sequence[Item], form: JointForm) -> float:
