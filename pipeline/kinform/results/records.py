@@ -8,6 +8,7 @@ else, tuples of records and arrays of any length first of all, has no place in a
 from __future__ import annotations
 
 import functools
+import sys
 import types
 import typing
 from collections.abc import Callable, Mapping, Sequence
@@ -68,8 +69,16 @@ def hint(annotation: Any) -> Hint:
 
 def _hints(cls: type) -> Mapping[str, Hint]:
     """What the annotation of each field of a class says, in the order of the fields."""
-    annotations = typing.get_type_hints(cls, include_extras=True)
-    return {field.name: hint(annotations[field.name]) for field in fields(cls)}
+    said: dict[str, tuple[str, Any]] = {}
+    for base in reversed(cls.__mro__):
+        said |= {name: (base.__module__, text) for name, text in vars(base).get("__annotations__", {}).items()}
+    return {field.name: _hint_of(*said[field.name]) for field in fields(cls)}
+
+
+@functools.cache
+def _hint_of(module: str, annotation: Any) -> Hint:
+    """What an annotation says that stands in a module, as text or not. Most are those of many fields."""
+    return hint(eval(annotation, vars(sys.modules[module])) if isinstance(annotation, str) else annotation)
 
 
 def _defaults(cls: type) -> frozenset[str]:
