@@ -297,6 +297,8 @@ BESIDE_DEEPEST = 100
 """Points beside the deepest one that are measured too."""
 SURELY_SLIGHT = 1e-6
 """Share of a volume by which it is surely less than another: far more than rounding."""
+SLIGHT_MOST = 50_000
+"""Points times the facets that bound their piece up to which all are measured: 10 MB. Slivers have a few."""
 EXACT_OVERLAP = 0.02
 """An overlap below this is none: rounding of coordinates."""
 CUT_FEW = 1500

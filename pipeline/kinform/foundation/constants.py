@@ -228,6 +228,8 @@ APART_MOST = 20
 """Pairs of triangles near each other, in all triangles, beyond which it is not asked whether all keep apart."""
 APART_SOME = 32
 """Of these at most so many are asked first."""
+APART_TOGETHER = 50_000
+"""Pairs of triangles of several sets that are brought together, 10 MB."""
 APART_AT_ONCE = 4096
 """Pairs of triangles that are looked at in one pass."""
 APART_ROUNDED = 1e-6

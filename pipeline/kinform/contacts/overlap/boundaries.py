@@ -8,6 +8,8 @@ import numpy as np
 
 from kinform.contacts import constants
 from kinform.contacts.search.pair_view import PairView, PartView
+from kinform.foundation.algebra.vectors import norm
+from kinform.foundation.meshes.apart import keep_apart
 from kinform.foundation.meshes.probes import Region, crossings_of
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
@@ -24,6 +26,8 @@ def boundaries_cross(asked: Sequence[tuple[PairView, list[Patch]]]) -> list[bool
     out: list[bool | None] = [False if _may_overlap(pair) else None for pair, _ in asked]
     moves = {k: _moves(*asked[k]) for k, may in enumerate(out) if may is not None and not asked[k][0].apart}
     curved = {k: found for k in moves if (found := _curved(*asked[k])) is not None}
+    clear = _clear({k: asked[k][0] for k, left in moves.items() if left.ends and k not in curved})
+    moves = {k: left for k, left in moves.items() if k not in clear}
     while moves:
         questions = {k: _moved(*asked[k][0].parts, left.first) for k, left in moves.items()}
         told = _crossing(questions, curved)
@@ -34,6 +38,10 @@ def boundaries_cross(asked: Sequence[tuple[PairView, list[Patch]]]) -> list[bool
             elif left.more:
                 moves[k] = _Moves(left.more[0], left.more[1:], True)
     return out
+
+
+_SHIFT = np.array([0.61, 0.53, 0.59])
+"""Along no axis: by which parts are moved, in what counts as an overlap."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,11 +57,23 @@ class _Moves:
 def _moves(pair: PairView, patches: list[Patch]) -> _Moves:
     """Those of a pair."""
     least = constants.EXACT_OVERLAP * pair.tolerance
-    shift = least * np.array([0.61, 0.53, 0.59])
+    shift = least * _SHIFT
     apart = _parting(patches)
     if apart is None:
         return _Moves(np.zeros(3), [shift, -shift], True)
     return _Moves(constants.PARTING_TRIED * least * apart, [np.zeros(3), shift, -shift], False)
+
+
+def _clear(pairs: dict[int, PairView]) -> set[int]:
+    """Of which pairs no facets are as near as the second part is moved, so that none cross wherever that is."""
+    asked = []
+    for pair in pairs.values():
+        first, second = (
+            part.vertices.take(part.faces if part.region.facets is None else part.faces[part.region.facets], axis=0)
+            for part in pair.parts
+        )
+        asked.append((first, second, constants.EXACT_OVERLAP * norm(_SHIFT) * pair.tolerance))
+    return {k for k, far in zip(pairs, keep_apart(asked), strict=True) if far}
 
 
 def _crossing(

@@ -96,7 +96,7 @@ def _is_within(
     keys = distinct((2 * bounding[kept] + overlap.part[kept]) * count + overlap.facet[kept])
     side, facet = np.divmod(keys, count)
     begin, end = side.searchsorted(wanted := 2 * told.piece + 1 - told.part), side.searchsorted(wanted, side="right")
-    if (begin == end).any():
+    if (begin == end).any() or int((end - begin).sum()) > constants.SLIGHT_MOST:
         return False
     of = np.repeat(np.arange(len(begin)), end - begin)
     at = np.arange(len(of)) - np.repeat(np.cumsum(end - begin) - (end - begin), end - begin) + begin[of]

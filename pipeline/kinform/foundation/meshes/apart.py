@@ -12,7 +12,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.foundation.constants import APART_AT_ONCE, APART_MOST, APART_ROUNDED, APART_SOME, BOXES_MATRIX
+from kinform.foundation.constants import (
+    APART_AT_ONCE,
+    APART_MOST,
+    APART_ROUNDED,
+    APART_SOME,
+    APART_TOGETHER,
+    BOXES_MATRIX,
+)
 from kinform.foundation.joined import joined
 from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import triangle_boxes
@@ -52,8 +59,18 @@ def _not_parted(
     """Of which sets some of those pairs of triangles that are near each other, at most so many, are not parted."""
     some = {k: slice(None, None, -(-len(one) // most) if most else None) for k, (one, _) in near.items()}
     pairs = {k: (one[some[k]], two[some[k]]) for k, (one, two) in near.items()}
-    if not pairs:
-        return []
+    out, group, count = set[int](), list[int](), 0
+    for k, (one, _) in pairs.items():
+        group.append(k)
+        count += len(one)
+        if count > APART_TOGETHER:
+            out |= _not_parted_of(asked, {k: pairs[k] for k in group})
+            group, count = [], 0
+    return sorted(out | _not_parted_of(asked, {k: pairs[k] for k in group}) if group else out)
+
+
+def _not_parted_of(asked: Sequence[tuple[Array, Array, float]], pairs: dict[int, tuple[Ints, Ints]]) -> set[int]:
+    """The same of few of them, all of whose pairs are asked."""
     first = joined([asked[k][0].take(one, axis=0) for k, (one, _) in pairs.items()])
     second = joined([asked[k][1].take(two, axis=0) for k, (_, two) in pairs.items()])
     owner = np.repeat(list(pairs), [len(one) for one, _ in pairs.values()])
@@ -70,7 +87,7 @@ def _not_parted(
             # once more by the directions of the other
             one, two, of, far = two.take(left, axis=2), one.take(left, axis=2), of.take(left), far.take(left)
         out |= set(of.tolist())
-    return sorted(out)
+    return out
 
 
 def _parted(mine: Array, other: Array, far: Array) -> Flags:
