@@ -24,10 +24,11 @@ def test_probes_that_are_left_out_hit_nothing(most, monkeypatch):
     seen = []
     asked = enclosing._can_hit
 
-    def watched(view, points, normals, reach, unread):
-        able, region = asked(view, points, normals, reach, unread)
+    def watched(view, points, normals, reach, unread, of_row, column):
+        able, region = asked(view, points, normals, reach, unread, of_row, column)
         hits = view.b.region.cast(view.b.to_part(points), view.b.turn_to_part(normals), np.full(len(points), reach))
-        count = unread[hits.probe, view.b.surfaces.labels[hits.facet]] & (hits.facing < -constants.FACING_LEAST)
+        at = column[view.b.surfaces.labels[hits.facet]]
+        count = (at >= 0) & unread[of_row[hits.probe], at] & (hits.facing < -constants.FACING_LEAST)
         assert np.isin(hits.probe[count], able).all()
         assert region.facets is None or np.isin(hits.facet[count], region.facets).all()
         seen.append(count.sum())

@@ -176,14 +176,18 @@ class Sheet:
     @cached_property
     def _face_of_flat(self) -> Ints:
         """The face that each flat edge is in."""
-        return self.faces.take(self.flats[0])
+        return np.asarray(self.faces.take(self.flats[0]))
 
     @staticmethod
-    def of(part: PartView, facets: Ints, flat: float, smooth: float) -> Sheet:
-        """The sheet of these facets; an edge is bent above `flat` and smooth below `smooth` (rad)."""
-        normals = part.normals(facets)
-        pairs = shared_edges(part.faces.take(facets, axis=0), len(part.vertices), by_corner=True).facets
-        one, two = np.ascontiguousarray(pairs.T)
+    def of(part: PartView, chosen: Flags, flat: float, smooth: float) -> Sheet:
+        """The sheet of facets flagged in `chosen` (F,); an edge is bent above `flat`, smooth below `smooth` (rad)."""
+        facets = np.flatnonzero(chosen)
+        normals, met = part.normals(facets), part.index.meeting_facets(chosen)
+        if met is None:
+            shared = shared_edges(part.faces.take(facets, axis=0), len(part.vertices), by_corner=True)
+            one, two = np.ascontiguousarray(shared.facets.T)
+        else:
+            one, two = (np.cumsum(chosen) - 1).take(met)
         cosine = dot(normals.take(one, axis=0), normals.take(two, axis=0))
         bent = cosine < math.cos(flat)
         smooth_bent = bent & (cosine > math.cos(smooth))
@@ -254,10 +258,11 @@ def _height(part: PartView, facets: Ints, direction: Array) -> Array:
 def _ends(values: Array, order: Ints, starts: Ints) -> tuple[Ints, Ints]:
     """Where the least and the greatest of values (n,) are in each run of `order` (n,) that begins at `starts` (r,): of
     equal ones the first and the last."""
-    ordered, number = values.take(order), np.diff(np.append(starts, len(order)))
+    ordered, after = values.take(order), np.empty_like(starts)
+    after[:-1], after[-1] = starts[1:], len(order)
+    number = after - starts
     low = np.flatnonzero(ordered == np.repeat(np.minimum.reduceat(ordered, starts), number))
     high = np.flatnonzero(ordered == np.repeat(np.maximum.reduceat(ordered, starts), number))
-    after = np.append(starts[1:], len(order))
     return order[low[np.searchsorted(low, starts)]], order[high[np.searchsorted(high, after) - 1]]
 
 
@@ -279,20 +284,19 @@ def _leaders(points: Array, grain: float) -> Ints:
     itself, and only others need to be measured."""
     spare, count = 1e-9, len(points)
     x, y = np.ascontiguousarray(points.T)
-    column = np.cumsum(np.diff(x, prepend=x[:1]) > (1.0 + spare) * grain)
-    order = np.lexsort((y, column))
-    group = np.empty(count, np.int64)
-    step = np.diff(y.take(order), prepend=0.0) > (1.0 + spare) * grain
-    step[1:] |= np.diff(column) != 0
-    step[0] = False
+    aside, step, group = np.zeros(count, bool), np.zeros(count, bool), np.empty(count, np.int64)
+    np.greater(x[1:] - x[:-1], (1.0 + spare) * grain, out=aside[1:])
+    order = np.lexsort((y, np.cumsum(aside)))
+    ordered = y.take(order)
+    np.greater(ordered[1:] - ordered[:-1], (1.0 + spare) * grain, out=step[1:])
+    step |= aside
     number = np.cumsum(step)
     group[order] = number
     starts = np.flatnonzero(heads(number))
     lead = np.minimum.reduceat(order, starts)
+    tall = np.maximum.reduceat(ordered, starts) - np.minimum.reduceat(ordered, starts)
     ordered = x.take(order)
     wide = np.maximum.reduceat(ordered, starts) - np.minimum.reduceat(ordered, starts)
-    ordered = y.take(order)
-    tall = np.maximum.reduceat(ordered, starts) - np.minimum.reduceat(ordered, starts)
     leader = lead.take(group)
     loose = np.flatnonzero((wide * wide + tall * tall > (1.0 - spare) * grain * grain).take(group))
     if len(loose):

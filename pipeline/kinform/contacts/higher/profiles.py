@@ -147,7 +147,7 @@ def _sheet(part: PartView, low: Array, high: Array, tolerances: Tolerances) -> S
         if not len(fresh):
             break
         chosen[fresh] = True
-    return Sheet.of(part, np.flatnonzero(chosen), tolerances.coplanar, tolerances.smooth_edge)
+    return Sheet.of(part, chosen, tolerances.coplanar, tolerances.smooth_edge)
 
 
 def _closest(first: Curve, second: Curve, tolerance: float) -> list[_Meeting]:

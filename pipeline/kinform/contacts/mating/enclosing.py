@@ -21,7 +21,7 @@ from kinform.foundation.constants import SLIVER_WIDTH
 from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import meeting_box, middles, triangle_boxes
 from kinform.foundation.meshes.probes import Region
-from kinform.foundation.sorting import distinct
+from kinform.foundation.sorting import distinct, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
@@ -114,7 +114,7 @@ def _facing(view: PairView, unread: Flags) -> _Near | None:
     of_row = of_row[chosen]
     column = np.full(len(b.table.areas), -1)
     column[other.ids] = np.arange(len(other.ids))
-    able, region = _can_hit(view, points, normals, reach, unread[of_row][:, column] & (column >= 0))
+    able, region = _can_hit(view, points, normals, reach, unread, of_row, column)
     if not len(able):
         return None
     weight, points, normals, of_row = weight[able], points[able], normals[able], of_row[able]
@@ -137,13 +137,19 @@ def _facing(view: PairView, unread: Flags) -> _Near | None:
     )
 
 
-def _can_hit(view: PairView, points: Array, normals: Array, reach: float, unread: Flags) -> tuple[Ints, Region]:
+def _can_hit(
+    view: PairView, points: Array, normals: Array, reach: float, unread: Flags, of_row: Ints, column: Ints
+) -> tuple[Ints, Region]:
     """Which probes along the normals of the first part at these points (n, 3), `reach` (m) to either side, have a facet
-    in their box that faces them, of those surfaces of the second part that are `unread` (n, surfaces) beside the
-    probe's; and these facets: no others need to be cast."""
+    in their box that faces them, of those surfaces of the second part that are `unread` (s, t) beside the probe's, at
+    place `of_row` (n,); and these facets: no others need to be cast. `column` (surfaces,): places of the second part's
+    surfaces, −1 of those that are not near."""
     b = view.b
     facets = np.arange(len(b.faces)) if b.region.facets is None else b.region.facets
-    facets = facets[np.logical_or.reduce(unread, axis=0)[b.surfaces.labels[facets]]]
+    of_column = column.take(b.surfaces.labels.take(facets))
+    asked = of_column >= 0
+    asked &= np.logical_or.reduce(unread[distinct(of_row)], axis=0).take(of_column)
+    facets, of_column = facets[asked], of_column[asked]
     every = np.arange(len(points)), b.region
     if len(facets) > constants.MOST_ASKED:
         return every
@@ -151,13 +157,16 @@ def _can_hit(view: PairView, points: Array, normals: Array, reach: float, unread
     low, high = points - half, points + half
     low_b, high_b = boxes_of(b, facets)
     near = np.flatnonzero(meeting_box(low_b, high_b, low.min(axis=0), high.max(axis=0)))
-    facets, low_b, high_b = facets[near], low_b[near], high_b[near]
-    met = meeting_boxes((low, high), (low_b, high_b))
+    if not len(near):
+        return near, b.region
+    facets, of_column, low_b, high_b = facets[near], of_column[near], low_b[near], high_b[near]
+    probes = np.flatnonzero(meeting_box(low, high, low_b.min(axis=0), high_b.max(axis=0)))
+    met = meeting_boxes((low[probes], high[probes]), (low_b, high_b))
     if met is None:
         return every
-    probe, facet = met
+    probe, facet = probes.take(met[0]), met[1]
     facing = dot(normals.take(probe, axis=0), b.normals(facets).take(facet, axis=0))
-    kept = unread[probe, b.surfaces.labels.take(facets).take(facet)]
+    kept = unread[of_row.take(probe), of_column.take(facet)]
     kept &= facing < constants.FACING_ROUNDED - constants.FACING_LEAST
     return distinct(probe[kept]), Region(b.index, facets[distinct(facet[kept])])
 
@@ -166,9 +175,10 @@ def _evenly(areas: Array, count: int) -> tuple[Ints, Array]:
     """At most `count` of the facets of these areas (n,), evenly by area, and the area that each stands for."""
     reached = np.cumsum(areas)
     shares = (np.arange(count) + 0.5) / count * reached[-1]
-    chosen = np.unique(np.searchsorted(reached, shares).clip(0, len(areas) - 1))
-    ends = [0, *np.searchsorted(reached, reached[chosen], side="right").tolist(), len(areas)]
-    following = np.repeat(np.arange(len(ends) - 1), np.diff(ends)).clip(0, len(chosen) - 1)
+    chosen = np.searchsorted(reached, shares).clip(0, len(areas) - 1)
+    chosen = chosen[heads(chosen)]
+    ends = np.concatenate([[0], np.searchsorted(reached, reached[chosen], side="right"), [len(areas)]])
+    following = np.repeat(np.arange(len(ends) - 1).clip(0, len(chosen) - 1), np.diff(ends))
     return chosen, np.bincount(following, areas, len(chosen)).astype(np.float64)
 
 

@@ -48,6 +48,8 @@ class MeshIndex:
         self._normals: Array | None = None
         self._asked = 0
         self._edges: SharedEdges | None = None
+        self._single = False
+        self._met: Ints | None = None
         self._borders: Ints | None = None
         self._neighbours: dict[int, frozenset[int]] = {}
         self._shells: Ints | None = None
@@ -162,6 +164,23 @@ class MeshIndex:
         if len(self.mesh.faces) <= KEPT_EDGES:
             self._edges = edges
         return edges
+
+    def meeting_facets(self, chosen: Flags) -> Ints | None:
+        """(2, k) facets among those flagged in `chosen` (F,) that follow each other in a shared edge, as `shared_edges`
+        by corner of these alone has them; None where the edges of all are not kept, or some have more than two."""
+        if len(self.mesh.faces) > KEPT_EDGES:
+            return None
+        if self._met is None:
+            edges = self.edges
+            low, high = edges.ends.T
+            self._single = not ((low[1:] == low[:-1]) & (high[1:] == high[:-1])).any()
+            self._met = np.stack([edges.first, edges.second]) // 3
+        if not self._single:
+            return None
+        one, two = self._met
+        kept = chosen.take(one)
+        kept &= chosen.take(two)
+        return np.asarray(self._met.take(kept.nonzero()[0], axis=1))
 
     def borders(self, surfaces: MeshSurfaces) -> Ints:
         """(k, 2) pairs of surfaces that share an edge, both ways round, sorted."""

@@ -137,30 +137,60 @@ def _told(first: Array, second: Array, one: Ints, two: Ints, size: Array) -> tup
     the other: by more than rounding, so that all directions together say the same. That is most of them. `size` (m,)
     bounds all coordinates of what each of the second is asked with."""
     # what is asked of a triangle is computed once for all of its pairs
-    sides, apart, met = sides_of(second, size), np.empty(len(one), bool), np.empty(len(one), bool)
+    axes, reach, spare, square = sides_of(second, size)
+    plane = np.ascontiguousarray(axes[:, 0]), reach[0], spare[0]
+    edges = np.ascontiguousarray(axes[:, 1:]), reach[1:], spare[1:]
+    apart, met = np.empty(len(one), bool), np.zeros(len(one), bool)
     for start in range(0, len(one), TOLD_AT_ONCE):
-        some = slice(start, start + TOLD_AT_ONCE)
-        apart[some], met[some] = _told_of(first.take(one[some], axis=2), *(of.take(two[some], axis=-1) for of in sides))
+        mine, other = one[start : start + TOLD_AT_ONCE], two[start : start + TOLD_AT_ONCE]
+        corners = first.take(mine, axis=2)
+        apart[start : start + TOLD_AT_ONCE], place, rounding = _told_by_plane(corners, *_of(plane, other))
+        # the plane parts half of them, of which nothing more is asked
+        left = (~apart[start : start + TOLD_AT_ONCE]).nonzero()[0]
+        if len(left):
+            other = other.take(left)
+            heights = [place[0].take(left), place[1].take(left), rounding.take(left), square.take(other)]
+            beyond, through = _told_by_edges(corners.take(left, axis=2), *heights, *_of(edges, other))
+            apart[start + left], met[start + left] = beyond, through
     return apart, met
 
 
-def _told_of(first: Array, axes: Array, reach: Array, spare: Array, square: Array) -> tuple[Flags, Flags]:
-    """The same of triangles (3, 3, c), each with the sides of the other."""
+def _of(sides: tuple[Array, Array, Array], owner: Ints) -> list[Array]:
+    """Some of what there is of each triangle, for its pairs (c,)."""
+    return [of.take(owner, axis=-1) for of in sides]
+
+
+def _told_by_plane(first: Array, normal: Array, reach: Array, spare: Array) -> tuple[Flags, Array, Array]:
+    """Which of triangles (3, 3, c) are clearly on one side of the plane of the other, with its normals (3, c); where
+    their corners are along these (3, c), and what is more than rounding there (c,)."""
+    place = normal[0] * first[:, 0]
+    place += normal[1] * first[:, 1]
+    place += normal[2] * first[:, 2]
+    place -= reach
+    begin, end, third = place
+    apart = np.minimum(np.minimum(begin, end), third) > spare
+    apart |= np.maximum(np.maximum(begin, end), third) < -spare
+    return apart, place, spare
+
+
+def _told_by_edges(
+    first: Array, begin: Array, end: Array, rounding: Array, square: Array, axes: Array, reach: Array, spare: Array
+) -> tuple[Flags, Flags]:
+    """Which of triangles (3, 3, c) are clearly beyond one edge of the other, with what lies across each (3, 3, c), and
+    which clearly meet it, as their first edge, from `begin` to `end` (c,) along its normal, passes through it."""
     place = axes[0] * first[:, 0, None]
     place += axes[1] * first[:, 1, None]
     place += axes[2] * first[:, 2, None]
     place -= reach
-    begin, end, third = place
-    apart = np.logical_or.reduce(np.minimum(np.minimum(begin, end), third) > spare)
-    apart |= np.maximum(np.maximum(begin[0], end[0]), third[0]) < -spare[0]
-    along, edge = end - begin, first[1] - first[0]
+    one, two, three = place
+    apart = np.logical_or.reduce(np.minimum(np.minimum(one, two), three) > spare)
+    edge, rise = first[1] - first[0], end - begin
     edge *= edge
-    rise = along[0]
-    met = begin[0] * end[0] < 0.0
-    met &= np.minimum(np.abs(begin[0]), np.abs(end[0])) > spare[0]
+    met = begin * end < 0.0
+    met &= np.minimum(np.abs(begin), np.abs(end)) > rounding
     met &= rise * rise > (edge[0] + edge[1] + edge[2]) * square
-    through = begin[1:] - (begin[0] / np.where(met, rise, 1.0)) * along[1:]
-    met &= np.logical_and.reduce(through < -spare[1:])
+    through = one - (begin / np.where(met, rise, 1.0)) * (two - one)
+    met &= np.logical_and.reduce(through < -spare)
     return apart, met
 
 
