@@ -52,9 +52,12 @@ class Territory:
 
     def neighbours(self, keys: Ints) -> Ints:
         """Keys of the free polygons one smooth link away from those of the `keys`, each once, by region."""
-        work = self.patchwork
-        region, polygon = parted(keys, work.count)
-        base, target = self.beside.expand(polygon, region * np.int64(work.count))
+        region, polygon = parted(keys, self.patchwork.count)
+        return self._neighbours(region * np.int64(self.patchwork.count), polygon)
+
+    def _neighbours(self, first: Ints, polygon: Ints) -> Ints:
+        """The same of polygons whose regions have keys from `first` on."""
+        base, target = self.beside.expand(polygon, first)
         open_ = self.free.take(target).nonzero()[0]
         return distinct(base.take(open_) + target.take(open_))
 
@@ -63,18 +66,24 @@ class Territory:
         front = np.sort(batch.keys)
         gained = [front]
         # what is beside a layer, and not of those two steps, is beside no earlier layer
-        before, tried = front, front
-        for _ in range(layers):
-            keys = self.neighbours(front)
-            keys = keys.take((~(among(keys, tried) | among(keys, before))).nonzero()[0])
+        before, tried = front[:0], front
+        keys = self.neighbours(front) if layers else before
+        for layer in range(layers):
+            seen = among(keys, tried)
+            if len(before):
+                seen |= among(keys, before)
+            keys = keys.take((~seen).nonzero()[0])
             if not len(keys):
                 break
             trial = Batch.of_keys(self.patchwork, keys, batch.count)
-            front = keys.take(surfaces.conforms(trial, reach).nonzero()[0])
-            if not len(front):
+            rows = surfaces.conforms(trial, reach).nonzero()[0]
+            if not len(rows):
                 break
-            gained.append(front)
+            gained.append(keys.take(rows))
             before, tried = tried, keys
+            if layer + 1 < layers:
+                polygon = trial.polygon.take(rows)
+                keys = self._neighbours(gained[-1] - polygon, polygon)
         if len(gained) == 1:
             return batch
         return Batch.of_keys(self.patchwork, np.sort(np.concatenate(gained)), batch.count)

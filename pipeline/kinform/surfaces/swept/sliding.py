@@ -13,7 +13,7 @@ from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Array, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.describe import Description
-from kinform.surfaces.groups import members
+from kinform.surfaces.groups import group_moments, members, sums_of
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.slippage import Slippage, slippage
@@ -22,13 +22,11 @@ from kinform.surfaces.slippage import Slippage, slippage
 def sliding(work: Patchwork, number: Ints, scales: Scales) -> list[Description]:
     """Patches of polygons (P,) of one or more meshes, -1 for none, that slide on themselves in one way; the others are
     left out."""
-    out, left = [], []
     rounding = scales.rounding[work.mesh]
-    for patch in members(number):
-        if len(patch) >= constants.SLIDING_POLYGONS:
-            extrusion = _extrusion(work, patch, float(rounding[patch[0]]))
-            out += [extrusion] if extrusion else []
-            left += [] if extrusion else [patch]
+    large = [patch for patch in members(number) if len(patch) >= constants.SLIDING_POLYGONS]
+    extrusions = _extrusions(work, large, rounding)
+    out = [extrusion for extrusion in extrusions if extrusion]
+    left = [patch for patch, extrusion in zip(large, extrusions, strict=True) if not extrusion]
     single = _turning(work, left, rounding)
     out += [surface for surface in single if surface is not None]
     # the flanks of a thread are each too narrow to tell a screw from a tilt: together they do
@@ -37,14 +35,30 @@ def sliding(work: Patchwork, number: Ints, scales: Scales) -> list[Description]:
     return out + [surface for surface in _turning(work, pooled, rounding) if surface and surface.kind == "helicoid"]
 
 
-def _extrusion(work: Patchwork, polygons: Ints, rounding: float) -> Description | None:
-    """The patch as an extrusion: all its normals stand across one direction, and lie in no plane with it."""
-    normal, weight = work.normal[polygons], work.area[polygons]
-    values, vectors = np.linalg.eigh((normal * weight[:, None]).T @ normal / weight.sum())
-    speed, spread, _ = np.sqrt(np.maximum(values, 0.0)).tolist()
-    if speed >= constants.STILL or spread <= constants.ACROSS:
-        return None
-    axis = vectors[:, 0] * canonical_sign(vectors[:, 0])
+def _extrusions(work: Patchwork, patches: list[Ints], rounding: Array) -> list[Description | None]:
+    """Those of the patches that are extrusions: all normals stand across one direction, and lie in no plane with it."""
+    if not patches:
+        return []
+    count, polygon = len(patches), np.concatenate(patches)
+    patch = np.repeat(np.arange(count), [len(polygons) for polygons in patches])
+    normal, weight = work.normals(polygon), work.area[polygon]
+    total = sums_of(patch, count)(weight)
+    values, vectors = np.linalg.eigh(group_moments(patch, normal.T, count, weight) / total[:, None, None])
+    speed, spread, _ = np.sqrt(np.maximum(values, 0.0)).T
+    slides = (speed < constants.STILL) & (spread > constants.ACROSS)
+    return [
+        _extrusion(work, polygons, vectors[k, :, 0], float(speed[k]), float(spread[k]), float(rounding[polygons[0]]))
+        if slides[k]
+        else None
+        for k, polygons in enumerate(patches)
+    ]
+
+
+def _extrusion(
+    work: Patchwork, polygons: Ints, direction: Array, speed: float, spread: float, rounding: float
+) -> Description:  # fmt: skip
+    """The patch as an extrusion along this direction, where its normals have these deviations along it and across."""
+    axis, weight = direction * canonical_sign(direction), work.area[polygons]
     middle = weight @ work.centre[polygons] / weight.sum()
     _, vertex = work.corners.expand(polygons)
     span = (work.vertices[vertex] - middle) @ axis
