@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations, product
 from types import SimpleNamespace
 
@@ -70,3 +71,36 @@ def test_parts_of_bodies_that_move_as_one_meet_those_that_each_of_them_meets(see
         assert (near.relative(a, b) is None) == still
         count += len(each)
     assert count > 10
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_box_that_stays_out_of_another_between_two_poses_is_in_it_nowhere_between(seed):
+    rng = np.random.default_rng(seed)
+    fine = turned(rng, 24 * 20 + 1)
+    relative = fine[::20]
+    share = rng.uniform(size=(400, 3))
+    told = meets = 0
+    for fixed, moved in zip(boxes(rng, 60, 0.4), boxes(rng, 60, 0.4), strict=True):
+        low, high = moved.min(axis=0), moved.max(axis=0)
+        points = np.concatenate([moved, low + share * (high - low)])
+        way = np.einsum("tij,nj->tni", fine[:, :3, :3], points) + fine[:, None, :3, 3]
+        within = ((way >= fixed.min(axis=0)) & (way <= fixed.max(axis=0))).all(axis=2).any(axis=1)
+        inside = np.array([within[20 * n : 20 * n + 21].any() for n in range(24)])
+        apart = posed_pairs._apart(*posed_pairs._moved(relative, moved), fixed)
+        assert not (apart & inside).any()
+        told, meets = told + apart.sum(), meets + inside.sum()
+    assert told > 600
+    assert meets > 20
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_how_far_a_course_goes_is_told_as_by_halving(seed):
+    rng = np.random.default_rng(seed)
+    nodes = np.cumsum(rng.uniform(0.2, 1.5, 12))
+    steps = rng.uniform(0.0, 0.3, 11) * (rng.uniform(size=11) > 0.2)
+    course = posed_pairs._course((0, 1), posed_pairs.Nodes(nodes, np.zeros((12, 2, 4, 4)), np.zeros), steps)
+    halved = replace(course, ways=None)
+    for _ in range(50):
+        low, high = np.sort(rng.uniform(nodes[0], nodes[-1], 2))
+        travel = course.travel(low) + rng.uniform(0.0, 1.2) * (course.travel(high) - course.travel(low))
+        assert course.when(travel, low, high) == pytest.approx(halved.when(travel, low, high), abs=1e-9)

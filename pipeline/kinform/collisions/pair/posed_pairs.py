@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from kinform.collisions.constants import CHORD_SLACK, HIGHER_KINDS, LOWER_TYPES, REMEMBERED, SPARE_SHARE, STILL
+from kinform.collisions.constants import CERTAIN, CHORD_SLACK, HIGHER_KINDS, LOWER_TYPES, REMEMBERED, SPARE_SHARE, STILL
 from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.distance_bounds import Wholes
 from kinform.collisions.pair.prepared_pair import PairTest
@@ -17,7 +17,7 @@ from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.meshes.boxes import box_corners
 from kinform.frozen import dataclass
 from kinform.kinematics.mobility.guides import preserved
-from kinform.model.arrays import Array, Ints
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.kinematics import Joint
 
 
@@ -138,18 +138,24 @@ def _moving(
     shapes: Shapes, joint: Joint | None, names: tuple[str, str], bodies: tuple[int, int], nodes: Nodes, relative: Array
 ) -> Moving | None:
     """Two parts of two bodies that move by `relative` (T, 4, 4); None where they stay away from each other."""
-    steps = _steps(relative, *(_corners(shapes, name) for name in names))
-    if steps is None:
+    fixed, moved = (_corners(shapes, name) for name in names)
+    places, steps = _moved(relative, moved)
+    near = np.flatnonzero(~_apart(places, steps, fixed))
+    if not len(near):
         return None
+    # as wholes they are asked only from where to where their boxes are not apart
     course = _course(bodies, nodes, steps)
-    free = Wholes(shapes, *names).clear_until(course, float(nodes.s[0]), float(nodes.s[-1]))
-    if free >= nodes.s[-1]:
+    begin, end = (float(s) for s in nodes.s[[near[0], near[-1] + 1]])
+    free = Wholes(shapes, *names).clear_until(course, begin, end)
+    if free >= end:
         return None
     test, rolls = _test(shapes, joint, *names)
     if test.empty:
         return None
-    steps = _steps(relative, *(_corners(shapes, name, facets) for name, facets in zip(names, test.facets, strict=True)))
-    return None if steps is None else Moving(test, *bodies, _course(bodies, nodes, steps), free, rolls)
+    counted = _steps(
+        relative, *(_corners(shapes, name, facets) for name, facets in zip(names, test.facets, strict=True))
+    )
+    return None if counted is None else Moving(test, *bodies, _course(bodies, nodes, counted), free, rolls)
 
 
 def _steps(relative: Array, fixed: Array, moved: Array) -> Array | None:
@@ -159,6 +165,15 @@ def _steps(relative: Array, fixed: Array, moved: Array) -> Array | None:
     low, high, margin = fixed.min(axis=0), fixed.max(axis=0), np.append(steps, 0.0)[:, None]
     near = (places.min(axis=1) - margin <= high) & (places.max(axis=1) + margin >= low)
     return np.asarray(steps) if near.all(axis=1).any() else None
+
+
+def _apart(places: Array, steps: Array, fixed: Array) -> Flags:
+    """(T-1,) whether a box stays out of another, of corners (8, 3), from each of the places (T, 8, 3) of its corners to
+    the next, between which they move by `steps` (m): by how far the boxes are apart at both."""
+    low, high = fixed.min(axis=0), fixed.max(axis=0)
+    beyond = np.maximum(np.maximum(places.min(axis=1) - high, low - places.max(axis=1)), 0.0)
+    apart = CERTAIN * np.sqrt((beyond * beyond).sum(axis=1))
+    return np.asarray(apart[:-1] + apart[1:] > CHORD_SLACK * steps)
 
 
 def _moved(relative: Array, corners: Array) -> tuple[Array, Array]:
