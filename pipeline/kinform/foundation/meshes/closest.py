@@ -89,8 +89,11 @@ def _from_origin(triangles: Array) -> Array:
         # outside of an edge, seen along the normal, the foot of the perpendicular is not on the triangle
         over &= _dot(_cross(corner, side), normal) >= 0.0
         long = _dot(side, side)
-        share = np.clip(-_dot(corner, side) / np.where(long > 0.0, long, 1.0), 0.0, 1.0)
-        foot = corner + share * side
+        share = -_dot(corner, side)
+        share /= np.where(long > 0.0, long, 1.0)
+        np.minimum(np.maximum(share, 0.0, out=share), 1.0, out=share)
+        foot = share * side
+        foot += corner
         np.minimum(square, _dot(foot, foot), out=square)
     height = np.abs(_dot(normal, triangles[0])) / np.where(over, length, 1.0)
     return np.where(over, height, np.sqrt(square))
@@ -106,4 +109,8 @@ def _dot(a: Array, b: Array) -> Array:
 
 def _cross(a: Array, b: Array) -> Array:
     """(3, k) the same, vectors."""
-    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+    out = np.empty(a.shape)
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        np.multiply(a[j], b[k], out=out[i])
+        out[i] -= a[k] * b[j]
+    return out

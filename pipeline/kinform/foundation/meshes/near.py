@@ -85,11 +85,13 @@ class Nearest:
         columns = [np.ascontiguousarray(column) for column in self._points.T]
         rows = max(FEW_PAIRS // len(self._points), 1)
         squares = np.empty(len(places))
+        total, apart = np.empty((2, min(rows, len(places)), len(self._points)))
         for first in range(0, len(places), rows):
-            total = np.zeros(1)
+            some = places[first : first + rows]
             for k, column in enumerate(columns):
-                apart = places[first : first + rows, k, None] - column
-                apart *= apart
-                total = total + apart
-            squares[first : first + rows] = total.min(axis=1)
+                square = np.subtract(some[:, k, None], column, out=(apart if k else total)[: len(some)])
+                square *= square
+                if k:
+                    total[: len(some)] += square
+            squares[first : first + rows] = total[: len(some)].min(axis=1)
         return np.sqrt(squares)
