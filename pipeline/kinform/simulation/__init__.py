@@ -23,7 +23,7 @@ __all__ = [
     "simulate", "simulate_system",
 ]  # fmt: skip
 
-CODE_VERSION: int = 35
+CODE_VERSION: int = 36
 
 __getattr__ = first_used(
     __name__,
