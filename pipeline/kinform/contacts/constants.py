@@ -301,6 +301,8 @@ SLIGHT_MOST = 50_000
 """Points times the facets that bound their piece up to which all are measured: 10 MB. Slivers have a few."""
 EXACT_OVERLAP = 0.02
 """An overlap below this is none: rounding of coordinates."""
+CURVED_FIRST = 20_000
+"""Facets of a part up to which those of its round surfaces in contact are asked first whether they cross others."""
 CUT_FEW = 1500
 """Facets of either part up to which a cut takes no longer, 2 ms, than it takes to see that none is needed, where round
 surfaces touch and one mostly is."""

@@ -89,11 +89,11 @@ def _crossing(
 
 def _curved(pair: PairView, patches: list[Patch]) -> tuple[Region, Region] | None:
     """The near facets of either part whose surfaces have curved patches with a gap in which facets cross; None without,
-    and where that is most."""
+    where that is most, and of large parts, for which trees of these facets would be made beside those of all."""
     tight = [
         patch for patch in patches if patch.kind in ("cylinder", "cone", "sphere") and 2.0 * patch.gap <= patch.chord
     ]
-    if not tight:
+    if not tight or max(len(part.faces) for part in pair.parts) > constants.CURVED_FIRST:
         return None
     ids = [{patch.surfaces[k] for patch in tight} for k in (0, 1)]
     out = []
