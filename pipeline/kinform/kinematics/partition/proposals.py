@@ -97,11 +97,16 @@ def propose(
         return [both for both in several if all(own & set(s) and not standard.keys() >= set(s) for s in both)]
 
     for most in constants.PROPOSED:
-        for number, axis in enumerate(axes):
-            # a screw may be a pivot, but nothing that holds may be parted for that
-            if journals[number] and not found.get(number) and not (screwed[number] and most > constants.PROPOSED[0]):
-                cut = free[number] if most == constants.PROPOSED[0] else _freed(axis, pairs, hints, most)
-                found[number] = bearing(number, graph.sides(free[number], cut))
+        first = most == constants.PROPOSED[0]
+        # a screw may be a pivot, but nothing that holds may be parted for that
+        wanted = [
+            number
+            for number, own in enumerate(journals)
+            if own and not found.get(number) and (first or not screwed[number])
+        ]
+        cuts = [free[k] for k in wanted] if first else _freed_each([axes[k] for k in wanted], pairs, hints, most)
+        for number, cut in zip(wanted, cuts, strict=True):
+            found[number] = bearing(number, graph.sides(free[number], cut))
     for number in range(len(axes)):
         if len(found.get(number, ())) > 1 and not _unhinted(journals[number], hints):
             # a motor between, whose own screw holes are no firmer: one joint
@@ -230,15 +235,23 @@ def _same(one: IntendedJoint, other: IntendedJoint, off: float) -> bool:
 def _freed(
     joint: IntendedJoint, pairs: Mapping[PartPair, Contact], hints: Mapping[PartPair, float], most: float
 ) -> frozenset[PartPair]:
-    """Pairs that a joint may part at `most` at this price."""
-    out = []
-    asked = Asked.of([joint], [joint_twists(joint)])
+    """Pairs near its axis, or centre, that a joint may part at `most` at this price."""
+    return _freed_each([joint], {pair: contact for pair, contact in pairs.items() if contact.near(joint)}, hints, most)[
+        0
+    ]
+
+
+def _freed_each(
+    joints: Sequence[IntendedJoint], pairs: Mapping[PartPair, Contact], hints: Mapping[PartPair, float], most: float
+) -> list[frozenset[PartPair]]:
+    """Pairs that each joint may part at `most` at this price."""
+    asked = Asked.of(joints, [joint_twists(joint) for joint in joints])
+    out: list[list[PartPair]] = [[] for _ in joints]
     for pair, contact in pairs.items():
-        if most > constants.PROPOSED[0] or contact.near(joint):
-            price = contact.costs(asked).get(0)
-            if price is not None and price + hints.get(pair, 0.0) <= most:
-                out.append(pair)
-    return frozenset(out)
+        for k, price in contact.costs(asked).items():
+            if price + hints.get(pair, 0.0) <= most:
+                out[k].append(pair)
+    return [frozenset(freed) for freed in out]
 
 
 @dataclass(frozen=True, eq=False)
