@@ -21,7 +21,7 @@ sys.path[:0] = [str(Path(__file__).resolve().parent), str(ROOT / "pipeline"), st
 
 from change import run  # noqa: E402
 from geometry import manifest_of  # noqa: E402
-from table import HEADER, Row, line, peak, processor  # noqa: E402
+from table import Row, peak, processor, show  # noqa: E402
 
 AIM = 3.0
 ARMS = {"so100": None, "so101": 8.0}
@@ -86,10 +86,8 @@ def rows(quick: bool) -> Iterator[Row]:
 
 
 def main(arguments: list[str]) -> None:
-    print(HEADER)
-    for manifest in [Path(name) for name in arguments] or manifests():
-        print(line(whole(manifest)), flush=True)
-        print(line(of_arm(manifest)), flush=True)
+    named = [Path(name) for name in arguments]
+    show(row(manifest) for manifest in named or manifests() for row in (whole, of_arm))
 
 
 if __name__ == "__main__":

@@ -23,7 +23,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from scale import plate_with_pins
-from table import HEADER, Row, line
+from table import Row, show
 
 ROOT = Path(__file__).resolve().parents[1]
 CHECKED = 20
@@ -189,9 +189,7 @@ def main() -> None:
     parser.add_argument("--designs", type=int, default=None)
     parser.add_argument("--quick", action="store_true")
     arguments = parser.parse_args()
-    print(HEADER)
-    for row in rows(arguments.quick, arguments.designs):
-        print(line(row), flush=True)
+    show(rows(arguments.quick, arguments.designs))
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ sys.path[:0] = [str(Path(__file__).resolve().parent), str(ROOT / "pipeline"), st
 
 from dynamics import mujoco_timed  # noqa: E402
 from support.port_models import DOWN, chain, four_bars  # noqa: E402
-from table import HEADER, Row, line, peak, processor  # noqa: E402
+from table import Row, peak, processor, show  # noqa: E402
 
 from kinform.simulation import Course, simulate_system  # noqa: E402
 from kinform.simulation.kernel.calls import engine  # noqa: E402
@@ -82,9 +82,7 @@ def rows(quick: bool) -> Iterator[Row]:
 
 
 def main(arguments: list[str]) -> None:
-    print(HEADER)
-    for row in rows("--quick" in arguments):
-        print(line(row), flush=True)
+    show(rows("--quick" in arguments))
 
 
 if __name__ == "__main__":

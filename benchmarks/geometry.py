@@ -36,7 +36,7 @@ sys.path[:0] = [str(HERE), str(ROOT / "pipeline")]
 
 from change import chain  # noqa: E402
 from scale import bvh, plate_with_pins  # noqa: E402
-from table import HEADER, Row, line  # noqa: E402
+from table import Row, show  # noqa: E402
 
 ROBOTS = ("so100", "so101", "dog", "sigmaban2019")
 SURFACES, IMPORT, PAIR, EXPONENT, LARGE_MB = 1.0, 1.2, 4.0, 1.1, 4000.0
@@ -242,9 +242,7 @@ def rows(quick: bool, robots: Path | None = None, large: bool | None = None) -> 
 def main(arguments: list[str]) -> None:
     """A table."""
     robots = next((Path(argument) for argument in arguments if not argument.startswith("--")), None)
-    print(HEADER)
-    for row in rows("--quick" in arguments, robots, "--large" in arguments):
-        print(line(row), flush=True)
+    show(rows("--quick" in arguments, robots, "--large" in arguments))
 
 
 if __name__ == "__main__":

@@ -27,7 +27,7 @@ from random_assemblies.draw import Draw
 from random_assemblies.machine_verdict import assembly_of, judge
 from random_assemblies.machines import machine
 from random_assemblies.rings import ring
-from table import HEADER, Row, line, peak, processor
+from table import Row, peak, processor, show
 
 from kinform import collisions, contacts, kinematics, surfaces
 from kinform.errors import OpenSidesError
@@ -51,9 +51,7 @@ def main() -> int:
     options = parser.parse_args()
     if not options.parts:
         return cases(options)
-    print(HEADER)
-    for _, row in large(options.parts):
-        print(line(row), flush=True)
+    show(row for _, row in large(options.parts))
     return 0
 
 

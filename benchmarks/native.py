@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(Path(__file__).resolve().parent), str(ROOT / "pipeline"), str(ROOT / "tests")]
 
 from support.port_models import DOWN, chain, four_bars  # noqa: E402
-from table import HEADER, Row, line, peak  # noqa: E402
+from table import Row, peak, show  # noqa: E402
 
 WAYS = ("addresses", "arrays")
 GAIN = 2.0
@@ -119,9 +119,7 @@ def rows(quick: bool) -> Iterator[Row]:
 
 
 def main(arguments: list[str]) -> None:
-    print(HEADER)
-    for row in rows("--quick" in arguments):
-        print(line(row), flush=True)
+    show(rows("--quick" in arguments))
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from table import HEADER, Row, line, processor
+from table import Row, processor, show
 
 
 def interpreted() -> int:
@@ -63,9 +63,7 @@ def rows(quick: bool) -> Iterator[Row]:
 
 
 def main(arguments: list[str]) -> None:
-    print(HEADER)
-    for row in rows("--quick" in arguments):
-        print(line(row), flush=True)
+    show(rows("--quick" in arguments))
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from __future__ import annotations
 import resource
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -54,3 +54,10 @@ def line(row: Row) -> str:
 
 
 HEADER = f"{'':58s}{'measured':>10s} {'':14s}{'aim':>8s} {'met':4s}{'MB':>7s}  beside"
+
+
+def show(rows: Iterable[Row]) -> None:
+    """Print them as a table, each as soon as it is known."""
+    print(HEADER)
+    for row in rows:
+        print(line(row), flush=True)

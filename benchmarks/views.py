@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(Path(__file__).resolve().parent), str(ROOT / "pipeline"), str(ROOT / "cli")]
 
 from scale import plate_with_pins  # noqa: E402
-from table import HEADER, Row, line, peak, processor  # noqa: E402
+from table import Row, peak, processor, show  # noqa: E402
 
 AIMS = {("show", 3000): 1.0, ("report", 1000): 5.0}
 
@@ -62,11 +62,9 @@ def of_file(results: Path, parts: int) -> Iterator[Row]:
 
 def main(arguments: list[str]) -> None:
     """Of results files where they are named as FILE=PARTS, else of assemblies made here."""
-    print(HEADER)
     named = [argument.rpartition("=") for argument in arguments if not argument.startswith("--")]
     made = (row for path, _, parts in named for row in of_file(Path(path), int(parts)))
-    for row in made if named else rows("--quick" in arguments):
-        print(line(row), flush=True)
+    show(made if named else rows("--quick" in arguments))
 
 
 if __name__ == "__main__":
