@@ -42,9 +42,13 @@ def _extrusions(work: Patchwork, patches: list[Ints], rounding: Array) -> list[D
     count, polygon = len(patches), np.concatenate(patches)
     patch = np.repeat(np.arange(count), [len(polygons) for polygons in patches])
     normal, weight = work.normals(polygon), work.area[polygon]
-    total = sums_of(patch, count)(weight)
+    sums = sums_of(patch, count)
+    total = sums(weight)
     values, vectors = np.linalg.eigh(group_moments(patch, normal.T, count, weight) / total[:, None, None])
-    speed, spread, _ = np.sqrt(np.maximum(values, 0.0)).T
+    spread = np.sqrt(np.maximum(values[:, 1], 0.0))
+    # the root of the least value would be that of its rounding where normals stand exactly across
+    along = dot(normal, vectors[:, :, 0].take(patch, axis=0))
+    speed = np.sqrt(sums(weight * along * along) / total)
     slides = (speed < constants.STILL) & (spread > constants.ACROSS)
     return [
         _extrusion(work, polygons, vectors[k, :, 0], float(speed[k]), float(spread[k]), float(rounding[polygons[0]]))
@@ -56,7 +60,7 @@ def _extrusions(work: Patchwork, patches: list[Ints], rounding: Array) -> list[D
 
 def _extrusion(
     work: Patchwork, polygons: Ints, direction: Array, speed: float, spread: float, rounding: float
-) -> Description:  # fmt: skip
+) -> Description:
     """The patch as an extrusion along this direction, where its normals have these deviations along it and across."""
     axis, weight = direction * canonical_sign(direction), work.area[polygons]
     middle = weight @ work.centre[polygons] / weight.sum()
