@@ -8,8 +8,8 @@ coarse facets are the usual causes.
 A face may also be read in two ways, as a guide or as an end stop: the bottom of a bore that a piston has reached, or
 the step bearing of a shaft. Both readings are named then, and an intended joint chooses among them.
 
-What to do: export a finer mesh, make the locating surface longer, state the intended joint where there are two
-readings, or state the joint by `[[assume]]`.
+What to do: export a finer mesh, make the locating surface longer, part what overlaps where nothing mates, state the
+intended joint where there are two readings, or state the joint by `[[assume]]`.
 
 Example: a disc 0.2 mm thick in a bore of 40 mm: it hardly keeps the axis.
 """
@@ -49,7 +49,7 @@ def _wanted(context: Context, joint: Joint) -> IntendedJoint | None:
 def _finding(context: Context, joint: Joint, intended: IntendedJoint | None) -> Finding:
     values = ", ".join(f"{value:.2g}" for value in joint.singular_values)
     others = " or ".join(reading.type for reading in joint.readings) or "another"
-    remedy = "Export a finer mesh, lengthen the locating surface, or state the joint by [[assume]]."
+    remedy = "Export a finer mesh, lengthen the locating surface, part what overlaps, or state the joint by [[assume]]."
     if joint.readings:
         remedy = "State the joint that is meant as [[function.joint]]: it chooses among these. Else by [[assume]]."
     return RULE.at("warning" if intended is None else RULE.severity).finding(
