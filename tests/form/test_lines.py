@@ -6,7 +6,7 @@ import json
 import tomllib
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from kinform.errors import InputError
@@ -69,7 +69,6 @@ class Writer:
 ROWS = st.lists(st.dictionaries(KEYS, SCALARS, min_size=1, max_size=4), min_size=1, max_size=4)
 
 
-@settings(suppress_health_check=[HealthCheck.too_slow])
 @given(st.lists(st.tuples(ROWS, STYLES, st.integers(0, 2)), min_size=1, max_size=3), st.sampled_from(["\n", "\r\n"]))
 def test_every_key_is_found_on_its_line(tables, ending):
     writer = Writer(ending)

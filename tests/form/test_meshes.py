@@ -7,7 +7,7 @@ import struct
 import manifold3d
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kinform.errors import InputError
@@ -51,7 +51,6 @@ def test_binary_stl_gives_back_its_corners(facets):
     assert np.array_equal(raw.vertices[raw.faces], corners)
 
 
-@settings(suppress_health_check=[HealthCheck.too_slow])
 @given(st.lists(st.lists(st.floats(-1e6, 1e6), min_size=9, max_size=9), min_size=1, max_size=8))
 def test_ascii_stl_gives_back_its_corners_and_names_its_solids(facets):
     corners = np.array(facets).reshape(-1, 3, 3)
