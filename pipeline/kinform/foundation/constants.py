@@ -191,6 +191,8 @@ ABOUT = 0.02
 """Distance from another part, in diagonals of a large mesh, within which its facets are expected to be asked for."""
 MOST_EXPECTED = 0.8
 """Share of its facets above which a model of all is made, which does for every other part."""
+KEPT_TRIANGLES = 50_000
+"""Facets up to which the corners of a mesh, or of those near another part, are kept, and their boxes: 6 MB."""
 KEPT_SPANS = 200_000
 """Facets up to which the spans of a mesh are kept: 5 MB; of more those that are asked for are computed anew."""
 

@@ -27,16 +27,14 @@ from kinform.foundation.constants import (
     TOLD_AT_ONCE,
 )
 from kinform.foundation.meshes.box_pairs import meeting_boxes
-from kinform.foundation.meshes.boxes import facet_boxes, meeting_box, triangle_boxes
+from kinform.foundation.meshes.boxes import meeting_box, triangle_boxes
 from kinform.model.arrays import Array, Flags, Ints
 
 
-def beside(slivers: Array, vertices: Array, faces: Ints) -> Ints:
-    """Those of faces (m, 3) over vertices (V, 3), ascending, whose boxes meet the box of all slivers (n, 3, 3)."""
+def beside(slivers: Array, low: Array, high: Array) -> Ints:
+    """Those of facets, ascending, whose boxes from `low` to `high` (m, 3) meet the box of all slivers (n, 3, 3)."""
     corners = slivers.reshape(-1, 3)
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    low_f, high_f = facet_boxes(vertices, faces)
-    return np.flatnonzero(meeting_box(low_f, high_f, low, high))
+    return np.flatnonzero(meeting_box(low, high, corners.min(axis=0), corners.max(axis=0)))
 
 
 Met = tuple[Ints, Ints]
