@@ -205,9 +205,11 @@ def segments(part: PartView, sheet: Sheet, direction: Array, alignment: float, g
     inner, outer = sheet.bends
     leaves = upright.take(inner)
     leaves &= ~upright.take(outer)
-    inner, outer = sheet.facets.take(inner[leaves]), sheet.facets.take(outer[leaves])
-    heights = [_height(part, side, direction) for side in (inner, outer)]
-    upright[sheet.facets.searchsorted(inner[heights[1] > STRIP_HEIGHT * heights[0]])] = False
+    leaving = leaves.nonzero()[0]
+    if len(leaving):
+        inner, outer = inner.take(leaving), outer.take(leaving)
+        heights = [_height(part, sheet.facets.take(side), direction) for side in (inner, outer)]
+        upright[inner[heights[1] > STRIP_HEIGHT * heights[0]]] = False
     rows = np.flatnonzero(upright)
     if not len(rows):
         return None

@@ -15,7 +15,7 @@ import numpy as np
 
 from kinform.contacts import constants
 from kinform.contacts.higher.closest_places import closest_places
-from kinform.contacts.higher.outlines import Curve, Sheet, curves, may_curve, segments
+from kinform.contacts.higher.outlines import Curve, Segments, Sheet, curves, may_curve, segments
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.mating.charts import plane_basis
 from kinform.contacts.search.apart import bulge_of
@@ -93,12 +93,14 @@ def _directions(near: tuple[NearSurfaces, NearSurfaces]) -> list[Array]:
 def _meetings(pair: PairView, sheets: list[Sheet], direction: Array) -> list[_Meeting]:
     """Where the outlines across `direction` (3,) of these facets of a and of b meet."""
     tolerance, tolerances, limit = pair.tolerance, pair.tolerances, constants.MATING_REACH * pair.tolerance
-    cut = []
-    for part, sheet in zip(pair.parts, sheets, strict=True):
-        pieces = segments(part, sheet, direction, tolerances.alignment, constants.GRAIN * tolerance)
+    found: dict[int, Segments] = {}
+    # of few facets none runs along it sooner than of many
+    for k in sorted((0, 1), key=lambda k: len(sheets[k].facets)):
+        pieces = segments(pair.parts[k], sheets[k], direction, tolerances.alignment, constants.GRAIN * tolerance)
         if pieces is None:
             return []
-        cut.append(pieces)
+        found[k] = pieces
+    cut = [found[0], found[1]]
     may = [may_curve(part, pieces, tolerances.smooth_edge) for part, pieces in zip(pair.parts, cut, strict=True)]
     if not any(flags.any() for flags in may):
         return []
@@ -108,9 +110,15 @@ def _meetings(pair: PairView, sheets: list[Sheet], direction: Array) -> list[_Me
     near = near_boxes(*boxes[0], *boxes[1], limit)
     bent = [of_part & flags for of_part, flags in zip(near, may, strict=True)]
     # an exact curve is compared with those that are not
+    wanted = [
+        np.ones(len(of_part), bool) if other.any() else flags
+        for of_part, flags, other in zip(near, may, bent[::-1], strict=True)
+    ]
+    if not all((of_part & flags).any() for of_part, flags in zip(near, wanted, strict=True)):
+        return []
     first, second = (
-        curves(part, pieces, of_part, np.ones(len(of_part), bool) if other.any() else flags, tolerances.smooth_edge)
-        for part, pieces, of_part, flags, other in zip(pair.parts, cut, near, may, bent[::-1], strict=True)
+        curves(part, pieces, of_part, flags, tolerances.smooth_edge)
+        for part, pieces, of_part, flags in zip(pair.parts, cut, near, wanted, strict=True)
     )
     if not first or not second:
         return []

@@ -59,7 +59,8 @@ class PartView:
 
     def normals(self, facets: Ints) -> Array:
         """(n, 3) unit, outward, of facets (n,), in the frame of the pair."""
-        return np.asarray(self.index.normals(facets) @ self.X_FP[:3, :3].T)
+        normals = self.index.normals(facets)
+        return normals + 0.0 if self.at_home else np.asarray(normals @ self.X_FP[:3, :3].T)
 
     def depths(self, points: Array) -> tuple[Array, Ints]:
         """Distance (n,) m to the mesh of points (n, 3) on the other part, and the nearest facets (n,).
@@ -78,10 +79,14 @@ class PartView:
 
     def to_part(self, points: Array) -> Array:
         """Points (n, 3) of the frame of the pair in the part frame."""
+        if self.at_home:
+            return points + 0.0
         return np.asarray((points - self.X_FP[:3, 3]) @ self.X_FP[:3, :3])
 
     def turn_to_part(self, directions: Array) -> Array:
         """Directions (n, 3) of the frame of the pair in the part frame."""
+        if self.at_home:
+            return directions + 0.0
         return np.asarray(directions @ self.X_FP[:3, :3])
 
 

@@ -81,13 +81,15 @@ class MeshIndex:
         return np.asarray(0.5 * np.sqrt(dot(spans, spans)))
 
     def normals(self, facets: Ints) -> Array:
-        """(n, 3) unit, outward, part frame; zero for facets without area; kept once as many were asked for as there
-        are."""
+        """(n, 3) unit, outward, part frame; zero for facets without area; of many facets kept once as many were
+        asked for as there are."""
         if self._normals is not None:
             return self._normals.take(facets, axis=0)
         self._asked += len(facets)
-        if self._asked > len(self.mesh.faces) and len(self.mesh.faces) <= KEPT_SPANS:
-            self._normals = _normals(self.spans(np.arange(len(self.mesh.faces))))
+        count = len(self.mesh.faces)
+        if count <= KEPT_TRIANGLES or (self._asked > count and count <= KEPT_SPANS):
+            self._normals = _normals(self.spans(np.arange(count)))
+            return self._normals.take(facets, axis=0)
         return _normals(self.spans(facets))
 
     @property
@@ -211,10 +213,11 @@ class MeshIndex:
         """(k, 2) pairs of surfaces that share an edge, both ways round, sorted."""
         if self._borders is None:
             first, second = surfaces.labels.take(self.edges.sides)
-            apart = np.flatnonzero(first != second)
-            first, second = first[apart], second[apart]
+            apart = (first != second).nonzero()[0]
+            first, second = first.take(apart), second.take(apart)
             count = np.int64(max(len(surfaces.surfaces), 1))
-            keys = distinct(np.concatenate([first * count + second, second * count + first]))
+            first, second = np.divmod(distinct(np.minimum(first, second) * count + np.maximum(first, second)), count)
+            keys = np.sort(np.concatenate([first * count + second, second * count + first]))
             self._borders = np.stack(np.divmod(keys, count), axis=1)
         return self._borders
 
