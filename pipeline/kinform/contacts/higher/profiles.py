@@ -20,13 +20,12 @@ from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.mating.charts import plane_basis
 from kinform.contacts.search.apart import bulge_of
 from kinform.contacts.search.pair_view import NearSurfaces, PairView, PartView, near_facets
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.meshes.boxes import meeting_box
 from kinform.foundation.meshes.proximity import near_boxes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
-from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances
 
 
@@ -75,15 +74,14 @@ def profile_contacts(
 
 def _directions(near: tuple[NearSurfaces, NearSurfaces]) -> list[Array]:
     """Directions that outlines may run along: normals of planes and axes of both parts, the largest faces first."""
-    kinds = [KINDS.index(kind) for kind in ("plane", "cylinder", "extrusion")]
     axes: list[tuple[float, Array]] = []
     for side in near:
-        for row in np.flatnonzero(np.isin(side.kinds, kinds)):
-            axes.append((float(side.areas[row]), side.axes[row]))
+        rows = side.of_kind("plane", "cylinder", "extrusion")
+        axes += zip(side.areas.take(rows).tolist(), side.axes.take(rows, axis=0), strict=True)
     axes.sort(key=lambda item: (-item[0], *item[1].tolist()))
     out: list[Array] = []
     for _, axis in axes:
-        if all(float(np.linalg.norm(cross(axis, other))) > constants.DIRECTION_SINE for other in out):
+        if all(norm(cross(axis, other)) > constants.DIRECTION_SINE for other in out):
             out.append(axis)
         if len(out) == constants.DIRECTIONS_TRIED:
             break
@@ -147,11 +145,11 @@ def _sheet(part: PartView, low: Array, high: Array, tolerances: Tolerances) -> S
     chosen[near_facets(part, low, high)[0]] = True
     inside = np.zeros(len(part.vertices), dtype=bool)
     corners = [np.ascontiguousarray(column) for column in part.faces.T]
-    fresh = np.flatnonzero(chosen)
+    fresh = chosen.nonzero()[0]
     for _ in range(constants.SHEET_RINGS):
         inside[part.faces[fresh]] = True
         around = inside[corners[0]] | inside[corners[1]] | inside[corners[2]]
-        fresh = np.flatnonzero(around & ~chosen)
+        fresh = (around & ~chosen).nonzero()[0]
         if not len(fresh):
             break
         chosen[fresh] = True

@@ -63,7 +63,7 @@ def perpendicular(axis: Array, hint: Array | None = None) -> Array:
 def plane_basis(axis: Array) -> Array:
     """(2, 3) unit vectors that make a right-handed frame with the unit axis (3,)."""
     first = perpendicular(axis)
-    return np.stack([first, cross(axis, first)])
+    return np.array([first, cross(axis, first)])
 
 
 def _unit_rows(rows: Array) -> Array:
@@ -97,7 +97,7 @@ class PlaneChart:
         return np.asarray(self.point + flat @ self.basis)
 
     def normals(self, points: Array) -> Array:
-        return np.tile(self.axis, (len(points), 1))
+        return np.repeat(self.axis[None], len(points), axis=0)
 
     def heights(self, points: Array) -> Array:
         return np.asarray((points - self.point) @ self.axis)

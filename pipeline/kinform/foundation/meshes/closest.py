@@ -54,7 +54,7 @@ def _nearest(points: Array, triangles: Triangles) -> tuple[Array, Ints] | None:
     reach = (1.0 + AS_NEAR) * Nearest(some).away(points)[:, None]
     rounding = CLOSEST_ROUNDING * triangles.largest
     least, most = points - reach, points + reach
-    beside = np.flatnonzero(meeting_box(low, high, least.min(axis=0), most.max(axis=0)))
+    beside = meeting_box(low, high, least.min(axis=0), most.max(axis=0)).nonzero()[0]
     corners = corners.take(beside, axis=0)
     candidates = meeting_boxes((least, most), (low.take(beside, axis=0), high.take(beside, axis=0)))
     if candidates is None or len(candidates[0]) > CLOSEST_MOST:
@@ -67,7 +67,7 @@ def _nearest(points: Array, triangles: Triangles) -> tuple[Array, Ints] | None:
     # the box of a corner touches that of its facet, so that every point has candidates, in their order
     starts = np.searchsorted(point, np.arange(len(points)))
     distance = np.minimum.reduceat(away, starts)
-    as_near = np.flatnonzero(away <= ((1.0 + AS_NEAR) * distance + rounding).take(point))
+    as_near = (away <= ((1.0 + AS_NEAR) * distance + rounding).take(point)).nonzero()[0]
     first = as_near[np.searchsorted(point[as_near], np.arange(len(points)))]
     return distance, beside[facet[first]]
 
@@ -83,15 +83,15 @@ def _sifted(corners: Array, places: Array, point: Ints, facet: Ints, rounding: f
         np.maximum(off, 0.0, out=off)
         off *= off
         square += off
-    starts = np.flatnonzero(heads(point))
+    starts = heads(point).nonzero()[0]
     least_of = np.minimum.reduceat(square, starts)
-    nearest = np.flatnonzero(square == least_of.take(point))
-    nearest = nearest.take(np.flatnonzero(heads(point.take(nearest))))
+    nearest = (square == least_of.take(point)).nonzero()[0]
+    nearest = nearest.take(heads(point.take(nearest)).nonzero()[0])
     most = _from_origin(corners.take(facet.take(nearest), axis=2) - places)
     most *= (1.0 + AS_NEAR) ** 2
     most += 2.0 * rounding
     most *= most
-    kept = np.flatnonzero(square <= most.take(point))
+    kept = (square <= most.take(point)).nonzero()[0]
     return point.take(kept), facet.take(kept)
 
 

@@ -40,12 +40,10 @@ def _cells(low: Array, high: Array, margin: float, origin: Array, size: Array, c
     cells = np.empty((2, *low.shape))
     np.subtract(low, margin, out=cells[0])
     np.add(high, margin, out=cells[1])
-    for axis in range(3):
-        column = cells[:, axis]
-        column -= origin[axis]
-        column /= size[axis]
-        column *= counts[axis]
-    np.floor(cells, out=cells)
+    cells -= origin[:, None]
+    cells /= size[:, None]
+    cells *= counts[:, None]
+    # without a sign, and up to a whole number, what is cut off is what rounding down leaves out
     np.maximum(cells, 0.0, out=cells)
     np.minimum(cells, (counts - 1)[:, None], out=cells)
     return cells.astype(np.int64)

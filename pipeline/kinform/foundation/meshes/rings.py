@@ -307,12 +307,13 @@ def _first_sights(mesh: Mesh, table: SurfaceTable, rows: list[_Row], label: Ints
     """Of all rows at once. `label` (pieces,) tells the plane of each piece."""
     with np.errstate(invalid="ignore"):
         circles = _circles(mesh, rows)
-        planes = [np.unique(label[r.pieces]) for r in rows]
-        sizes = np.array([len(p) for p in planes])
-        row, starts = np.repeat(np.arange(len(rows)), sizes), np.cumsum(sizes) - sizes
-        every = np.concatenate(planes)
+        below = np.int64(len(table.kinds))
+        of = np.repeat(np.arange(len(rows)), [len(r.pieces) for r in rows])
+        row, every = np.divmod(distinct(of * below + label.take(np.concatenate([r.pieces for r in rows]))), below)
+        starts = np.flatnonzero(heads(row))
+        planes = np.split(every, starts[1:])
         axes, points = table.axes[every], table.points[every]
-        sides = np.where(rows[0].every.convex[[r.edges[0] for r in rows]], 1.0, -1.0)
+        sides = np.where(rows[0].every.convex.take([r.edges[0] for r in rows]), 1.0, -1.0)
         reach = sides[row] * dot(points - circles.centre[row], axes)
         low, high = np.minimum.reduceat(reach, starts), np.maximum.reduceat(reach, starts)
         return _Sights(circles, planes, sides, (low, high), _widest_gaps(axes, circles.axis, row, starts))
