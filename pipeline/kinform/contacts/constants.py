@@ -26,6 +26,8 @@ FEW_BESIDE = 1000
 of the rest."""
 MOST_SURFACES = 3000
 """Surfaces of one part that a pair looks at: a bound of memory for crumpled meshes."""
+OVERLAPS_KEPT = 200_000
+"""Surfaces times surfaces of a pair up to which it is kept which come near each other: 0.2 MB."""
 FACING_LEAST = 0.5
 """Least cosine between a probe and the facet that it has to meet."""
 BETWEEN_MARGIN = 0.01

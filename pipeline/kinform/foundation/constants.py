@@ -42,8 +42,10 @@ GRID_LISTED_LEAST = 4096
 """... and these in all, which cost nothing."""
 UNLISTED = 32
 """Comparisons of points with boxes, a facet, that cost less than a grid."""
-STEPS_QUICKER = 4
-"""Times that small integers are compared as fast as floating numbers, all told."""
+FOLLOWED = 2
+"""Such comparisons that a point beside a box along one axis takes to be compared along the other."""
+FOLLOWED_AT_ONCE = 500_000
+"""Of which so many, and those of one box, are compared at once: 30 MB."""
 SIZE_OCTAVES = 20
 """Octaves of size that facets are sorted by."""
 PLACE_BITS = 10

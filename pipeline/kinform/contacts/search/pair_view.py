@@ -14,7 +14,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from kinform.contacts.constants import CLEARANCE_SHARE, FEW_BESIDE, MATING_REACH, MOST_SURFACES
+from kinform.contacts.constants import CLEARANCE_SHARE, FEW_BESIDE, MATING_REACH, MOST_SURFACES, OVERLAPS_KEPT
 from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.meshes.boxes import boxes_within, facet_boxes, meeting_box
 from kinform.foundation.meshes.index import MeshIndex, MeshStore
@@ -345,7 +345,18 @@ class PairView:
     def overlap(self, margin: float) -> Flags:
         """(s, t): the boxes of near surface s of a and t of b come within `margin` (m)."""
         a, b = self.near
-        return boxes_within((a.lows, a.highs), (b.lows, b.highs), margin)
+        known = self._overlaps.get(margin)
+        if known is None:
+            known = boxes_within((a.lows, a.highs), (b.lows, b.highs), margin)
+            if known.size > OVERLAPS_KEPT:
+                return known
+            self._overlaps[margin] = known
+        return known.copy()
+
+    @cached_property
+    def _overlaps(self) -> dict[float, Flags]:
+        """Those that were asked for, by margin."""
+        return {}
 
     def of_kinds(self, overlap: Flags, *kinds: str) -> tuple[Ints, Ints, Flags]:
         """Positions of the near surfaces of these kinds of a (s,) and of b (t,), and the flags `overlap` of these (s,
