@@ -16,9 +16,9 @@ from kinform.contacts.higher.nearest import Circle
 from kinform.contacts.higher.sharp import ConvexEdges
 from kinform.contacts.mating.charts import perpendicular
 from kinform.contacts.search.pair_view import NearSurfaces, PairView
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, lengths, times
 from kinform.foundation.meshes.boxes import meeting_box
-from kinform.foundation.sorting import heads
+from kinform.foundation.sorting import heads, median
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.surfaces import KINDS
@@ -139,7 +139,7 @@ def _circles(view: PairView, rows: Ints, ends: Ints) -> list[Rim]:
     """The circles about one axis on which edges (e, 2) between two near surfaces lie, if all are level."""
     limit = constants.RIM_UNEVEN * view.tolerance
     axis = _axis(view.near[0], rows)
-    along = (view.a.vertices[ends] - axis.point) @ axis.along
+    along = times(view.a.vertices.take(ends, axis=0) - axis.point, axis.along)
     if float(np.ptp(along, axis=1).max()) > limit:
         return []
     heights = along.mean(axis=1)
@@ -154,10 +154,10 @@ def _rim(view: PairView, rows: Ints, axis: _Axis, ends: Ints) -> Rim | None:
     the chords of others."""
     near, limit, corners = view.near[0], constants.RIM_UNEVEN * view.tolerance, view.a.vertices[ends]
     arm = corners - axis.point
-    along = arm @ axis.along
+    along = times(arm, axis.along)
     aside = arm - along[..., None] * axis.along
-    far = np.linalg.norm(aside, axis=2)
-    radius, centre = float(np.median(far)), axis.point + float(along.mean()) * axis.along
+    far = lengths(aside)
+    radius, centre = median(far.ravel()), axis.point + float(along.mean()) * axis.along
     off = np.abs(far - radius)
     loose = float(off.max()) > limit + float(near.chords[rows].max()) or np.ptp(along) > limit
     if loose or radius <= limit or np.count_nonzero(off <= limit) < constants.RIM_EVEN * off.size:
@@ -167,7 +167,7 @@ def _rim(view: PairView, rows: Ints, axis: _Axis, ends: Ints) -> Rim | None:
     if slopes is None:
         return None
     basis = np.stack([outward, cross(axis.along, outward)])
-    starts, spans = _arcs(aside @ basis.T)
+    starts, spans = _arcs(times(aside, basis.T))
     low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
     faces, surface = (int(near.ids[rows[0]]), int(near.ids[rows[1]])), int(near.ids[axis.row])
     return Rim(

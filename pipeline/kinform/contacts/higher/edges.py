@@ -95,9 +95,11 @@ def _standing(view: PairView, edges: ConvexEdges, row: int) -> list[_Touch]:
     one, two = height.take(ends).T
     lying = inside[:, 0] & inside[:, 1] & (np.abs(one - two) <= slope * length)
     lines = lying.nonzero()[0]
-    lines = lines[_rises(sharp, edges.where(some.take(lines)), height)]
+    if len(lines):
+        lines = lines[_rises(sharp, edges.where(some.take(lines)), height)]
     corners = np.setdiff1d(ends[inside], ends[lying])
-    corners = corners[_lowest(sharp, corners, height, slope)]
+    if len(corners):
+        corners = corners[_lowest(sharp, corners, height, slope)]
     if not 0 < len(lines) + len(corners) <= constants.EDGES_MOST:
         return []
     spots: list[tuple[Ints, Array, Array | None]] = [

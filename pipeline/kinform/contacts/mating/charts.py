@@ -15,7 +15,7 @@ import numpy as np
 
 from kinform.contacts.constants import CHART_ARC, CHART_FAR, HINT_LEAST, POLE_SEEN, SEEN_FROM_AXIS
 from kinform.foundation.algebra import vectors
-from kinform.foundation.algebra.vectors import cross, lengths, norm
+from kinform.foundation.algebra.vectors import cross, lengths, norm, times
 from kinform.foundation.meshes.boxes import middles
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
@@ -88,7 +88,7 @@ class PlaneChart:
         return plane_basis(self.axis)
 
     def flatten(self, triangles: Array) -> Array:
-        return np.asarray((triangles - self.point) @ self.basis.T)
+        return times(triangles - self.point, self.basis.T)
 
     def window(self) -> Array | None:
         return None
@@ -119,12 +119,12 @@ class _Axial:
     def _arms(self, points: Array) -> tuple[Array, Array]:
         """Height along the axis of points (…, 3), and what leads to them across it (…, 3)."""
         arm = points - self.point
-        along = arm @ self.axis
+        along = times(arm, self.axis)
         return along, arm - along[..., None] * self.axis
 
     def _azimuth(self, across: Array) -> Array:
         """(…,) in [−π, π] of vectors across the axis (…, 3)."""
-        return np.asarray(np.arctan2(across @ self.side, across @ self.base))
+        return np.asarray(np.arctan2(times(across, self.side), times(across, self.base)))
 
     def _unrolled(self, triangles: Array) -> tuple[Array, Array, Array]:
         """Height, radius and azimuth (n, 3) of the corners, each azimuth within π of its centroid's."""
@@ -247,11 +247,11 @@ class SphereChart:
 
     def flatten(self, triangles: Array) -> Array:
         rays = _unit_rows(triangles - self.point)
-        rise = rays @ self.pole
+        rise = times(rays, self.pole)
         shown = middles(rays) @ self.pole > POLE_SEEN
         rays, rise = rays[shown], rise[shown]
         stretch = self.radius * np.sqrt(2.0 / np.maximum(1.0 + rise, 1e-9))
-        return np.asarray(stretch[..., None] * (rays @ plane_basis(self.pole).T))
+        return np.asarray(stretch[..., None] * times(rays, plane_basis(self.pole).T))
 
     def window(self) -> Array | None:
         return None

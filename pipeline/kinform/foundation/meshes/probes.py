@@ -18,7 +18,7 @@ import fcl
 import numpy as np
 
 from kinform.foundation.algebra.displacements import inverse
-from kinform.foundation.algebra.vectors import cross, dot, lengths
+from kinform.foundation.algebra.vectors import cross, dot, lengths, times
 from kinform.foundation.constants import HITS_A_PROBE, KEPT_TRIANGLES, MET_AT_ONCE, SLIVER_WIDTH, STEEP_LEAST
 from kinform.foundation.joined import joined
 from kinform.foundation.meshes.boxes import facet_boxes, triangle_boxes
@@ -203,7 +203,7 @@ def crossings_of(asked: Sequence[tuple[Region, Region, Array]]) -> list[bool]:
         if not (first.empty or second.empty or first.index.is_large or second.index.is_large)
     ]
     triangles = [
-        (first.corners(), second.corners() @ X_SO[:3, :3].T + X_SO[:3, 3])
+        (first.corners(), times(second.corners(), X_SO[:3, :3].T) + X_SO[:3, 3])
         for first, second, X_SO in (asked[k] for k in some)
     ]
     told = dict(zip(some, crossings(triangles), strict=True))
