@@ -31,7 +31,7 @@ from kinform.foundation.meshes.boxes import facet_boxes
 from kinform.foundation.meshes.rings import Ring, RingRow
 from kinform.foundation.meshes.surface_table import SurfaceTable
 from kinform.frozen import dataclass
-from kinform.model.arrays import Array, Ints
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 
@@ -172,15 +172,33 @@ def _ring(part: PartView, near: NearSurfaces, ring: Ring, at: list[int]) -> _Rou
 def _coaxial(pair: PairView, sides: list[list[_Round]], reach: float) -> Iterator[tuple[_Round, _Round, float]]:
     """Pairs of which one may enclose the other, the largest first, and the radius (m) of what encloses."""
     met = []
-    for a in sides[0]:
-        for b in sides[1]:
-            if a.side * b.side > 0.0 or (radius := _enclosing(pair, a, b)) is None:
-                continue
-            apart = np.maximum(a.low - b.high, b.low - a.high).max()
-            if apart > reach or abs(float(a.axis @ b.axis)) < np.cos(constants.TILT_LIKELY * constants.MATING_TILT):
-                continue
-            met.append((a, b, radius))
+    for i, j in np.argwhere(_may_enclose(pair, sides)).tolist():
+        a, b = sides[0][i], sides[1][j]
+        radius = _enclosing(pair, a, b)
+        if radius is None:
+            continue
+        apart = np.maximum(a.low - b.high, b.low - a.high).max()
+        if apart > reach or abs(float(a.axis @ b.axis)) < np.cos(constants.TILT_LIKELY * constants.MATING_TILT):
+            continue
+        met.append((a, b, radius))
     yield from sorted(met, key=lambda ab: (-ab[0].corner, int(ab[0].surfaces[0]), int(ab[1].surfaces[0])))
+
+
+def _may_enclose(pair: PairView, sides: list[list[_Round]]) -> Flags:
+    """(n, m): rounds of either part of which one may enclose the other as far as their radii tell at first sight."""
+    if not (sides[0] and sides[1]):
+        return np.zeros((len(sides[0]), len(sides[1])), bool)
+    (side_a, corner_a, flat_a), (side_b, corner_b, flat_b) = (
+        np.array([(one.side, one.corner, one.flats[1]) for one in part]).T for part in sides
+    )
+    inner = (side_a > 0.0)[:, None]
+    bar = np.where(inner, corner_a[:, None], corner_b)
+    outer, flat = np.where(inner, corner_b, corner_a[:, None]), np.where(inner, flat_b, flat_a[:, None])
+    play = np.maximum(pair.play, constants.CLEARANCE_SHARE * bar)
+    # of the smaller radius of the two it is less
+    limit = (1.0 + 1e-9) * constants.MATING_REACH * np.minimum(play, bar / constants.HALF_RADIUS_SHARE)
+    off = np.minimum(np.abs(outer - bar), np.abs(flat - bar))
+    return np.asarray((side_a[:, None] * side_b <= 0.0) & (off <= limit))
 
 
 def _bar_and_socket(first: _Round, second: _Round) -> tuple[_Round, _Round]:
