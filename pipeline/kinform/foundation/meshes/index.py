@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import fcl
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.algebra.vectors import cross_columns, dot
 from kinform.foundation.constants import (
     ABOUT,
     BALL_PARTS,
@@ -332,7 +332,8 @@ def _of_facets(half_edges: Ints, facets: Ints) -> Ints:
 
 def _spans(corners: Array) -> Array:
     """(n, 3) of facets (n, 3, 3)."""
-    return cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    first, second, third = np.ascontiguousarray(corners.transpose(1, 2, 0))
+    return np.ascontiguousarray(cross_columns((second - first).T, (third - first).T))
 
 
 def _normals(spans: Array) -> Array:
