@@ -95,8 +95,6 @@ BOXES_COMPARED = 1_500_000
 """The same where there are not very many of either: 1 ms; a grid takes from 0.5 ms to 4."""
 BOXES_EXACT = 20_000
 """The same up to which they are compared as they are: steps of a scale take 0.04 ms to be made."""
-FLAGS_MANY = 60_000
-"""Flags from which on numpy finds the few that are set sooner by eights."""
 BOXES_MOST = 50_000
 """Boxes of either kind up to which a grid is made of them."""
 BESIDE_MOST = 100_000

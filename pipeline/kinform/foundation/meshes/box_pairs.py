@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.constants import BESIDE_MOST, BOXES_COMPARED, BOXES_EXACT, BOXES_MATRIX, BOXES_MOST, FLAGS_MANY
+from kinform.foundation.constants import BESIDE_MOST, BOXES_COMPARED, BOXES_EXACT, BOXES_MATRIX, BOXES_MOST
 from kinform.foundation.meshes.boxes import FlatBoxes
-from kinform.model.arrays import Array, Flags, Ints
+from kinform.model.arrays import Array, Ints
 
 Boxes = tuple[Array, Array]
 """Lower and upper corners (n, 3)."""
@@ -73,17 +73,7 @@ def _all_compared(columns: list[NDArray[Any]]) -> tuple[Ints, Ints]:
     for axis in (1, 2):
         meets &= np.less_equal(low[axis][:, None], high_other[axis], out=along)
         meets &= np.less_equal(low_other[axis], high[axis][:, None], out=along)
-    width, flat = max(meets.shape[1], 1), _flagged(meets.ravel())
+    flat, width = meets.ravel().nonzero()[0], max(meets.shape[1], 1)
+    # numpy divides twice as fast where it is not asked what is left
     one = flat // width
     return one, flat - one * width
-
-
-def _flagged(flags: Flags) -> Ints:
-    """Places of those (n,) that are set: of many, of which few are, eight at a time."""
-    if len(flags) < FLAGS_MANY:
-        return np.flatnonzero(flags)
-    whole = len(flags) // 8 * 8
-    at = np.flatnonzero(flags[:whole].view(np.uint64) != 0)
-    inner = np.flatnonzero(flags[:whole].reshape(-1, 8).take(at, axis=0))
-    places = at.take(inner >> 3) * 8 + (inner & 7)
-    return np.concatenate([places, whole + np.flatnonzero(flags[whole:])])
