@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kinform.foundation.meshes import box_pairs, slivers
+from kinform.foundation.meshes.boxes import facet_boxes
 from kinform.foundation.meshes.fcl_adapter import fcl_model
 from kinform.foundation.meshes.slivers import beside, crossing, meeting
 
@@ -124,7 +125,7 @@ def test_facets_beside_are_all_whose_boxes_meet_that_of_all():
     low, high = slivers.min(axis=(0, 1)), slivers.max(axis=(0, 1))
     corners = vertices[faces]
     held = [(c.min(axis=0) <= high).all() and (c.max(axis=0) >= low).all() for c in corners]
-    assert beside(slivers, vertices, faces).tolist() == np.flatnonzero(held).tolist()
+    assert beside(slivers, *facet_boxes(vertices, faces)).tolist() == np.flatnonzero(held).tolist()
 
 
 @settings(max_examples=40, deadline=None)

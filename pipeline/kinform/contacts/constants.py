@@ -26,6 +26,8 @@ FEW_BESIDE = 1000
 of the rest."""
 MOST_SURFACES = 3000
 """Surfaces of one part that a pair looks at: a bound of memory for crumpled meshes."""
+OVERLAPS_KEPT = 200_000
+"""Surfaces times surfaces of a pair up to which it is kept which come near each other: 0.2 MB."""
 FACING_LEAST = 0.5
 """Least cosine between a probe and the facet that it has to meet."""
 BETWEEN_MARGIN = 0.01
@@ -297,8 +299,13 @@ BESIDE_DEEPEST = 100
 """Points beside the deepest one that are measured too."""
 SURELY_SLIGHT = 1e-6
 """Share of a volume by which it is surely less than another: far more than rounding."""
-SLIGHT_MOST = 50_000
-"""Points times the facets that bound their piece up to which all are measured: 10 MB. Slivers have a few."""
+SLIGHT_MOST = 400_000
+"""Points times the facets that bound their piece up to which it is asked which are near each other: 10 MB, and 5 ms."""
+SLIGHT_SOME = 8
+"""One of so many points is asked about before all are: overlaps that count are deep at most of them."""
+SLIGHT_FEW = 16
+"""Pieces up to which what is not sure to be slight is measured piece by piece at once: that takes 0.2 ms each beside
+what all take together."""
 EXACT_OVERLAP = 0.02
 """An overlap below this is none: rounding of coordinates."""
 CURVED_FIRST = 20_000

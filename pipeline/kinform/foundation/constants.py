@@ -42,8 +42,10 @@ GRID_LISTED_LEAST = 4096
 """... and these in all, which cost nothing."""
 UNLISTED = 32
 """Comparisons of points with boxes, a facet, that cost less than a grid."""
-STEPS_QUICKER = 4
-"""Times that small integers are compared as fast as floating numbers, all told."""
+FOLLOWED = 2
+"""Such comparisons that a point beside a box along one axis takes to be compared along the other."""
+FOLLOWED_AT_ONCE = 500_000
+"""Of which so many, and those of one box, are compared at once: 30 MB."""
 SIZE_OCTAVES = 20
 """Octaves of size that facets are sorted by."""
 PLACE_BITS = 10
@@ -191,6 +193,8 @@ ABOUT = 0.02
 """Distance from another part, in diagonals of a large mesh, within which its facets are expected to be asked for."""
 MOST_EXPECTED = 0.8
 """Share of its facets above which a model of all is made, which does for every other part."""
+KEPT_TRIANGLES = 50_000
+"""Facets up to which the corners of a mesh, or of those near another part, are kept, and their boxes: 6 MB."""
 KEPT_SPANS = 200_000
 """Facets up to which the spans of a mesh are kept: 5 MB; of more those that are asked for are computed anew."""
 

@@ -16,8 +16,9 @@ from kinform.contacts.higher.nearest import Circle
 from kinform.contacts.higher.sharp import ConvexEdges
 from kinform.contacts.mating.charts import perpendicular
 from kinform.contacts.search.pair_view import NearSurfaces, PairView
-from kinform.foundation.algebra.vectors import cross
-from kinform.foundation.sorting import heads
+from kinform.foundation.algebra.vectors import cross, lengths, times
+from kinform.foundation.meshes.boxes import meeting_box
+from kinform.foundation.sorting import heads, median
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.surfaces import KINDS
@@ -81,22 +82,27 @@ def rims_of(view: PairView, edges: ConvexEdges, lows: Array, highs: Array) -> li
     part, near = view.a, view.near[0]
     if not len(edges.ends) or not len(near.ids):
         return []
-    corners = part.vertices[edges.ends]
-    low, high = corners.min(axis=1), corners.max(axis=1)
-    labels = part.surfaces.labels[edges.facets]
-    rows = np.minimum(np.searchsorted(near.ids, labels), len(near.ids) - 1)
-    turning, exact, flat, ball = (of[near.kinds[rows]] for of in (_TURNING, _EXACT, _PLANE, _SPHERE))
-    wanted = exact.all(axis=1) & (turning.any(axis=1) | (flat.any(axis=1) & ball.any(axis=1)))
-    wanted &= (labels[:, 0] != labels[:, 1]) & (near.ids[rows] == labels).all(axis=1)
-    wanted &= ((high >= lows.min(axis=0)) & (low <= highs.max(axis=0))).all(axis=1)
-    at = np.flatnonzero(wanted)
-    if not len(at):
+    labels = part.surfaces.labels.take(edges.facets)
+    apart = (labels[:, 0] != labels[:, 1]).nonzero()[0]
+    labels = labels.take(apart, axis=0).T
+    rows = np.minimum(near.ids.searchsorted(labels), len(near.ids) - 1)
+    kinds = near.kinds.take(rows)
+    turning, exact, flat, ball = (of.take(kinds) for of in (_TURNING, _EXACT, _PLANE, _SPHERE))
+    wanted = exact[0] & exact[1] & (turning[0] | turning[1] | ((flat[0] | flat[1]) & (ball[0] | ball[1])))
+    known = near.ids.take(rows) == labels
+    wanted = (wanted & known[0] & known[1]).nonzero()[0]
+    at, rows = apart.take(wanted), rows.take(wanted, axis=1)
+    starts, stops = (part.vertices.take(ends, axis=0) for ends in edges.ends.take(at, axis=0).T)
+    low, high = np.minimum(starts, stops), np.maximum(starts, stops)
+    met = meeting_box(low, high, lows.min(axis=0), highs.max(axis=0)).nonzero()[0]
+    if not len(met):
         return []
-    rows = np.sort(rows[at], axis=1)
+    at, low, high = at.take(met), low.take(met, axis=0), high.take(met, axis=0)
+    rows = np.sort(rows.take(met, axis=1).T, axis=1)
     keys = rows[:, 0] * np.int64(len(near.ids)) + rows[:, 1]
     order = np.argsort(keys, kind="stable")
     starts = np.flatnonzero(heads(keys[order]))
-    least, most = np.minimum.reduceat(low[at[order]], starts), np.maximum.reduceat(high[at[order]], starts)
+    least, most = np.minimum.reduceat(low[order], starts), np.maximum.reduceat(high[order], starts)
     meets = np.asarray(((most[:, None] >= lows) & (least[:, None] <= highs)).all(axis=2))
     groups = np.split(order, starts[1:])
     chosen = [group for group, met in zip(groups, meets, strict=True) if met.any()]
@@ -133,7 +139,7 @@ def _circles(view: PairView, rows: Ints, ends: Ints) -> list[Rim]:
     """The circles about one axis on which edges (e, 2) between two near surfaces lie, if all are level."""
     limit = constants.RIM_UNEVEN * view.tolerance
     axis = _axis(view.near[0], rows)
-    along = (view.a.vertices[ends] - axis.point) @ axis.along
+    along = times(view.a.vertices.take(ends, axis=0) - axis.point, axis.along)
     if float(np.ptp(along, axis=1).max()) > limit:
         return []
     heights = along.mean(axis=1)
@@ -148,10 +154,10 @@ def _rim(view: PairView, rows: Ints, axis: _Axis, ends: Ints) -> Rim | None:
     the chords of others."""
     near, limit, corners = view.near[0], constants.RIM_UNEVEN * view.tolerance, view.a.vertices[ends]
     arm = corners - axis.point
-    along = arm @ axis.along
+    along = times(arm, axis.along)
     aside = arm - along[..., None] * axis.along
-    far = np.linalg.norm(aside, axis=2)
-    radius, centre = float(np.median(far)), axis.point + float(along.mean()) * axis.along
+    far = lengths(aside)
+    radius, centre = median(far.ravel()), axis.point + float(along.mean()) * axis.along
     off = np.abs(far - radius)
     loose = float(off.max()) > limit + float(near.chords[rows].max()) or np.ptp(along) > limit
     if loose or radius <= limit or np.count_nonzero(off <= limit) < constants.RIM_EVEN * off.size:
@@ -161,7 +167,7 @@ def _rim(view: PairView, rows: Ints, axis: _Axis, ends: Ints) -> Rim | None:
     if slopes is None:
         return None
     basis = np.stack([outward, cross(axis.along, outward)])
-    starts, spans = _arcs(aside @ basis.T)
+    starts, spans = _arcs(times(aside, basis.T))
     low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
     faces, surface = (int(near.ids[rows[0]]), int(near.ids[rows[1]])), int(near.ids[axis.row])
     return Rim(

@@ -14,7 +14,7 @@ from kinform.contacts import constants
 from kinform.contacts.higher.sharp import ConvexEdges, on_surface
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.pair_view import PairView, PartView
-from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.algebra.vectors import dot, lengths
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
@@ -84,30 +84,36 @@ def _standing(view: PairView, edges: ConvexEdges, row: int) -> list[_Touch]:
     if not len(edges.ends) or float(planes.point_uncertainty[row]) > limit:
         return []
     height = (sharp.vertices - origin) @ normal
-    inside = np.abs(height[edges.ends]) <= limit
-    if not inside.any():
+    inside = np.abs(height.take(edges.ends)) <= limit
+    some = (inside[:, 0] | inside[:, 1]).nonzero()[0]
+    if not len(some):
         return []
-    slope = math.sin(view.tolerances.alignment)
-    vectors = sharp.vertices[edges.ends[:, 1]] - sharp.vertices[edges.ends[:, 0]]
-    length = np.linalg.norm(vectors, axis=1)
-    level = np.abs(np.ptp(height[edges.ends], axis=1)) <= slope * length
-    lines = np.flatnonzero(inside.all(axis=1) & level & _rises(sharp, edges, height))
-    corners = np.setdiff1d(edges.ends[inside], edges.ends[inside.all(axis=1) & level])
-    corners = corners[_lowest(sharp, corners, height, slope)]
+    slope, ends, inside = math.sin(view.tolerances.alignment), edges.ends.take(some, axis=0), inside.take(some, axis=0)
+    starts, stops = (sharp.vertices.take(side, axis=0) for side in ends.T)
+    vectors = stops - starts
+    length = lengths(vectors)
+    one, two = height.take(ends).T
+    lying = inside[:, 0] & inside[:, 1] & (np.abs(one - two) <= slope * length)
+    lines = lying.nonzero()[0]
+    if len(lines):
+        lines = lines[_rises(sharp, edges.where(some.take(lines)), height)]
+    corners = np.setdiff1d(ends[inside], ends[lying])
+    if len(corners):
+        corners = corners[_lowest(sharp, corners, height, slope)]
     if not 0 < len(lines) + len(corners) <= constants.EDGES_MOST:
         return []
     spots: list[tuple[Ints, Array, Array | None]] = [
         (
-            edges.facets[k, 0],
-            _between(
-                sharp, edges.ends[k], 1 if _bends(sharp, edges, int(k), view.tolerances) else constants.LINE_SAMPLES
-            ),
+            edges.facets[at, 0],
+            _between(sharp, edges.ends[at], 1 if _bends(sharp, edges, at, view.tolerances) else constants.LINE_SAMPLES),
             vectors[k] / length[k],
         )
-        for k in lines
+        for k, at in zip(lines.tolist(), some.take(lines).tolist(), strict=True)
     ]
-    beside = {int(v): f[0] for pair, f in zip(edges.ends, edges.facets, strict=True) for v in pair}
-    spots += [(beside[int(v)], sharp.vertices[[v]], None) for v in corners]
+    spots += [
+        (edges.facets[int((edges.ends == v).any(axis=1).nonzero()[0][-1]), 0], sharp.vertices[[v]], None)
+        for v in corners
+    ]
     out = []
     for facet, points, axis in spots:
         ids = (int(sharp.surfaces.labels[facet]), int(planes.ids[row]))
@@ -132,22 +138,27 @@ def _rises(sharp: PartView, edges: ConvexEdges, height: Array) -> Flags:
         third = corners.sum(axis=1) - edges.ends.sum(axis=1)
         reach = sharp.vertices[third] - sharp.vertices[edges.ends[:, 0]]
         along = sharp.vertices[edges.ends[:, 1]] - sharp.vertices[edges.ends[:, 0]]
-        along = along / np.maximum(np.linalg.norm(along, axis=1), 1e-300)[:, None]
-        away = np.linalg.norm(reach - dot(reach, along)[:, None] * along, axis=1)
+        along = along / np.maximum(lengths(along), 1e-300)[:, None]
+        away = lengths(reach - dot(reach, along)[:, None] * along)
         out &= height[third] - base > constants.EDGE_RISE * away
     return out
 
 
 def _lowest(sharp: PartView, corners: Ints, height: Array, slope: float) -> Flags:
     """Whether everything around each corner rises from it, at least at this slope; rims rise slowly."""
-    out, beside = np.zeros(len(corners), dtype=bool), np.zeros(len(sharp.vertices), dtype=bool)
-    beside[corners] = True
-    one, two, three = sharp.faces.T
-    faces = sharp.faces[beside[one] | beside[two] | beside[three]]
-    for k, vertex in enumerate(corners):
-        around = np.setdiff1d(faces[(faces == vertex).any(axis=1)], [vertex])
-        away = np.linalg.norm(sharp.vertices[around] - sharp.vertices[vertex], axis=1)
-        out[k] = bool((height[around] - height[vertex] > slope * away).all())
+    out, place = np.ones(len(corners), dtype=bool), np.full(len(sharp.vertices), -1)
+    place[corners] = np.arange(len(corners))
+    of = place.take(sharp.faces)
+    beside = (np.maximum(np.maximum(of[:, 0], of[:, 1]), of[:, 2]) >= 0).nonzero()[0]
+    faces, of = sharp.faces.take(beside, axis=0), of.take(beside, axis=0)
+    for k in range(3):
+        there = (of[:, k] >= 0).nonzero()[0]
+        number, vertex = of[there, k], faces[there, k]
+        for other in ((k + 1) % 3, (k + 2) % 3):
+            around = faces[there, other]
+            away = lengths(sharp.vertices.take(around, axis=0) - sharp.vertices.take(vertex, axis=0))
+            rises = height.take(around) - height.take(vertex) > slope * away
+            out[number[~(rises | (around == vertex))]] = False
     return out
 
 

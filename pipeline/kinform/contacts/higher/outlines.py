@@ -159,7 +159,7 @@ class Sheet:
         place[rows] = np.arange(len(rows))
         one, two = self._links_of(torn)
         one, two = place.take(one), place.take(two)
-        kept = np.flatnonzero(np.minimum(one, two) >= 0)
+        kept = (np.minimum(one, two) >= 0).nonzero()[0]
         root = roots(one.take(kept), two.take(kept), len(rows))
         # a face that is whole is one, without a look at its links
         first = np.empty(len(self.sizes), np.int64)
@@ -170,7 +170,7 @@ class Sheet:
     def _links_of(self, torn: Flags) -> tuple[Ints, Ints]:
         """The flat edges of some faces, flagged in `torn` (f,)."""
         one, two = self.flats
-        inside = np.flatnonzero(torn.take(self._face_of_flat))
+        inside = torn.take(self._face_of_flat).nonzero()[0]
         return one.take(inside), two.take(inside)
 
     @cached_property
@@ -181,7 +181,7 @@ class Sheet:
     @staticmethod
     def of(part: PartView, chosen: Flags, flat: float, smooth: float) -> Sheet:
         """The sheet of facets flagged in `chosen` (F,); an edge is bent above `flat`, smooth below `smooth` (rad)."""
-        facets = np.flatnonzero(chosen)
+        facets = chosen.nonzero()[0]
         normals, met = part.normals(facets), part.index.meeting_facets(chosen)
         if met is None:
             shared = shared_edges(part.faces.take(facets, axis=0), len(part.vertices), by_corner=True)
@@ -205,15 +205,17 @@ def segments(part: PartView, sheet: Sheet, direction: Array, alignment: float, g
     inner, outer = sheet.bends
     leaves = upright.take(inner)
     leaves &= ~upright.take(outer)
-    inner, outer = sheet.facets.take(inner[leaves]), sheet.facets.take(outer[leaves])
-    heights = [_height(part, side, direction) for side in (inner, outer)]
-    upright[sheet.facets.searchsorted(inner[heights[1] > STRIP_HEIGHT * heights[0]])] = False
-    rows = np.flatnonzero(upright)
+    leaving = leaves.nonzero()[0]
+    if len(leaving):
+        inner, outer = inner.take(leaving), outer.take(leaving)
+        heights = [_height(part, sheet.facets.take(side), direction) for side in (inner, outer)]
+        upright[inner[heights[1] > STRIP_HEIGHT * heights[0]]] = False
+    rows = upright.nonzero()[0]
     if not len(rows):
         return None
     facets, plane, face = sheet.facets.take(rows), plane_basis(direction), sheet.faces_among(rows)
     # faces are numbered by their first facets
-    first_of = np.flatnonzero(heads(np.maximum.accumulate(face)))
+    first_of = heads(np.maximum.accumulate(face)).nonzero()[0]
     lead = facets.take(first_of)
     normals = sheet.normals.take(rows.take(first_of), axis=0) @ plane.T
     along = np.stack([-normals[:, 1], normals[:, 0]], axis=1)
@@ -223,11 +225,11 @@ def segments(part: PartView, sheet: Sheet, direction: Array, alignment: float, g
     owner = np.repeat(face, 3)
     reach = np.einsum("ik,ik->i", flat, along.take(owner, axis=0))
     order = ascending(owner, len(lead))
-    starts = np.flatnonzero(heads(owner.take(order)))
+    starts = heads(owner.take(order)).nonzero()[0]
     first, last = _ends(reach, order, starts)
     ordered = height.take(order)
     lows, highs = np.minimum.reduceat(ordered, starts), np.maximum.reduceat(ordered, starts)
-    keep = np.flatnonzero(reach.take(last) - reach.take(first) > grain)
+    keep = (reach.take(last) - reach.take(first) > grain).nonzero()[0]
     if not len(keep):
         return None
     ends = np.concatenate([first.take(keep), last.take(keep)])
@@ -235,7 +237,7 @@ def segments(part: PartView, sheet: Sheet, direction: Array, alignment: float, g
     key = ids[: len(keep)] * np.int64(len(points)) + ids[len(keep) :]
     order = ascending(key, len(points) ** 2)
     key = key.take(order)
-    begin = np.flatnonzero(heads(key))
+    begin = heads(key).nonzero()[0]
     low = np.minimum.reduceat(lows.take(keep).take(order), begin)
     high = np.maximum.reduceat(highs.take(keep).take(order), begin)
     start, end = np.divmod(key.take(begin), np.int64(len(points)))
@@ -261,8 +263,8 @@ def _ends(values: Array, order: Ints, starts: Ints) -> tuple[Ints, Ints]:
     ordered, after = values.take(order), np.empty_like(starts)
     after[:-1], after[-1] = starts[1:], len(order)
     number = after - starts
-    low = np.flatnonzero(ordered == np.repeat(np.minimum.reduceat(ordered, starts), number))
-    high = np.flatnonzero(ordered == np.repeat(np.maximum.reduceat(ordered, starts), number))
+    low = (ordered == np.repeat(np.minimum.reduceat(ordered, starts), number)).nonzero()[0]
+    high = (ordered == np.repeat(np.maximum.reduceat(ordered, starts), number)).nonzero()[0]
     return order[low[np.searchsorted(low, starts)]], order[high[np.searchsorted(high, after) - 1]]
 
 
@@ -292,13 +294,13 @@ def _leaders(points: Array, grain: float) -> Ints:
     step |= aside
     number = np.cumsum(step)
     group[order] = number
-    starts = np.flatnonzero(heads(number))
+    starts = heads(number).nonzero()[0]
     lead = np.minimum.reduceat(order, starts)
     tall = np.maximum.reduceat(ordered, starts) - np.minimum.reduceat(ordered, starts)
     ordered = x.take(order)
     wide = np.maximum.reduceat(ordered, starts) - np.minimum.reduceat(ordered, starts)
     leader = lead.take(group)
-    loose = np.flatnonzero((wide * wide + tall * tall > (1.0 - spare) * grain * grain).take(group))
+    loose = ((wide * wide + tall * tall > (1.0 - spare) * grain * grain).take(group)).nonzero()[0]
     if len(loose):
         leader[loose] = loose
         pairs = loose.take(Near(points.take(loose, axis=0), grain).pairs)
@@ -325,7 +327,7 @@ def may_curve(part: PartView, pieces: Segments, smooth_edge: float) -> Flags:
     leaving[pieces.start], entering[pieces.end] = np.arange(number), np.arange(number)
     through = (np.bincount(pieces.start, minlength=count) == 1) & (np.bincount(pieces.end, minlength=count) == 1)
     exact = _circular(part, pieces.labels)
-    joints = np.flatnonzero(through & ~(exact.take(entering) | exact.take(leaving)))
+    joints = (through & ~(exact.take(entering) | exact.take(leaving))).nonzero()[0]
     steps = pieces.points.take(pieces.end, axis=0) - pieces.points.take(pieces.start, axis=0)
     before = entering.take(joints)
     one, two = steps.take(before, axis=0), steps.take(leaving.take(joints), axis=0)
@@ -350,7 +352,7 @@ def _chains(start: Ints, end: Ints, count: int, near: Flags) -> list[Ints]:
     before = [int(entering[p]) if through[p] else -1 for p in start]
     used: set[int] = set()
     chains = []
-    for seed in np.flatnonzero(near).tolist():
+    for seed in near.nonzero()[0].tolist():
         if seed in used:
             continue
         head = seed
@@ -382,7 +384,7 @@ def _cut(part: PartView, pieces: Segments, chain: Ints, near: Flags, smooth_edge
     if not closed:
         cut[0] = True
     if cut.any():
-        starts = np.flatnonzero(cut)
+        starts = cut.nonzero()[0]
         ends = np.append(starts[1:], starts[0] + count)
         runs = [np.arange(s, e) % count for s, e in zip(starts, ends, strict=True)]
     else:

@@ -15,18 +15,17 @@ import numpy as np
 
 from kinform.contacts import constants
 from kinform.contacts.higher.closest_places import closest_places
-from kinform.contacts.higher.outlines import Curve, Sheet, curves, may_curve, segments
+from kinform.contacts.higher.outlines import Curve, Segments, Sheet, curves, may_curve, segments
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.mating.charts import plane_basis
 from kinform.contacts.search.apart import bulge_of
 from kinform.contacts.search.pair_view import NearSurfaces, PairView, PartView, near_facets
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.meshes.boxes import meeting_box
 from kinform.foundation.meshes.proximity import near_boxes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
-from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances
 
 
@@ -75,15 +74,14 @@ def profile_contacts(
 
 def _directions(near: tuple[NearSurfaces, NearSurfaces]) -> list[Array]:
     """Directions that outlines may run along: normals of planes and axes of both parts, the largest faces first."""
-    kinds = [KINDS.index(kind) for kind in ("plane", "cylinder", "extrusion")]
     axes: list[tuple[float, Array]] = []
     for side in near:
-        for row in np.flatnonzero(np.isin(side.kinds, kinds)):
-            axes.append((float(side.areas[row]), side.axes[row]))
+        rows = side.of_kind("plane", "cylinder", "extrusion")
+        axes += zip(side.areas.take(rows).tolist(), side.axes.take(rows, axis=0), strict=True)
     axes.sort(key=lambda item: (-item[0], *item[1].tolist()))
     out: list[Array] = []
     for _, axis in axes:
-        if all(float(np.linalg.norm(cross(axis, other))) > constants.DIRECTION_SINE for other in out):
+        if all(norm(cross(axis, other)) > constants.DIRECTION_SINE for other in out):
             out.append(axis)
         if len(out) == constants.DIRECTIONS_TRIED:
             break
@@ -93,12 +91,14 @@ def _directions(near: tuple[NearSurfaces, NearSurfaces]) -> list[Array]:
 def _meetings(pair: PairView, sheets: list[Sheet], direction: Array) -> list[_Meeting]:
     """Where the outlines across `direction` (3,) of these facets of a and of b meet."""
     tolerance, tolerances, limit = pair.tolerance, pair.tolerances, constants.MATING_REACH * pair.tolerance
-    cut = []
-    for part, sheet in zip(pair.parts, sheets, strict=True):
-        pieces = segments(part, sheet, direction, tolerances.alignment, constants.GRAIN * tolerance)
+    found: dict[int, Segments] = {}
+    # of few facets none runs along it sooner than of many
+    for k in sorted((0, 1), key=lambda k: len(sheets[k].facets)):
+        pieces = segments(pair.parts[k], sheets[k], direction, tolerances.alignment, constants.GRAIN * tolerance)
         if pieces is None:
             return []
-        cut.append(pieces)
+        found[k] = pieces
+    cut = [found[0], found[1]]
     may = [may_curve(part, pieces, tolerances.smooth_edge) for part, pieces in zip(pair.parts, cut, strict=True)]
     if not any(flags.any() for flags in may):
         return []
@@ -108,9 +108,15 @@ def _meetings(pair: PairView, sheets: list[Sheet], direction: Array) -> list[_Me
     near = near_boxes(*boxes[0], *boxes[1], limit)
     bent = [of_part & flags for of_part, flags in zip(near, may, strict=True)]
     # an exact curve is compared with those that are not
+    wanted = [
+        np.ones(len(of_part), bool) if other.any() else flags
+        for of_part, flags, other in zip(near, may, bent[::-1], strict=True)
+    ]
+    if not all((of_part & flags).any() for of_part, flags in zip(near, wanted, strict=True)):
+        return []
     first, second = (
-        curves(part, pieces, of_part, np.ones(len(of_part), bool) if other.any() else flags, tolerances.smooth_edge)
-        for part, pieces, of_part, flags, other in zip(pair.parts, cut, near, may, bent[::-1], strict=True)
+        curves(part, pieces, of_part, flags, tolerances.smooth_edge)
+        for part, pieces, of_part, flags in zip(pair.parts, cut, near, wanted, strict=True)
     )
     if not first or not second:
         return []
@@ -139,11 +145,11 @@ def _sheet(part: PartView, low: Array, high: Array, tolerances: Tolerances) -> S
     chosen[near_facets(part, low, high)[0]] = True
     inside = np.zeros(len(part.vertices), dtype=bool)
     corners = [np.ascontiguousarray(column) for column in part.faces.T]
-    fresh = np.flatnonzero(chosen)
+    fresh = chosen.nonzero()[0]
     for _ in range(constants.SHEET_RINGS):
         inside[part.faces[fresh]] = True
         around = inside[corners[0]] | inside[corners[1]] | inside[corners[2]]
-        fresh = np.flatnonzero(around & ~chosen)
+        fresh = (around & ~chosen).nonzero()[0]
         if not len(fresh):
             break
         chosen[fresh] = True

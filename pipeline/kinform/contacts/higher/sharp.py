@@ -6,7 +6,6 @@ import numpy as np
 
 from kinform.contacts.search.pair_view import PairView, PartView, near_facets
 from kinform.foundation.algebra.vectors import dot
-from kinform.foundation.meshes.edges import shared_edges
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 
@@ -41,11 +40,15 @@ def convex_edges_of_first(pair: PairView) -> ConvexEdges | None:
 
 def _convex(part: PartView, facets: Ints) -> ConvexEdges:
     """Those between the facets (ascending)."""
-    edges = shared_edges(part.faces[facets], len(part.vertices), by_corner=True)
-    edges = edges.where(edges.opposed)
-    one, two = (part.normals(facets[side]) for side in edges.facets.T)
-    convex = edges.convexity(part.vertices, one, two) > 0.0
-    return ConvexEdges(edges.ends[convex], facets[edges.facets[convex]], dot(one, two)[convex])
+    chosen = np.zeros(len(part.faces), dtype=bool)
+    chosen[facets] = True
+    edges = part.index.edges_among(chosen)
+    edges = edges.where(edges.opposed.nonzero()[0])
+    beside = edges.facets
+    one, two = (part.normals(side) for side in beside.T)
+    convex = (edges.convexity(part.vertices, one, two) > 0.0).nonzero()[0]
+    cosine = dot(one, two).take(convex)
+    return ConvexEdges(edges.ends.take(convex, axis=0), beside.take(convex, axis=0), cosine)
 
 
 def on_surface(part: PartView, points: Array, normals: Array, surface: int, spare: float) -> Flags:

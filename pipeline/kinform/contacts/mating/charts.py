@@ -15,7 +15,7 @@ import numpy as np
 
 from kinform.contacts.constants import CHART_ARC, CHART_FAR, HINT_LEAST, POLE_SEEN, SEEN_FROM_AXIS
 from kinform.foundation.algebra import vectors
-from kinform.foundation.algebra.vectors import cross, lengths, norm
+from kinform.foundation.algebra.vectors import cross, lengths, norm, times
 from kinform.foundation.meshes.boxes import middles
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
@@ -63,7 +63,7 @@ def perpendicular(axis: Array, hint: Array | None = None) -> Array:
 def plane_basis(axis: Array) -> Array:
     """(2, 3) unit vectors that make a right-handed frame with the unit axis (3,)."""
     first = perpendicular(axis)
-    return np.stack([first, cross(axis, first)])
+    return np.array([first, cross(axis, first)])
 
 
 def _unit_rows(rows: Array) -> Array:
@@ -88,7 +88,7 @@ class PlaneChart:
         return plane_basis(self.axis)
 
     def flatten(self, triangles: Array) -> Array:
-        return np.asarray((triangles - self.point) @ self.basis.T)
+        return times(triangles - self.point, self.basis.T)
 
     def window(self) -> Array | None:
         return None
@@ -97,7 +97,7 @@ class PlaneChart:
         return np.asarray(self.point + flat @ self.basis)
 
     def normals(self, points: Array) -> Array:
-        return np.tile(self.axis, (len(points), 1))
+        return np.repeat(self.axis[None], len(points), axis=0)
 
     def heights(self, points: Array) -> Array:
         return np.asarray((points - self.point) @ self.axis)
@@ -119,12 +119,12 @@ class _Axial:
     def _arms(self, points: Array) -> tuple[Array, Array]:
         """Height along the axis of points (…, 3), and what leads to them across it (…, 3)."""
         arm = points - self.point
-        along = arm @ self.axis
+        along = times(arm, self.axis)
         return along, arm - along[..., None] * self.axis
 
     def _azimuth(self, across: Array) -> Array:
         """(…,) in [−π, π] of vectors across the axis (…, 3)."""
-        return np.asarray(np.arctan2(across @ self.side, across @ self.base))
+        return np.asarray(np.arctan2(times(across, self.side), times(across, self.base)))
 
     def _unrolled(self, triangles: Array) -> tuple[Array, Array, Array]:
         """Height, radius and azimuth (n, 3) of the corners, each azimuth within π of its centroid's."""
@@ -247,11 +247,11 @@ class SphereChart:
 
     def flatten(self, triangles: Array) -> Array:
         rays = _unit_rows(triangles - self.point)
-        rise = rays @ self.pole
+        rise = times(rays, self.pole)
         shown = middles(rays) @ self.pole > POLE_SEEN
         rays, rise = rays[shown], rise[shown]
         stretch = self.radius * np.sqrt(2.0 / np.maximum(1.0 + rise, 1e-9))
-        return np.asarray(stretch[..., None] * (rays @ plane_basis(self.pole).T))
+        return np.asarray(stretch[..., None] * times(rays, plane_basis(self.pole).T))
 
     def window(self) -> Array | None:
         return None

@@ -31,7 +31,7 @@ from kinform.foundation.meshes.boxes import facet_boxes
 from kinform.foundation.meshes.rings import Ring, RingRow
 from kinform.foundation.meshes.surface_table import SurfaceTable
 from kinform.frozen import dataclass
-from kinform.model.arrays import Array, Ints
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 
@@ -66,8 +66,8 @@ def rounded(pair: PairView, patches: list[Patch], reach: float) -> list[Patch]:
         return patches
     rows, cylinders = [[row for row, _ in side] for side in found], [_cylinders(near) for near in pair.near]
     sides = [_with_rings(pair, k, patches, found[k], cylinders, rows) for k in (0, 1)]
-    for first, second in _coaxial(sides, reach):
-        patches = _read(pair, patches, first, second)
+    for first, second, radius in _coaxial(pair, sides, reach):
+        patches = _read(pair, patches, first, second, radius)
     for k in (0, 1):
         for one in sides[k]:
             patches = _torn(patches, one, k)
@@ -169,29 +169,58 @@ def _ring(part: PartView, near: NearSurfaces, ring: Ring, at: list[int]) -> _Rou
     )  # fmt: skip
 
 
-def _coaxial(sides: list[list[_Round]], reach: float) -> Iterator[tuple[_Round, _Round]]:
-    """Pairs of which one may enclose the other, the largest first."""
+def _coaxial(pair: PairView, sides: list[list[_Round]], reach: float) -> Iterator[tuple[_Round, _Round, float]]:
+    """Pairs of which one may enclose the other, the largest first, and the radius (m) of what encloses."""
     met = []
-    for a in sides[0]:
-        for b in sides[1]:
-            if a.side * b.side > 0.0:
-                continue
-            apart = np.maximum(a.low - b.high, b.low - a.high).max()
-            if apart > reach or abs(float(a.axis @ b.axis)) < np.cos(constants.TILT_LIKELY * constants.MATING_TILT):
-                continue
-            met.append((a, b))
+    for i, j in np.argwhere(_may_enclose(pair, sides)).tolist():
+        a, b = sides[0][i], sides[1][j]
+        radius = _enclosing(pair, a, b)
+        if radius is None:
+            continue
+        apart = np.maximum(a.low - b.high, b.low - a.high).max()
+        if apart > reach or abs(float(a.axis @ b.axis)) < np.cos(constants.TILT_LIKELY * constants.MATING_TILT):
+            continue
+        met.append((a, b, radius))
     yield from sorted(met, key=lambda ab: (-ab[0].corner, int(ab[0].surfaces[0]), int(ab[1].surfaces[0])))
 
 
-def _read(pair: PairView, patches: list[Patch], first: _Round, second: _Round) -> list[Patch]:
-    """The patches with the reading of these two."""
-    bar, socket = (first, second) if first.side > 0.0 else (second, first)
+def _may_enclose(pair: PairView, sides: list[list[_Round]]) -> Flags:
+    """(n, m): rounds of either part of which one may enclose the other as far as their radii tell at first sight."""
+    if not (sides[0] and sides[1]):
+        return np.zeros((len(sides[0]), len(sides[1])), bool)
+    (side_a, corner_a, flat_a), (side_b, corner_b, flat_b) = (
+        np.array([(one.side, one.corner, one.flats[1]) for one in part]).T for part in sides
+    )
+    inner = (side_a > 0.0)[:, None]
+    bar = np.where(inner, corner_a[:, None], corner_b)
+    outer, flat = np.where(inner, corner_b, corner_a[:, None]), np.where(inner, flat_b, flat_a[:, None])
+    play = np.maximum(pair.play, constants.CLEARANCE_SHARE * bar)
+    # of the smaller radius of the two it is less
+    limit = (1.0 + 1e-9) * constants.MATING_REACH * np.minimum(play, bar / constants.HALF_RADIUS_SHARE)
+    off = np.minimum(np.abs(outer - bar), np.abs(flat - bar))
+    return np.asarray((side_a[:, None] * side_b <= 0.0) & (off <= limit))
+
+
+def _bar_and_socket(first: _Round, second: _Round) -> tuple[_Round, _Round]:
+    return (first, second) if first.side > 0.0 else (second, first)
+
+
+def _enclosing(pair: PairView, first: _Round, second: _Round) -> float | None:
+    """m: radius of that of the two that may enclose the other; None where it does not by their radii, or they mate as
+    what they are."""
+    bar, socket = _bar_and_socket(first, second)
     # the bar comes near all flats of the socket, or both are chords of circles that fit
     radius = min(socket.flats[1], socket.corner, key=lambda r: abs(r - bar.corner))
     if abs(radius - bar.corner) > radial_limit(pair.play, min(bar.corner, radius)):
-        return patches
+        return None
     if first.ring is None and second.ring is None and not _by_tangents(pair, bar, socket):
-        return patches
+        return None
+    return radius
+
+
+def _read(pair: PairView, patches: list[Patch], first: _Round, second: _Round, radius: float) -> list[Patch]:
+    """The patches with the reading of these two, of which that which encloses has this radius (m)."""
+    bar, socket = _bar_and_socket(first, second)
     between = [_between(patch, first, second) for patch in patches]
     flats = any(
         inside and patch.kind in ("plane", "other") and not patch.one_sided

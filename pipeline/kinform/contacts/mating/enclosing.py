@@ -175,9 +175,12 @@ def _evenly(areas: Array, count: int) -> tuple[Ints, Array]:
     """At most `count` of the facets of these areas (n,), evenly by area, and the area that each stands for."""
     reached = np.cumsum(areas)
     shares = (np.arange(count) + 0.5) / count * reached[-1]
-    chosen = np.searchsorted(reached, shares).clip(0, len(areas) - 1)
-    chosen = chosen[heads(chosen)]
-    ends = np.concatenate([[0], np.searchsorted(reached, reached[chosen], side="right"), [len(areas)]])
+    # those at which a share is reached
+    passed = shares.searchsorted(reached, side="right")
+    passed[-1] = count
+    chosen = heads(passed).nonzero()[0]
+    chosen = chosen if passed[0] else chosen[1:]
+    ends = np.concatenate([[0], reached.searchsorted(reached.take(chosen), side="right"), [len(areas)]])
     following = np.repeat(np.arange(len(ends) - 1).clip(0, len(chosen) - 1), np.diff(ends))
     return chosen, np.bincount(following, areas, len(chosen)).astype(np.float64)
 

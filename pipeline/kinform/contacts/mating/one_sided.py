@@ -66,18 +66,18 @@ def _beside(view: PairView, wanted: Flags) -> Iterator[tuple[int, int, Ints]]:
     boxes = giver.lows.take(rows, axis=0) - reach, giver.highs.take(rows, axis=0) + reach
     one, two = _meeting(boxes, boxes_of(view.b, every))
     row, column = rows.take(one), of_column.take(two)
-    kept = np.flatnonzero(wanted[row, column])
+    kept = (wanted[row, column]).nonzero()[0]
     row, column, facets = row.take(kept), column.take(kept), every.take(two.take(kept))
     normals = view.b.normals(facets)
     flat = giver.kinds.take(row) == _PLANE
     outward = giver.sides.take(row)[:, None] * giver.axes.take(row, axis=0)
-    kept = np.flatnonzero(~flat | (dot(outward, normals) < FACING_OPPOSED))
+    kept = (~flat | (dot(outward, normals) < FACING_OPPOSED)).nonzero()[0]
     row, column, facets, normals = row.take(kept), column.take(kept), facets.take(kept), normals.take(kept, axis=0)
     if not len(row):
         return
     may = _may_rest(view, row, facets, normals)
     pair = row * np.int64(len(taker.ids)) + column
-    starts = np.flatnonzero(heads(pair))
+    starts = heads(pair).nonzero()[0]
     ends = [*starts[1:].tolist(), len(pair)]
     some = np.logical_or.reduceat(may, starts).tolist()
     for start, end, may_some in zip(starts.tolist(), ends, some, strict=True):
@@ -236,11 +236,12 @@ def _below(corners: Array, values: Array, limit: float) -> tuple[Array, Array]:
     pieces, piece_values = [whole], [whole_values]
     for number in (1, 2):
         rows = np.nonzero(count == number)[0]
+        if not len(rows):
+            continue
         # Turn each triangle until its odd corner is the first.
         odd = np.argmax(inside[rows] if number == 1 else ~inside[rows], axis=1)
         order = (odd[:, None] + np.arange(3)) % 3
-        p = np.take_along_axis(corners[rows], order[..., None], axis=1)
-        v = np.take_along_axis(values[rows], order, axis=1)
+        p, v = corners[rows[:, None], order], values[rows[:, None], order]
         cuts = []
         for k in (1, 2):
             share = (limit - v[:, 0]) / (v[:, k] - v[:, 0])

@@ -12,9 +12,9 @@ from kinform.contacts import constants
 from kinform.contacts.overlap.samples import Allowance, measured_on
 from kinform.contacts.overlap.solids import Overlap
 from kinform.contacts.search.pair_view import PartView
-from kinform.foundation.meshes.boxes import middles
+from kinform.foundation.meshes.boxes import middles, triangle_boxes
 from kinform.foundation.meshes.closest import distances_between
-from kinform.foundation.sorting import distinct
+from kinform.foundation.sorting import distinct, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
@@ -42,6 +42,8 @@ def is_slight(a: PartView, b: PartView, overlap: Overlap, allowance: Allowance) 
     first = _Told(points, part, _labels(a, b, part, facet), piece)
     if _is_within(a, b, overlap, thick, first, thickness, allowance):
         return True
+    if len(thick) <= constants.SLIGHT_FEW:
+        return False
     samples = measured_on(a, b, points, part, facet)
     piece = np.concatenate([piece[part == 0], piece[part == 1]])
     chords = allowance.chords_of(samples)
@@ -95,18 +97,48 @@ def _is_within(
     count = np.int64(max(len(a.faces), len(b.faces)))
     keys = distinct((2 * bounding[kept] + overlap.part[kept]) * count + overlap.facet[kept])
     side, facet = np.divmod(keys, count)
-    begin, end = side.searchsorted(wanted := 2 * told.piece + 1 - told.part), side.searchsorted(wanted, side="right")
-    if (begin == end).any() or int((end - begin).sum()) > constants.SLIGHT_MOST:
-        return False
-    of = np.repeat(np.arange(len(begin)), end - begin)
-    at = np.arange(len(of)) - np.repeat(np.cumsum(end - begin) - (end - begin), end - begin) + begin[of]
     corners = np.empty((len(keys), 3, 3))
     for k, part in enumerate((a, b)):
         some = np.flatnonzero(side % 2 == k)
         corners[some] = part.vertices.take(part.faces[facet[some]], axis=0)
-    away = distances_between(told.points[of], corners[at])
-    starts = np.cumsum(end - begin) - (end - begin)
-    return bool((np.minimum.reduceat(away, starts) <= (1.0 - constants.SURELY_SLIGHT) * allowed).all())
+    bounded = _Bounded(side, corners, *triangle_boxes(corners))
+    allowed *= 1.0 - constants.SURELY_SLIGHT
+    wanted = 2 * told.piece + 1 - told.part
+    # where much is deep, some of them tell
+    return all(
+        bounded.are_near(told.points[some], wanted[some], allowed[some])
+        for some in (slice(None, None, constants.SLIGHT_SOME), slice(None))
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Bounded:
+    """The facets that bound pieces: `side` (m,), ascending, is twice the number of the piece, and one more of those of
+    the second part."""
+
+    side: Ints
+    corners: Array
+    """(m, 3, 3) m."""
+    low: Array
+    high: Array
+
+    def are_near(self, points: Array, wanted: Ints, reach: Array) -> bool:
+        """Whether each of points (n, 3) is within its `reach` (n,) of facets of the side that is `wanted` (n,); not of
+        too many to be asked about."""
+        begin, end = self.side.searchsorted(wanted), self.side.searchsorted(wanted, side="right")
+        number = end - begin
+        if not number.all() or int(number.sum()) > constants.SLIGHT_MOST:
+            return False
+        of = np.repeat(np.arange(len(points)), number)
+        at = np.arange(len(of)) + np.repeat(end - np.cumsum(number), number)
+        # few are near enough by their boxes
+        for axis in range(3):
+            place, far = points[:, axis].take(of), reach.take(of)
+            near = self.low[:, axis].take(at) - place <= far
+            near &= place - self.high[:, axis].take(at) <= far
+            of, at = of[near], at[near]
+        away = distances_between(points.take(of, axis=0), self.corners.take(at, axis=0))
+        return int(np.count_nonzero(heads(of[away <= reach.take(of)]))) == len(points)
 
 
 def _greatest(values: Array, piece: Ints, pieces: int) -> Array:

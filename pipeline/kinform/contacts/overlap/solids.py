@@ -86,7 +86,8 @@ class Overlap:
 
 def _scaling(mesh: Mesh) -> tuple[Array, float]:
     """Centre (3,) and scale (a power of two) that bring a mesh to the order of 1."""
-    middle = 0.5 * (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0))
+    low, high = mesh.box
+    middle = 0.5 * (low + high)
     return middle, 2.0 ** math.ceil(math.log2(max(mesh.diagonal, 1e-300)))
 
 

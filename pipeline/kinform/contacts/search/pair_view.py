@@ -14,7 +14,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from kinform.contacts.constants import CLEARANCE_SHARE, FEW_BESIDE, MATING_REACH, MOST_SURFACES
+from kinform.contacts.constants import CLEARANCE_SHARE, FEW_BESIDE, MATING_REACH, MOST_SURFACES, OVERLAPS_KEPT
 from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.meshes.boxes import boxes_within, facet_boxes, meeting_box
 from kinform.foundation.meshes.index import MeshIndex, MeshStore
@@ -59,7 +59,8 @@ class PartView:
 
     def normals(self, facets: Ints) -> Array:
         """(n, 3) unit, outward, of facets (n,), in the frame of the pair."""
-        return np.asarray(self.index.normals(facets) @ self.X_FP[:3, :3].T)
+        normals = self.index.normals(facets)
+        return normals + 0.0 if self.at_home else np.asarray(normals @ self.X_FP[:3, :3].T)
 
     def depths(self, points: Array) -> tuple[Array, Ints]:
         """Distance (n,) m to the mesh of points (n, 3) on the other part, and the nearest facets (n,).
@@ -78,10 +79,14 @@ class PartView:
 
     def to_part(self, points: Array) -> Array:
         """Points (n, 3) of the frame of the pair in the part frame."""
+        if self.at_home:
+            return points + 0.0
         return np.asarray((points - self.X_FP[:3, 3]) @ self.X_FP[:3, :3])
 
     def turn_to_part(self, directions: Array) -> Array:
         """Directions (n, 3) of the frame of the pair in the part frame."""
+        if self.at_home:
+            return directions + 0.0
         return np.asarray(directions @ self.X_FP[:3, :3])
 
 
@@ -340,7 +345,18 @@ class PairView:
     def overlap(self, margin: float) -> Flags:
         """(s, t): the boxes of near surface s of a and t of b come within `margin` (m)."""
         a, b = self.near
-        return boxes_within((a.lows, a.highs), (b.lows, b.highs), margin)
+        known = self._overlaps.get(margin)
+        if known is None:
+            known = boxes_within((a.lows, a.highs), (b.lows, b.highs), margin)
+            if known.size > OVERLAPS_KEPT:
+                return known
+            self._overlaps[margin] = known
+        return known.copy()
+
+    @cached_property
+    def _overlaps(self) -> dict[float, Flags]:
+        """Those that were asked for, by margin."""
+        return {}
 
     def of_kinds(self, overlap: Flags, *kinds: str) -> tuple[Ints, Ints, Flags]:
         """Positions of the near surfaces of these kinds of a (s,) and of b (t,), and the flags `overlap` of these (s,

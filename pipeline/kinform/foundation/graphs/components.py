@@ -23,7 +23,7 @@ def roots(a: Ints, b: Ints, count: int) -> Ints:
     """(count,) first node of the component of each."""
     root = np.arange(count)
     while True:
-        apart = np.flatnonzero(a != b)
+        apart = (a != b).nonzero()[0]
         if not len(apart):
             return root
         a, b = a.take(apart), b.take(apart)

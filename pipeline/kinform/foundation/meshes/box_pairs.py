@@ -73,5 +73,7 @@ def _all_compared(columns: list[NDArray[Any]]) -> tuple[Ints, Ints]:
     for axis in (1, 2):
         meets &= np.less_equal(low[axis][:, None], high_other[axis], out=along)
         meets &= np.less_equal(low_other[axis], high[axis][:, None], out=along)
-    one, two = np.divmod(np.flatnonzero(meets), np.int64(max(meets.shape[1], 1)))
-    return one, two
+    flat, width = meets.ravel().nonzero()[0], max(meets.shape[1], 1)
+    # numpy divides twice as fast where it is not asked what is left
+    one = flat // width
+    return one, flat - one * width

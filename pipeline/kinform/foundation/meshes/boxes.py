@@ -4,7 +4,7 @@ asking all of them."""
 from __future__ import annotations
 
 from functools import cache
-from typing import Any
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -193,47 +193,45 @@ class FlatBoxes:
         beside = (left <= most_x) & (right >= least_x) & (lower <= most_y) & (upper >= least_y)
         if heights is not None and self._tops is not None:
             beside &= self._tops >= heights.min(initial=np.inf)
-        near = np.flatnonzero(beside)
-        compared = len(points) * len(near)
-        exact = compared > constants.BOXES_COMPARED or compared <= constants.BOXES_EXACT
-        self._left -= len(left) + (compared if exact else compared // constants.STEPS_QUICKER)
+        near = beside.nonzero()[0]
+        # of points in their order along one of the axes, those beside a box follow each other
+        orders = [np.argsort(points[:, axis], kind="stable") for axis in (0, 1)]
+        ranges = []
+        for axis, order in enumerate(orders):
+            places = points[:, axis].take(order)
+            begin = places.searchsorted(self._sides[axis].take(near))
+            ranges.append((begin, places.searchsorted(self._sides[2 + axis].take(near), side="right") - begin))
+        numbers = [int(number.sum()) for _, number in ranges]
+        axis = 0 if numbers[0] <= numbers[1] else 1
+        self._left -= len(left) + constants.FOLLOWED * numbers[axis]
         if self._left <= 0:
             return None
-        sides = [side.take(near) for side in self._sides]
-        places = np.ascontiguousarray(points.T)
-        if exact:
-            which, facets = _held(places, sides)
-            return which, near[facets]
-        # numpy compares small integers faster than floating numbers, and what holds a point does so in steps, too
-        least, most = np.array([least_x, least_y]), np.array([most_x, most_y])
-        step = (2**8 - 1) / np.maximum(most - least, 1e-290)
-        rough = [
-            ((np.clip(side, least[k % 2], most[k % 2]) - least[k % 2]) * step[k % 2]).astype(np.uint8)
-            for k, side in enumerate(sides)
-        ]
-        which, facets = _held(((places - least[:, None]) * step[:, None]).astype(np.uint8), rough)
-        for k in (0, 1):
-            place = places[k].take(which)
-            kept = sides[k].take(facets) <= place
-            kept &= sides[2 + k].take(facets) >= place
-            which, facets = which[kept], facets[kept]
-        return which, near[facets]
+        which, box = self._along(points, axis, orders[axis], near, *ranges[axis])
+        in_turn = ascending(which * np.int64(max(len(near), 1)) + box, len(points) * max(len(near), 1))
+        return which.take(in_turn), near.take(box.take(in_turn))
+
+    def _along(self, points: Array, axis: int, order: Ints, near: Ints, begin: Ints, number: Ints) -> tuple[Ints, Ints]:
+        """Points and, by their places among those `near`, boxes, of which the points are beside a box along an axis
+        that are so many `number` (m,) in their `order` (n,) from `begin` (m,) on, and are in it."""
+        low, high = (self._sides[k + 1 - axis].take(near) for k in (0, 2))
+        ends, out = np.cumsum(number), []
+        blocks = range(0, int(ends[-1]) if len(ends) else 0, constants.FOLLOWED_AT_ONCE)
+        cuts = [*ends.searchsorted(list(blocks), side="right").tolist(), len(near)] if len(blocks) else [0, len(near)]
+        for i, j in pairwise(cuts):
+            box = np.repeat(np.arange(i, j), number[i:j])
+            first = begin[i:j] - np.cumsum(number[i:j]) + number[i:j]
+            which = order.take(np.arange(len(box)) + np.repeat(first, number[i:j]))
+            place = points[:, 1 - axis].take(which)
+            held = low.take(box) <= place
+            held &= high.take(box) >= place
+            kept = held.nonzero()[0]
+            out.append((which.take(kept), box.take(kept)))
+        return np.concatenate([which for which, _ in out]), np.concatenate([box for _, box in out])
 
     def _cells(self, places: Array, axis: int) -> Ints:
         """(n,) the column or row of cells that places along an axis are in, or nearest to."""
         cell = np.floor((places - self._origin[axis]) / self._cell[axis])
         return np.asarray(np.clip(cell, 0, self._side - 1, out=cell).astype(np.int64))
-
-
-def _held(places: NDArray[Any], sides: list[NDArray[Any]]) -> tuple[Ints, Ints]:
-    """Which of places (2, n) are in which flat boxes by their sides (m,): left, lower, right, upper."""
-    (x, y), (left, lower, right, upper) = places[:, :, None], sides
-    held = left <= x
-    held &= right >= x
-    held &= lower <= y
-    held &= upper >= y
-    which, boxes = np.divmod(np.flatnonzero(held), np.int64(max(len(left), 1)))
-    return which, boxes
 
 
 def _counted(numbers: Ints) -> tuple[Ints, Ints]:

@@ -12,6 +12,7 @@ import math
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.constants import BENDS_LEAST, BENDS_MOST, BENDS_PLANES, BULGE
 from kinform.foundation.meshes.surface_table import SurfaceTable
 from kinform.model.arrays import Array, Flags, Ints
@@ -29,9 +30,9 @@ def bulge_of(corners: Array, labels: Ints, table: SurfaceTable, exact: Flags, sm
     facets = np.flatnonzero(bent.take(labels))
     if not len(facets):
         return 0.0
-    corners = corners.take(facets, axis=0)
-    sides = corners - corners[:, [1, 2, 0]]
-    return BULGE * math.sqrt(float(np.einsum("nij,nij->ni", sides, sides).max()))
+    first, second, third = np.ascontiguousarray(corners.take(facets, axis=0).transpose(1, 2, 0))
+    sides = (first - second).T, (second - third).T, (third - first).T
+    return BULGE * math.sqrt(max(float(dot(side, side).max()) for side in sides))
 
 
 def _bending(normals: Array, smooth: float) -> Flags:

@@ -7,6 +7,8 @@ be measured so, and names any one of facets that are as near as each other; here
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from kinform.foundation.constants import AS_NEAR, CLOSEST_MOST, CLOSEST_ROUNDING, CLOSEST_SIFTED, CLOSEST_SOME
@@ -17,17 +19,42 @@ from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 
 
+class Triangles:
+    """Triangles (m, 3, 3), one unit of length, and what is known of them once they are asked."""
+
+    def __init__(self, corners: Array):
+        self.corners = corners
+
+    @cached_property
+    def boxes(self) -> tuple[Array, Array]:
+        """Lower and upper corners (m, 3) of their boxes."""
+        return triangle_boxes(self.corners)
+
+    @cached_property
+    def largest(self) -> float:
+        """Of all coordinates."""
+        return float(np.abs(self.corners).max())
+
+    def nearest(self, points: Array) -> tuple[Array, Ints] | None:
+        """As `closest_facets`."""
+        return _nearest(points, self)
+
+
 def closest_facets(points: Array, corners: Array) -> tuple[Array, Ints] | None:
     """Distance (n,) of points (n, 3) from triangles (m, 3, 3), m > 0, and the first of those that are nearest (n,), one
     unit of length; None where too many would have to be measured."""
+    return Triangles(corners).nearest(points)
+
+
+def _nearest(points: Array, triangles: Triangles) -> tuple[Array, Ints] | None:
     if len(points) == 0:
         return np.zeros(0), np.zeros(0, np.int64)
+    corners, (low, high) = triangles.corners, triangles.boxes
     some = corners[:: len(points) * len(corners) // CLOSEST_SOME + 1, 0]
     reach = (1.0 + AS_NEAR) * Nearest(some).away(points)[:, None]
-    rounding = CLOSEST_ROUNDING * float(np.abs(corners).max())
+    rounding = CLOSEST_ROUNDING * triangles.largest
     least, most = points - reach, points + reach
-    low, high = triangle_boxes(corners)
-    beside = np.flatnonzero(meeting_box(low, high, least.min(axis=0), most.max(axis=0)))
+    beside = meeting_box(low, high, least.min(axis=0), most.max(axis=0)).nonzero()[0]
     corners = corners.take(beside, axis=0)
     candidates = meeting_boxes((least, most), (low.take(beside, axis=0), high.take(beside, axis=0)))
     if candidates is None or len(candidates[0]) > CLOSEST_MOST:
@@ -40,7 +67,7 @@ def closest_facets(points: Array, corners: Array) -> tuple[Array, Ints] | None:
     # the box of a corner touches that of its facet, so that every point has candidates, in their order
     starts = np.searchsorted(point, np.arange(len(points)))
     distance = np.minimum.reduceat(away, starts)
-    as_near = np.flatnonzero(away <= ((1.0 + AS_NEAR) * distance + rounding).take(point))
+    as_near = (away <= ((1.0 + AS_NEAR) * distance + rounding).take(point)).nonzero()[0]
     first = as_near[np.searchsorted(point[as_near], np.arange(len(points)))]
     return distance, beside[facet[first]]
 
@@ -56,15 +83,15 @@ def _sifted(corners: Array, places: Array, point: Ints, facet: Ints, rounding: f
         np.maximum(off, 0.0, out=off)
         off *= off
         square += off
-    starts = np.flatnonzero(heads(point))
+    starts = heads(point).nonzero()[0]
     least_of = np.minimum.reduceat(square, starts)
-    nearest = np.flatnonzero(square == least_of.take(point))
-    nearest = nearest.take(np.flatnonzero(heads(point.take(nearest))))
+    nearest = (square == least_of.take(point)).nonzero()[0]
+    nearest = nearest.take(heads(point.take(nearest)).nonzero()[0])
     most = _from_origin(corners.take(facet.take(nearest), axis=2) - places)
     most *= (1.0 + AS_NEAR) ** 2
     most += 2.0 * rounding
     most *= most
-    kept = np.flatnonzero(square <= most.take(point))
+    kept = (square <= most.take(point)).nonzero()[0]
     return point.take(kept), facet.take(kept)
 
 

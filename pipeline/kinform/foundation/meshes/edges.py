@@ -35,14 +35,29 @@ class SharedEdges:
     opposed: Flags
     """(k,) the two run against each other, as those of facets that agree on the outside do."""
 
+    @cached_property
+    def sides(self) -> Ints:
+        """(2, k) facets of `first` and `second`."""
+        out = np.empty((2, len(self.first)), np.int64)
+        np.floor_divide(self.first, 3, out=out[0])
+        np.floor_divide(self.second, 3, out=out[1])
+        return out
+
     @property
     def facets(self) -> Ints:
-        """(k, 2) those of `first` and `second`."""
-        return np.stack([self.first, self.second], axis=1) // 3
+        """(k, 2) the same."""
+        return self.sides.T
 
-    def where(self, rows: Flags) -> SharedEdges:
-        """Some of the rows (k,)."""
-        return SharedEdges(self.first[rows], self.second[rows], self.ends[rows], self.forward[rows], self.opposed[rows])
+    def where(self, rows: Flags | Ints) -> SharedEdges:
+        """Some of the rows, by their numbers or by flags (k,)."""
+        rows = rows.nonzero()[0] if rows.dtype == bool else rows
+        return SharedEdges(
+            self.first.take(rows),
+            self.second.take(rows),
+            self.ends.take(rows, axis=0),
+            self.forward.take(rows),
+            self.opposed.take(rows),
+        )
 
     def along(self, vertices: Array) -> Array:
         """(k, 3) from the lower to the higher vertex."""

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import fcl
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.algebra.vectors import cross_columns, dot
 from kinform.foundation.constants import (
     ABOUT,
     BALL_PARTS,
     BALL_SHARE,
     KEPT_EDGES,
     KEPT_SPANS,
+    KEPT_TRIANGLES,
     LARGE_MESH,
     MOST_EXPECTED,
     RAYS,
@@ -21,6 +22,7 @@ from kinform.foundation.constants import (
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
 from kinform.foundation.meshes.bulges import bulge_of
+from kinform.foundation.meshes.closest import Triangles
 from kinform.foundation.meshes.depths import Depths
 from kinform.foundation.meshes.edges import SharedEdges, shared_edges
 from kinform.foundation.meshes.fcl_adapter import fcl_model, partial_model
@@ -48,26 +50,25 @@ class MeshIndex:
         self._normals: Array | None = None
         self._asked = 0
         self._edges: SharedEdges | None = None
-        self._single = False
-        self._met: Ints | None = None
+        self._single: bool | None = None
         self._borders: Ints | None = None
         self._neighbours: dict[int, frozenset[int]] = {}
         self._shells: Ints | None = None
         self._boxes: FacetBoxes | None = None
+        self._triangles: Triangles | None = None
         self._rays: dict[int, Ray] = {}
         self._near: list[tuple[Nearest, float]] | None = None
         self._depths: Depths | None = None
         self._table: SurfaceTable | None = None
         self._rows: tuple[RingRow, ...] | None = None
         self._bulge: float | None = None
-        self.low: Array = mesh.vertices.min(axis=0)
-        self.high: Array = mesh.vertices.max(axis=0)
-        """(3,) m, box in the part frame."""
+        self.low, self.high = mesh.box
+        """(3,) m, in the part frame."""
 
     def spans(self, facets: Ints) -> Array:
         """(n, 3) cross products of two edges of each facet: outward, of twice its area (m²)."""
         if self._spans is None and len(self.mesh.faces) <= KEPT_SPANS:
-            self._spans = _spans(self.mesh.vertices.take(self.mesh.faces, axis=0))
+            self._spans = _spans(self.triangles.corners)
         return (
             _spans(self.mesh.vertices.take(self.mesh.faces[facets], axis=0))
             if self._spans is None
@@ -80,20 +81,24 @@ class MeshIndex:
         return np.asarray(0.5 * np.sqrt(dot(spans, spans)))
 
     def normals(self, facets: Ints) -> Array:
-        """(n, 3) unit, outward, part frame; zero for facets without area; kept once as many were asked for as there
-        are."""
+        """(n, 3) unit, outward, part frame; zero for facets without area; of many facets kept once as many were
+        asked for as there are."""
         if self._normals is not None:
             return self._normals.take(facets, axis=0)
         self._asked += len(facets)
-        if self._asked > len(self.mesh.faces) and len(self.mesh.faces) <= KEPT_SPANS:
-            self._normals = _normals(self.spans(np.arange(len(self.mesh.faces))))
+        count = len(self.mesh.faces)
+        if count <= KEPT_TRIANGLES or (self._asked > count and count <= KEPT_SPANS):
+            self._normals = _normals(self.spans(np.arange(count)))
+            return self._normals.take(facets, axis=0)
         return _normals(self.spans(facets))
 
     @property
     def boxes(self) -> FacetBoxes:
         """Boxes of the facets in the part frame."""
         if self._boxes is None:
-            self._boxes = FacetBoxes(*facet_boxes(self.mesh.vertices, self.mesh.faces))
+            mesh = self.mesh
+            few = len(mesh.faces) <= KEPT_TRIANGLES
+            self._boxes = FacetBoxes(*(self.triangles.boxes if few else facet_boxes(mesh.vertices, mesh.faces)))
         return self._boxes
 
     def table(self, surfaces: MeshSurfaces) -> SurfaceTable:
@@ -109,6 +114,16 @@ class MeshIndex:
             self._local = None
             self._bvh = fcl_model(self.mesh.vertices, self.mesh.faces)
         return self._bvh
+
+    @property
+    def triangles(self) -> Triangles:
+        """The facets, kept where they are not very many."""
+        if self._triangles is not None:
+            return self._triangles
+        triangles = Triangles(self.mesh.vertices.take(self.mesh.faces, axis=0))
+        if len(self.mesh.faces) <= KEPT_TRIANGLES:
+            self._triangles = triangles
+        return triangles
 
     @property
     def is_large(self) -> bool:
@@ -168,28 +183,41 @@ class MeshIndex:
     def meeting_facets(self, chosen: Flags) -> Ints | None:
         """(2, k) facets among those flagged in `chosen` (F,) that follow each other in a shared edge, as `shared_edges`
         by corner of these alone has them; None where the edges of all are not kept, or some have more than two."""
+        kept = self._kept_among(chosen)
+        return None if kept is None else np.asarray(self.edges.sides.take(kept, axis=1))
+
+    def edges_among(self, chosen: Flags) -> SharedEdges:
+        """The shared edges, by corner, of the facets flagged in `chosen` (F,) alone, in half-edges of the mesh."""
+        kept = self._kept_among(chosen)
+        if kept is not None:
+            return self.edges.where(kept)
+        facets = np.flatnonzero(chosen)
+        edges = shared_edges(self.mesh.faces.take(facets, axis=0), len(self.mesh.vertices), by_corner=True)
+        return replace(edges, first=_of_facets(edges.first, facets), second=_of_facets(edges.second, facets))
+
+    def _kept_among(self, chosen: Flags) -> Ints | None:
+        """Rows of the edges, where they are kept and none has more than two facets, of which both are chosen."""
         if len(self.mesh.faces) > KEPT_EDGES:
             return None
-        if self._met is None:
-            edges = self.edges
-            low, high = edges.ends.T
+        if self._single is None:
+            low, high = self.edges.ends.T
             self._single = not ((low[1:] == low[:-1]) & (high[1:] == high[:-1])).any()
-            self._met = np.stack([edges.first, edges.second]) // 3
         if not self._single:
             return None
-        one, two = self._met
+        one, two = self.edges.sides
         kept = chosen.take(one)
         kept &= chosen.take(two)
-        return np.asarray(self._met.take(kept.nonzero()[0], axis=1))
+        return np.flatnonzero(kept)
 
     def borders(self, surfaces: MeshSurfaces) -> Ints:
         """(k, 2) pairs of surfaces that share an edge, both ways round, sorted."""
         if self._borders is None:
-            first, second = surfaces.labels[self.edges.facets.T]
-            apart = np.flatnonzero(first != second)
-            first, second = first[apart], second[apart]
+            first, second = surfaces.labels.take(self.edges.sides)
+            apart = (first != second).nonzero()[0]
+            first, second = first.take(apart), second.take(apart)
             count = np.int64(max(len(surfaces.surfaces), 1))
-            keys = distinct(np.concatenate([first * count + second, second * count + first]))
+            first, second = np.divmod(distinct(np.minimum(first, second) * count + np.maximum(first, second)), count)
+            keys = np.sort(np.concatenate([first * count + second, second * count + first]))
             self._borders = np.stack(np.divmod(keys, count), axis=1)
         return self._borders
 
@@ -216,8 +244,7 @@ class MeshIndex:
         """m by which smooth curves through its outlines may stand off its facets; `exact` (s,) surfaces need none, and
         edges are smooth below `smooth` (rad)."""
         if self._bulge is None:
-            corners = self.mesh.vertices.take(self.mesh.faces, axis=0)
-            self._bulge = bulge_of(corners, surfaces.labels, self.table(surfaces), exact, smooth)
+            self._bulge = bulge_of(self.triangles.corners, surfaces.labels, self.table(surfaces), exact, smooth)
         return self._bulge
 
     @property
@@ -297,9 +324,16 @@ class MeshIndex:
         return self._rays[ray].crossings(points)
 
 
+def _of_facets(half_edges: Ints, facets: Ints) -> Ints:
+    """Half-edges (k,) of some facets (n,), by their places among them, in those of the mesh."""
+    place, corner = np.divmod(half_edges, 3)
+    return np.asarray(3 * facets.take(place) + corner)
+
+
 def _spans(corners: Array) -> Array:
     """(n, 3) of facets (n, 3, 3)."""
-    return cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    first, second, third = np.ascontiguousarray(corners.transpose(1, 2, 0))
+    return np.ascontiguousarray(cross_columns((second - first).T, (third - first).T))
 
 
 def _normals(spans: Array) -> Array:

@@ -18,11 +18,11 @@ import fcl
 import numpy as np
 
 from kinform.foundation.algebra.displacements import inverse
-from kinform.foundation.algebra.vectors import cross, dot, lengths
-from kinform.foundation.constants import HITS_A_PROBE, MET_AT_ONCE, SLIVER_WIDTH, STEEP_LEAST
+from kinform.foundation.algebra.vectors import cross, dot, lengths, times
+from kinform.foundation.constants import HITS_A_PROBE, KEPT_TRIANGLES, MET_AT_ONCE, SLIVER_WIDTH, STEEP_LEAST
 from kinform.foundation.joined import joined
 from kinform.foundation.meshes.boxes import facet_boxes, triangle_boxes
-from kinform.foundation.meshes.closest import closest_facets
+from kinform.foundation.meshes.closest import Triangles
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, fcl_pose, partial_model, point_model
 from kinform.foundation.meshes.slivers import beside, crossings, meetings
 from kinform.foundation.sorting import distinct
@@ -44,6 +44,11 @@ class Facets(Protocol):
     @property
     def is_large(self) -> bool:
         """Whether a model of all of it takes much memory."""
+        ...
+
+    @property
+    def triangles(self) -> Triangles:
+        """All of it (m)."""
         ...
 
     def model_near(self, low: Array, high: Array) -> tuple[fcl.BVHModel, Ints | None]:
@@ -103,7 +108,7 @@ class Region:
     def depths(self, points: Array) -> tuple[Array, Ints]:
         """Distance (n,) m of points (n, 3) of the part frame to these facets, and the nearest of them (n,)."""
         if not self.index.is_large:
-            told = closest_facets(points, self.corners())
+            told = self.triangles.nearest(points)
             if told is not None:
                 return told[0], told[1] if self.facets is None else self.facets[told[1]]
         point = fcl.CollisionObject(point_model())
@@ -143,8 +148,42 @@ class Region:
 
     def corners(self) -> Array:
         """(n, 3, 3) m of the facets."""
+        return self.triangles.corners
+
+    @property
+    def triangles(self) -> Triangles:
+        """The facets (m), kept of those that are not very many."""
+        if self.facets is None:
+            return self.index.triangles
+        return self._kept if self._is_kept else self._made(self.facets)
+
+    @property
+    def boxes(self) -> tuple[Array, Array]:
+        """Lower and upper corners (n, 3) m of the boxes of the facets."""
         mesh = self.index.mesh
-        return np.asarray(mesh.vertices.take(mesh.faces if self.facets is None else mesh.faces[self.facets], axis=0))
+        if self._is_kept:
+            return self.triangles.boxes
+        return facet_boxes(mesh.vertices, mesh.faces if self.facets is None else mesh.faces[self.facets])
+
+    def corners_of(self, places: Ints) -> Array:
+        """(n, 3, 3) m of some of the facets, at these places (n,) among them."""
+        if self._is_kept:
+            return self.triangles.corners.take(places, axis=0)
+        mesh, facets = self.index.mesh, places if self.facets is None else self.facets.take(places)
+        return np.asarray(mesh.vertices.take(mesh.faces.take(facets, axis=0), axis=0))
+
+    @property
+    def _is_kept(self) -> bool:
+        return len(self.index.mesh.faces if self.facets is None else self.facets) <= KEPT_TRIANGLES
+
+    @cached_property
+    def _kept(self) -> Triangles:
+        assert self.facets is not None
+        return self._made(self.facets)
+
+    def _made(self, facets: Ints) -> Triangles:
+        mesh = self.index.mesh
+        return Triangles(mesh.vertices.take(mesh.faces.take(facets, axis=0), axis=0))
 
     def _beside(self, other: Region, X_SO: Array) -> fcl.BVHModel:
         """FCL's model of facets, all that those of the other region can meet among them."""
@@ -164,7 +203,7 @@ def crossings_of(asked: Sequence[tuple[Region, Region, Array]]) -> list[bool]:
         if not (first.empty or second.empty or first.index.is_large or second.index.is_large)
     ]
     triangles = [
-        (first.corners(), second.corners() @ X_SO[:3, :3].T + X_SO[:3, 3])
+        (first.corners(), times(second.corners(), X_SO[:3, :3].T) + X_SO[:3, 3])
         for first, second, X_SO in (asked[k] for k in some)
     ]
     told = dict(zip(some, crossings(triangles), strict=True))
@@ -227,10 +266,8 @@ def _meetings(regions: Sequence[Region], slivers: Sequence[Array]) -> list[tuple
     """Slivers (n, 3, 3) of each region and the facets that they meet, by sliver, then by facet."""
     asked, near = [], []
     for region, own in zip(regions, slivers, strict=True):
-        mesh = region.index.mesh
-        faces = mesh.faces if region.facets is None else mesh.faces.take(region.facets, axis=0)
-        near.append(beside(own, mesh.vertices, faces))
-        asked.append((own, mesh.vertices.take(faces.take(near[-1], axis=0), axis=0)))
+        near.append(beside(own, *region.boxes))
+        asked.append((own, region.corners_of(near[-1])))
     out = []
     for region, own, facets, met in zip(regions, slivers, near, meetings(asked), strict=True):
         if met is None:

@@ -40,47 +40,48 @@ def _cells(low: Array, high: Array, margin: float, origin: Array, size: Array, c
     cells = np.empty((2, *low.shape))
     np.subtract(low, margin, out=cells[0])
     np.add(high, margin, out=cells[1])
-    for axis in range(3):
-        column = cells[:, axis]
-        column -= origin[axis]
-        column /= size[axis]
-        column *= counts[axis]
-    np.floor(cells, out=cells)
+    cells -= origin[:, None]
+    cells /= size[:, None]
+    cells *= counts[:, None]
+    # without a sign, and up to a whole number, what is cut off is what rounding down leaves out
     np.maximum(cells, 0.0, out=cells)
     np.minimum(cells, (counts - 1)[:, None], out=cells)
     return cells.astype(np.int64)
 
 
-def _grid(cells: Ints, counts: Ints) -> Array:
+def _grid(cells: Ints, counts: Ints) -> Ints:
     """Sums of occupied cells from the origin, one larger than the grid along each axis, of boxes of cells (2, 3, n)."""
     shape = counts + 1
-    flat = _corners(cells, shape)
-    found = np.bincount(flat.ravel(), np.repeat(_SIGNS, flat.shape[1]), int(shape.prod())).reshape(tuple(shape))
+    added, taken, size = *_corners(cells, shape), int(shape.prod())
+    found = np.bincount(added.ravel(), minlength=size) - np.bincount(taken.ravel(), minlength=size)
+    found = found.reshape(tuple(shape))
     for axis in range(3):
         np.cumsum(found, axis=axis, out=found)
-    summed = np.zeros(tuple(shape))
-    summed[1:, 1:, 1:] = found[:-1, :-1, :-1] > 0.5
+    summed = np.zeros(tuple(shape), np.int64)
+    summed[1:, 1:, 1:] = found[:-1, :-1, :-1] > 0
     for axis in range(3):
         np.cumsum(summed, axis=axis, out=summed)
     return summed
 
 
-def _corners(cells: Ints, shape: Ints) -> Ints:
-    """(8, n) place in a flat grid of that shape of the corners of boxes of cells (2, 3, n), upper ones one beyond."""
+def _corners(cells: Ints, shape: Ints) -> tuple[Ints, Ints]:
+    """(4, n) each: places in a flat grid of that shape of the corners of boxes of cells (2, 3, n), upper ones one
+    beyond; those that count in sums, and those that are taken off."""
     places = cells.copy()
     places[1] += 1
     places[:, 0] *= shape[1] * shape[2]
     places[:, 1] *= shape[2]
     x, y, z = places[:, 0], places[:, 1], places[:, 2]
-    out = np.empty((2, 2, 2, cells.shape[2]), np.int64)
-    np.add(x[:, None, None], (y[:, None] + z[None])[None], out=out)
-    return out.reshape(8, -1)
+    out = np.empty((2, 4, cells.shape[2]), np.int64)
+    sums = (y[0] + z[0], y[1] + z[1]), (y[0] + z[1], y[1] + z[0])
+    for k, one in enumerate(sums):
+        for j, other in enumerate(one):
+            np.add(x[0], other, out=out[k, j])
+            np.add(x[1], other, out=out[1 - k, 2 + j])
+    return out[0], out[1]
 
 
-_SIGNS = np.array([(-1.0) ** (i + j + k) for i in (0, 1) for j in (0, 1) for k in (0, 1)])
-"""(8,) of the corners of a box in sums."""
-
-
-def _occupied(summed: Array, cells: Ints) -> Flags:
+def _occupied(summed: Ints, cells: Ints) -> Flags:
     """Whether any cell of each box of cells (2, 3, n) is occupied."""
-    return np.asarray(-_SIGNS @ summed.ravel().take(_corners(cells, np.array(summed.shape))) > 0.5)
+    added, taken = (summed.ravel().take(corners) for corners in _corners(cells, np.array(summed.shape)))
+    return np.asarray(np.add.reduce(taken, axis=0) > np.add.reduce(added, axis=0))

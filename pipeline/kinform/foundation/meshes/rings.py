@@ -14,7 +14,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from kinform.foundation import constants
-from kinform.foundation.algebra.vectors import canonical, cross, dot, normalised, perpendicular, widest_gap
+from kinform.foundation.algebra.vectors import canonical, cross, dot, lengths, normalised, perpendicular, widest_gap
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import SharedEdges
 from kinform.foundation.meshes.surface_table import SurfaceTable
@@ -68,7 +68,14 @@ class _Ridges:
 
     def where(self, rows: Flags | Ints) -> _Ridges:
         """Some of them."""
-        return _Ridges(*(getattr(self, name)[rows] for name in self.__dataclass_fields__))
+        rows = rows.nonzero()[0] if rows.dtype == bool else rows
+        return _Ridges(
+            self.pieces.take(rows, axis=0),
+            self.ends.take(rows, axis=0),
+            self.direction.take(rows, axis=0),
+            self.length.take(rows),
+            self.convex.take(rows),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +111,8 @@ def ring_rows(
         return ()
     piece, ridges = _ridges(mesh, surfaces, table, edges, plane)
     family = _families(ridges)
-    ridges, family = ridges.where(family >= 0), family[family >= 0]
+    shared = (family >= 0).nonzero()[0]
+    ridges, family = ridges.where(shared), family.take(shared)
     if len(family) < constants.RING_SIDES - 1:
         return ()
     label = np.zeros(int(piece.max()) + 1, np.int64)
@@ -132,36 +140,33 @@ def _any_bent(table: SurfaceTable, borders: Ints, plane: Flags) -> bool:
     """Whether any planes among the surfaces that share edges do."""
     first, second = borders[plane[borders].all(axis=1)].T
     one, two = table.axes[first], table.axes[second]
-    return bool(_bent(np.linalg.norm(cross(one, two), axis=1), dot(one, two)).any())
+    return bool(_bent(lengths(cross(one, two)), dot(one, two)).any())
 
 
 def _ridges(
     mesh: Mesh, surfaces: MeshSurfaces, table: SurfaceTable, edges: SharedEdges, plane: Flags
 ) -> tuple[Ints, _Ridges]:
     """(F,) connected piece of its plane of each facet, and the ridges between pieces."""
-    labels, vertices = surfaces.labels, mesh.vertices
-    facets = edges.facets
-    of_first, of_second = labels[facets[:, 0]], labels[facets[:, 1]]
-    flat = plane[of_first] & plane[of_second]
-    inside = flat & (of_first == of_second)
-    piece = components(facets[inside, 0], facets[inside, 1], len(labels))
-    between = flat & ~inside & edges.opposed
-    edges = edges.where(between)
-    first, second = facets[between].T
-    one, two = table.axes[labels[first]], table.axes[labels[second]]
-    across, along = cross(one, two), edges.along(vertices)
-    sine, length = np.linalg.norm(across, axis=1), np.linalg.norm(along, axis=1)
-    bent = _bent(sine, dot(one, two))
-    direction = across / np.maximum(sine, 1e-300)[:, None]
+    labels, vertices, (first, second) = surfaces.labels, mesh.vertices, edges.sides
+    of_first, of_second = labels.take(first), labels.take(second)
+    flat = plane.take(of_first)
+    flat &= plane.take(of_second)
+    alike = of_first == of_second
+    inside = (flat & alike).nonzero()[0]
+    piece = components(first.take(inside), second.take(inside), len(labels))
+    between = (flat & ~alike & edges.opposed).nonzero()[0]
+    one, two = (table.axes.take(side.take(between), axis=0) for side in (of_first, of_second))
+    across = cross(one, two)
+    sine = lengths(across)
+    bent = _bent(sine, dot(one, two)).nonzero()[0]
+    edges, one, two = edges.where(between.take(bent)), one.take(bent, axis=0), two.take(bent, axis=0)
+    along = edges.along(vertices)
+    length, direction = lengths(along), across.take(bent, axis=0) / np.maximum(sine.take(bent), 1e-300)[:, None]
     straight = np.abs(dot(along, direction)) > np.cos(constants.RING_ASKEW) * length
-    ridges = _Ridges(
-        np.stack([piece[first], piece[second]], axis=1),
-        edges.ends,
-        direction,
-        length,
-        edges.convexity(vertices, one, two) > 0.0,
-    )
-    return piece, ridges.where(bent & straight & (length > 0.0))
+    kept = (straight & (length > 0.0)).nonzero()[0]
+    convex = edges.convexity(vertices, one, two) > 0.0
+    ridges = _Ridges(piece.take(edges.sides).T, edges.ends, direction, length, convex)
+    return piece, ridges.where(kept)
 
 
 def _families(ridges: _Ridges) -> Ints:
@@ -172,7 +177,8 @@ def _families(ridges: _Ridges) -> Ints:
     for number in range(constants.RING_DIRECTIONS):
         if len(left) < constants.RING_SIDES:
             break
-        along = np.abs(ridges.direction[left] @ ridges.direction[left[0]]) > np.cos(constants.RING_PARALLEL)
+        directions = ridges.direction.take(left, axis=0)
+        along = np.abs(directions @ directions[0]) > np.cos(constants.RING_PARALLEL)
         out[left[along]] = 2 * number
         left = left[~along]
     out[(out >= 0) & ~ridges.convex] += 1
@@ -202,7 +208,7 @@ def _rows_of_flats(ridges: _Ridges, family: Ints) -> list[_Row]:
     nodes, number = numbered((family[:, None] * count + ridges.pieces).ravel(), int(count) * (int(family.max()) + 1))
     number = number.reshape(-1, 2)
     group = components(number[:, 0], number[:, 1], len(nodes))
-    of_edge = group[number[:, 0]]
+    of_edge = group.take(number[:, 0])
     total = int(group.max()) + 1
     of_family = np.zeros(total, np.int64)
     of_family[of_edge] = family
@@ -257,19 +263,19 @@ def _circles(mesh: Mesh, rows: list[_Row]) -> _Circles:
     ridges = rows[0].every.where(np.concatenate([r.edges for r in rows]))
     direction, length, ends = ridges.direction, ridges.length, ridges.ends
     lead = direction[np.flatnonzero(heads(row))]
-    sense = np.sign(dot(direction, lead[row]))
+    sense = np.sign(dot(direction, lead.take(row, axis=0)))
     axis = normalised(np.add.reduceat((sense * length)[:, None] * direction, np.flatnonzero(heads(row))))
     vertices = np.int64(len(mesh.vertices))
     row, vertex = np.divmod(distinct((row[:, None] * vertices + ends).ravel()), vertices)
     starts = np.flatnonzero(heads(row))
     number = np.bincount(row, minlength=count)
-    corners = mesh.vertices[vertex]
+    corners = mesh.vertices.take(vertex, axis=0)
     middle = np.add.reduceat(corners, starts) / number[:, None]
     least = np.eye(3)[np.abs(axis).argmin(axis=1)]
     u = normalised(cross(least, axis))
     v = cross(axis, u)
-    arm = corners - middle[row]
-    x, y = dot(arm, u[row]), dot(arm, v[row])
+    arm = corners - middle.take(row, axis=0)
+    x, y = dot(arm, u.take(row, axis=0)), dot(arm, v.take(row, axis=0))
     square = x * x + y * y
     sums = np.add.reduceat(np.stack([x * x, x * y, y * y, x * square, y * square, square], axis=1), starts)
     xx, xy, yy, xs, ys, s = sums.T
@@ -277,7 +283,8 @@ def _circles(mesh: Mesh, rows: list[_Row]) -> _Circles:
     determinant[determinant <= constants.RING_FLAT * (xx + yy) ** 2] = np.nan
     one, two = 0.5 * (yy * xs - xy * ys) / determinant, 0.5 * (xx * ys - xy * xs) / determinant
     radius = np.sqrt(s / number + one * one + two * two)
-    off = np.maximum.reduceat(np.abs(np.hypot(x - one[row], y - two[row]) - radius[row]), starts)
+    apart = np.hypot(x - one.take(row), y - two.take(row))
+    off = np.maximum.reduceat(np.abs(apart - radius.take(row)), starts)
     return _Circles(axis, middle + one[:, None] * u + two[:, None] * v, radius, off)
 
 
@@ -300,12 +307,13 @@ def _first_sights(mesh: Mesh, table: SurfaceTable, rows: list[_Row], label: Ints
     """Of all rows at once. `label` (pieces,) tells the plane of each piece."""
     with np.errstate(invalid="ignore"):
         circles = _circles(mesh, rows)
-        planes = [np.unique(label[r.pieces]) for r in rows]
-        sizes = np.array([len(p) for p in planes])
-        row, starts = np.repeat(np.arange(len(rows)), sizes), np.cumsum(sizes) - sizes
-        every = np.concatenate(planes)
+        below = np.int64(len(table.kinds))
+        of = np.repeat(np.arange(len(rows)), [len(r.pieces) for r in rows])
+        row, every = np.divmod(distinct(of * below + label.take(np.concatenate([r.pieces for r in rows]))), below)
+        starts = np.flatnonzero(heads(row))
+        planes = np.split(every, starts[1:])
         axes, points = table.axes[every], table.points[every]
-        sides = np.where(rows[0].every.convex[[r.edges[0] for r in rows]], 1.0, -1.0)
+        sides = np.where(rows[0].every.convex.take([r.edges[0] for r in rows]), 1.0, -1.0)
         reach = sides[row] * dot(points - circles.centre[row], axes)
         low, high = np.minimum.reduceat(reach, starts), np.maximum.reduceat(reach, starts)
         return _Sights(circles, planes, sides, (low, high), _widest_gaps(axes, circles.axis, row, starts))

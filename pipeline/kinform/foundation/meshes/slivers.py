@@ -27,16 +27,14 @@ from kinform.foundation.constants import (
     TOLD_AT_ONCE,
 )
 from kinform.foundation.meshes.box_pairs import meeting_boxes
-from kinform.foundation.meshes.boxes import facet_boxes, meeting_box, triangle_boxes
+from kinform.foundation.meshes.boxes import meeting_box, triangle_boxes
 from kinform.model.arrays import Array, Flags, Ints
 
 
-def beside(slivers: Array, vertices: Array, faces: Ints) -> Ints:
-    """Those of faces (m, 3) over vertices (V, 3), ascending, whose boxes meet the box of all slivers (n, 3, 3)."""
+def beside(slivers: Array, low: Array, high: Array) -> Ints:
+    """Those of facets, ascending, whose boxes from `low` to `high` (m, 3) meet the box of all slivers (n, 3, 3)."""
     corners = slivers.reshape(-1, 3)
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    low_f, high_f = facet_boxes(vertices, faces)
-    return np.flatnonzero(meeting_box(low_f, high_f, low, high))
+    return np.flatnonzero(meeting_box(low, high, corners.min(axis=0), corners.max(axis=0)))
 
 
 Met = tuple[Ints, Ints]
@@ -97,7 +95,7 @@ def _decided(firsts: list[Array], seconds: list[Array], one: Ints, two: Ints) ->
         np.maximum.reduceat(np.abs(every).max(axis=(0, 1)), begin) for every, begin in zip(moved, starts, strict=True)
     )
     apart, met = _told(moved[0], moved[1], one, two, np.maximum(size, other).take(owners[1]))
-    unsure = np.flatnonzero(~(apart | met))
+    unsure = (~(apart | met)).nonzero()[0]
     if len(unsure):
         met[unsure[_not_parted(first.take(one[unsure], axis=2), second.take(two[unsure], axis=2))]] = True
     return met
@@ -123,7 +121,7 @@ def _not_parted(first: Array, second: Array) -> Ints:
     normals = [_cross(sides[0], sides[1]) for sides in edges]
     triangles, met = [first, second, *edges, *normals], np.arange(first.shape[2])
     for directions in _MANY if len(met) > MET_FEW else _FEW:
-        kept = np.flatnonzero(~_apart(directions(*triangles[2:]), *triangles[:2]))
+        kept = (~_apart(directions(*triangles[2:]), *triangles[:2])).nonzero()[0]
         met = met[kept]
         if not len(met):
             break
@@ -311,7 +309,7 @@ def _edges(triangles: Array) -> Array:
 
 def _cross(a: Array, b: Array) -> Array:
     """(3, …) products of vectors by their coordinates (3, …), broadcast."""
-    out = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    out = np.empty(a.shape if a.shape == b.shape else np.broadcast(a, b).shape)
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         np.multiply(a[j], b[k], out=out[i])
         out[i] -= a[k] * b[j]
