@@ -2,8 +2,8 @@
 
 Such a higher pair has one row a point, with the normal of the plane. It is looked for only between parts
 that have no patch at all: beside a real patch, surfaces that merely pass close to each other are many, and
-a tangent fillet says nothing that its plane does not say. Area is that of the zone where the two surfaces
-are within 1 % of the contact tolerance of each other.
+a tangent fillet says nothing that its plane does not say. Those that hold what patches leave are told apart in
+`beside_patches`. Area is that of the zone where the two surfaces are within 1 % of the contact tolerance of each other.
 """
 
 from __future__ import annotations
