@@ -6,6 +6,7 @@ crash must never read as a verdict.
 
 from __future__ import annotations
 
+import errno
 import re
 import traceback
 from typing import TYPE_CHECKING
@@ -26,6 +27,17 @@ _NO_CHOICE = re.compile(
     r"Invalid value for (?P<where>.+?): (?:Value error, )?'(?P<given>.*)' is not one of (?P<choices>'.*')"
 )
 """What typer says of a value that is none of those that there are."""
+_OF_SYSTEM = {
+    errno.EACCES: "see who may read and write there, or name another place",
+    errno.EPERM: "see who may read and write there, or name another place",
+    errno.EROFS: "name a place that can be written",
+    errno.ENOSPC: "make room for it",
+    errno.EDQUOT: "make room for it",
+    errno.ENAMETOOLONG: "name a shorter path",
+    errno.ELOOP: "see where its links lead",
+    errno.EMFILE: "allow more open files, or use fewer --jobs",
+}
+"""What to do about an error of the system."""
 
 
 def refuse(message: str, *, file: object = None, remedy: str | None = None) -> Exception:
@@ -123,7 +135,7 @@ def _print_usage(error: BaseException) -> None:
 
 def _print_os_error(error: OSError) -> None:
     place = str(error.filename) if error.filename is not None else "kinform"
-    _print(place, error.strerror or str(error))
+    _print(place, error.strerror or str(error), _OF_SYSTEM.get(error.errno or 0))
 
 
 def _print_problem(problem: Problem) -> None:

@@ -6,6 +6,7 @@ import json
 import os
 import shutil
 import signal
+import subprocess
 import sys
 import threading
 import time
@@ -13,7 +14,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from support.command_line import ran_here
+from support.command_line import environment, listening, ran_here
 from support.places import FIXTURES
 
 import kinform
@@ -65,6 +66,26 @@ def test_results_are_the_bytes_of_single_runs_though_a_worker_was_killed(done, t
         kinform.run(designs / name / f"{name}.toml", tmp_path / "one.h5")
         assert (results / name / f"{name}.h5").read_bytes() == (tmp_path / "one.h5").read_bytes()
         (tmp_path / "one.h5").unlink()
+
+
+def test_ctrl_c_keeps_what_is_written_and_is_told_in_one_line(tmp_path):
+    """What Dask leaves behind was warned of by the process that clears up after it."""
+    for name in ("a", "b", "c", "d"):
+        shutil.copytree(FIXTURES / "pairs" / GOOD[0], tmp_path / "designs" / name)
+    command = [sys.executable, "-m", "kinform_cli", "batch", "designs", "-o", "results", "--jobs", "1"]
+    running = subprocess.Popen(
+        command, cwd=tmp_path, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        preexec_fn=listening,
+    )  # fmt: skip
+    while not (written := list((tmp_path / "results").glob("*/*.h5"))):
+        assert running.poll() is None
+        time.sleep(0.01)
+    running.send_signal(signal.SIGINT)
+    _, errors = running.communicate(timeout=60)
+    assert running.returncode == 2
+    assert errors == "kinform: error: interrupted; an output file that existed is as it was\n"
+    kinform.run(tmp_path / "designs" / "a" / f"{GOOD[0]}.toml", tmp_path / "one.h5")
+    assert written[0].read_bytes() == (tmp_path / "one.h5").read_bytes()
 
 
 def test_a_worker_of_dask_that_is_killed_loses_nothing(done, tmp_path):

@@ -50,8 +50,8 @@ def test_every_problem_of_the_input_is_printed_with_place_and_remedy(
     [
         (ResultsError(Problem("not HDF5", "a.h5", remedy="name another")), "a.h5: error: not HDF5"),
         (StageError("mass", "joints"), "kinform joints"),
-        (PermissionError(errno.EACCES, "Permission denied", "a.h5"), "a.h5: error: Permission denied"),
-        (OSError(errno.ENOSPC, "No space left on device"), "No space left on device"),
+        (PermissionError(errno.EACCES, "Permission denied", "a.h5"), "a.h5: error: Permission denied\n  remedy:"),
+        (OSError(errno.ENOSPC, "No space left on device"), "No space left on device\n  remedy: make room"),
         (MemoryError(), "out of memory"),
         (KeyboardInterrupt(), "interrupted"),
         (ZeroDivisionError("float division"), "internal error: ZeroDivisionError: float division"),

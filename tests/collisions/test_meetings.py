@@ -159,6 +159,15 @@ def test_spheres_touch_first_where_it_is_said(kind, seed):
         assert np.isinf(first).any()
 
 
+@pytest.mark.parametrize("size", [1e-7, 1.0, 1e5, 1e9])
+def test_spheres_on_the_axis_touch_or_not_without_a_warning(size):
+    """Of parts of kilometres numpy warned of an overflow, on stderr."""
+    near, far = size * np.array([[0.0], [0.0], [0.0], [1.0]]), size * np.array([[0.0], [0.0], [3.0], [1.0]])
+    with np.errstate(all="raise"):
+        assert first_touch(near, far, True, 1, 0.1)[0] == np.inf
+        assert first_touch(near, near, True, 1, 0.1)[0] == pytest.approx(0.1)
+
+
 @pytest.mark.parametrize("turning", [True, False])
 @pytest.mark.parametrize("kind", ["plane", "cylinder"])
 def test_points_are_no_further_from_a_mate_than_their_box_says(turning, kind):

@@ -146,6 +146,17 @@ def test_a_collision_mesh_that_is_not_there_is_an_error_at_its_line_and_one_with
     assert [f.severity for f in findings(tmp_path, walker)] == ["error"]
 
 
+def test_a_mesh_by_way_of_a_folder_that_is_not_there_is_named_as_it_is_written(tmp_path):
+    """The file that was said not to exist was there."""
+    walker = Walker()
+    mesh = '<collision><geometry><mesh filename="{}meshes/box.stl"/></geometry></collision>'
+    (tmp_path / "meshes").mkdir()
+    (tmp_path / "meshes" / "box.stl").write_text("solid s\nendsolid s\n")
+    walker.links["torso"].more = mesh.format("gone/../")
+    messages = [found.message for found in findings(tmp_path, walker) if found.severity == "error"]
+    assert any("the mesh gone/../meshes/box.stl of link 'torso' does not exist" in message for message in messages)
+
+
 SDF_TWINS = {
     "nothing": (lambda walker: None, None, 0, None),
     "inertia in g·mm²": (lambda w: setattr(w.links["torso"], "inertia_factor", 1e9), "KF123", 2, "torso"),

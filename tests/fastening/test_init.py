@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -205,4 +206,6 @@ def test_what_is_rounding_in_a_proposed_joint_is_not_written():
 
     axis, point = np.array([-6e-06, 1.0, 5e-06]), np.array([0.097234, -7.76e-05, 1e-7])
     noisy = IntendedJoint("j", ("a", "b"), "revolute", axis, None, point, None, None, None, None)
-    assert {"axis = [0, 1, 0]", "point = [0.097234, -7.76e-05, 0]"} < set(joint_lines(noisy, "m"))
+    assert {"axis = [0, 1, 0]", "point = [0.097234, -7.76e-05, 0]"} < set(joint_lines(noisy, "m", 0.2))
+    middle = replace(noisy, point=np.array([-1e-20, 3e-17, 2e-19]))
+    assert "point = [0, 0, 0]" in joint_lines(middle, "m", 0.2)

@@ -25,6 +25,15 @@ def problems(folder, text):
     return [(p.line, p.message) for p in caught.value.problems]
 
 
+@pytest.mark.parametrize(("mesh", "missing"), [("gone/../a.stl", "gone"), ("there/gone/in/a.stl", "gone")])
+def test_the_folder_that_is_missing_is_named(tmp_path, mesh, missing):
+    (tmp_path / "there").mkdir()
+    with pytest.raises(InputError) as caught:
+        read(tmp_path, HEAD + f'[[part]]\nname = "a"\nmesh = "{mesh}"\n')
+    (problem,) = caught.value.problems
+    assert (problem.line, problem.remedy) == (7, f"there is no folder {missing}")
+
+
 def test_poses_and_units_of_sub_assemblies_compose(tmp_path):
     read(
         tmp_path,

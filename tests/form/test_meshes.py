@@ -84,7 +84,7 @@ def test_a_concave_polygon_keeps_its_area():
 def test_a_wrong_index_is_told_with_its_line(index):
     with pytest.raises(MeshError) as caught:
         parse_obj(f"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {index}\n".encode())
-    assert caught.value.faults[0].line == 4
+    assert [fault.line for fault in caught.value.faults] == [4]
 
 
 def test_a_wrong_index_is_told_how_many_vertices_there_are():

@@ -160,7 +160,14 @@ def _deaf() -> Iterator[None]:
     except ValueError:  # not the main thread
         yield
         return
+    # the process that clears up after them is begun with them, and would warn of all that an end by Ctrl-C leaves to it
+    warned = os.environ.get("PYTHONWARNINGS")
+    os.environ["PYTHONWARNINGS"] = ",".join(filter(None, (warned, "ignore:resource_tracker")))
     try:
         yield
     finally:
+        if warned is None:
+            del os.environ["PYTHONWARNINGS"]
+        else:
+            os.environ["PYTHONWARNINGS"] = warned
         signal.signal(signal.SIGINT, before)

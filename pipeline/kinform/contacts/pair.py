@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.contacts.constants import ACROSS_SINE, MATING_REACH, NARROW_SHARE, STRIP_AREA, TOUCH
+from kinform.contacts.higher.beside_patches import holding_touches
 from kinform.contacts.higher.edges import edge_contacts
 from kinform.contacts.higher.points_and_lines import higher_pairs, pins_in_slots, tubes_for_facets
 from kinform.contacts.higher.profiles import profile_contacts
@@ -103,6 +104,7 @@ def touching(mates: Mated) -> list[Patch]:
         patches += pins_in_slots(pair, patches)
     if any(_firm(pair, patch) for patch in patches):
         patches += seats(pair, patches)
+    patches += holding_touches(pair, patches)
     patches += enclosing_patches(pair, patches)
     alone = all(_strip(pair, patch) for patch in patches)
     patches = [_of_scattered(pair, patch, alone) for patch in patches]

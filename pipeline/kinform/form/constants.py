@@ -291,6 +291,8 @@ WIDTH = 100
 NOISE = 2e-5
 """Components of a proposed axis or point below this share of the largest are written as zero: 0.001°, or 6 µm at 0.3 m,
 is the rounding of meshes in float32 far from the origin, and nothing that is meant."""
+ROUNDED = 1e-12
+"""Coordinates of a proposed point below this share of the greatest of all meshes are the rounding of doubles."""
 COUPLED_MOST = 16
 """Joints of one stated coupling: a compound planetary train has at most as many; each is a column of its row."""
 

@@ -175,7 +175,7 @@ class DesignFiles:
             elif near:
                 remedy = did_you_mean(path.name, near, "the files there")
             else:
-                remedy = f"there is no folder {path.parent.name}"
+                remedy = f"there is no folder {_first_missing(folder, Path(stated).parent)}"
             self.problems.add(f"{what} {stated} {no_file(path)}", file, line, remedy)
             return None
         self.note(path)
@@ -326,3 +326,13 @@ class DesignFiles:
 
 def _unreadable(error: OSError) -> MeshError:
     return MeshError([Fault(f"cannot be read: {error.strerror}", "check its permissions")])
+
+
+def _first_missing(folder: Path, below: Path) -> str:
+    """The first of the folders of a path that is not there: of a missing one nothing is the parent."""
+    so_far = Path()
+    for part in below.parts:
+        so_far = so_far / part
+        if not (folder / so_far).is_dir():
+            break
+    return so_far.name

@@ -12,7 +12,15 @@ from pathlib import Path
 import numpy as np
 
 from kinform.errors import InputError, Problem
-from kinform.form.constants import LARGEST_ASSEMBLY, MISTAKEN_METRES, NOISE, SMALLEST_ASSEMBLY, USUAL_ASSEMBLY, WIDTH
+from kinform.form.constants import (
+    LARGEST_ASSEMBLY,
+    MISTAKEN_METRES,
+    NOISE,
+    ROUNDED,
+    SMALLEST_ASSEMBLY,
+    USUAL_ASSEMBLY,
+    WIDTH,
+)
 from kinform.form.files import read_raw
 from kinform.form.materials import BUILT_IN
 from kinform.form.meshes.bodies import named_bodies, shell_bodies
@@ -132,18 +140,27 @@ def proposals(
         lines += ["# missing: with complete = true the bodies follow from them."]
     lines += ["# [function]", "# complete = true" if joints else "# mobility = 1"]
     for joint, evidence in joints:
-        lines += ["#", f"## {_text(evidence)[1:-1]}", *(f"# {line}" for line in joint_lines(joint, units))]
+        stated = joint_lines(joint, units, reach(assembly))
+        lines += ["#", f"## {_text(evidence)[1:-1]}", *(f"# {line}" for line in stated)]
     return lines
 
 
-def joint_lines(joint: IntendedJoint, units: str) -> list[str]:
-    """Lines of a `[[function.joint]]` in the manifest's unit."""
+def reach(assembly: Assembly) -> float:
+    """m: the greatest coordinate of any mesh."""
+    boxes = [part.mesh.placed_box(part.X_WP) for part in assembly.parts if part.mesh is not None]
+    return max((float(np.abs(box).max()) for box in boxes), default=0.0)
+
+
+def joint_lines(joint: IntendedJoint, units: str, within: float) -> list[str]:
+    """Lines of a `[[function.joint]]` in the manifest's unit, of an assembly whose coordinates reach so far (m): what
+    is rounding beside that is 0."""
     lines = ["[[function.joint]]", f"name = {_text(joint.name)}", f"type = {_text(joint.type)}"]
     lines.append("between = [" + ", ".join(_text(name) for name in joint.between) + "]")
     if joint.axis is not None:
         lines.append(f"axis = {_numbers(_without_noise(joint.axis), 6)}")
     if joint.point is not None:
-        lines.append(f"point = {_numbers(_without_noise(joint.point / metres_per(units)), 6)}")
+        point = np.where(np.abs(joint.point) < ROUNDED * within, 0.0, joint.point)
+        lines.append(f"point = {_numbers(_without_noise(point / metres_per(units)), 6)}")
     return lines
 
 

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from kinform.kinematics.mobility.couplings import coupling_aside
     from kinform.kinematics.mobility.named_freedoms import Motions
     from kinform.kinematics.partition import propose, proposed_joints, stated_proposals
+    from kinform.kinematics.questions.adrift import adrift, adrift_in_words
     from kinform.kinematics.questions.intended_freedoms import IntendedAnswer, IntendedMotion, intended_answers
     from kinform.kinematics.questions.joint_insight import Insight, insight
     from kinform.kinematics.questions.motion_query import QueryAnswer, QueryBlocker, query
@@ -43,6 +44,8 @@ __all__ = [
     "NearMotion",
     "QueryAnswer",
     "QueryBlocker",
+    "adrift",
+    "adrift_in_words",
     "coupling_aside",
     "derive",
     "functional",
@@ -72,6 +75,8 @@ __getattr__ = first_used(
         "propose": "partition",
         "proposed_joints": "partition",
         "stated_proposals": "partition",
+        "adrift": "questions.adrift",
+        "adrift_in_words": "questions.adrift",
         "IntendedAnswer": "questions.intended_freedoms",
         "IntendedMotion": "questions.intended_freedoms",
         "intended_answers": "questions.intended_freedoms",

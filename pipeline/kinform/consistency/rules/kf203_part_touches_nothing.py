@@ -54,7 +54,8 @@ def _finding(context: Context, cluster: tuple[str, ...]) -> Finding:
         cluster,
         f"{quoted(cluster)} {'touches' if alone else 'touch'} "
         f"{'no other part' if alone else 'each other, but no other part'}",
-        found="no contact that is known, and no point that comes as near another part as parts that touch do",
+        found=f"no contact {'' if alone else 'with the rest '}that is known, and no point that comes as near "
+        f"{'another part' if alone else 'it'} as parts that touch do",
         intended="contact with the rest of the assembly",
         place=part.X_WP[:3, 3] if part.mesh is None else _middle(context.assembly, cluster[0]),
         declared=part.source,

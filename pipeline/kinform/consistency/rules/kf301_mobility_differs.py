@@ -3,7 +3,8 @@
 Compared with the *effective* mobility: independent motions of the whole assembly relative to ground,
 without freedoms that only spin or slide a single body on itself and that no intended joint names, and without
 freedoms that lead nowhere over a distance (KF305, KF306), where that is known. Blocked joints count by their
-type. Inconclusive when a joint is ambiguous.
+type. Inconclusive when a joint is ambiguous, and where a body that no joint connects with ground overlaps with the
+rest: it would count as free, and what is drawn there may hold it.
 
 Why it matters: one freedom too few and the mechanism jams; one too many and something moves that no
 drive holds.
@@ -23,6 +24,7 @@ from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, quoted
+from kinform.kinematics import adrift, adrift_in_words
 from kinform.model.assembly import Source
 from kinform.model.kinematics import Kinematics
 
@@ -33,6 +35,9 @@ def check(context: Context) -> Outcome:
     ambiguous = [joint.name for joint in kinematics.joints if joint.status == "ambiguous"]
     if ambiguous:
         return inconclusive(f"the mobility depends on joints that are ambiguous: {quoted(ambiguous)}")
+    contacts = context.design.contacts  # sticks have none
+    if contacts is not None and (loose := adrift(kinematics, contacts)):
+        return inconclusive(adrift_in_words(loose))
     mobility = kinematics.mobility
     if mobility.on_edge:
         return inconclusive(mobility.finite_reason)

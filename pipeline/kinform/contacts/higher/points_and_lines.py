@@ -2,8 +2,8 @@
 
 Such a higher pair has one row a point, with the normal of the plane. It is looked for only between parts
 that have no patch at all: beside a real patch, surfaces that merely pass close to each other are many, and
-a tangent fillet says nothing that its plane does not say. Area is that of the zone where the two surfaces
-are within 1 % of the contact tolerance of each other.
+a tangent fillet says nothing that its plane does not say. Those that hold what patches leave are told apart in
+`beside_patches`. Area is that of the zone where the two surfaces are within 1 % of the contact tolerance of each other.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from kinform.contacts.higher.meeting import Meeting
 from kinform.contacts.higher.rounds import meeting
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.narrow_phase import Probes, verify
-from kinform.contacts.search.pair_view import PairView, SurfacePair
+from kinform.contacts.search.pair_view import NearSurfaces, PairView, SurfacePair
 from kinform.foundation.algebra.vectors import cross
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
@@ -60,7 +60,22 @@ def higher_pairs(
     """
     overlap = pair.overlap(pair.tolerance)
     overlap &= ~np.outer(*(np.isin(side.ids, sorted(ids)) for side, ids in zip(pair.near, pieces, strict=True)))
-    return _touching(pair, overlap)
+    return touches_between(pair, overlap)
+
+
+def may_touch(pair: PairView, flags: Flags) -> bool:
+    """Whether any surfaces flagged in `flags` (s, t) are of kinds that touch in points or lines."""
+    for (ball, other), flagged in ((pair.near, flags), (pair.near[::-1], flags.T)):
+        rows = np.flatnonzero(_convex(ball))
+        columns = (other.kinds == KINDS.index("plane")) | np.isin(other.kinds, _ROUND)
+        if len(rows) and flagged[rows][:, columns].any():
+            return True
+    return False
+
+
+def _convex(near: NearSurfaces) -> Flags:
+    """(s,) which are balls and rollers."""
+    return np.asarray((near.sides > 0) & ((near.radii > 0) | (near.kinds == KINDS.index("cone"))))
 
 
 def tubes_for_facets(pair: PairView, patches: list[Patch]) -> list[Patch]:
@@ -72,7 +87,7 @@ def tubes_for_facets(pair: PairView, patches: list[Patch]) -> list[Patch]:
     flags = pair.overlap(pair.tolerance)
     for k, side in enumerate(pair.near):
         flags &= np.expand_dims(np.isin(side.ids, [ids[k] for ids in loose]), 1 - k)
-    found = [patch for patch in _touching(pair, flags) if patch.surfaces in loose]
+    found = [patch for patch in touches_between(pair, flags) if patch.surfaces in loose]
     all_said = loose == {patch.surfaces for patch in found if not patch.one_sided}
     return found if all_said else patches
 
@@ -83,13 +98,13 @@ def _of_tube(pair: PairView, patch: Patch) -> bool:
     return any(surface.kind == "torus" and surface.side > 0 for surface in surfaces)
 
 
-def _touching(pair: PairView, overlap: Flags) -> list[Patch]:
-    """Points and lines in which surfaces flagged in `overlap` (s, t) touch."""
+def touches_between(pair: PairView, overlap: Flags) -> list[Patch]:
+    """Points and lines in which surfaces flagged in `overlap` (s, t) touch, in the frame of the pair."""
     touches: list[_Touch] = []
     for view, flags, first in ((pair, overlap, True), (pair.swapped, overlap.T, False)):
         ball, other = view.near
         plane, rounded = other.kinds == KINDS.index("plane"), np.isin(other.kinds, _ROUND)
-        for row in np.flatnonzero((ball.sides > 0) & ((ball.radii > 0) | (ball.kinds == KINDS.index("cone")))):
+        for row in np.flatnonzero(_convex(ball)):
             # of two alike, each is met once; what is hollow comes second
             apart = rounded if first else rounded & ((other.kinds != ball.kinds[row]) | (other.sides < 0))
             for column in [*np.flatnonzero(flags[row] & plane), *np.flatnonzero(flags[row] & apart)]:

@@ -14,6 +14,7 @@ import numpy as np
 from kinform.contacts import constants
 from kinform.contacts.mating.facing import may_face
 from kinform.contacts.mating.patches import classify_fit
+from kinform.contacts.mating.unread import motions_left, unread_surfaces
 from kinform.contacts.search.pair_view import PairView, boxes_of
 from kinform.foundation.algebra.screws import Frame, rows
 from kinform.foundation.algebra.vectors import dot
@@ -54,30 +55,13 @@ def enclosing_patches(pair: PairView, patches: list[Patch]) -> list[Patch]:
     kinds = {patch.kind for patch in patches}
     if not kinds or ("line" in kinds and kinds <= set(constants.TOUCHING)):
         return []
-    unread = _unread(pair, patches)
+    unread = unread_surfaces(pair, patches, constants.MATING_REACH * pair.tolerance)
     if not may_face(pair, unread):
         return []
     near = _near(pair, unread)
     if near is None or not _encloses(near, patches, pair.tolerance):
         return []
     return [_patch(pair, near)]
-
-
-def _unread(pair: PairView, patches: list[Patch]) -> Flags:
-    """(s, t): near surfaces of a and b that come within the tolerance, and that no patch is of, nor one of either and a
-    neighbour of the other: a fillet beside a face says nothing that the face does not say."""
-    flags = pair.overlap(constants.MATING_REACH * pair.tolerance)
-    rows_, columns = ({k: row for row, k in enumerate(side.ids.tolist())} for side in pair.near)
-    a, b = pair.parts
-    for patch in patches:
-        i, j = patch.surfaces
-        if j in columns:
-            about = a.index.neighbours(a.surfaces, i)
-            flags[[row for k, row in rows_.items() if k == i or k in about], columns[j]] = False
-        if i in rows_:
-            about = b.index.neighbours(b.surfaces, j)
-            flags[rows_[i], [column for k, column in columns.items() if k in about]] = False
-    return flags
 
 
 def _near(pair: PairView, unread: Flags) -> _Near | None:
@@ -188,13 +172,7 @@ def _evenly(areas: Array, count: int) -> tuple[Ints, Array]:
 def _encloses(near: _Near, patches: list[Patch], tolerance: float) -> bool:
     """Whether they oppose a motion that the patches leave, in both senses, with areas that are no stray touch."""
     frame = Frame.of(np.concatenate([near.points, *(patch.points for patch in patches)]))
-    shares = [np.sqrt(patch.weights / patch.weights.sum() / len(patches))[:, None] for patch in patches]
-    held = np.concatenate(
-        [share * rows(patch.points, patch.normals, frame) for patch, share in zip(patches, shares, strict=True)]
-    )
-    triangle = np.linalg.qr(held, mode="r") if len(held) > 6 else held
-    _, values, right = np.linalg.svd(np.vstack([triangle, np.zeros((6, 6))]))
-    left = right[:6][values[:6] < constants.ENCLOSED_HELD]
+    left = motions_left(patches, frame)
     if not len(left) or _opens(near, left):
         return False
     speeds = rows(near.points, near.normals, frame) @ left.T

@@ -270,6 +270,7 @@ def _corners(
             faults.add(f"has index 0 at line {line}: OBJ counts vertices from 1", REEXPORT, line)
         else:
             _index_fault(int(stated[corner]), f"{_vertex_count(int(before[owner[corner]]))} precede it", line, faults)
+    index[stated == 0] = 0  # told above: it is not out of range too
     return np.maximum(index, 0), sizes
 
 

@@ -116,7 +116,11 @@ class _Describer:
         return points @ X[:3, :3].T + X[:3, 3]
 
     def _note_missing(self, shape: Shape, link: str, *, left_out: bool) -> None:
-        path, at = self.files.shown(Path(str(shape.geometry))), shape.at
+        missing, at = Path(str(shape.geometry)), shape.at
+        path = self.files.shown(missing)
+        if (self.files.top / path).is_file():  # by way of a folder that is not there
+            below = missing.is_relative_to(self.files.top)
+            path = (missing.relative_to(self.files.top) if below else missing).as_posix()
         loose = LooseMesh(path, at.file, at.line, True, self.scope.prefix + link, left_out)
         self.missing.setdefault((path, at.line), loose)
 

@@ -13,6 +13,7 @@ from kinform.foundation.words import counted
 from kinform.frozen import dataclass
 from kinform.kinematics.constants import AT_REST, BLOCKING_SPEED, MOTION_THERE
 from kinform.kinematics.mobility.named_freedoms import Motions
+from kinform.kinematics.questions.adrift import adrift, adrift_in_words
 from kinform.kinematics.questions.derived import Derived
 from kinform.kinematics.questions.joint_insight import patches_between
 from kinform.kinematics.questions.motion_senses import Attempt, attempt, pair_ways
@@ -123,7 +124,9 @@ def query_twist(design: Derived, a: str, b: str, motion: Array, what: str) -> Qu
         ways, possible, culprits, forward.joints,
     )  # fmt: skip
     freed = residual < MOTION_THERE and joint is not None
-    return replace(answer, text=_sentence(a, b, what, motion, answer, freed=freed) + _doubt(design, joint))
+    apart = f"{a} and {b} {_apart(design, first, second)}"
+    text = _sentence(apart, b, what, motion, answer, freed=freed)
+    return replace(answer, text=text + _doubt(design, joint, (first, second)))
 
 
 def _body(design: Derived, name: str) -> str:
@@ -173,12 +176,22 @@ def _blocker(k: int, patch: Patch) -> QueryBlocker:
     return QueryBlocker(patch.parts, k, patch.points.mean(axis=0), patch.area, patch.kind)
 
 
-def _sentence(a: str, b: str, what: str, motion: Array, answer: QueryAnswer, *, freed: bool) -> str:
-    """What contact does to the motion, and what is left of it in the assembly; `freed`: the joint has it."""
+def _apart(design: Derived, first: str, second: str) -> str:
+    """What two bodies without contact do."""
+    assert design.kinematics is not None
+    of_part = {part: body.name for body in design.kinematics.bodies for part in body.parts}
+    overlaps = design.contacts.interferences if design.contacts is not None else ()
+    depth = max((one.depth for one in overlaps if {of_part[part] for part in one.parts} == {first, second}), default=0)
+    return f"overlap by {1e3 * depth:.2g} mm where nothing mates" if depth > 0.0 else "do not touch"
+
+
+def _sentence(apart: str, b: str, what: str, motion: Array, answer: QueryAnswer, *, freed: bool) -> str:
+    """What contact does to the motion, and what is left of it in the assembly; `apart` is said where there is none,
+    `freed`: the joint has it."""
     blockers = answer.blocked_by
     where = counted(len(blockers), "patch", "patches")
     if answer.free_in_pair is None:
-        head = f"{a} and {b} do not touch"
+        head = apart
     elif freed:
         head = f"their contact leaves the {what} free" + (f" but for {where}, where it is blocked" if blockers else "")
     else:
@@ -211,10 +224,13 @@ def _sense(what: str, motion: Array, *, forward: bool) -> str:
     return words if what == "slide" else f"the sense of {words}"
 
 
-def _doubt(design: Derived, joint: Joint | None) -> str:
-    """What the answer counts on and is not certain, as an addition to the sentence."""
+def _doubt(design: Derived, joint: Joint | None, bodies: tuple[str, str]) -> str:
+    """What the answer about these bodies counts on and is not certain, as an addition to the sentence."""
     assert design.kinematics is not None
     uncertain = design.kinematics.mobility.uncertain
     if joint is not None:
         return f"; their joint is ambiguous: {joint.reason}" if joint.status == "ambiguous" else ""
-    return f"; this counts on joints that are not certain: {', '.join(uncertain)}" if uncertain else ""
+    out = f"; this counts on joints that are not certain: {', '.join(uncertain)}" if uncertain else ""
+    loose = adrift(design.kinematics, design.contacts) if design.contacts is not None else ()
+    asked = [one for one in loose if len({*bodies} & {*one.bodies}) == 1]
+    return out + (f"; but {adrift_in_words(asked)}" if asked else "")

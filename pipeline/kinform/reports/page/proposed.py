@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.design import Design
-from kinform.form.without_manifest import joint_lines
+from kinform.form.without_manifest import joint_lines, reach
 from kinform.foundation.algebra.displacements import displacement
 from kinform.foundation.algebra.spatial import quaternions
 from kinform.frozen import dataclass
@@ -39,7 +39,7 @@ def proposed(design: Design, bodies: tuple[Body, ...]) -> list[ProposedJoint]:
         moving = one.sides[1]
         moved = tuple(body.name for body in bodies if set(body.parts) <= set(moving))
         if sum(len(body.parts) for body in bodies if body.name in moved) == len(moving):
-            toml = "\n".join(joint_lines(joint, design.assembly.units)) + "\n"
+            toml = "\n".join(joint_lines(joint, design.assembly.units, reach(design.assembly))) + "\n"
             out.append(ProposedJoint(joint.name, f"{joint.type}, {one.words}", toml, _turned(joint, moved)))
     return out
 
