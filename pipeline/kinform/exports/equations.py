@@ -254,14 +254,17 @@ def _rows(model: ExportModel, closings: list[Closing], frames: list[Array], q: A
 
 def _independent_rows(rows: Array, rank: int) -> list[int]:
     """Indices of `rank` independent rows."""
-    rest, chosen = rows.copy(), []
+    rest, size, chosen = rows.copy(), np.linalg.norm(rows, axis=1), []
     for _ in range(rank):
-        size = np.linalg.norm(rest, axis=1)
         k = int(np.flatnonzero(size >= CLOSE_CHOICE * size.max())[0])
         chosen.append(k)
         unit = rest[k] / size[k]
-        rest = rest - np.outer(rest @ unit, unit)
-        rest[chosen] = 0.0
+        share = rest @ unit
+        # rows of other loops have no share
+        left = np.flatnonzero(share)
+        rest[left] -= np.outer(share[left], unit)
+        rest[k] = 0.0
+        size[left] = np.linalg.norm(rest[left], axis=1)
     return chosen
 
 
