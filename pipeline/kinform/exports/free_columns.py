@@ -16,7 +16,7 @@ def free_columns(equations: Sequence[Array]) -> list[int]:
     some poses: one after the other the first that still moves nearly as freely as any that they hold, in all poses."""
     bound = np.flatnonzero(np.any([rows.any(axis=0) for rows in equations], axis=0))
     # what no equation holds is free, and has no say in what else is
-    chosen = np.setdiff1d(np.arange(equations[0].shape[1]), bound).tolist()
+    chosen: list[int] = np.setdiff1d(np.arange(equations[0].shape[1]), bound).tolist()
     if not len(bound):
         return chosen
     spaces = [np.linalg.svd(rows[:, bound], full_matrices=True)[2][len(rows) :].T for rows in equations]
