@@ -8,14 +8,14 @@ closed by Gauss–Newton steps with the driver held. What does not close is not 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import reduce
+from functools import cached_property, reduce
 
 import numpy as np
 
 from kinform.foundation.algebra.displacements import carry, displacement, exponentials, inverse
 from kinform.foundation.graphs.graph import forest
 from kinform.frozen import dataclass
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Ints
 from kinform.model.kinematics import Freedom, Joint, Kinematics
 from kinform.reports import constants
 
@@ -229,13 +229,26 @@ class _Linkage:
     def _moved(self, across: Array) -> Array:
         """(B, 4, 4) motion of each body, from that of each joint."""
         out = np.broadcast_to(np.eye(4), (len(self.tree.parent), 4, 4)).copy()
-        back = inverse(across)
-        for node in self.tree.order:
-            k = self.tree.edge[node]
-            if k >= 0:
-                step = across[k] if self.edges[k][1] == node else back[k]
-                out[node] = out[self.tree.parent[node]] @ step
+        steps = np.concatenate([across, inverse(across)])
+        for nodes, before, own in self._levels:
+            out[nodes] = out[before] @ steps[own]
         return out
+
+    @cached_property
+    def _levels(self) -> list[tuple[Ints, Ints, Ints]]:
+        """Bodies as far from the root as each other, those before them, and the numbers of the joints between, of those
+        that lead back more by as many as there are."""
+        tree = self.tree
+        depth: dict[int, int] = {}
+        levels: dict[int, list[tuple[int, int, int]]] = {}
+        for node in tree.order:
+            k = tree.edge[node]
+            depth[node] = 0 if k < 0 else depth[tree.parent[node]] + 1
+            if k >= 0:
+                own = k if self.edges[k][1] == node else len(self.edges) + k
+                levels.setdefault(depth[node], []).append((node, tree.parent[node], own))
+        every = [np.array(level) for _, level in sorted(levels.items())]
+        return [(level[:, 0], level[:, 1], level[:, 2]) for level in every]
 
     def _missing(self, across: Array, poses: Array) -> Array:
         """(6 chords,) by how much the loops are open: turns (rad), then distances over the size."""
