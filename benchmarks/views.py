@@ -1,4 +1,4 @@
-"""`kinform show` and `kinform report` of large assemblies: `python benchmarks/views.py [--quick]`.
+"""`kinform show`, `report` and `export` of large assemblies: `python benchmarks/views.py [--quick]`.
 
 A plate with 1,000 and 3,000 pins is derived once; then processor seconds of the whole commands, output to a file.
 Beside: the bytes of the results file read and hashed once.
@@ -55,6 +55,8 @@ def of_file(results: Path, parts: int) -> Iterator[Row]:
         ("show", ("show", str(results))),
         ("show joints", ("show", str(results), "joints")),
         ("report", ("report", str(results), "-o", page)),
+        ("export --to mjcf", ("export", str(results), "--to", "mjcf", "-o", str(results.with_suffix(".mjcf")))),
+        ("export --to modelica", ("export", str(results), "--to", "modelica", "-o", str(results.with_suffix(".mo")))),
     ):
         seconds = min(worked(*command) for _ in range(3))
         yield Row(f"{name}, {parts} parts", seconds, AIMS.get((name, parts)), "s", words, peak())

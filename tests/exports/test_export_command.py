@@ -7,6 +7,7 @@ import subprocess
 import sys
 
 import pytest
+import trimesh
 from support.places import FIXTURES
 
 from kinform import results
@@ -61,6 +62,21 @@ def test_what_a_format_cannot_carry_is_named_and_strict_refuses_it(stored, tmp_p
     told = capsys.readouterr().err
     assert "error: urdf cannot carry base~rocker_unit" in told
     assert not strict.exists()
+
+
+def test_what_is_not_carried_of_many_for_one_reason_is_told_once(tmp_path, capsys):
+    trimesh.creation.box((1.0, 1.0, 1.0)).export(tmp_path / "box.stl")
+    parts = [f'[[part]]\nname = "p{k}"\nmesh = "box.stl"\nposition = [{2 * k}, 0, 0]\n' for k in range(10)]
+    manifest = tmp_path / "row.toml"
+    manifest.write_text('schema = 1\n[assembly]\nname = "row"\nunits = "m"\n' + "".join(parts), encoding="utf-8")
+    assert main(["run", str(manifest), "-o", str(tmp_path / "row.h5")]) in (0, 1)
+    capsys.readouterr()
+    assert main(["export", str(tmp_path / "row.h5"), "--to", "mjcf", "-o", str(tmp_path / "mjcf")]) == 0
+    told = capsys.readouterr().err
+    assert told.count("its mass is not known") == 1
+    assert "p1, p2, p3, p4 and 5 more: its mass is not known" in told
+    written = (tmp_path / "mjcf" / "row.xml").read_text()
+    assert written.count("its mass is not known") == 9
 
 
 def test_strict_writes_what_is_carried_in_full(stored, tmp_path):

@@ -234,10 +234,11 @@ class TestFigures:
     def view(scale, x=0.0, y=0.0):
         return View(np.array([x, y, 0.0]), scale, 200, 160)
 
-    @pytest.mark.parametrize("finest", [0.0, 23_000.0])
+    @pytest.mark.parametrize("finest", [0.0, 9_000.0, 23_000.0])
     def test_a_ball_is_as_near_as_a_ball_whatever_it_was_drawn_for(self, finest):
         figure = self.ball()
-        figure.expect(finest or 1.0)
+        if finest:
+            figure.expect(self.view(finest))
         view = self.view(7_000.0, x=0.002)
         for column, row in ((100, 80), (60, 90), (110, 40), (85, 130)):
             x = 0.002 + (column + 0.5 - 100) / 7_000.0
@@ -250,7 +251,16 @@ class TestFigures:
         view = self.view(20_000.0, x=0.5, y=-0.3)  # of ten metres, eight millimetres
         assert nearness(view, figure, 100, 80) == pytest.approx(np.sqrt(100.0 - 0.34), abs=0.02)
         assert figure.samples(view).near.shape[0] < 400
-        assert small.samples(self.view(20_000.0)).near.shape[0] > 399
+        assert small.samples(self.view(12_000.0)).near.shape[0] > 239
+
+    def test_a_picture_of_a_corner_of_it_makes_no_other_finer(self):
+        figure, whole = self.ball(), self.view(4_000.0)
+        figure.expect(self.view(90_000.0, x=0.009))  # of 20 mm, two
+        assert figure.samples(whole).scale == whole.scale
+        corner = figure.samples(self.view(90_000.0, x=0.009)).near
+        assert corner.size <= 201 * 161
+        figure.expect(self.view(9_000.0))
+        assert figure.samples(whole).scale == 9_000.0
 
     def test_a_layer_over_a_part_of_a_picture_is_the_layer_over_the_whole(self):
         figure, other, view = self.ball(), self.ball(0.3), self.view(4_000.0)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from kinform.foundation.words import counted
+from kinform.foundation.words import alike, counted
 from kinform_cli import console, files
 from kinform_cli.designs import looked_at
 from kinform_cli.errors import refuse
@@ -79,15 +79,17 @@ def export(
             model = exports.export(design, to.value, strict=strict, fix=chosen, folder=folder)
         except exports.LostError as error:
             remedy = "without --strict it is written, and named in the file"
-            problems = [Problem(f"{to.value} cannot carry {text}", str(source), None, remedy) for text in error.lost]
+            problems = [
+                Problem(f"{to.value} cannot carry {text}", str(source), None, remedy) for text in alike(error.lost)
+            ]
             raise InputError(problems) from None
         except exports.ExportError as error:
             raise refuse(str(error), file=source) from None
     written = exports.write(model, output)
     console.say(f"{output}: {counted(len(written), 'file')} of {to.value}")
-    for text in model.remarks if design.assembly.descriptions else ():
+    for text in alike(model.remarks) if design.assembly.descriptions else ():
         console.say(text)
-    for text in model.lost:
+    for text in alike(model.lost):
         console.warn(f"{to.value} does not carry {text}")
 
 

@@ -18,6 +18,7 @@ import numpy as np
 from kinform.behaviour import Actor, Gear, JointComponent, MotionDrive, RigidBody, smooth
 from kinform.behaviour.signals import Constant, Ramp, Signal, Sine, Spline, Table
 from kinform.exports.constants import CLOSE_CHOICE, LEAST_MOTION, POSES_OF_RUN
+from kinform.exports.free_columns import free_columns
 from kinform.exports.model import ExportModel
 from kinform.exports.motors import left_out
 from kinform.exports.tree import Closing, Tree, grow
@@ -253,14 +254,17 @@ def _rows(model: ExportModel, closings: list[Closing], frames: list[Array], q: A
 
 def _independent_rows(rows: Array, rank: int) -> list[int]:
     """Indices of `rank` independent rows."""
-    rest, chosen = rows.copy(), []
+    rest, size, chosen = rows.copy(), np.linalg.norm(rows, axis=1), []
     for _ in range(rank):
-        size = np.linalg.norm(rest, axis=1)
         k = int(np.flatnonzero(size >= CLOSE_CHOICE * size.max())[0])
         chosen.append(k)
         unit = rest[k] / size[k]
-        rest = rest - np.outer(rest @ unit, unit)
-        rest[chosen] = 0.0
+        share = rest @ unit
+        # rows of other loops have no share
+        left = np.flatnonzero(share)
+        rest[left] -= np.outer(share[left], unit)
+        rest[k] = 0.0
+        size[left] = np.linalg.norm(rest[left], axis=1)
     return chosen
 
 
@@ -270,23 +274,9 @@ def _free_columns(
     """Indices into `rest` of coordinates that determine the others all along our run."""
     mechanism = model.mechanism
     scale = mechanism.scale[rest]
-    spaces = []
-    for q in _poses_of_run(model) if held else [model.q]:
-        rows = _rows(model, closings, frames, q)[held][:, rest] * scale
-        spaces.append(np.linalg.svd(rows, full_matrices=True)[2][len(held) :].T if len(rows) else np.eye(len(rest)))
-    chosen: list[int] = []
-    while spaces[0].shape[1]:
-        score = np.min([np.linalg.norm(space, axis=1) for space in spaces], axis=0)
-        k = int(np.flatnonzero(score >= CLOSE_CHOICE * score.max())[0])
-        chosen.append(k)
-        spaces = [_without(space, k) for space in spaces]
-    return sorted(chosen)
-
-
-def _without(space: Array, k: int) -> Array:
-    """An orthonormal basis of the vectors of `space` whose component k is zero."""
-    right = np.linalg.svd(space[k : k + 1], full_matrices=True)[2]
-    return np.asarray(space @ right[1:].T)
+    poses = _poses_of_run(model) if held else [model.q]
+    every = [_rows(model, closings, frames, q)[held][:, rest] * scale for q in poses]
+    return free_columns(every)
 
 
 def _poses_of_run(model: ExportModel) -> list[Array]:

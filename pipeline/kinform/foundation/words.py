@@ -118,6 +118,16 @@ def by_cause(reasons: Iterable[tuple[str, str]]) -> str:
     return "; ".join(f"{few(names)}: {why}" for why, names in subjects.items())
 
 
+def alike(sentences: Iterable[str]) -> list[str]:
+    """Sentences "what: why", each why once, in the order of the first of each: "arm and hand: its mass is not known";
+    others as they are."""
+    subjects: dict[tuple[str, str], dict[str, None]] = {}
+    for sentence in sentences:
+        what, colon, why = sentence.partition(": ")
+        subjects.setdefault((colon, why if colon else what), {})[what] = None
+    return [f"{few(list(names))}{colon}{why}" if colon else why for (colon, why), names in subjects.items()]
+
+
 def listed(words: Sequence[str]) -> str:
     """ "a", "a and b", "a, b and c"."""
     return " and ".join(filter(None, [", ".join(words[:-1]), words[-1] if words else ""]))

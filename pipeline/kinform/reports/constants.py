@@ -197,8 +197,10 @@ TINT = 0.4
 OVERLAP_WEIGHT, FINDING_OVERLAP_WEIGHT = 0.75, 0.8
 """Weights of overlaps over the whole, and over what a finding is about."""
 MOST_SAMPLED = 4_000_000
-"""Samples of a whole shape: 80 MB. Of larger ones, as of a machine beside the screw that a picture is about, only what
-the picture shows is drawn."""
+"""Samples of a whole shape: 80 MB. Of larger ones, ..."""
+WHOLE_OF_SEEN = 4
+"""... and of those that have so many times as many as a picture shows of them, as of a machine beside the screw that it
+is about, only what the picture shows is drawn."""
 BAND = 1 << 15
 """Pixels that are shaded at once: they stay in the processor's cache."""
 OUTLINE_STEP = 6.0

@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import norm, widest_gap
+from kinform.foundation.algebra.vectors import dot, lengths, norm, widest_gap
 from kinform.frozen import dataclass
 from kinform.kinematics.partition import constants
 from kinform.model.arrays import Array, Flags, Ints
@@ -97,6 +97,20 @@ def contact_of_pairs(patches: Sequence[Patch]) -> dict[PartPair, Contact]:
     return {pair: Contact.of(between[pair]) for pair in sorted(between)}
 
 
+def near_each(joints: Sequence[IntendedJoint], contacts: Sequence[Contact]) -> Flags:
+    """(j, c) whether the axis, or centre, of each of some joints passes through the ball round each contact."""
+    out = np.empty((len(joints), len(contacts)), dtype=bool)
+    middles = np.array([contact.ball[0] for contact in contacts]).reshape(-1, 3)
+    radii = np.array([contact.ball[1] for contact in contacts])
+    for row, joint in zip(out, joints, strict=True):
+        assert joint.point is not None
+        arms = middles - joint.point
+        if joint.axis is not None:
+            arms -= dot(arms, np.broadcast_to(joint.axis, arms.shape))[:, None] * joint.axis
+        np.less_equal(lengths(arms), radii, out=row)
+    return out
+
+
 @dataclass(frozen=True, eq=False)
 class Contact:
     """All contact of a pair of parts."""
@@ -122,13 +136,15 @@ class Contact:
         """Whether it is at points or along lines only."""
         return all(patch.kind in ("point", "line") for patch in self.patches)
 
+    @cached_property
+    def ball(self) -> tuple[Array, float]:
+        """Middle (3,) m and radius (m) of the ball round the box of its points."""
+        low, high = self.points.min(axis=0), self.points.max(axis=0)
+        return 0.5 * (low + high), 0.5 * norm(high - low)
+
     def near(self, joint: IntendedJoint) -> bool:
         """Whether the joint's axis, or centre, passes through the ball round the contact."""
-        assert joint.point is not None
-        arm = 0.5 * (self.points.min(axis=0) + self.points.max(axis=0)) - joint.point
-        if joint.axis is not None:
-            arm = arm - (arm @ joint.axis) * joint.axis
-        return norm(arm) <= 0.5 * norm(np.ptp(self.points, axis=0))
+        return bool(near_each([joint], [self])[0, 0])
 
     def costs(self, asked: Asked) -> dict[int, float]:
         """What it costs to part them by each of the joints that may, by number."""

@@ -21,7 +21,7 @@ from kinform.frozen import dataclass
 from kinform.kinematics.part_volumes import volumes
 from kinform.kinematics.partition import constants
 from kinform.kinematics.partition.bodies import partition
-from kinform.kinematics.partition.contact import ROUND, Asked, Contact, PartPair, contact_of_pairs
+from kinform.kinematics.partition.contact import ROUND, Asked, Contact, PartPair, contact_of_pairs, near_each
 from kinform.kinematics.partition.parting import hints_of, joint_twists
 from kinform.kinematics.partition.standard_parts import HOLDERS, standard_parts
 from kinform.model.arrays import Array
@@ -80,7 +80,7 @@ def propose(
     hints = hints_of(contacts.suggestions)
     axes = _candidates(contacts.patches)
     screws = {pair: 0.0 if worth <= constants.FASTENED["spigot"] else worth for pair, worth in hints.items()}
-    free = [_freed(axis, pairs, screws, constants.PROPOSED[0]) for axis in axes]
+    free = _freed_near(axes, pairs, screws, constants.PROPOSED[0])
     known = [[name for name in names if name in volume] for names in together]
     graph = _Parts(parts, sorted(pairs), volume, [names for names in known if len(names) > 1])
     standard = standard_parts(assembly, surfaces)
@@ -232,13 +232,14 @@ def _same(one: IntendedJoint, other: IntendedJoint, off: float) -> bool:
     return norm(apart - (apart @ other.axis) * other.axis) <= off
 
 
-def _freed(
-    joint: IntendedJoint, pairs: Mapping[PartPair, Contact], hints: Mapping[PartPair, float], most: float
-) -> frozenset[PartPair]:
-    """Pairs near its axis, or centre, that a joint may part at `most` at this price."""
-    return _freed_each([joint], {pair: contact for pair, contact in pairs.items() if contact.near(joint)}, hints, most)[
-        0
-    ]
+def _freed_near(
+    joints: Sequence[IntendedJoint], pairs: Mapping[PartPair, Contact], hints: Mapping[PartPair, float], most: float
+) -> list[frozenset[PartPair]]:
+    """Pairs near its axis, or centre, that each joint may part at `most` at this price."""
+    every, out = list(pairs.items()), []
+    for joint, near in zip(joints, near_each(joints, list(pairs.values())), strict=True):
+        out += _freed_each([joint], dict(every[k] for k in np.flatnonzero(near).tolist()), hints, most)
+    return out
 
 
 def _freed_each(

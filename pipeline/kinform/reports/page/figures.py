@@ -58,24 +58,36 @@ class Figure:
         self._finest = 0.0
         self._drawn: dict[float, Samples] = {}
 
-    def expect(self, scale: float) -> None:
-        """Be told that samples so fine will be asked for: coarser pictures then share them."""
-        _, _, width, height = self._grid(scale, self.box)
-        if width * height <= constants.MOST_SAMPLED:
-            self._finest = max(self._finest, scale)
+    def expect(self, view: View) -> None:
+        """Be told of a view that will be asked for: coarser pictures then share what it shows of nearly all of it."""
+        if self._is_seen(view):
+            self._finest = max(self._finest, view.scale)
 
     def samples(self, view: View) -> Samples:
-        """Samples at least as fine as the view's pixels: of all of it, else where it is very large of what is seen."""
-        for scale in (max(view.scale, self._finest), view.scale):
-            grid = self._grid(scale, self.box)
+        """Samples at least as fine as the view's pixels: of all of it where most of it is seen, else of what is."""
+        scale = max(view.scale, self._finest)
+        for fine in (scale, view.scale) if self._is_seen(view) else ():
+            grid = self._grid(fine, self.box)
             if grid[2] * grid[3] <= constants.MOST_SAMPLED:
-                if scale not in self._drawn:
-                    self._drawn[scale] = self._draw(scale, *grid)
-                return self._drawn[scale]
+                if fine not in self._drawn:
+                    self._drawn[fine] = self._draw(fine, *grid)
+                return self._drawn[fine]
+        known = self._drawn.get(scale) or self._drawn.get(view.scale)
+        return known or self._draw(view.scale, *self._grid(view.scale, self._seen(view)))
+
+    def _is_seen(self, view: View) -> bool:
+        """Whether what the view shows is so much of the shape that all of it is as soon drawn."""
+        (_, _, width, height), (_, _, wide, high) = (
+            self._grid(view.scale, box) for box in (self.box, self._seen(view))
+        )
+        return width * height <= min(constants.WHOLE_OF_SEEN * wide * high, constants.MOST_SAMPLED)
+
+    def _seen(self, view: View) -> Array:
+        """(2, 2) what the view shows of the box; of nothing, a place."""
         seen = np.array([[-0.5 * view.width, -0.5 * view.height], [0.5 * view.width, 0.5 * view.height]]) / view.scale
         low, high = view.target[:2] + seen
-        box = np.array([np.maximum(self.box[0, :2], low), np.minimum(self.box[1, :2], high)])
-        return self._draw(view.scale, *self._grid(view.scale, box))
+        low = np.maximum(self.box[0, :2], low)
+        return np.array([low, np.maximum(np.minimum(self.box[1, :2], high), low)])
 
     @staticmethod
     def _grid(scale: float, box: Array) -> tuple[int, int, int, int]:

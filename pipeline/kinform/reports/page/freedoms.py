@@ -8,14 +8,14 @@ closed by Gauss–Newton steps with the driver held. What does not close is not 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import reduce
+from functools import cached_property, reduce
 
 import numpy as np
 
 from kinform.foundation.algebra.displacements import carry, displacement, exponentials, inverse
 from kinform.foundation.graphs.graph import forest
 from kinform.frozen import dataclass
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Ints
 from kinform.model.kinematics import Freedom, Joint, Kinematics
 from kinform.reports import constants
 
@@ -209,38 +209,50 @@ class _Linkage:
 
     def poses(self, q: Array) -> Array:
         """(B, 4, 4) motion of each body at joint coordinates q."""
-        return self._moved(self._across(q))
+        return self._moved(self._across(self._steps(q)))
 
-    def _across(self, q: Array) -> Array:
-        """(J, 4, 4) of each joint: its second body in the first, from where the meshes are."""
-        still = np.eye(4)
-        steps = [still] * len(q)
-        moving = np.flatnonzero(q)
+    def _steps(self, q: Array) -> list[Array]:
+        """(4, 4) of each coordinate, from where the meshes are."""
+        out, moving = [np.eye(4)] * len(q), np.flatnonzero(q)
         if len(moving):
             angles = np.where(self.turning, self.speed * q, q)
-            made = exponentials(self.units[moving], angles[None, moving])[0]
-            for i, step in zip(moving, made, strict=True):
-                steps[i] = step
+            for i, step in zip(moving, exponentials(self.units[moving], angles[None, moving])[0], strict=True):
+                out[i] = step
+        return out
+
+    def _across(self, steps: list[Array]) -> Array:
+        """(J, 4, 4) of each joint: its second body in the first, from where the meshes are."""
         spans = zip(self.start, self.start[1:], strict=False)
-        made = [reduce(np.matmul, steps[first:last]) if last > first else still for first, last in spans]
+        made = [reduce(np.matmul, steps[first:last]) if last > first else np.eye(4) for first, last in spans]
         return np.array(made).reshape(-1, 4, 4)
 
     def _moved(self, across: Array) -> Array:
         """(B, 4, 4) motion of each body, from that of each joint."""
         out = np.broadcast_to(np.eye(4), (len(self.tree.parent), 4, 4)).copy()
-        back = inverse(across)
-        for node in self.tree.order:
-            k = self.tree.edge[node]
-            if k >= 0:
-                step = across[k] if self.edges[k][1] == node else back[k]
-                out[node] = out[self.tree.parent[node]] @ step
+        steps = np.concatenate([across, inverse(across)])
+        for nodes, before, own in self._levels:
+            out[nodes] = out[before] @ steps[own]
         return out
 
-    def _missing(self, q: Array) -> Array:
+    @cached_property
+    def _levels(self) -> list[tuple[Ints, Ints, Ints]]:
+        """Bodies as far from the root as each other, those before them, and the numbers of the joints between, of those
+        that lead back more by as many as there are."""
+        tree = self.tree
+        depth: dict[int, int] = {}
+        levels: dict[int, list[tuple[int, int, int]]] = {}
+        for node in tree.order:
+            k = tree.edge[node]
+            depth[node] = 0 if k < 0 else depth[tree.parent[node]] + 1
+            if k >= 0:
+                own = k if self.edges[k][1] == node else len(self.edges) + k
+                levels.setdefault(depth[node], []).append((node, tree.parent[node], own))
+        every = [np.array(level) for _, level in sorted(levels.items())]
+        return [(level[:, 0], level[:, 1], level[:, 2]) for level in every]
+
+    def _missing(self, across: Array, poses: Array) -> Array:
         """(6 chords,) by how much the loops are open: turns (rad), then distances over the size."""
-        across = self._across(q)
-        poses, out = self._moved(across), []
-        back = inverse(poses)
+        out, back = [], inverse(poses)
         for k in self.chords:
             a, b = self.edges[k]
             gap = poses[a] @ across[k] @ back[b]
@@ -248,19 +260,17 @@ class _Linkage:
             out += [turn[2, 1], turn[0, 2], turn[1, 0], *(gap[:3, 3] / self.size)]
         return np.array(out)
 
-    def _slopes(self, q: Array) -> Array:
+    def _slopes(self, steps: list[Array], poses: Array) -> Array:
         """(6 chords, n) of `_missing` by the coordinates, where loops are nearly closed: a coordinate turns what comes
         after it on its way about its screw, carried to where that is now."""
-        across = self._across(q)
-        poses = self._moved(across)
-        carried = np.empty((len(q), 4, 4))
+        carried = np.empty((len(steps), 4, 4))
         for k, (a, _) in enumerate(self.edges):
             before = poses[a]
             for i in range(self.start[k], self.start[k + 1]):
                 carried[i] = before
-                before = before @ displacement(self.screws[i] * q[i]) if self.start[k + 1] - i > 1 else before
+                before = before @ steps[i] if self.start[k + 1] - i > 1 else before
         screws = carry(carried, self.screws)
-        out = np.zeros((len(self.chords), 6, len(q)))
+        out = np.zeros((len(self.chords), 6, len(steps)))
         for row, k in zip(out, self.chords, strict=True):
             for end, sign in zip(self.edges[k], (1.0, -1.0), strict=True):
                 node = end
@@ -272,18 +282,22 @@ class _Linkage:
             span = slice(self.start[k], self.start[k + 1])
             row[:, span] += screws[span].T
         out[:, 3:] /= self.size
-        return out.reshape(-1, len(q))
+        return out.reshape(-1, len(steps))
 
     def _closed(self, q: Array, driver: int) -> Array | None:
         """The nearest closed configuration with the driver where it is."""
         free = np.array([i for i in range(len(q)) if i != driver])
         unit = np.where(self.turning, 1.0, self.size)
-        for _ in range(constants.MOST_CLOSING_STEPS):
-            missing = self._missing(q)
-            if float(np.abs(missing).max()) < constants.CLOSED_WELL:
-                return q
-            slope = self._slopes(q)[:, free] * unit[free]
+        for left in range(constants.MOST_CLOSING_STEPS, -1, -1):
+            steps = self._steps(q)
+            across = self._across(steps)
+            poses = self._moved(across)
+            missing = self._missing(across, poses)
+            most = float(np.abs(missing).max())
+            if not left or most < constants.CLOSED_WELL:
+                break
+            slope = self._slopes(steps, poses)[:, free] * unit[free]
             step = np.linalg.lstsq(slope, -missing, rcond=constants.SLOPE_RANK)[0]
             q = q.copy()
             q[free] += step * unit[free]
-        return q if float(np.abs(self._missing(q)).max()) < constants.CLOSED else None
+        return q if most < constants.CLOSED else None

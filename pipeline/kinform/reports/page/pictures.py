@@ -84,15 +84,15 @@ class Artist:
         report = self.scene.design.report
         whole = _whole_view(*self._whole(), constants.OVERVIEW_WIDTH, constants.OVERVIEW_HEIGHT)
         for figure in self.known.values():
-            figure.expect(whole.scale)
+            figure.expect(whole)
         for finding, focus in zip(report.findings if report else (), self.scene.focuses, strict=True):
             if finding.severity != "note" and focus.movement < 0:
                 stage = self._stage(focus)
                 if stage is not None:
                     for figure, _ in stage.chosen:
-                        figure.expect(stage.view.scale)
+                        figure.expect(stage.view)
                     for figure, _ in stage.others:
-                        figure.expect(coarse(stage.view).scale)
+                        figure.expect(coarse(stage.view))
 
     def _stage(self, focus: Focus) -> _Stage | None:
         """What the picture of a finding shows; None where there is nothing to be seen."""
