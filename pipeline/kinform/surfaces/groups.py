@@ -106,6 +106,12 @@ def columns_of(table: Array, rows: Ints) -> Array:
     return table.T.take(rows, axis=1).T
 
 
+def repeated(table: Array, sizes: Ints) -> Array:
+    """The rows (n, k) of a table, each so many times (n,), in memory column by column: as `columns_of` of numbers that
+    ascend, at two thirds of the price."""
+    return table.T.repeat(sizes, axis=1).T
+
+
 def parted(keys: Ints, count: int) -> tuple[Ints, Ints]:
     """Quotient and remainder of keys that are not negative; the remainder by a product, which is faster."""
     first = keys // count

@@ -14,7 +14,7 @@ import numpy as np
 from kinform.foundation.sorting import occurrences
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.constants import RUN_OF_PAIRS
-from kinform.surfaces.groups import columns_of, parted
+from kinform.surfaces.groups import parted, repeated
 from kinform.surfaces.polygons.patchwork import Patchwork
 
 Params = Array
@@ -68,10 +68,13 @@ class Batch:
             if source.has_seen(params, look):
                 self._corners, self._seen = source._seen_of(rows)
         if not self.has_seen(params, look):
-            owner, vertex = self.corners
-            group = np.concatenate([self.region, self.region.take(owner)])
+            _, vertex = self.corners
+            runs = np.concatenate([self.size, np.bincount(self.region, self.many, self.count).astype(np.int64)])
+            number = np.arange(self.count)
+            group = np.concatenate([number, number]).repeat(runs)
+            axes = params[:, :used]
             points = self.patchwork.places(self.polygon, vertex)
-            self._seen = params, look, (group, look(columns_of(params[:, :used], group), points))
+            self._seen = params, look, (group, look(repeated(np.concatenate([axes, axes]), runs), points))
         assert self._seen is not None
         return cast("tuple[Ints, Seen]", self._seen[2])
 
@@ -131,6 +134,11 @@ class Batch:
         if self._corners is None:
             self._corners = self.patchwork.corners.expand(self.polygon)
         return self._corners
+
+    @property
+    def many(self) -> Ints:
+        """(pairs,) how many vertices each polygon has."""
+        return self.patchwork.corners.lengths(self.polygon)
 
     @property
     def points(self) -> Array:
