@@ -220,29 +220,31 @@ def spheres_of(groups: Ints, coordinates: Sequence[Array], count: int, *more: Ar
 
 
 def normal_equations(sums: Sums, columns: Array, residual: Array) -> tuple[Array, Array]:
-    """JᵀJ (count, k, k) and Jᵀr (count, k) of each group, of the columns (k, n) of a Jacobian."""
+    """JᵀJ (count, k, k) and Jᵀr (count, k) of each group, of the columns (k, n) of a Jacobian; in memory entry by
+    entry."""
     k, product = len(columns), np.empty(columns.shape)
     right = sums(np.multiply(columns, residual, out=product)).T
-    matrix: Array = np.empty((len(right), k, k))
+    matrix: Array = np.empty((k, k, len(right)))
     for i in range(k):
-        of_row = sums(np.multiply(columns[i], columns[i:], out=product[i:])).T
-        matrix[:, i, i:] = matrix[:, i:, i] = of_row
-    return matrix, right
+        matrix[i, i:] = matrix[i:, i] = sums(np.multiply(columns[i], columns[i:], out=product[i:]))
+    return matrix.transpose(2, 0, 1), right
 
 
 def solve_normal(matrix: Array, right: Array, damping: float = 1e-12) -> Array:
     """Solutions (count, k) of scaled, slightly damped symmetric systems; never raises."""
     count, k = right.shape
-    scale = 1.0 / np.sqrt(np.maximum(matrix.diagonal(axis1=1, axis2=2), 1e-300))
-    scaled = matrix * scale[:, :, None]
-    scaled *= scale[:, None, :]
-    scaled.reshape(count, k * k)[:, :: k + 1] += damping
-    wanted = right * scale
+    entries = matrix.transpose(1, 2, 0)
+    scale = 1.0 / np.sqrt(np.maximum(entries.diagonal().T, 1e-300))
+    scaled = np.multiply(entries, scale[:, None], order="C")
+    scaled *= scale
+    scaled.reshape(k * k, count)[:: k + 1] += damping
+    wanted = right.T * scale
     # the damping keeps every matrix regular that is finite
     if not (np.isfinite(scaled).all() and np.isfinite(wanted).all()):
-        scaled[~np.isfinite(scaled).all(axis=(1, 2))] = np.eye(k)
+        scaled[:, :, ~np.isfinite(scaled).all(axis=(0, 1))] = np.eye(k)[:, :, None]
         wanted = np.nan_to_num(wanted)
-    return np.asarray(np.linalg.solve(scaled, wanted[:, :, None])[:, :, 0] * scale)
+    found = np.linalg.solve(scaled.transpose(2, 0, 1), wanted.T[:, :, None])[:, :, 0]
+    return np.asarray(found * scale.T)
 
 
 def quantile(groups: Ints, values: Array, count: int, share: float) -> Array:

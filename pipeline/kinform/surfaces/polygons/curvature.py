@@ -17,6 +17,7 @@ from kinform.foundation.algebra.vectors import dot
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
+from kinform.surfaces.groups import columns_of
 from kinform.surfaces.polygons.patchwork import Patchwork
 
 _PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
@@ -129,10 +130,12 @@ def continues(work: Patchwork, bent: Curvature, link: Links) -> Flags:
     like = np.abs(strong_a - strong_b) <= constants.ALIKE_STRONG * larger
     like &= np.abs(bent.weak[a] - bent.weak[b]) <= constants.ALIKE_WEAK * larger
     simple = np.maximum(bent.ratio[a], bent.ratio[b]) < constants.SIMPLE_RATIO
-    cosine = dot(bent.along[a], bent.along[b])
-    step = work.centre[b] - work.centre[a]
-    size = np.maximum(np.linalg.norm(step, axis=1), 1e-300)
-    going = np.abs(dot(step, bent.along[a] + bent.along[b] * np.sign(cosine)[:, None])) / 2 / size
+    along_a, along_b = columns_of(bent.along, a), columns_of(bent.along, b)
+    cosine = dot(along_a, along_b)
+    step = work.middles(b) - work.middles(a)
+    square = step * step
+    size = np.maximum(np.sqrt(square[:, 0] + (square[:, 1] + square[:, 2])), 1e-300)
+    going = np.abs(dot(step, along_a + along_b * np.sign(cosine)[:, None])) / 2 / size
     turn = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
     allowed = np.where(
         going > constants.GOING_ALONG, constants.TURNED_ALONG, constants.TURNED_ALONG + work.angle[link.edge]

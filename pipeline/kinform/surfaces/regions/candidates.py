@@ -27,7 +27,8 @@ class Candidates:
 
     def of(self, numbers: Ints) -> Candidates:
         """Some of them, in this order."""
-        return Candidates(self.kind.of(numbers), self.params[numbers], self.side[numbers], self.tolerance[numbers])
+        side, tolerance = self.side.take(numbers), self.tolerance.take(numbers)
+        return Candidates(self.kind.of(numbers), self.params.take(numbers, axis=0), side, tolerance)
 
     def run(self, kind: Kind, regions: slice) -> Candidates:
         """A run of them, which are of this kind."""

@@ -15,6 +15,7 @@ from kinform.foundation.sorting import among, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
+from kinform.surfaces.groups import repeated
 from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.kinds.kind import Kind
 from kinform.surfaces.polygons.noise import Scales
@@ -147,8 +148,8 @@ def _grow(territory: Territory, surfaces: Candidates, batch: Batch) -> tuple[Bat
 def _facing(kind: Kind, batch: Batch, params: Params) -> Ints:
     """+1 where the polygons face as the normals of the surfaces, -1 where they face against them."""
     work = batch.patchwork
-    normal = kind.probe(params[batch.region], work.centre[batch.polygon]).normal
-    agreement = dot(normal, work.normal[batch.polygon]) * work.area[batch.polygon]
+    normal = kind.probe(repeated(params, batch.size), work.middles(batch.polygon)).normal
+    agreement = dot(normal, work.normals(batch.polygon)) * work.area.take(batch.polygon)
     return np.where(np.bincount(batch.region, agreement, batch.count) >= 0, 1, -1).astype(np.int64)
 
 

@@ -304,10 +304,11 @@ def _around(territory: Territory, seeds: Ints, side: Ints, straightness: float) 
     region = np.concatenate([numbers, numbers])
     owner, edge = territory.links.expand(polygon)
     target = work.other(edge, polygon[owner])
-    mine = region[owner]
-    cosine = np.abs(dot(work.along(edge), work.along(seeds[mine])))
-    near = cosine >= straightness * work.length[edge] * work.length[seeds[mine]]
-    keep = near & territory.free[target] & (work.sign[edge] * side[mine] >= 0)
+    mine = region.take(owner)
+    cosine = np.abs(dot(work.along(edge), work.along(seeds.take(mine))))
+    seed = seeds.take(mine)
+    near = cosine >= straightness * work.length.take(edge) * work.length.take(seed)
+    keep = near & territory.free.take(target) & (work.sign.take(edge) * side.take(mine) >= 0)
     keys = np.concatenate([region, mine[keep]]) * np.int64(work.count) + np.concatenate([polygon, target[keep]])
     return Batch.of_keys(work, distinct(keys), len(seeds))
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from kinform.foundation.graphs.components import components
@@ -46,9 +48,18 @@ class Territory:
     @property
     def smooth(self) -> Ints:
         """Smooth edges between free polygons."""
-        work = self.patchwork
-        edges = np.flatnonzero(work.smooth)
-        return edges[self.free[work.a[edges]] & self.free[work.b[edges]]]
+        edges, a, b = self._open
+        rows = (self.free.take(a) & self.free.take(b)).nonzero()[0]
+        if len(rows) < len(edges):
+            self._open[:] = edges.take(rows), a.take(rows), b.take(rows)
+        return self._open[0]
+
+    @cached_property
+    def _open(self) -> list[Ints]:
+        """Smooth edges that were between free polygons when that was asked last, and the polygons on either side: what
+        is taken is never free again."""
+        edges = self.patchwork.smooth.nonzero()[0]
+        return [edges, self.patchwork.a.take(edges), self.patchwork.b.take(edges)]
 
     def neighbours(self, keys: Ints) -> Ints:
         """Keys of the free polygons one smooth link away from those of the `keys`, each once, by region."""
