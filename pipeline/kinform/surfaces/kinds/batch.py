@@ -47,6 +47,7 @@ class Batch:
         # the batch that this is a selection of, and the pairs of it, until `seen` is asked for
         self._source: tuple[Batch, Ints] | None = None
         self._widths: tuple[Params, Widths, Array] | None = None
+        self._runs: Ints | None = None
 
     def parts(self) -> list[Batch]:
         """The batch cut into runs of pairs, so that what is computed for every corner stays small."""
@@ -69,14 +70,18 @@ class Batch:
                 self._corners, self._seen = source._seen_of(rows)
         if not self.has_seen(params, look):
             _, vertex = self.corners
-            runs = np.concatenate([self.size, np.bincount(self.region, self.many, self.count).astype(np.int64)])
-            number = np.arange(self.count)
-            group = np.concatenate([number, number]).repeat(runs)
-            axes = params[:, :used]
             points = self.patchwork.places(self.polygon, vertex)
-            self._seen = params, look, (group, look(repeated(np.concatenate([axes, axes]), runs), points))
+            group = self.for_seen(np.arange(self.count)[:, None])[:, 0]
+            self._seen = params, look, (group, look(self.for_seen(params[:, :used]), points))
         assert self._seen is not None
         return cast("tuple[Ints, Seen]", self._seen[2])
+
+    def for_seen(self, table: Any) -> Any:
+        """(N, k) what the regions have in a table (R, k), for each of what `seen` gives; in memory column by column."""
+        if self._runs is None:
+            corners = np.bincount(self.region, self.many, self.count).astype(np.int64)
+            self._runs = np.concatenate([self.size, corners])
+        return repeated(np.concatenate([table, table]), self._runs)
 
     def has_seen(self, params: Params, look: Look) -> bool:
         """Whether that is what `seen` was asked for last."""

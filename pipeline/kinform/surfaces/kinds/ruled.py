@@ -138,9 +138,11 @@ class Ruled(Kind, Protocol):
     def held(self, batch: Batch, params: Params) -> tuple[Ints, Probe]:
         """By their cylindrical coordinates."""
         group, (t, rho, radial) = batch.seen(params, cylindrical, OF_AXIS)
-        radius, lean, middles = params[:, 6].take(group), self._lean(params, group), len(batch.polygon)
+        angle, middles = params[:, 7], len(batch.polygon)
+        lean = [np.cos(angle), np.sin(angle)] if self.tapers else []
+        radius, *lean = batch.for_seen(np.array([params[:, 6], *lean]).T).T
         distance = rho - radius
-        if lean is None:
+        if not lean:
             return group, Probe(distance, radial[:middles], radius)
         cos, sin = lean
         axis = repeated(params[:, :3], batch.size)

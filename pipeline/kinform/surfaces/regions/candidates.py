@@ -72,7 +72,7 @@ class Candidates:
         work, region, polygon = batch.patchwork, batch.region, batch.polygon
         count, owner = len(region), batch.corners[0]
         group, held = self.kind.held(batch, self.params)
-        limit, chord = self.tolerance.take(group), 1 - np.cos(np.minimum(reach, np.pi) / 2)
+        limit, chord = batch.for_seen(self.tolerance[:, None])[:, 0], 1 - np.cos(np.minimum(reach, np.pi) / 2)
         # a flat has all its vertices on the surface, but is wider than the facets of it
         least = chord.take(region)
         least *= held.curvature_radius[:count]
