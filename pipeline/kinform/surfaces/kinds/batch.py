@@ -48,6 +48,7 @@ class Batch:
         self._source: tuple[Batch, Ints] | None = None
         self._widths: tuple[Params, Widths, Array] | None = None
         self._runs: Ints | None = None
+        self._many: Ints | None = None
 
     def parts(self) -> list[Batch]:
         """The batch cut into runs of pairs, so that what is computed for every corner stays small."""
@@ -143,7 +144,9 @@ class Batch:
     @property
     def many(self) -> Ints:
         """(pairs,) how many vertices each polygon has."""
-        return self.patchwork.corners.lengths(self.polygon)
+        if self._many is None:
+            self._many = self.patchwork.corners.lengths(self.polygon)
+        return self._many
 
     @property
     def points(self) -> Array:

@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.sorting import ascending
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
@@ -57,7 +58,7 @@ def links(work: Patchwork, free: Flags) -> Links:
     edge = edge[free[work.a[edge]] & free[work.b[edge]]]
     a, b = work.a[edge], work.b[edge]
     key = np.minimum(a, b) * np.int64(work.count) + np.maximum(a, b)
-    order = np.argsort(key, kind="stable")
+    order = ascending(key, work.count * work.count)
     first = np.r_[True, np.diff(key[order]) != 0] if len(key) else np.zeros(0, bool)
     number = np.empty(len(key), np.int64)
     number[order] = np.cumsum(first) - 1

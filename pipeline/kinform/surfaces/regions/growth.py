@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
-from kinform.foundation.sorting import among, heads
+from kinform.foundation.sorting import among, ascending, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
@@ -192,7 +192,9 @@ def _drop_shared(kind: Kind, batch: Batch) -> Batch:
     for number, (_, regions) in enumerate(kind.each(batch.count)):
         if number:
             polygon = np.where(batch.region < regions.start, polygon, polygon + number * batch.patchwork.count)
-    order = np.lexsort((batch.region, (-batch.size).take(batch.region), polygon))
+    # of each polygon the largest region first, of equal ones the first
+    order = ascending((batch.size.max() - batch.size).take(batch.region), int(batch.size.max()) + 1)
+    order = order.take(ascending(polygon.take(order), int(polygon.max()) + 1))
     polygon = polygon.take(order)
     first = order.take(heads(polygon).nonzero()[0])
     unshared = np.bincount(batch.region.take(first), minlength=batch.count)

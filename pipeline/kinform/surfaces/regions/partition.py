@@ -258,8 +258,7 @@ def _seeds(territory: Territory, edges: Ints, tried: Flags, side: int) -> Ints:
     start = edges.take(np.flatnonzero((work.sign.take(edges) == side) & ~tried.take(edges)))
     if not len(start):
         return start
-    rank = np.empty(len(start), np.int64)
-    rank[np.argsort(work.length[start], kind="stable")] = np.arange(len(start))
+    rank = territory.rank.take(start)
     a, b, best = work.a.take(start), work.b.take(start), np.full(work.count, -1)
     np.maximum.at(best, a, rank)
     np.maximum.at(best, b, rank)

@@ -61,6 +61,14 @@ class Territory:
         edges = self.patchwork.smooth.nonzero()[0]
         return [edges, self.patchwork.a.take(edges), self.patchwork.b.take(edges)]
 
+    @cached_property
+    def rank(self) -> Ints:
+        """(E,) place of each smooth edge among all by its length, from the shortest, equal ones as they come."""
+        edges = self.patchwork.smooth.nonzero()[0]
+        out = np.full(len(self.patchwork.a), -1)
+        out[edges[np.argsort(self.patchwork.length[edges], kind="stable")]] = np.arange(len(edges))
+        return out
+
     def neighbours(self, keys: Ints) -> Ints:
         """Keys of the free polygons one smooth link away from those of the `keys`, each once, by region."""
         region, polygon = parted(keys, self.patchwork.count)
@@ -109,11 +117,11 @@ class Territory:
         target = batch.region[owner] * np.int64(work.count) + work.other(edge, batch.polygon[owner])
         inside = among(target, keys)
         label = components(owner[inside], np.searchsorted(keys, target[inside]), len(keys))
-        size = np.bincount(label)
-        first = np.full(len(size), len(keys))
-        np.minimum.at(first, label, np.arange(len(keys)))
-        order = np.lexsort((first[label], -size[label], batch.region))
-        head = order.take(heads(batch.region.take(order)).nonzero()[0])
+        # pieces are numbered by their first polygon, and so region by region
+        size, region = np.bincount(label), np.zeros(int(label.max()) + 1, np.int64)
+        region[label] = batch.region
+        order = np.lexsort((-size, region))
+        head = order.take(heads(region.take(order)).nonzero()[0])
         best = np.full(batch.count, -1)
-        best[batch.region[head]] = label[head]
+        best[region.take(head)] = head
         return np.asarray(best[batch.region] == label)
