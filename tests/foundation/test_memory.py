@@ -40,6 +40,36 @@ def test_what_was_freed_is_given_back():
     assert freed + given > 200e6
 
 
+COMES_AND_GOES = """
+import resource, sys
+sys.path[:0] = {path!r}
+import numpy as np
+from kinform.foundation.memory import keep_heap
+if {keeps}:
+    keep_heap()
+def asked():
+    return resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+before = asked()
+for _ in range(30):
+    rows = [np.ones(200_000) for _ in range(8)]
+    del rows
+print(asked() - before)
+"""
+
+
+def test_pages_of_what_comes_and_goes_are_asked_for_once():
+    if not sys.platform.startswith("linux"):
+        pytest.skip("only Linux with glibc gives pages back so")
+    pages = []
+    for keeps in (False, True):
+        code = COMES_AND_GOES.format(path=[path for path in sys.path if path], keeps=keeps)
+        ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+        pages.append(int(ran.stdout))
+    if pages[0] < 30_000:
+        pytest.skip("this C library keeps them anyway")
+    assert pages[1] < pages[0] / 4
+
+
 def test_large_models_are_what_small_ones_are(monkeypatch):
     monkeypatch.setattr(fcl_adapter, "MANY_FACETS", 0)
     asked = []

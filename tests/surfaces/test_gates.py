@@ -11,7 +11,8 @@ from kinform.model.tolerances import Tolerances
 from kinform.surfaces import constants
 from kinform.surfaces.kinds.batch import Batch
 from kinform.surfaces.kinds.cylinder import Cylinder
-from kinform.surfaces.recovery import _Start
+from kinform.surfaces.recovery import _Start, recover
+from kinform.surfaces.regions import growth
 from kinform.surfaces.regions.candidates import Candidates
 from kinform.surfaces.regions.chords import Rounds
 from kinform.surfaces.regions.growth import _may_be_most
@@ -38,10 +39,27 @@ def test_first_look_refuses_only_what_does_not_conform_for_the_greatest_part(sta
     candidates = Candidates(Cylinder(), fitted.repeat(200, axis=0), np.full(200, -1), np.full(200, start.scale.fit))
     may = _may_be_most(candidates, batch)
     fits = candidates.conforms(batch, candidates.reach(batch))
-    most = np.bincount(region, fits, 200) / batch.size >= constants.MAJORITY
+    many = np.bincount(batch.region[fits], minlength=200)
+    most = (many / batch.size >= constants.MAJORITY) & (many >= Cylinder.least)
     assert not (most & ~may).any()
     assert most.sum() > 20
     assert (~may).sum() > 5
+
+
+@pytest.mark.parametrize("segments", [5, 9, 24, 40])
+def test_pieces_too_few_of_whose_polygons_conform_come_to_nothing_later(monkeypatch, segments):
+    solid = block(0.06, 0.04, 0.01) - centred_rod(0.008, 0.02, segments).translate((0.01, 0, 0))
+    solid += centred_rod(0.006, 0.03, 6).translate((-0.02, 0, 0)) ^ block(0.06, 0.04, 0.024)
+    mesh = of_manifold(solid.refine_to_length(0.02))
+    early = recover(mesh, Tolerances())
+    monkeypatch.setattr(growth, "_most", lambda kind, conforming, size: conforming / size >= constants.MAJORITY)
+    late = recover(mesh, Tolerances())
+    assert (early.labels == late.labels).all()
+    for one, other in zip(early.surfaces, late.surfaces, strict=True):
+        assert (one.kind, one.side) == (other.kind, other.side)
+        np.testing.assert_allclose(
+            [*one.axis, *one.point, one.radius], [*other.axis, *other.point, other.radius], atol=1e-12
+        )
 
 
 def bar(turn):

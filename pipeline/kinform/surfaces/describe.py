@@ -59,14 +59,14 @@ def flat(work: Patchwork, number: Ints, scales: Scales) -> list[Description]:
     owner, vertex = work.corners.expand(member)
     total = np.int64(len(work.vertices))
     region, vertex = parted(distinct(group[owner] * total + vertex), int(total))
-    points = work.vertices[vertex]
+    points = work.at(vertex)
     outward = group_sum(group, work.normal[member] * work.area[member][:, None], count)
     size = np.linalg.norm(outward, axis=1)
     heads = np.array([polygons[0] for polygons in planes])
     rounding, first = scales.rounding[work.mesh[heads]], work.normal[heads]
     outward = np.where(size[:, None] > 0, outward / np.maximum(size, 1e-300)[:, None], first)
     normal, centre, variances = fit_planes(region, points, outward)
-    distance = dot(points - centre[region], normal[region])
+    distance = dot(points - columns_of(centre, region), columns_of(normal, region))
     squares, samples, deepest = _deviations(region, distance, count)
     scatter = np.maximum(np.sqrt(squares / np.maximum(samples - 3, 1)), constants.ROUNDED_SCATTER_OF_PLANES * rounding)
     spread = np.maximum(np.sqrt(variances[:, 1] * samples), constants.LEAST_SPREAD)
@@ -195,7 +195,7 @@ def _uncertainties(
     matrix, _ = normal_equations(sums_of(region, count), columns.T, np.zeros(len(columns)))
     size = np.sqrt(np.maximum(np.einsum("rii->ri", matrix), 1e-300))
     outer = size[:, :, None] * size[:, None, :]
-    inverse = np.linalg.pinv(matrix / outer, hermitian=True, rcond=constants.SINGULAR) / outer
+    inverse = np.linalg.pinv(np.ascontiguousarray(matrix) / outer, hermitian=True, rcond=constants.SINGULAR) / outer
     vague = samples <= free
     offset = _largest(inverse[:, :2, :2] if has_axis else inverse[:, :3, :3])
     linear = np.where(vague, 1.0, constants.COVERAGE * scatter * offset)

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from kinform.foundation.algebra.vectors import box
-from kinform.foundation.memory import uncollected
+from kinform.foundation.memory import keep_heap, uncollected
 from kinform.foundation.records import made
 from kinform.foundation.sorting import ascending, coarse
 from kinform.frozen import dataclass
@@ -48,6 +48,7 @@ def recover(mesh: Mesh, tolerances: Tolerances) -> MeshSurfaces:
 def recover_all(meshes: Sequence[Mesh], tolerances: Tolerances) -> list[MeshSurfaces]:
     """`recover` of each mesh, to the same bits, in fewer and larger steps: most of the time of a small mesh goes into
     beginning steps. Nothing that is made here is in a cycle, so that none are searched for."""
+    keep_heap()
     solid = [_is_solid(mesh) for mesh in meshes]
     starts = [_Start.of(mesh, tolerances) for mesh, there in zip(meshes, solid, strict=True) if there]
     described = iter(_describe_all(starts)) if starts else iter(())

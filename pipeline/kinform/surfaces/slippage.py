@@ -11,10 +11,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.algebra.vectors import cross_columns, dot
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
-from kinform.surfaces.groups import group_mean, sums_of
+from kinform.surfaces.groups import columns_of, group_mean, sums_of
 from kinform.surfaces.polygons.patchwork import Patchwork
 
 
@@ -37,13 +37,13 @@ class Slippage:
 
 def slippage(work: Patchwork, patch: Ints, polygon: Ints, count: int) -> Slippage:
     """The motions of `count` patches, given as pairs (patch, polygon)."""
-    normal, weight = work.normal[polygon], work.area[polygon]
+    normal, centre, weight = work.normals(polygon), work.middles(polygon), work.area.take(polygon)
     sums = sums_of(patch, count)
     total = np.maximum(sums(weight), 1e-300)
-    middle = group_mean(patch, work.centre[polygon], count, weight)
-    offset = work.centre[polygon] - middle[patch]
+    middle = group_mean(patch, centre, count, weight)
+    offset = centre - columns_of(middle, patch)
     size = np.maximum(np.sqrt(sums(weight * dot(offset, offset)) / total), 1e-12)
-    rows = np.concatenate([cross(offset / size[patch][:, None], normal), normal], axis=1).T
+    rows = np.concatenate([cross_columns(offset / size.take(patch)[:, None], normal).T, normal.T])
     matrix: Array = np.empty((count, 6, 6))
     for i in range(6):
         matrix[:, i, i:] = matrix[:, i:, i] = (sums(weight * rows[i] * rows[i:]) / total).T

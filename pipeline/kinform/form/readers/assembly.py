@@ -29,6 +29,7 @@ from kinform.form.readers.sensors import sensors_of
 from kinform.form.readers.springs import springs_of
 from kinform.form.sources import AS_IT_IS, Reading, is_source
 from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.memory import keep_heap
 from kinform.foundation.regular import AS_A_FILE, not_a_file
 from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array
@@ -64,6 +65,7 @@ def load_with_contents(
         fault = f"{'the file' if is_source(path) else 'the manifest'} {no_file(path)}"
         remedy = AS_A_FILE if not_a_file(path) else "name a manifest (TOML); see kinform init"
         raise InputError([Problem(fault, str(path), None, remedy)])
+    keep_heap()
     problems = Problems()
     meshes = {} if earlier is None else earlier_meshes(earlier, files or {})
     design = DesignFiles(path.parent, problems, allow_outside, meshes, reading)

@@ -21,14 +21,28 @@ def components(a: Ints, b: Ints, count: int) -> Ints:
 
 def roots(a: Ints, b: Ints, count: int) -> Ints:
     """(count,) first node of the component of each."""
-    root = np.arange(count)
+    own = np.arange(count)
+    root, rounds = own.copy(), 0
     while True:
         apart = (a != b).nonzero()[0]
         if not len(apart):
-            return root
+            break
         a, b = a.take(apart), b.take(apart)
-        np.minimum.at(root, np.maximum(a, b), np.minimum(a, b))
-        higher = root.take(root)
-        while (higher != root).any():
-            root, higher = higher, higher.take(higher)
+        hung = np.maximum(a, b)
+        np.minimum.at(root, hung, np.minimum(a, b))
+        if len(hung) > count:
+            hung = (root != own).nonzero()[0]
+        # only what was hung now is made flat; what hangs under it, in the end
+        mine = root.take(hung)
+        higher = root.take(mine)
+        while (higher != mine).any():
+            root[hung] = mine = higher
+            higher = root.take(mine)
         a, b = root.take(a), root.take(b)
+        rounds += 1
+    while rounds > 1:
+        higher = root.take(root)
+        if (higher == root).all():
+            break
+        root = higher
+    return root

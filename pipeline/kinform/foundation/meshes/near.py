@@ -58,7 +58,7 @@ class Near:
         first = np.repeat(np.arange(len(points)), counts)
         second = first + 1 + np.arange(len(first)) - np.repeat(np.cumsum(counts) - counts, counts)
         pairs = np.stack([order[first], order[second]], axis=1)
-        apart = points[pairs[:, 0]] - points[pairs[:, 1]]
+        apart = points.take(pairs[:, 0], axis=0) - points.take(pairs[:, 1], axis=0)
         return np.sort(pairs[dot(apart, apart) <= distance * distance], axis=1)
 
 

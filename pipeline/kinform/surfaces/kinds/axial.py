@@ -12,7 +12,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.model.arrays import Array
 from kinform.surfaces.constants import ON_AXIS
-from kinform.surfaces.groups import columns_of
+from kinform.surfaces.groups import repeated
 from kinform.surfaces.kinds.batch import Batch, Params
 
 OF_AXIS = 6
@@ -79,8 +79,9 @@ def angular_widths(batch: Batch, params: Params) -> Array:
     group, (_, rho, radial) = batch.seen(params, cylindrical, OF_AXIS)
     count = len(batch.polygon)
     middle, radial = radial[:count], radial[count:]
-    cos = dot(radial, columns_of(middle, owner))
-    sin = dot(radial, columns_of(cross(columns_of(params[:, :3], batch.region), middle), owner))
+    many = batch.many
+    cos = dot(radial, repeated(middle, many))
+    sin = dot(radial, repeated(cross(repeated(params[:, :3], batch.size), middle), many))
     least = (ON_AXIS * np.abs(params[:, 6])).take(group[count:])
     angle = np.where(rho[count:] > least, np.arctan2(sin, cos), 0.0)
     high, low = np.zeros(len(batch.polygon)), np.zeros(len(batch.polygon))

@@ -14,7 +14,7 @@ import numpy as np
 from kinform.foundation.sorting import occurrences
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.constants import RUN_OF_PAIRS
-from kinform.surfaces.groups import columns_of, parted
+from kinform.surfaces.groups import parted, repeated
 from kinform.surfaces.polygons.patchwork import Patchwork
 
 Params = Array
@@ -47,6 +47,8 @@ class Batch:
         # the batch that this is a selection of, and the pairs of it, until `seen` is asked for
         self._source: tuple[Batch, Ints] | None = None
         self._widths: tuple[Params, Widths, Array] | None = None
+        self._runs: Ints | None = None
+        self._many: Ints | None = None
 
     def parts(self) -> list[Batch]:
         """The batch cut into runs of pairs, so that what is computed for every corner stays small."""
@@ -68,12 +70,19 @@ class Batch:
             if source.has_seen(params, look):
                 self._corners, self._seen = source._seen_of(rows)
         if not self.has_seen(params, look):
-            owner, vertex = self.corners
-            group = np.concatenate([self.region, self.region.take(owner)])
+            _, vertex = self.corners
             points = self.patchwork.places(self.polygon, vertex)
-            self._seen = params, look, (group, look(columns_of(params[:, :used], group), points))
+            group = self.for_seen(np.arange(self.count)[:, None])[:, 0]
+            self._seen = params, look, (group, look(self.for_seen(params[:, :used]), points))
         assert self._seen is not None
         return cast("tuple[Ints, Seen]", self._seen[2])
+
+    def for_seen(self, table: Any) -> Any:
+        """(N, k) what the regions have in a table (R, k), for each of what `seen` gives; in memory column by column."""
+        if self._runs is None:
+            corners = np.bincount(self.region, self.many, self.count).astype(np.int64)
+            self._runs = np.concatenate([self.size, corners])
+        return repeated(np.concatenate([table, table]), self._runs)
 
     def has_seen(self, params: Params, look: Look) -> bool:
         """Whether that is what `seen` was asked for last."""
@@ -131,6 +140,13 @@ class Batch:
         if self._corners is None:
             self._corners = self.patchwork.corners.expand(self.polygon)
         return self._corners
+
+    @property
+    def many(self) -> Ints:
+        """(pairs,) how many vertices each polygon has."""
+        if self._many is None:
+            self._many = self.patchwork.corners.lengths(self.polygon)
+        return self._many
 
     @property
     def points(self) -> Array:

@@ -55,7 +55,7 @@ class Cone(Ruled):
         """At least five generators, a sagitta above the tolerance, and a taper that no cylinder has."""
         lines, sweep, even = self.evident(batch, params, scale)
         region = batch.region[batch.corners[0]]
-        t = dot(batch.points - params[region, 3:6], params[region, :3])
+        t = dot(batch.points - columns_of(params[:, 3:6], region), columns_of(params[:, :3], region))
         low, high = (np.where(batch.size > 0, end, 0.0) for end in group_range(region, t, batch.count))
         slope = np.tan(params[:, 7])
         largest = np.maximum(params[:, 6] + high * slope, params[:, 6] + low * slope)

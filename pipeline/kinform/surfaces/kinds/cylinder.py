@@ -8,7 +8,7 @@ from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.sorting import among, ascending, occurrences
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.constants import EQUAL_STEPS, LARGEST, LEAST_POINTS, RIDGES_AGREE, SAGITTA
-from kinform.surfaces.groups import columns_of, group_mean, group_moments, group_range, spheres_of
+from kinform.surfaces.groups import group_mean, group_moments, group_range, repeated, spheres_of
 from kinform.surfaces.kinds.axial import frames
 from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.kinds.ruled import Ruled, generators
@@ -88,13 +88,15 @@ def _circle(batch: Batch, axis: Array, region: Ints, vertex: Ints) -> tuple[Para
     x, y = frames(axis)
     order = ascending(region, batch.count)
     region, points = region.take(order), batch.patchwork.at(vertex.take(order))
+    sizes = np.bincount(region, minlength=batch.count)
     middle = group_mean(region, points, batch.count)
-    offset = points - columns_of(middle, region)
-    seen = [dot(offset, columns_of(across, region)) for across in (x, y)]
+    frame = repeated(np.array([*middle.T, *x.T, *y.T]).T, sizes)
+    offset = points - frame[:, :3]
+    seen = [dot(offset, frame[:, 3:6]), dot(offset, frame[:, 6:])]
     centre, square = spheres_of(region, seen, batch.count)
     params = np.zeros((batch.count, 8))
     params[:, :3] = axis
     params[:, 3:6] = middle + centre[:, :1] * x + centre[:, 1:] * y
     params[:, 6] = np.sqrt(np.maximum(square, 0.0))
-    enough = np.bincount(region, minlength=batch.count) >= LEAST_POINTS
+    enough = sizes >= LEAST_POINTS
     return params, enough & (square > 0) & (params[:, 6] < LARGEST) & np.isfinite(params).all(axis=1)

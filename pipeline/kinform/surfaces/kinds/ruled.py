@@ -21,6 +21,7 @@ from kinform.surfaces.groups import (
     normal_equations,
     ordered_quantile,
     parted,
+    repeated,
     slices,
     solve_normal,
     sums_of,
@@ -52,36 +53,40 @@ class Ruled(Kind, Protocol):
 
     def refine(self, batch: Batch, params: Params, tolerance: Array, steps: int) -> Params:
         """Gauss–Newton over offset, tilt, radius and, for cones, half-angle."""
-        work = batch.patchwork
+        work, count = batch.patchwork, batch.count
         moving = self.moving(batch)
+        known = None
         for step in range(steps):
             if step in (0, 2):
                 region, vertex = moving.only(*self.defining(batch, params, tolerance))
             if not len(region):
                 break
-            at, before, sums = self._about(work, params, region, vertex), params, sums_of(region, batch.count)
-            params, middle = _recentre(params, region, sums(at.t))
+            if known is not region:
+                known, sizes, sums = region, np.bincount(region, minlength=count), sums_of(region, count)
+            at, before = self._about(work, params, region, sizes, vertex), params
+            params, middle = _recentre(params, sizes, sums(at.t))
             at.t[:] -= middle.take(region)
             frame = frames(params[:, :3])
-            columns, residual = self._equations(at, params, frame, region)
+            columns, residual = self._equations(at, params, frame, region, sizes)
+            of_group = sums
             if self.tapers:
                 tips = (at.rho < self.apices(params).take(region)).nonzero()[0]
                 if len(tips):
                     mine, points = params[region[tips]], work.at(vertex[tips])
                     group, columns, residual = with_apices(mine, points, region, columns, residual, tips)
-                    sums = sums_of(group, batch.count)
-            matrix, right = normal_equations(sums, columns.T, residual)
+                    of_group = sums_of(group, count)
+            matrix, right = normal_equations(of_group, columns.T, residual)
             change = self.change(matrix, right)
             params = moving.taken(self.step(params, change, frame), before)
             region, vertex = moving.after(change, constants.CONVERGED, region, vertex)
         return params
 
     @staticmethod
-    def _about(work: Patchwork, params: Params, region: Ints, vertex: Ints) -> Cylindrical:
-        """The vertices as the axes of their regions see them."""
+    def _about(work: Patchwork, params: Params, region: Ints, sizes: Ints, vertex: Ints) -> Cylindrical:
+        """The vertices as the axes of their regions see them, each of which has so many (R,)."""
         count = len(region)
         if count <= constants.ROWS:
-            return cylindrical(columns_of(params[:, :OF_AXIS], region), work.at(vertex))
+            return cylindrical(repeated(params[:, :OF_AXIS], sizes), work.at(vertex))
         at = Cylindrical(np.empty(count), np.empty(count), np.empty((3, count)).T)
         for rows in slices(count, constants.ROWS):
             part = cylindrical(columns_of(params[:, :OF_AXIS], region[rows]), work.at(vertex[rows]))
@@ -89,19 +94,23 @@ class Ruled(Kind, Protocol):
         return at
 
     def _equations(
-        self, at: Cylindrical, params: Params, frame: tuple[Array, Array], region: Ints
+        self, at: Cylindrical, params: Params, frame: tuple[Array, Array], region: Ints, sizes: Ints
     ) -> tuple[Array, Array]:  # fmt: skip
-        """Derivatives (N, 5 or 6) and distances (N,) of points at these coordinates about their regions' axes."""
-        columns, residual = np.empty((6 if self.tapers else 5, len(region))).T, np.empty(len(region))
+        """Derivatives (N, 5 or 6) and distances (N,) of points at these coordinates about their regions' axes, each of
+        which has so many (R,)."""
+        count = len(region)
+        columns, residual = np.empty((6 if self.tapers else 5, count)).T, np.empty(count)
         x, y = frame
-        for rows in slices(len(region), constants.ROWS):
-            mine = region[rows]
+        lean = [np.cos(params[:, 7]), np.sin(params[:, 7])] if self.tapers else []
+        table = np.array([*x.T, *y.T, params[:, 6], *lean]).T
+        for rows in slices(count, constants.ROWS):
+            mine = (repeated(table, sizes) if count <= constants.ROWS else columns_of(table, region[rows])).T
             part = Cylindrical(at.t[rows], at.rho[rows], at.radial[rows])
-            off = np.subtract(part.rho, params[:, 6].take(mine), out=residual[rows])
-            lean = self._lean(params, mine)
-            self._columns(part, (columns_of(x, mine), columns_of(y, mine)), off, lean, columns[rows])
-            if lean is not None:
-                cos, sin = lean
+            off = np.subtract(part.rho, mine[6], out=residual[rows])
+            tilt = (mine[7], mine[8]) if self.tapers else None
+            self._columns(part, (mine[:3].T, mine[3:6].T), off, tilt, columns[rows])
+            if tilt is not None:
+                cos, sin = tilt
                 off *= cos
                 off -= part.t * sin
         return columns, residual
@@ -129,12 +138,14 @@ class Ruled(Kind, Protocol):
     def held(self, batch: Batch, params: Params) -> tuple[Ints, Probe]:
         """By their cylindrical coordinates."""
         group, (t, rho, radial) = batch.seen(params, cylindrical, OF_AXIS)
-        radius, lean, middles = params[:, 6].take(group), self._lean(params, group), len(batch.polygon)
+        angle, middles = params[:, 7], len(batch.polygon)
+        lean = [np.cos(angle), np.sin(angle)] if self.tapers else []
+        radius, *lean = batch.for_seen(np.array([params[:, 6], *lean]).T).T
         distance = rho - radius
-        if lean is None:
+        if not lean:
             return group, Probe(distance, radial[:middles], radius)
         cos, sin = lean
-        axis = columns_of(params[:, :3], batch.region)
+        axis = repeated(params[:, :3], batch.size)
         normal = cos[:middles, None] * radial[:middles] - sin[:middles, None] * axis
         rise = t * sin
         distance *= cos
@@ -283,20 +294,23 @@ def generators(batch: Batch, params: Params) -> tuple[Ints, Ints, Flags]:
 
 def _along(work: Patchwork, params: Params, region: Ints, edge: Ints) -> Flags:
     """Whether each edge runs along a generator of its region's surface."""
-    direction = columns_of(params[:, :3], region)
+    sizes = np.bincount(region, minlength=len(params))
+    bow = 8 * constants.BOW * np.maximum(np.abs(params[:, 6]), 1e-12)
+    mine = repeated(np.array([*params.T[:3], bow]).T, sizes)
+    direction = mine[:, :3]
     cones = params[:, 7].nonzero()[0]
     if len(cones):
         # regions are in order, and cylinders come before cones
+        axes, angle = params[cones[0] :, :OF_AXIS], params[cones[0] :, 7]
         first = int(region.searchsorted(cones[0]))
-        mine = columns_of(params[:, :OF_AXIS], region[first:])
-        radial = cylindrical(mine, work.halfway(edge[first:])).radial
-        cos, sin = (f(params[:, 7]).take(region[first:])[:, None] for f in (np.cos, np.sin))
-        direction[first:] = cos * mine[:, :3] + sin * radial
+        table = np.array([*axes.T, np.cos(angle), np.sin(angle)]).T
+        leaning = repeated(table, sizes[cones[0] :])
+        radial = cylindrical(leaning[:, :OF_AXIS], work.halfway(edge[first:])).radial
+        direction[first:] = leaning[:, 6:7] * leaning[:, :3] + leaning[:, 7:8] * radial
     length = work.length.take(edge)
     forward = np.abs(dot(work.along(edge), direction))
     aside = np.maximum(length * length - forward * forward, 0.0)
-    straight = aside < (8 * constants.BOW * np.maximum(np.abs(params[:, 6]), 1e-12)).take(region)
-    return np.asarray((forward > constants.ALONG * length) & straight & (length > 0))
+    return np.asarray((forward > constants.ALONG * length) & (aside < mine[:, 3]) & (length > 0))
 
 
 def with_apices(
@@ -324,10 +338,10 @@ def with_apices(
     )
 
 
-def _recentre(params: Params, region: Ints, total: Array) -> tuple[Params, Array]:
-    """Moves each reference point along its axis beside the mean of the points, whose places along it have this `total`
-    (R,); by how much (R,)."""
-    middle = total / np.maximum(np.bincount(region, minlength=len(total)), 1)
+def _recentre(params: Params, sizes: Ints, total: Array) -> tuple[Params, Array]:
+    """Moves each reference point along its axis beside the mean of its points, so many (R,), whose places along it have
+    this `total` (R,); by how much (R,)."""
+    middle = total / np.maximum(sizes, 1)
     out = params.copy()
     out[:, 3:6] += middle[:, None] * params[:, :3]
     out[:, 6] += middle * np.tan(params[:, 7])

@@ -31,9 +31,9 @@ class Sphere(DoublyCurved):
         """The sphere through the vertices that polygons share."""
         work, count = batch.patchwork, batch.count
         region, vertex = _shared(batch)
-        points = work.vertices[vertex]
+        points = work.at(vertex)
         middle = group_mean(region, points, count)
-        centre, square = spheres_through(region, points - middle[region], count)
+        centre, square = spheres_through(region, points - columns_of(middle, region), count)
         params = np.zeros((count, 8))
         params[:, 3:6] = middle + centre
         params[:, 6] = np.sqrt(np.maximum(square, 0.0))
@@ -77,8 +77,9 @@ class Sphere(DoublyCurved):
         work = batch.patchwork
         region, _ = batch.inner_vertices(3)
         surrounded = np.bincount(region, minlength=batch.count)
-        total = group_sum(batch.region, (work.normal * work.area[:, None])[batch.polygon], batch.count)
-        area = np.maximum(np.bincount(batch.region, work.area[batch.polygon], batch.count), 1e-300)
+        each = work.area.take(batch.polygon)
+        total = group_sum(batch.region, work.normals(batch.polygon) * each[:, None], batch.count)
+        area = np.maximum(np.bincount(batch.region, each, batch.count), 1e-300)
         # a cap of half-angle φ has the mean normal (1 + cos φ) / 2
         cos = np.clip(2 * np.linalg.norm(total, axis=1) / area - 1, -1.0, 1.0)
         credible = (surrounded >= 4) & (params[:, 6] * (1 - cos) > SAGITTA * scale.fit)

@@ -16,7 +16,7 @@ from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import constants
-from kinform.surfaces.groups import columns_of, group_mean, group_sum, slices, sums_of
+from kinform.surfaces.groups import columns_of, group_mean, group_moments, slices, sums_of
 from kinform.surfaces.polygons.facets import Facets, angles
 from kinform.surfaces.polygons.noise import Scale, departures
 
@@ -238,8 +238,8 @@ def fit_planes(group: Ints, points: Array, outward: Array) -> tuple[Array, Array
     count = len(outward)
     size = np.maximum(np.bincount(group, minlength=count), 1)
     centre = group_mean(group, points, count)
-    offset = points - centre[group]
-    covariance = group_sum(group, offset[:, :, None] * offset[:, None, :], count) / size[:, None, None]
+    offset = points - columns_of(centre, group)
+    covariance = group_moments(group, offset.T, count) / size[:, None, None]
     values, vectors = np.linalg.eigh(covariance)
     normal = vectors[:, :, 0] * np.sign(dot(vectors[:, :, 0], outward))[:, None]
     vague = np.abs(dot(normal, outward)) < constants.OUTWARD

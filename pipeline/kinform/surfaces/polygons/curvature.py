@@ -14,9 +14,11 @@ from functools import cached_property
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.sorting import ascending
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
+from kinform.surfaces.groups import columns_of
 from kinform.surfaces.polygons.patchwork import Patchwork
 
 _PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
@@ -56,7 +58,7 @@ def links(work: Patchwork, free: Flags) -> Links:
     edge = edge[free[work.a[edge]] & free[work.b[edge]]]
     a, b = work.a[edge], work.b[edge]
     key = np.minimum(a, b) * np.int64(work.count) + np.maximum(a, b)
-    order = np.argsort(key, kind="stable")
+    order = ascending(key, work.count * work.count)
     first = np.r_[True, np.diff(key[order]) != 0] if len(key) else np.zeros(0, bool)
     number = np.empty(len(key), np.int64)
     number[order] = np.cumsum(first) - 1
@@ -129,10 +131,12 @@ def continues(work: Patchwork, bent: Curvature, link: Links) -> Flags:
     like = np.abs(strong_a - strong_b) <= constants.ALIKE_STRONG * larger
     like &= np.abs(bent.weak[a] - bent.weak[b]) <= constants.ALIKE_WEAK * larger
     simple = np.maximum(bent.ratio[a], bent.ratio[b]) < constants.SIMPLE_RATIO
-    cosine = dot(bent.along[a], bent.along[b])
-    step = work.centre[b] - work.centre[a]
-    size = np.maximum(np.linalg.norm(step, axis=1), 1e-300)
-    going = np.abs(dot(step, bent.along[a] + bent.along[b] * np.sign(cosine)[:, None])) / 2 / size
+    along_a, along_b = columns_of(bent.along, a), columns_of(bent.along, b)
+    cosine = dot(along_a, along_b)
+    step = work.middles(b) - work.middles(a)
+    square = step * step
+    size = np.maximum(np.sqrt(square[:, 0] + (square[:, 1] + square[:, 2])), 1e-300)
+    going = np.abs(dot(step, along_a + along_b * np.sign(cosine)[:, None])) / 2 / size
     turn = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
     allowed = np.where(
         going > constants.GOING_ALONG, constants.TURNED_ALONG, constants.TURNED_ALONG + work.angle[link.edge]

@@ -51,7 +51,9 @@ def _onward(work: Patchwork, ridges: Ints) -> tuple[Flags, tuple[Ints, Ints]]:
     the next)."""
     at_ridge = np.zeros(len(work.vertices), bool)
     at_ridge[work.ends[ridges]] = True
-    near = np.flatnonzero(work.smooth & at_ridge[work.ends].any(axis=1))
+    near = work.smooth.nonzero()[0]
+    first, second = work.ends.take(near, axis=0).T
+    near = near.take((at_ridge.take(first) | at_ridge.take(second)).nonzero()[0])
     beside = Ragged(work.ends[near].ravel(), np.repeat(near, 2), len(work.vertices))
     place, following = beside.expand(work.ends[ridges].ravel())
     ridge = ridges[place // 2]

@@ -27,7 +27,8 @@ class Candidates:
 
     def of(self, numbers: Ints) -> Candidates:
         """Some of them, in this order."""
-        return Candidates(self.kind.of(numbers), self.params[numbers], self.side[numbers], self.tolerance[numbers])
+        side, tolerance = self.side.take(numbers), self.tolerance.take(numbers)
+        return Candidates(self.kind.of(numbers), self.params.take(numbers, axis=0), side, tolerance)
 
     def run(self, kind: Kind, regions: slice) -> Candidates:
         """A run of them, which are of this kind."""
@@ -71,7 +72,7 @@ class Candidates:
         work, region, polygon = batch.patchwork, batch.region, batch.polygon
         count, owner = len(region), batch.corners[0]
         group, held = self.kind.held(batch, self.params)
-        limit, chord = self.tolerance.take(group), 1 - np.cos(np.minimum(reach, np.pi) / 2)
+        limit, chord = batch.for_seen(self.tolerance[:, None])[:, 0], 1 - np.cos(np.minimum(reach, np.pi) / 2)
         # a flat has all its vertices on the surface, but is wider than the facets of it
         least = chord.take(region)
         least *= held.curvature_radius[:count]

@@ -11,10 +11,11 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
-from kinform.foundation.sorting import among, heads
+from kinform.foundation.sorting import among, ascending, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
+from kinform.surfaces.groups import repeated
 from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.kinds.kind import Kind
 from kinform.surfaces.polygons.noise import Scales
@@ -41,7 +42,8 @@ class Growth:
 def whole(
     territory: Territory, kind: Kind, batch: Batch, side: Ints, proposal: tuple[Params, Flags] | None = None
 ) -> Growth:  # fmt: skip
-    """Regions of pieces that are one surface for the greatest part, without growth; of others come empty ones or none.
+    """Regions of pieces, each of which hangs together, that are one surface for the greatest part, without growth; of
+    others come empty ones or none.
 
     Four fits out of five end at the first look, so that comes before anything that costs more. `proposal` is that of
     the kind for the batch, where it was made before.
@@ -56,11 +58,12 @@ def whole(
         pieces, number = pieces.select(_may_be_most(surfaces, pieces).take(pieces.region)).compact()
         surfaces, origin, fit = surfaces.of(number), origin[number], fit[number]
     fits = surfaces.conforms(pieces, surfaces.reach(pieces))
-    share = np.bincount(pieces.region, fits, pieces.count) / pieces.size
-    pieces, number = pieces.select(fits & (share >= constants.MAJORITY)[pieces.region]).compact()
+    every, conforming = pieces.size, np.bincount(pieces.region[fits], minlength=pieces.count)
+    most = _most(kind, conforming, every)
+    pieces, number = pieces.select(fits & most.take(pieces.region)).compact()
     kept = surfaces.of(number).within(fit[number]).refine(pieces, 2)
     kept = kept.within(_justify(kept, pieces, territory.scales_of(pieces)))
-    pieces = _large(kind, _connected(territory, _conforming(kept, pieces)))
+    pieces = _settle(territory, kept, pieces, every[number])
     return _credible(territory, kept.refine(pieces, 1), pieces, origin[number])
 
 
@@ -145,8 +148,8 @@ def _grow(territory: Territory, surfaces: Candidates, batch: Batch) -> tuple[Bat
 def _facing(kind: Kind, batch: Batch, params: Params) -> Ints:
     """+1 where the polygons face as the normals of the surfaces, -1 where they face against them."""
     work = batch.patchwork
-    normal = kind.probe(params[batch.region], work.centre[batch.polygon]).normal
-    agreement = dot(normal, work.normal[batch.polygon]) * work.area[batch.polygon]
+    normal = kind.probe(repeated(params, batch.size), work.middles(batch.polygon)).normal
+    agreement = dot(normal, work.normals(batch.polygon)) * work.area.take(batch.polygon)
     return np.where(np.bincount(batch.region, agreement, batch.count) >= 0, 1, -1).astype(np.int64)
 
 
@@ -158,8 +161,14 @@ def _may_be_most(surfaces: Candidates, batch: Batch) -> Flags:
     rows = ((np.arange(len(batch.region)) - first.take(batch.region)) % 2 == 0).nonzero()[0]
     some = Batch(batch.patchwork, batch.region.take(rows), batch.polygon.take(rows), batch.count)
     fits = surfaces.conforms(some, np.full(batch.count, constants.WIDEST + constants.FACET_ROUNDING))
-    left = size - (some.size - np.bincount(some.region, fits, batch.count))
-    return np.asarray(left / size >= constants.MAJORITY)
+    refused = some.size - np.bincount(some.region[fits], minlength=batch.count)
+    return _most(surfaces.kind, size - refused, size)
+
+
+def _most(kind: Kind, conforming: Ints, size: Ints) -> Flags:
+    """Whether so many polygons that conform, of so many in all, are the greatest part, and as many as the kind needs:
+    none are gained afterwards."""
+    return np.asarray((conforming / size >= constants.MAJORITY) & kind.enough(conforming))
 
 
 def _hopeful(territory: Territory, surfaces: Candidates, batch: Batch) -> Flags:
@@ -183,7 +192,9 @@ def _drop_shared(kind: Kind, batch: Batch) -> Batch:
     for number, (_, regions) in enumerate(kind.each(batch.count)):
         if number:
             polygon = np.where(batch.region < regions.start, polygon, polygon + number * batch.patchwork.count)
-    order = np.lexsort((batch.region, (-batch.size).take(batch.region), polygon))
+    # of each polygon the largest region first, of equal ones the first
+    order = ascending((batch.size.max() - batch.size).take(batch.region), int(batch.size.max()) + 1)
+    order = order.take(ascending(polygon.take(order), int(polygon.max()) + 1))
     polygon = polygon.take(order)
     first = order.take(heads(polygon).nonzero()[0])
     unshared = np.bincount(batch.region.take(first), minlength=batch.count)
@@ -194,19 +205,15 @@ def _conforming(surfaces: Candidates, batch: Batch) -> Batch:
     return batch.select(surfaces.conforms(batch, surfaces.reach(batch)))
 
 
-def _connected(territory: Territory, batch: Batch) -> Batch:
-    return batch.select(territory.connected(batch))
-
-
 def _large(kind: Kind, batch: Batch) -> Batch:
     return batch.where(kind.enough(batch.size))
 
 
-def _settle(territory: Territory, surfaces: Candidates, batch: Batch) -> Batch:
-    """The batch, whose regions are connected, without polygons that do not conform, and without regions that fell
-    apart and became too small."""
+def _settle(territory: Territory, surfaces: Candidates, batch: Batch, whole: Ints | None = None) -> Batch:
+    """The batch without polygons that do not conform, and without regions that fell apart and became too small. Regions
+    of as many polygons as `whole` (R,) hang together, by default all of them."""
     kept = _conforming(surfaces, batch)
-    torn = (kept.size < batch.size)[kept.region].nonzero()[0]
+    torn = (kept.size < (batch.size if whole is None else whole))[kept.region].nonzero()[0]
     if len(torn):
         keep = np.ones(len(kept.region), bool)
         keep[torn] = territory.connected(Batch(kept.patchwork, kept.region[torn], kept.polygon[torn], kept.count))

@@ -13,7 +13,7 @@ from kinform.foundation.meshes.near import Near
 from kinform.foundation.sorting import coarse
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
-from kinform.surfaces.groups import members
+from kinform.surfaces.groups import columns_of, members
 from kinform.surfaces.kinds.batch import Batch
 from kinform.surfaces.polygons.noise import Scale, Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
@@ -35,13 +35,15 @@ def coincident_planes(work: Patchwork, number: Ints, scale: Scale) -> Ints:
     if not len(pairs):
         return number
     larger, smaller = _by_size(pairs, area)
-    height = np.abs(dot(normal[larger], centre[smaller] - centre[larger]))
+    above = centre.take(smaller, axis=0) - centre.take(larger, axis=0)
+    height = np.abs(dot(normal.take(larger, axis=0), above))
     near = height < scale.fit
     larger, smaller = larger[near], smaller[near]
     first = np.full(count, -1)
     first[number[member][::-1]] = member[::-1]
     owner, vertex = work.corners.expand(first[smaller])
-    away = np.abs(dot(normal[larger[owner]], work.vertices[vertex] - centre[larger[owner]]))
+    larger_of = larger.take(owner)
+    away = np.abs(dot(columns_of(normal, larger_of), work.at(vertex) - columns_of(centre, larger_of)))
     same = np.bincount(owner, away > scale.fit, len(smaller)) == 0
     root = _roots(larger[same], smaller[same], area)
     return np.where(number >= 0, root[np.maximum(number, 0)], -1)
@@ -123,8 +125,9 @@ def _partners(surfaces: Candidates, batch: Batch, size: Array | Ints, scale: Sca
     for some in (range(1), range(1, 3), range(3, constants.SAMPLES)):
         first, last = starts[smaller[alive]], starts[smaller[alive] + 1] - 1
         at = first[:, None] + (np.array(some) * np.maximum(last - first, 0)[:, None]) // (constants.SAMPLES - 1)
-        points = work.vertices[vertex[np.minimum(at, final[alive][:, None])]].reshape(-1, 3)
-        away = np.abs(kind.probe(params[larger[alive].repeat(len(some))], points).distance).reshape(-1, len(some))
+        points = work.at(vertex[np.minimum(at, final[alive][:, None])].ravel())
+        mine = columns_of(params, larger[alive].repeat(len(some)))
+        away = np.abs(kind.probe(mine, points).distance).reshape(-1, len(some))
         distance[alive] = np.maximum(distance[alive], away.max(axis=1))
         alive = alive[distance[alive] < near[alive]]
     distance = np.where(distance < near, distance, np.inf)

@@ -17,7 +17,7 @@ from kinform.foundation.sorting import distinct, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
-from kinform.surfaces.groups import quantile, renumbered
+from kinform.surfaces.groups import quantile, renumbered, repeated
 from kinform.surfaces.kinds.batch import Batch
 from kinform.surfaces.kinds.cone import Cone
 from kinform.surfaces.kinds.cylinder import Cylinder
@@ -258,8 +258,7 @@ def _seeds(territory: Territory, edges: Ints, tried: Flags, side: int) -> Ints:
     start = edges.take(np.flatnonzero((work.sign.take(edges) == side) & ~tried.take(edges)))
     if not len(start):
         return start
-    rank = np.empty(len(start), np.int64)
-    rank[np.argsort(work.length[start], kind="stable")] = np.arange(len(start))
+    rank = territory.rank.take(start)
     a, b, best = work.a.take(start), work.b.take(start), np.full(work.count, -1)
     np.maximum.at(best, a, rank)
     np.maximum.at(best, b, rank)
@@ -303,11 +302,14 @@ def _around(territory: Territory, seeds: Ints, side: Ints, straightness: float) 
     polygon = np.concatenate([work.a[seeds], work.b[seeds]])
     region = np.concatenate([numbers, numbers])
     owner, edge = territory.links.expand(polygon)
-    target = work.other(edge, polygon[owner])
-    mine = region[owner]
-    cosine = np.abs(dot(work.along(edge), work.along(seeds[mine])))
-    near = cosine >= straightness * work.length[edge] * work.length[seeds[mine]]
-    keep = near & territory.free[target] & (work.sign[edge] * side[mine] >= 0)
+    target = work.other(edge, polygon.take(owner))
+    mine = region.take(owner)
+    lengths = territory.links.lengths(polygon)
+    each = np.array([*work.along(seeds).T, work.length.take(seeds)])
+    seed = repeated(np.concatenate([each, each], axis=1).T, lengths)
+    cosine = np.abs(dot(work.along(edge), seed[:, :3]))
+    near = cosine >= straightness * work.length.take(edge) * seed[:, 3]
+    keep = near & territory.free.take(target) & (work.sign.take(edge) * side.take(mine) >= 0)
     keys = np.concatenate([region, mine[keep]]) * np.int64(work.count) + np.concatenate([polygon, target[keep]])
     return Batch.of_keys(work, distinct(keys), len(seeds))
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from kinform.foundation.graphs.components import components
@@ -46,9 +48,26 @@ class Territory:
     @property
     def smooth(self) -> Ints:
         """Smooth edges between free polygons."""
-        work = self.patchwork
-        edges = np.flatnonzero(work.smooth)
-        return edges[self.free[work.a[edges]] & self.free[work.b[edges]]]
+        edges, a, b = self._open
+        rows = (self.free.take(a) & self.free.take(b)).nonzero()[0]
+        if len(rows) < len(edges):
+            self._open[:] = edges.take(rows), a.take(rows), b.take(rows)
+        return self._open[0]
+
+    @cached_property
+    def _open(self) -> list[Ints]:
+        """Smooth edges that were between free polygons when that was asked last, and the polygons on either side: what
+        is taken is never free again."""
+        edges = self.patchwork.smooth.nonzero()[0]
+        return [edges, self.patchwork.a.take(edges), self.patchwork.b.take(edges)]
+
+    @cached_property
+    def rank(self) -> Ints:
+        """(E,) place of each smooth edge among all by its length, from the shortest, equal ones as they come."""
+        edges = self.patchwork.smooth.nonzero()[0]
+        out = np.full(len(self.patchwork.a), -1)
+        out[edges[np.argsort(self.patchwork.length[edges], kind="stable")]] = np.arange(len(edges))
+        return out
 
     def neighbours(self, keys: Ints) -> Ints:
         """Keys of the free polygons one smooth link away from those of the `keys`, each once, by region."""
@@ -98,11 +117,11 @@ class Territory:
         target = batch.region[owner] * np.int64(work.count) + work.other(edge, batch.polygon[owner])
         inside = among(target, keys)
         label = components(owner[inside], np.searchsorted(keys, target[inside]), len(keys))
-        size = np.bincount(label)
-        first = np.full(len(size), len(keys))
-        np.minimum.at(first, label, np.arange(len(keys)))
-        order = np.lexsort((first[label], -size[label], batch.region))
-        head = order.take(heads(batch.region.take(order)).nonzero()[0])
+        # pieces are numbered by their first polygon, and so region by region
+        size, region = np.bincount(label), np.zeros(int(label.max()) + 1, np.int64)
+        region[label] = batch.region
+        order = np.lexsort((-size, region))
+        head = order.take(heads(region.take(order)).nonzero()[0])
         best = np.full(batch.count, -1)
-        best[batch.region[head]] = label[head]
+        best[region.take(head)] = head
         return np.asarray(best[batch.region] == label)

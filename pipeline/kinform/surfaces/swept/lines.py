@@ -8,13 +8,13 @@ from typing import TypeAlias
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.algebra.vectors import cross, cross_columns, dot
 from kinform.foundation.graphs.components import components
 from kinform.foundation.sorting import median
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.describe import Description
-from kinform.surfaces.groups import members, starts_of
+from kinform.surfaces.groups import members, repeated, starts_of
 from kinform.surfaces.polygons.patchwork import Patchwork
 
 Line: TypeAlias = tuple[Array, Array]
@@ -61,23 +61,24 @@ def turning_lines(work: Patchwork, free: Flags) -> list[list[Line]]:
     if not pieces:
         return out
     polygon, ends = np.concatenate(pieces), np.cumsum([0, *(len(piece) for piece in pieces)]).tolist()
-    runs = [slice(*run) for run in zip(ends, ends[1:], strict=False)]
-    piece = np.repeat(np.arange(len(pieces)), np.diff(ends))
-    weight, normal, centre = work.area[polygon], work.normal[polygon], work.centre[polygon]
+    runs, sizes = [slice(*run) for run in zip(ends, ends[1:], strict=False)], np.diff(ends)
+    area, normal, centre = work.area.take(polygon), work.normals(polygon), work.middles(polygon)
+    weight, placed, rows = area, np.ascontiguousarray(centre), np.empty((len(polygon), 6))
+    rows[:, 3:] = normal
     for _ in range(constants.REWEIGHINGS):
         total = [weight[run].sum() for run in runs]
-        middle = np.array([weight[run] @ centre[run] / size for run, size in zip(runs, total, strict=True)])
-        arm = centre - middle[piece]
+        middle = np.array([weight[run] @ placed[run] / size for run, size in zip(runs, total, strict=True)])
+        arm = centre - repeated(middle, sizes)
         square = dot(arm, arm)
         spread = [float(np.sqrt(weight[run] @ square[run] / size)) for run, size in zip(runs, total, strict=True)]
         reach = np.maximum(spread, 1e-12)
-        rows = np.concatenate([cross(arm / reach[piece][:, None], normal), normal], axis=1)
-        weighed = rows * weight[:, None]
+        rows[:, :3] = cross_columns(arm / reach.repeat(sizes)[:, None], normal)
+        weighed = rows * weight.repeat(6).reshape(-1, 6)
         matrix = np.stack([weighed[run].T @ rows[run] / size for run, size in zip(runs, total, strict=True)])
         twist = np.linalg.eigh(matrix)[1][:, :, 0]
         speed = np.abs(np.concatenate([rows[run] @ motion for run, motion in zip(runs, twist, strict=True)]))
         typical = np.maximum([median(speed[run]) for run in runs], 1e-6)
-        weight = work.area[polygon] / (1 + (speed / typical[piece]) ** 2)
+        weight = area / (1 + (speed / typical.repeat(sizes)) ** 2)
     for run, motion, about, size in zip(runs, twist, middle, reach.tolist(), strict=True):
         turn = float(np.linalg.norm(motion[:3]))
         if turn > constants.PIECE_TURNS:

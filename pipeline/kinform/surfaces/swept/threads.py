@@ -21,7 +21,7 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.describe import Description, standoffs
-from kinform.surfaces.groups import slices
+from kinform.surfaces.groups import columns_of, slices
 from kinform.surfaces.polygons.noise import Scale
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.swept.lines import Line
@@ -125,9 +125,9 @@ def _with_helices(work: Patchwork, edges: Ints, about: Sequence[Line], scale: Sc
         distance = _distances(work, some)
         line, place = _level(work, edges, distance, constants.WIDE[0], scale).nonzero()
         edge = edges.take(place)
-        one, other = (distance[line, work.ends[:, end].take(edge)] for end in range(2))
+        one, other = (distance.take(line * distance.shape[1] + work.ends[:, end].take(edge)) for end in range(2))
         length = work.length.take(edge)
-        rise = np.abs(dot(work.along(edge), np.array([axis for axis, _ in some])[line]))
+        rise = np.abs(dot(work.along(edge), columns_of(np.array([axis for axis, _ in some]), line)))
         across = np.sqrt(np.maximum(length * length - rise * rise, 0.0))
         turn = np.minimum(constants.ARC * across / np.maximum(np.sqrt(one * other), 1e-300), constants.HELIX_STEP)
         flat = (1.0 - constants.PLAINLY) * rise < constants.STEEP[1] * turn * (one + other) / 2
@@ -161,7 +161,7 @@ def _slopes(
 ) -> tuple[Array, Array, Array, Flags]:
     """Advance, its uncertainty and angle (m,) of edges, and which of them may run along a helix of an axis that is
     known `wide` times less well than in the end."""
-    height, distance, azimuth = screw.polar(work.vertices[ends.ravel()])
+    height, distance, azimuth = screw.polar(work.vertices.take(ends.ravel(), axis=0))
     rise, widening, turn = (x[1::2] - x[::2] for x in (height, distance, azimuth))
     mean = (distance[::2] + distance[1::2]) / 2
     turn -= 2 * np.pi * np.round(turn / (2 * np.pi))
@@ -180,7 +180,7 @@ def _slopes(
 
 def _advances(work: Patchwork, edges: Ints, start: _Screw, scale: Scale) -> list[float]:
     """Advances that many of the edges, which may be level, have in common, the most turned first."""
-    advance, doubt, turn, usable = _slopes(work, work.ends[edges], start, scale, constants.WIDE[0])
+    advance, doubt, turn, usable = _slopes(work, work.ends.take(edges, axis=0), start, scale, constants.WIDE[0])
     rows = np.flatnonzero(usable & (doubt < constants.ADVANCE_SHOWS * np.abs(advance)))
     out: list[float] = []
     if np.abs(turn[rows]).sum() < (1.0 - constants.PLAINLY) * 2 * np.pi * constants.TURNED:
@@ -206,7 +206,7 @@ def _advances(work: Patchwork, edges: Ints, start: _Screw, scale: Scale) -> list
 
 def _helices(work: Patchwork, edges: Ints, screw: _Screw, scale: Scale, wide: float = 1.0) -> _Helices | None:
     """The edges along the screw's helices, joined to polylines, if they make enough of a thread."""
-    ends = work.ends[edges]
+    ends = work.ends.take(edges, axis=0)
     advance, doubt, turn, usable = _slopes(work, ends, screw, scale, wide)
     near = usable & (np.abs(advance - screw.advance) <= 2 * wide * constants.ALIKE_ADVANCE * abs(screw.advance) + doubt)
     if not near.any():
