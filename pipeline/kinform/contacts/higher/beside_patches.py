@@ -28,17 +28,25 @@ def holding_touches(pair: PairView, patches: Sequence[Patch]) -> list[Patch]:
     """
     if not patches or any(patch.kind in constants.TOUCHING for patch in patches):
         return []
+    if not may_touch(pair, pair.overlap(pair.tolerance)):
+        return []
     unread = unread_surfaces(pair, patches, pair.tolerance)
     if not may_touch(pair, unread):
         return []
     frame = Frame.of(np.concatenate([patch.points for patch in patches]))
     left = motions_left(patches, frame)
-    touches = touches_between(pair, unread) if len(left) else []
+    if not len(left):
+        return []
+
+    def opposed(points: Array, normals: Array) -> Flags:
+        return _opposed(rows(points, normals, frame) @ left.T)
+
+    touches = touches_between(pair, unread, opposed)
     if not touches:
         return []
-    speeds = np.concatenate([rows(patch.points, patch.normals, frame) for patch in touches]) @ left.T
+    held = opposed(*(np.concatenate([getattr(patch, name) for patch in touches]) for name in ("points", "normals")))
     owner = np.repeat(np.arange(len(touches)), [len(patch.points) for patch in touches])
-    return [touches[k] for k in np.unique(owner[_opposed(speeds)])]
+    return [touches[k] for k in np.unique(owner[held])]
 
 
 def _opposed(speeds: Array) -> Flags:

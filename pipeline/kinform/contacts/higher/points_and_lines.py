@@ -9,6 +9,7 @@ a tangent fillet says nothing that its plane does not say. Those that hold what 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -26,7 +27,10 @@ from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances
 
-_ROUND = [KINDS.index("sphere"), KINDS.index("cylinder"), KINDS.index("torus"), KINDS.index("cone")]
+_CYLINDER = KINDS.index("cylinder")
+_PLANAR = np.array([kind == "plane" for kind in KINDS])
+_ROUNDED = np.array([kind in ("sphere", "cylinder", "torus", "cone") for kind in KINDS])
+"""Which kinds of surfaces balls and rollers touch, by their numbers."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,13 +68,29 @@ def higher_pairs(
 
 
 def may_touch(pair: PairView, flags: Flags) -> bool:
-    """Whether any surfaces flagged in `flags` (s, t) are of kinds that touch in points or lines."""
-    for (ball, other), flagged in ((pair.near, flags), (pair.near[::-1], flags.T)):
-        rows = np.flatnonzero(_convex(ball))
-        columns = (other.kinds == KINDS.index("plane")) | np.isin(other.kinds, _ROUND)
-        if len(rows) and flagged[rows][:, columns].any():
-            return True
-    return False
+    """Whether any surfaces flagged in `flags` (s, t) may touch in points or lines, by their kinds, axes and places."""
+    return any(
+        _candidates(view, asked, first).any()
+        for view, asked, first in ((pair, flags, True), (pair.swapped, flags.T, False))
+    )
+
+
+def _candidates(view: PairView, flags: Flags, first: bool) -> Flags:
+    """(s, t) which of the flagged are balls, rollers or rings of the first part, and planes or round surfaces of the
+    second on which they may lie; of two alike, each is met once, by the `first` part of the pair."""
+    (ball, other), out = view.near, np.zeros_like(flags)
+    rows = np.flatnonzero(_convex(ball))
+    if not len(rows):
+        return out
+    plane, rounded = _PLANAR[other.kinds], _ROUNDED[other.kinds]
+    kinds, hollow = ball.kinds.take(rows)[:, None], other.sides < 0
+    apart = rounded & ~((kinds == _CYLINDER) & (other.kinds == _CYLINDER) & hollow)  # these mate, or keep apart
+    if not first:
+        apart &= (other.kinds != kinds) | hollow  # what is hollow comes second
+    out[rows] = flags[rows] & (plane | apart)
+    if out.any():
+        out &= ~_off_planes(view)
+    return out
 
 
 def _convex(near: NearSurfaces) -> Flags:
@@ -98,25 +118,52 @@ def _of_tube(pair: PairView, patch: Patch) -> bool:
     return any(surface.kind == "torus" and surface.side > 0 for surface in surfaces)
 
 
-def touches_between(pair: PairView, overlap: Flags) -> list[Patch]:
-    """Points and lines in which surfaces flagged in `overlap` (s, t) touch, in the frame of the pair."""
+def touches_between(
+    pair: PairView, overlap: Flags, wanted: Callable[[Array, Array], Flags] | None = None
+) -> list[Patch]:
+    """Points and lines in which surfaces flagged in `overlap` (s, t) touch, in the frame of the pair. None where
+    `wanted`, of points (n, 3) m and normals (n, 3), flags none, which may say less of some of them than of all."""
     touches: list[_Touch] = []
     for view, flags, first in ((pair, overlap, True), (pair.swapped, overlap.T, False)):
-        ball, other = view.near
-        plane, rounded = other.kinds == KINDS.index("plane"), np.isin(other.kinds, _ROUND)
-        for row in np.flatnonzero(_convex(ball)):
-            # of two alike, each is met once; what is hollow comes second
-            apart = rounded if first else rounded & ((other.kinds != ball.kinds[row]) | (other.sides < 0))
-            for column in [*np.flatnonzero(flags[row] & plane), *np.flatnonzero(flags[row] & apart)]:
+        candidates, plane = _candidates(view, flags, first), _PLANAR[view.near[1].kinds]
+        for row in np.flatnonzero(candidates.any(axis=1)):
+            for column in [*np.flatnonzero(candidates[row] & plane), *np.flatnonzero(candidates[row] & ~plane)]:
                 touch = _touch(view, view.surfaces(int(row), int(column)), first)
                 if touch is not None:
                     touches.append(touch)
     touches = _held(touches, pair.tolerance)
     if not touches:
         return []
+    if wanted is not None:
+        points, normals = zip(*((touch.meeting.points, touch.normals()) for touch in touches), strict=True)
+        if not wanted(np.concatenate(points), np.concatenate(normals)).any():
+            return []
     verdict = verify(pair, [_probes(touch, pair.tolerance) for touch in touches])
     held = zip(touches, verdict.holds, strict=True)
     return [_patch(pair, touch, holds) for touch, holds in held if holds.any()]
+
+
+def _off_planes(view: PairView) -> Flags:
+    """(s, t) which are rollers of the first part and planes of the second that they clearly do not lie along, or keep
+    clear of: most are, and `_touch` asks one by one."""
+    roller, flat = view.near
+    out = np.zeros((len(roller.ids), len(flat.ids)), dtype=bool)
+    rows, columns = roller.of_kind("cylinder"), flat.of_kind("plane")
+    if not len(rows) or not len(columns):
+        return out
+    axes, normals = roller.axes.take(rows, axis=0), flat.axes.take(columns, axis=0)
+    sine = np.sum(axes[:, None] * normals, axis=2)
+    turns = roller.axis_uncertainty.take(rows)[:, None] + flat.axis_uncertainty.take(columns)
+    parallel = np.minimum(view.tolerances.alignment + turns, 0.5 * math.pi)
+    arms = roller.points.take(rows, axis=0)[:, None] - flat.points.take(columns, axis=0)
+    gaps = np.sum(arms * normals, axis=2) - roller.radii.take(rows)[:, None]
+    ends = roller.extents.take(rows, axis=0)[:, :, None] * sine[:, None]
+    limit = constants.CAPTIVE * view.tolerance + constants.CLEARLY * (
+        np.abs(arms).max(axis=2) + np.abs(ends).max(axis=1)
+    )
+    clear = (gaps + ends.min(axis=1) > limit) | (gaps + ends.max(axis=1) < -limit)
+    out[rows[:, None], columns] = clear | (np.abs(sine) > np.sin(parallel) + constants.CLEARLY)
+    return out
 
 
 def parallel_within(surfaces: SurfacePair, tolerances: Tolerances) -> float:
