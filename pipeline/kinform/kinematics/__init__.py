@@ -60,7 +60,7 @@ __all__ = [
     "stated_proposals",
 ]
 
-CODE_VERSION = 47
+CODE_VERSION = 48
 """Bumped when the results of this stage change for the same input."""
 
 __getattr__ = first_used(
