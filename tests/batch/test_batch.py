@@ -6,7 +6,6 @@ import json
 import os
 import shutil
 import signal
-import subprocess
 import sys
 import threading
 import time
@@ -14,7 +13,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from support.command_line import environment, listening, ran_here
+from support.command_line import at_work, ran_here
 from support.places import FIXTURES
 
 import kinform
@@ -73,13 +72,8 @@ def test_ctrl_c_keeps_what_is_written_and_is_told_in_one_line(tmp_path):
     for name in ("a", "b", "c", "d"):
         shutil.copytree(FIXTURES / "pairs" / GOOD[0], tmp_path / "designs" / name)
     command = [sys.executable, "-m", "kinform_cli", "batch", "designs", "-o", "results", "--jobs", "1"]
-    running = subprocess.Popen(
-        command, cwd=tmp_path, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        preexec_fn=listening,
-    )  # fmt: skip
-    while not (written := list((tmp_path / "results").glob("*/*.h5"))):
-        assert running.poll() is None
-        time.sleep(0.01)
+    running = at_work(command, tmp_path, lambda: list((tmp_path / "results").glob("*/*.h5")))
+    written = list((tmp_path / "results").glob("*/*.h5"))
     running.send_signal(signal.SIGINT)
     _, errors = running.communicate(timeout=60)
     assert running.returncode == 2

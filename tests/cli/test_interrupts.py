@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 
 import pytest
-from support.command_line import environment, listening
+from support.command_line import at_work, environment, listening
 from support.places import FIXTURES
 
 from kinform import results
@@ -52,15 +52,8 @@ def folder(tmp_path: Path, derive_design) -> Path:
 
 def begun(folder: Path, place: str, *words: str, deed: str = DEAF) -> subprocess.Popen[str]:
     """The command, at work in the function that was replaced."""
-    running = subprocess.Popen(
-        [sys.executable, "-c", HELD.format(deed=deed), place, *words],
-        cwd=folder, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=listening,
-    )  # fmt: skip
-    while not (folder / "begun").exists():
-        if running.poll() is not None:
-            pytest.fail(str(running.communicate()))
-        time.sleep(0.01)
-    return running
+    command = [sys.executable, "-c", HELD.format(deed=deed), place, *words]
+    return at_work(command, folder, (folder / "begun").exists)
 
 
 def alive(process: int) -> bool:
@@ -127,13 +120,8 @@ def test_ctrl_c_before_the_command_listens_is_told_in_one_line() -> None:
 
 def test_ctrl_c_of_a_terminal_reaches_all_processes_and_is_told_once(folder: Path) -> None:
     sleeping = HELD.format(deed="import time; time.sleep(600)")
-    running = subprocess.Popen(
-        [sys.executable, "-c", sleeping, "kinform.stages.check", "check", "r.h5"],
-        cwd=folder, env=environment(), stderr=subprocess.PIPE, text=True, preexec_fn=listening, start_new_session=True,
-    )  # fmt: skip
-    while not (folder / "begun").exists():
-        assert running.poll() is None
-        time.sleep(0.01)
+    command = [sys.executable, "-c", sleeping, "kinform.stages.check", "check", "r.h5"]
+    running = at_work(command, folder, (folder / "begun").exists, start_new_session=True)
     os.killpg(running.pid, signal.SIGINT)
     _, errors = running.communicate(timeout=60)
     assert running.returncode == 2

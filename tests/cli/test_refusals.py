@@ -7,10 +7,9 @@ import signal
 import struct
 import subprocess
 import sys
-import time
 
 import pytest
-from support.command_line import environment, listening
+from support.command_line import at_work, environment, listening
 from support.places import FIXTURES
 
 from kinform.results.seal import seal
@@ -180,13 +179,8 @@ def test_an_interrupted_run_leaves_the_old_results_as_they_were(folder, command)
     assert command("import", NAME, "-o", "r.h5").returncode == 0
     old = (folder / "r.h5").read_bytes()
     platform = FIXTURES / "mechanisms" / "stewart_platform" / "stewart_platform.toml"
-    running = subprocess.Popen(
-        [sys.executable, "-c", INTERRUPTED, "run", str(platform), "-o", "r.h5", "--jobs", "1"],
-        cwd=folder, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=listening,
-    )  # fmt: skip
-    while not (folder / "begun").exists():
-        assert running.poll() is None
-        time.sleep(0.01)
+    command = [sys.executable, "-c", INTERRUPTED, "run", str(platform), "-o", "r.h5", "--jobs", "1"]
+    running = at_work(command, folder, (folder / "begun").exists)
     running.send_signal(signal.SIGINT)
     out, error = running.communicate(timeout=60)
     assert running.returncode == 2

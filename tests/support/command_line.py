@@ -8,8 +8,13 @@ import os
 import signal
 import subprocess
 import sys
+import time
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 from unittest import mock
+
+import pytest
 
 from kinform_cli.main import main
 
@@ -35,6 +40,19 @@ def environment(**extra: str) -> dict[str, str]:
     dropped = ("FORCE_COLOR", "PY_COLORS", "GITHUB_ACTIONS", "NO_COLOR", "COLUMNS", "KINFORM_DEBUG")
     kept = {name: value for name, value in os.environ.items() if name not in dropped}
     return {**kept, "TERM": "xterm-256color", **extra}
+
+
+def at_work(command: Sequence[str], folder: Path, begun: Callable[[], object], **options: Any) -> subprocess.Popen[str]:
+    """The command in a folder, which hears Ctrl-C, once it has `begun`."""
+    running = subprocess.Popen(
+        command, cwd=folder, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        preexec_fn=listening, **options,
+    )  # fmt: skip
+    while not begun():
+        if running.poll() is not None:
+            pytest.fail(str(running.communicate()))
+        time.sleep(0.01)
+    return running
 
 
 KINFORM = Path(sys.executable).with_name("kinform")

@@ -61,12 +61,15 @@ distance is rounded by."""
 PLANE_ROUNDING = 1e-14
 """Of the product of a facet's sides and of how far a point is from a corner: what their volume is rounded by."""
 
-# meshes/index
+# meshes/balls
 
 BALL_SHARE = 0.012
 """Share of a mesh's diagonal that balls about its facets are as small as."""
 BALL_PARTS = 6
 """Divisions of a facet's side for it at most."""
+
+# meshes/parity
+
 RAYS = np.array([[0.577, 0.523, 0.627], [-0.67, 0.31, 0.675], [0.21, -0.83, 0.517]])
 """(3, 3) directions along which no designer lays an edge."""
 

@@ -112,10 +112,7 @@ def few(words: Sequence[str], limit: int = 4) -> str:
 
 def by_cause(reasons: Iterable[tuple[str, str]]) -> str:
     """Pairs of what and why, each why once: "arm and hand: its mass is not known; slide: no law"."""
-    subjects: dict[str, list[str]] = {}
-    for subject, why in reasons:
-        subjects.setdefault(why, []).append(subject)
-    return "; ".join(f"{few(names)}: {why}" for why, names in subjects.items())
+    return "; ".join(alike(f"{subject}: {why}" for subject, why in reasons))
 
 
 def alike(sentences: Iterable[str]) -> list[str]:

@@ -10,24 +10,21 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross_columns, dot
 from kinform.foundation.constants import (
     ABOUT,
-    BALL_PARTS,
-    BALL_SHARE,
     KEPT_EDGES,
     KEPT_SPANS,
     KEPT_TRIANGLES,
     LARGE_MESH,
     MOST_EXPECTED,
-    RAYS,
 )
 from kinform.foundation.graphs.components import components
+from kinform.foundation.meshes.balls import Balls
 from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
 from kinform.foundation.meshes.bulges import bulge_of
 from kinform.foundation.meshes.closest import Triangles
 from kinform.foundation.meshes.depths import Depths
 from kinform.foundation.meshes.edges import SharedEdges, shared_edges
 from kinform.foundation.meshes.fcl_adapter import fcl_model, partial_model
-from kinform.foundation.meshes.near import Nearest
-from kinform.foundation.meshes.parity import Ray
+from kinform.foundation.meshes.parity import Inside
 from kinform.foundation.meshes.probes import Region
 from kinform.foundation.meshes.proximity import near_boxes
 from kinform.foundation.meshes.rings import Ring, RingRow, ring_rows
@@ -56,8 +53,8 @@ class MeshIndex:
         self._shells: Ints | None = None
         self._boxes: FacetBoxes | None = None
         self._triangles: Triangles | None = None
-        self._rays: dict[int, Ray] = {}
-        self._near: list[tuple[Nearest, float]] | None = None
+        self._inside: Inside | None = None
+        self._balls: Balls | None = None
         self._depths: Depths | None = None
         self._table: SurfaceTable | None = None
         self._rows: tuple[RingRow, ...] | None = None
@@ -288,40 +285,15 @@ class MeshIndex:
     def away(self, points: Array) -> Array:
         """(n,) m that points (n, 3) of the part frame keep from the mesh at least: less than their distance, and
         quickly."""
-        if self._near is None:
-            self._near = _balls(self.mesh)
-        out = np.full(len(points), np.inf)
-        for centres, radius in self._near:
-            out = np.minimum(out, centres.away(points) - radius)
-        return np.asarray(np.maximum(out, 0.0))
+        if self._balls is None:
+            self._balls = Balls(self.mesh)
+        return self._balls.away(points)
 
     def contains(self, points: Array) -> Flags:
-        """(n,) whether points (n, 3) of the part frame lie inside: the median of three rays' crossings.
-
-        Open and inside-out meshes have an inside as far as two of three rays agree on it.
-        """
-        out = np.asarray(((points >= self.low) & (points <= self.high)).all(axis=1))
-        if not out.any():
-            return out
-        within = points[out]
-        count = self._crossings(0, within)
-        # of a closed mesh, one ray that leaves through as many facets as it enters through says enough
-        asked = np.flatnonzero(count) if self.mesh.health.watertight else np.arange(len(within))
-        if len(asked):
-            second = self._crossings(1, within[asked])
-            # two rays that agree are the median whatever the third says
-            doubtful = count[asked] != second
-            if doubtful.any():
-                third = self._crossings(2, within[asked[doubtful]])
-                count[asked[doubtful]] = np.sort([count[asked[doubtful]], second[doubtful], third], axis=0)[1]
-        out[out] = np.abs(count) > 0.5
-        return out
-
-    def _crossings(self, ray: int, points: Array) -> Array:
-        """(n,) of one of the three rays from points; the last one is rarely asked for."""
-        if ray not in self._rays:
-            self._rays[ray] = Ray(self.mesh, RAYS[ray])
-        return self._rays[ray].crossings(points)
+        """(n,) whether points (n, 3) of the part frame lie inside, as `Inside` has it."""
+        if self._inside is None:
+            self._inside = Inside(self.mesh)
+        return self._inside.contains(points)
 
 
 def _of_facets(half_edges: Ints, facets: Ints) -> Ints:
@@ -340,57 +312,6 @@ def _normals(spans: Array) -> Array:
     """(n, 3) of spans (n, 3) of facets."""
     length = np.sqrt(dot(spans, spans))
     return np.asarray(spans / np.where(length > 0.0, length, 1.0)[:, None])
-
-
-def _balls(mesh: Mesh) -> list[tuple[Nearest, float]]:
-    """Middles of balls that hold all facets, with their radius (m), by octaves of it."""
-    corners = mesh.vertices.take(mesh.faces, axis=0)
-    longest = longest_sides(corners)
-    parts = np.clip(np.ceil(longest / max(BALL_SHARE * mesh.diagonal, 1e-300)), 1, BALL_PARTS).astype(np.int64)
-    middles, radii = [], []
-    for number in np.flatnonzero(np.bincount(parts)).tolist():
-        alike = parts == number
-        middles.append((inner_weights(number) @ corners[alike]).reshape(-1, 3))
-        radii.append(np.repeat(2.0 / 3.0 * longest[alike] / number, number * number))
-    points, radius = np.concatenate(middles), np.concatenate(radii)
-    size, low = max(mesh.diagonal, 1e-300), mesh.vertices.min(axis=0)
-    level = np.ceil(np.log2(np.maximum(radius / size, BALL_SHARE))).astype(np.int64)
-    out = []
-    for k in range(int(level.min()), int(level.max()) + 1):
-        alike = level == k
-        if not alike.any():
-            continue
-        # one for all that are in one cell of a grid
-        largest, cell = float(radius[alike].max()), 0.5 * 2.0**k * size
-        places = [
-            np.round((column[alike] - least) / cell).astype(np.int64)
-            for column, least in zip(points.T, low, strict=True)
-        ]
-        x, y, z = places
-        counts = [int(place.max()) + 1 for place in places]
-        occupied = np.zeros(counts, dtype=bool)
-        occupied[x, y, z] = True
-        centres = low + cell * np.argwhere(occupied)
-        out.append((Nearest(centres), largest + 0.5 * float(np.sqrt(3.0)) * cell))
-    return out
-
-
-def longest_sides(corners: Array) -> Array:
-    """(n,) lengths of the longest sides of triangles (n, 3, 3)."""
-    x, y, z = np.ascontiguousarray(np.moveaxis(corners, 2, 0))
-    squares = [
-        (x[:, k] - x[:, k - 1]) ** 2 + (y[:, k] - y[:, k - 1]) ** 2 + (z[:, k] - z[:, k - 1]) ** 2 for k in range(3)
-    ]
-    return np.asarray(np.sqrt(np.maximum(np.maximum(squares[0], squares[1]), squares[2])))
-
-
-def inner_weights(number: int) -> Array:
-    """(number², 3) weights of a triangle's corners for the middles of those that it is divided into, `number` a
-    side."""
-    up = [(3 * a + 1, 3 * b + 1) for a in range(number) for b in range(number - a)]
-    down = [(3 * a + 2, 3 * b + 2) for a in range(number - 1) for b in range(number - 1 - a)]
-    two = np.array(up + down, dtype=float) / (3.0 * number)
-    return np.column_stack([two, 1.0 - two.sum(axis=1)])
 
 
 @dataclass

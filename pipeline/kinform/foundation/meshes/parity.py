@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, perpendicular
-from kinform.foundation.constants import SEEN_AT_ONCE
+from kinform.foundation.constants import RAYS, SEEN_AT_ONCE
 from kinform.foundation.meshes.boxes import FlatBoxes, facet_boxes
-from kinform.model.arrays import Array, Ints
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
 
 
@@ -46,6 +46,43 @@ class Ray:
         """(k,) each: where one corner of facets (k,) lies from points, along some axes of the frame."""
         vertices = self._corners[corner][facets]
         return [self._columns[axis][vertices] - seen[which, axis] for axis in axes]
+
+
+class Inside:
+    """What of space a mesh holds: the median of the crossings of three rays.
+
+    Open and inside-out meshes have an inside as far as two of three rays agree on it.
+    """
+
+    def __init__(self, mesh: Mesh):
+        self._mesh = mesh
+        self._rays: dict[int, Ray] = {}
+
+    def contains(self, points: Array) -> Flags:
+        """(n,) whether points (n, 3) of the part frame lie inside."""
+        low, high = self._mesh.box
+        out = np.asarray(((points >= low) & (points <= high)).all(axis=1))
+        if not out.any():
+            return out
+        within = points[out]
+        count = self._crossings(0, within)
+        # of a closed mesh, one ray that leaves through as many facets as it enters through says enough
+        asked = np.flatnonzero(count) if self._mesh.health.watertight else np.arange(len(within))
+        if len(asked):
+            second = self._crossings(1, within[asked])
+            # two rays that agree are the median whatever the third says
+            doubtful = count[asked] != second
+            if doubtful.any():
+                third = self._crossings(2, within[asked[doubtful]])
+                count[asked[doubtful]] = np.sort([count[asked[doubtful]], second[doubtful], third], axis=0)[1]
+        out[out] = np.abs(count) > 0.5
+        return out
+
+    def _crossings(self, ray: int, points: Array) -> Array:
+        """(n,) of one of the three rays from points; the last one is rarely asked for."""
+        if ray not in self._rays:
+            self._rays[ray] = Ray(self._mesh, RAYS[ray])
+        return self._rays[ray].crossings(points)
 
 
 def winding(mesh: Mesh, points: Array) -> Array:

@@ -11,7 +11,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.constants import CROSSING_SHARE, PROBE_PARTS, RAYS, SHELL_DEPTH, SHELL_PROBES
 from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
-from kinform.foundation.meshes.index import inner_weights
+from kinform.foundation.meshes.divided import inner_weights
 from kinform.foundation.meshes.parity import Ray
 from kinform.foundation.meshes.shells import shells_of
 from kinform.frozen import dataclass
