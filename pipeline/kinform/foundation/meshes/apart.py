@@ -49,8 +49,8 @@ def _near(first: Array, second: Array, distance: float) -> tuple[Ints, Ints] | N
     if len(first) * len(second) > BOXES_MATRIX:
         return None
     low, high = triangle_boxes(first)
-    near = meeting_boxes((low - distance, high + distance), triangle_boxes(second))
-    return None if near is None or len(near[0]) > APART_MOST * (len(first) + len(second)) else near
+    most = APART_MOST * (len(first) + len(second))
+    return meeting_boxes((low - distance, high + distance), triangle_boxes(second), most)
 
 
 def _not_parted(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -15,20 +16,20 @@ Boxes = tuple[Array, Array]
 """Lower and upper corners (n, 3)."""
 
 
-def meeting_boxes(first: Boxes, second: Boxes) -> tuple[Ints, Ints] | None:
+def meeting_boxes(first: Boxes, second: Boxes, most: float = math.inf) -> tuple[Ints, Ints] | None:
     """Indices (k,) of boxes (n, 3) and (m, 3) that meet, by the first, then by the second; None of so many that a tree
-    is quicker.
+    is quicker, and of more than `most`.
 
     Few are all compared. Of more, the second are listed by the cells of a grid across the two coordinates along which
     boxes are smallest beside the whole, grown by what the largest of the first reach from their middles.
     """
     count, others = len(first[0]), len(second[0])
     if count * others <= BOXES_MATRIX:
-        return _compared(first, second)
+        return _compared(first, second, most)
     if max(count, others) > BOXES_MOST:
         return None
     if count * others <= BOXES_COMPARED:
-        return _compared(first, second)
+        return _compared(first, second, most)
     (low, high), (low_other, high_other) = first, second
     whole = np.maximum(high.max(axis=0), high_other.max(axis=0)) - np.minimum(low.min(axis=0), low_other.min(axis=0))
     share = whole / np.maximum((high - low).mean(axis=0) + (high_other - low_other).mean(axis=0), 1e-300)
@@ -38,7 +39,11 @@ def meeting_boxes(first: Boxes, second: Boxes) -> tuple[Ints, Ints] | None:
     listed = FlatBoxes(low_other[:, axes] - reach, high_other[:, axes] + reach)
     if listed.listed_at(middles[:, axes]) > BESIDE_MOST:
         return None
-    return _that_meet(first, second, *listed.around(middles[:, axes]))
+    return _unless_more(most, _that_meet(first, second, *listed.around(middles[:, axes])))
+
+
+def _unless_more(most: float, met: tuple[Ints, Ints]) -> tuple[Ints, Ints] | None:
+    return None if len(met[0]) > most else met
 
 
 def _that_meet(first: Boxes, second: Boxes, one: Ints, two: Ints) -> tuple[Ints, Ints]:
@@ -51,21 +56,25 @@ def _that_meet(first: Boxes, second: Boxes, one: Ints, two: Ints) -> tuple[Ints,
     return one, two
 
 
-def _compared(first: Boxes, second: Boxes) -> tuple[Ints, Ints]:
+def _compared(first: Boxes, second: Boxes, most: float) -> tuple[Ints, Ints] | None:
     """The same as `meeting_boxes`, of few: numpy compares bytes eight times as fast as floating numbers, and boxes that
     meet do so in steps of a scale, too."""
-    columns = [np.ascontiguousarray(side.T) for side in (*first, *second)]
-    if len(first[0]) * len(second[0]) <= BOXES_EXACT:
-        return _all_compared(columns)
+    columns, width = [np.ascontiguousarray(side.T) for side in (*first, *second)], len(second[0])
+    if len(first[0]) * width <= BOXES_EXACT:
+        return _unless_more(most, _split(_all_compared(columns), width))
     least = np.minimum(columns[0].min(axis=1), columns[2].min(axis=1))
-    most = np.maximum(columns[1].max(axis=1), columns[3].max(axis=1))
-    step = ((2**8 - 1) / np.maximum(most - least, 1e-290))[:, None]
-    rough = [((column - least[:, None]) * step).astype(np.uint8) for column in columns]
-    return _that_meet(first, second, *_all_compared(rough))
+    greatest = np.maximum(columns[1].max(axis=1), columns[3].max(axis=1))
+    step = ((2**8 - 1) / np.maximum(greatest - least, 1e-290))[:, None]
+    flat = _all_compared([((column - least[:, None]) * step).astype(np.uint8) for column in columns])
+    # of very many the first tell that they are too many
+    if len(flat) > 2.0 * most and len(_that_meet(first, second, *_split(flat[: int(2.0 * most)], width))[0]) > most:
+        return None
+    return _unless_more(most, _that_meet(first, second, *_split(flat, width)))
 
 
-def _all_compared(columns: list[NDArray[Any]]) -> tuple[Ints, Ints]:
-    """Pairs that meet, of boxes by lower and upper corners, (3, n) each, of the first and (3, m) of the second."""
+def _all_compared(columns: list[NDArray[Any]]) -> Ints:
+    """Pairs that meet, of boxes by lower and upper corners, (3, n) each, of the first and (3, m) of the second: m times
+    the first and the second."""
     low, high, low_other, high_other = columns
     meets = np.less_equal(low[0][:, None], high_other[0])
     along = np.empty_like(meets)
@@ -73,7 +82,10 @@ def _all_compared(columns: list[NDArray[Any]]) -> tuple[Ints, Ints]:
     for axis in (1, 2):
         meets &= np.less_equal(low[axis][:, None], high_other[axis], out=along)
         meets &= np.less_equal(low_other[axis], high[axis][:, None], out=along)
-    flat, width = meets.ravel().nonzero()[0], max(meets.shape[1], 1)
-    # numpy divides twice as fast where it is not asked what is left
-    one = flat // width
+    return meets.ravel().nonzero()[0]
+
+
+def _split(flat: Ints, width: int) -> tuple[Ints, Ints]:
+    """The first and the second of pairs; numpy divides twice as fast where it is not asked what is left."""
+    one = flat // max(width, 1)
     return one, flat - one * width

@@ -103,10 +103,8 @@ def _decided(firsts: list[Array], seconds: list[Array], one: Ints, two: Ints) ->
 
 def _beside_boxes(slivers: Array, corners: Array, most: float) -> Met | None:
     """Those that may meet, by their boxes, and of many also by their planes and edges; None as above."""
-    near = meeting_boxes(triangle_boxes(slivers), triangle_boxes(corners))
-    if near is None or len(near[0]) > most * (len(slivers) + len(corners)):
-        return None
-    if len(near[0]) <= CULLED_LEAST:
+    near = meeting_boxes(triangle_boxes(slivers), triangle_boxes(corners), most * (len(slivers) + len(corners)))
+    if near is None or len(near[0]) <= CULLED_LEAST:
         return near
     first, second = (np.ascontiguousarray(triangles.transpose(1, 2, 0)) for triangles in (slivers, corners))
     return _not_clearly_apart(first, second, *near)
