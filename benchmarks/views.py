@@ -42,7 +42,8 @@ def rows(quick: bool) -> Iterator[Row]:
     for parts in (100, 300) if quick else (1000, 3000):
         with tempfile.TemporaryDirectory() as folder:
             manifest, results = plate_with_pins(Path(folder), parts, 24), Path(folder) / "pins.h5"
-            worked("run", str(manifest), "-o", str(results))
+            seconds = worked("run", str(manifest), "-o", str(results))
+            yield Row(f"run, {parts} parts", seconds, None, "s", f"{1e3 * seconds / parts:.1f} ms a part", peak())
             yield from of_file(results, parts)
 
 

@@ -78,3 +78,33 @@ def test_symmetric_shapes_are_copies_too():
     cube = named(of_manifold(block(0.01, 0.01, 0.01)))
     turned = named(of_manifold(block(0.01, 0.01, 0.01), pose=pose(2)))
     assert len(rigid_copies(by_digest(cube, turned))) == 1
+
+
+def test_copies_are_found_by_the_rounding_of_their_files():
+    """Where a mesh lies far from the origin of its file, its frame is moved there, and its coordinates are small."""
+    step = 2.0**-20
+    first = replace(bracket(), resolution=step)
+    moved = first.vertices @ pose(6)[:3, :3].T
+    rounded = named(replace(first, vertices=np.round(moved / step) * step))
+    assert len(rigid_copies(by_digest(first, rounded))) == 1
+    precise = [replace(mesh, resolution=0.0) for mesh in (first, rounded)]
+    assert rigid_copies(by_digest(*precise)) == {}
+    bent = rounded.vertices.copy()
+    bent[3] += 4.0 * step
+    assert rigid_copies(by_digest(first, named(replace(rounded, vertices=bent)))) == {}
+
+
+def test_a_copy_is_one_of_the_first_shape_that_it_fits():
+    """Of many shapes, some hardly larger than others, as if each were asked about alone."""
+    shapes = [replace(bracket(), vertices=bracket().vertices * (1.0 + 4e-7 * k)) for k in range(12)]
+    turns = [pose(seed)[:3, :3] for seed in range(3)]
+    meshes = by_digest(*(named(replace(one, vertices=one.vertices @ turn.T)) for one in shapes for turn in turns))
+    wanted, originals = {}, []
+    for digest in sorted(meshes):
+        fits = [other for other in originals if rigid_copies({k: meshes[k] for k in (other, digest)})]
+        if fits:
+            wanted[digest] = fits[0]
+        else:
+            originals.append(digest)
+    assert {digest: copy.of for digest, copy in rigid_copies(meshes).items()} == wanted
+    assert 3 < len(originals) < len(meshes) - 3

@@ -306,14 +306,17 @@ class Assembly:
 
     def part(self, name: str) -> Part:
         """The part of that name; KeyError otherwise."""
-        for part in self.parts:
-            if part.name == name:
-                return part
-        raise KeyError(name)
+        return self._named_parts[name]
 
     def parts_of(self, name: str) -> tuple[PartName, ...]:
         """The parts that a part's or a group's name stands for; KeyError for unknown names."""
-        for group in self.groups:
-            if group.name == name:
-                return group.parts
-        return (self.part(name).name,)
+        group = self._named_groups.get(name)
+        return (self.part(name).name,) if group is None else group.parts
+
+    @cached_property
+    def _named_parts(self) -> dict[str, Part]:
+        return {str(part.name): part for part in reversed(self.parts)}
+
+    @cached_property
+    def _named_groups(self) -> dict[str, Group]:
+        return {str(group.name): group for group in reversed(self.groups)}

@@ -5,6 +5,7 @@ Twists are (ω; v), v the velocity of the point at the world's origin.
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Annotated
 
 import numpy as np
@@ -502,10 +503,11 @@ class Kinematics:
 
     def body_of(self, part: str) -> Body:
         """The body that contains the part; KeyError otherwise."""
-        for body in self.bodies:
-            if part in body.parts:
-                return body
-        raise KeyError(part)
+        return self._body_of[part]
+
+    @cached_property
+    def _body_of(self) -> dict[str, Body]:
+        return {str(part): body for body in reversed(self.bodies) for part in body.parts}
 
 
 def only_bodies(bodies: tuple[Body, ...]) -> Kinematics:

@@ -55,7 +55,7 @@ def rigid_copies(meshes: Mapping[str, Mesh]) -> dict[str, Copy]:
 
 def _alike(meshes: Mapping[str, Mesh], group: list[str]) -> list[list[str]]:
     """Those of a group that could be copies by the scatter of their vertices alone, in sets of at least two: what
-    `_rigid_fit` asks first, which settles most."""
+    `_Originals` asks first, which settles most."""
     sizes = {}
     for digest in group:
         mesh = meshes[digest]
@@ -63,11 +63,11 @@ def _alike(meshes: Mapping[str, Mesh], group: list[str]) -> list[list[str]]:
         named[mesh.faces] = True
         # by rows: numpy is several times slower along the first axis of (n, 3)
         points = np.array((mesh.vertices if named.all() else mesh.vertices[named]).T, order="C")
-        far = float(np.abs(points).max())
+        rounding = _rounding(mesh, float(np.abs(points).max()))
         points -= points.mean(axis=1, keepdims=True)
-        sizes[digest] = (float(np.sqrt(np.einsum("ij,ij->", points, points) / points.shape[1])), far)
+        sizes[digest] = (float(np.sqrt(np.einsum("ij,ij->", points, points) / points.shape[1])), rounding)
     ordered = sorted(group, key=lambda digest: (sizes[digest][0], digest))
-    allowed = COPY_SIZE_ROUNDINGS * EPS32 * max(far for _, far in sizes.values())
+    allowed = COPY_SIZE_ROUNDINGS * max(rounding for _, rounding in sizes.values())
     sets: list[list[str]] = [[ordered[0]]]
     for before, digest in itertools.pairwise(ordered):
         if sizes[digest][0] - sizes[before][0] > allowed:
@@ -76,20 +76,70 @@ def _alike(meshes: Mapping[str, Mesh], group: list[str]) -> list[list[str]]:
     return [sorted(alike) for alike in sets if len(alike) > 1]
 
 
+@dataclass(frozen=True, eq=False)
+class _Cloud:
+    """The vertices of a mesh, in the order in which facets first name them."""
+
+    digest: str
+    middle: Array
+    """(3,) m: their mean."""
+    about: Array
+    """(n, 3) m from there."""
+    size: float
+    """m: their scatter."""
+    rounding: float
+    """m, of its coordinates."""
+
+    @staticmethod
+    def of(mesh: Mesh, order: NDArray[np.int64]) -> _Cloud:
+        """That of a mesh, by the places (n,) of its vertices in their order."""
+        points = mesh.vertices[order]
+        middle = points.mean(axis=0)
+        about = points - middle
+        size = float(np.sqrt((about**2).sum() / len(about)))
+        return _Cloud(mesh.digest, middle, about, size, _rounding(mesh, float(np.abs(points).max())))
+
+
+def _rounding(mesh: Mesh, far: float) -> float:
+    """m, of its coordinates up to `far` (m): that of its file is coarser where the mesh lies far from its origin."""
+    return max(EPS32 * far, mesh.resolution)
+
+
+class _Originals:
+    """Shapes that are no copies of each other, in the order in which they were met, and what tells most apart."""
+
+    def __init__(self) -> None:
+        self.clouds: list[_Cloud] = []
+        self._sizes = np.empty((2, 4))
+
+    def add(self, cloud: _Cloud) -> None:
+        """One more."""
+        count = len(self.clouds)
+        if count == self._sizes.shape[1]:
+            self._sizes = np.tile(self._sizes, 2)
+        self._sizes[:, count] = cloud.size, cloud.rounding
+        self.clouds.append(cloud)
+
+    def copied(self, cloud: _Cloud) -> Copy | None:
+        """The cloud as a copy of the first of these that it is one of."""
+        size, rounding = self._sizes[:, : len(self.clouds)]
+        near = np.abs(cloud.size - size) <= COPY_ROUNDINGS * np.maximum(rounding, cloud.rounding)
+        fits = (_rigid_fit(self.clouds[k], cloud) for k in near.nonzero()[0])
+        return next((copy for copy in fits if copy is not None), None)
+
+
 def _copies(meshes: Mapping[str, Mesh], group: list[str]) -> dict[str, Copy]:
     out: dict[str, Copy] = {}
-    shapes: dict[str, list[tuple[str, Array]]] = {}
+    shapes: dict[str, _Originals] = {}
     for digest in group:
         order, form = _naming_order(meshes[digest])
-        points = meshes[digest].vertices[order]
-        originals = shapes.setdefault(form, [])
-        for other, reference in originals:
-            copy = _rigid_fit(other, reference, points)
-            if copy is not None:
-                out[digest] = copy
-                break
+        cloud = _Cloud.of(meshes[digest], order)
+        originals = shapes.setdefault(form, _Originals())
+        copy = originals.copied(cloud)
+        if copy is None:
+            originals.add(cloud)
         else:
-            originals.append((digest, points))
+            out[digest] = copy
     return out
 
 
@@ -104,14 +154,10 @@ def _naming_order(mesh: Mesh) -> tuple[NDArray[np.int64], str]:
     return order, hashlib.sha256(number[corners].tobytes()).hexdigest()
 
 
-def _rigid_fit(other: str, reference: Array, points: Array) -> Copy | None:
-    """The rigid motion from `reference` to `points`, if it explains them to within their rounding."""
-    allowed = COPY_ROUNDINGS * EPS32 * max(float(np.abs(reference).max()), float(np.abs(points).max()))
-    from_, to = reference.mean(axis=0), points.mean(axis=0)
-    a, b = reference - from_, points - to
-    size = np.sqrt((a**2).sum() / len(a))
-    if abs(np.sqrt((b**2).sum() / len(b)) - size) > allowed:
-        return None
+def _rigid_fit(reference: _Cloud, copy: _Cloud) -> Copy | None:
+    """The rigid motion from `reference` to `copy`, of the same scatter, if it explains all vertices to within their
+    rounding."""
+    a, b = reference.about, copy.about
     u, spread, vt = np.linalg.svd(a.T @ b)
     sense = np.sign(np.linalg.det(u @ vt))
     if sense < 0 and spread[2] > MIRRORED * spread[0]:
@@ -119,13 +165,13 @@ def _rigid_fit(other: str, reference: Array, points: Array) -> Copy | None:
     R_CO = (u * np.array([1.0, 1.0, sense])) @ vt
     R_CO = R_CO.T
     off = b - a @ R_CO.T
-    if np.abs(off).max() > allowed:
+    if np.abs(off).max() > COPY_ROUNDINGS * max(reference.rounding, copy.rounding):
         return None
     X_CO = np.eye(4)
-    X_CO[:3, :3], X_CO[:3, 3] = R_CO, to - R_CO @ from_
+    X_CO[:3, :3], X_CO[:3, 3] = R_CO, copy.middle - R_CO @ reference.middle
     scatter = COVERAGE * float(np.sqrt((off**2).sum() / len(off))) / np.sqrt(len(off))
     freeze(X_CO)
-    return Copy(other, X_CO, scatter / max(float(np.sqrt(spread[1] / len(a))), 1e-300), scatter)
+    return Copy(reference.digest, X_CO, scatter / max(float(np.sqrt(spread[1] / len(a))), 1e-300), scatter)
 
 
 def surfaces_of_copy(surfaces: MeshSurfaces, digest: str, copy: Copy) -> MeshSurfaces:

@@ -82,7 +82,7 @@ def _all_compared(columns: list[NDArray[Any]]) -> Ints:
     for axis in (1, 2):
         meets &= np.less_equal(low[axis][:, None], high_other[axis], out=along)
         meets &= np.less_equal(low_other[axis], high[axis][:, None], out=along)
-    return meets.ravel().nonzero()[0]
+    return np.asarray(meets.ravel().nonzero()[0])
 
 
 def _split(flat: Ints, width: int) -> tuple[Ints, Ints]:
