@@ -11,7 +11,7 @@ from support.solids import box, part, random_pose, rod
 
 from kinform import contacts, kinematics, surfaces
 from kinform.consistency.comparisons.answers import answer_of
-from kinform.consistency.comparisons.intended_joints import compare_joint
+from kinform.consistency.comparisons.intended_joints import compare_joints
 from kinform.design import Design
 from kinform.model.function import Function, IntendedJoint
 
@@ -41,7 +41,7 @@ def derived(joints, X, scale, groups=(), backwards=False):
 
 def answer(whole, touching, K, name):
     wanted = next(one for one in whole.function.joints if one.name == name)
-    return answer_of(whole, compare_joint(whole, touching, K, wanted))
+    return answer_of(whole, *compare_joints(whole, touching, K, [wanted]))
 
 
 SPIN = ("spin", ("base", "wheel"), "revolute", AXLE)

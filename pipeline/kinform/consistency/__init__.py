@@ -14,7 +14,7 @@ from kinform.model.findings import verdict
 
 if TYPE_CHECKING:
     from kinform.consistency.baseline import Baseline, adopt, read_baseline, with_baseline
-    from kinform.consistency.comparisons.intended_joints import Comparison, compare_joint
+    from kinform.consistency.comparisons.intended_joints import Comparison, compare_joints
     from kinform.consistency.documentation import UnknownRuleError, explain, rules_markdown
     from kinform.consistency.inspection import amended, check, margins
     from kinform.consistency.outcome import Outcome
@@ -32,7 +32,7 @@ __all__ = [
     "adopt",
     "amended",
     "check",
-    "compare_joint",
+    "compare_joints",
     "explain",
     "margins",
     "read_baseline",
@@ -51,7 +51,7 @@ __getattr__ = first_used(
         "read_baseline": "baseline",
         "with_baseline": "baseline",
         "Comparison": "comparisons.intended_joints",
-        "compare_joint": "comparisons.intended_joints",
+        "compare_joints": "comparisons.intended_joints",
         "UnknownRuleError": "documentation",
         "explain": "documentation",
         "rules_markdown": "documentation",

@@ -15,7 +15,7 @@ import numpy as np
 
 from kinform.behaviour import imposed_couplings
 from kinform.consistency.comparisons.couplings import coupled_through
-from kinform.consistency.comparisons.intended_joints import Comparison, bodies_of, compare_joint
+from kinform.consistency.comparisons.intended_joints import Comparison, bodies_of, compare_joints
 from kinform.consistency.comparisons.links import Weighed, weighed
 from kinform.consistency.comparisons.plausibility import Doubt, doubts
 from kinform.consistency.constants import DAMPED_UNSEEN
@@ -291,7 +291,7 @@ class Context:
     @cached_property
     def _every_comparison(self) -> tuple[Comparison, ...]:
         joints = sorted(self.function.joints, key=lambda joint: joint.name)
-        return tuple(compare_joint(self.assembly, self.design.contacts, self.kinematics, joint) for joint in joints)
+        return tuple(compare_joints(self.assembly, self.design.contacts, self.kinematics, joints))
 
     @cached_property
     def dormant(self) -> frozenset[Requirement]:
@@ -348,7 +348,7 @@ class Context:
         """The derived joint of that name."""
         if self.lacks("kinematics"):
             return None
-        return next((joint for joint in self.kinematics.joints if joint.name == name), None)
+        return self.kinematics.named_joints.get(name)
 
     def place_of(self, joint: Joint | None) -> tuple[float, float, float] | None:
         """A point (m) at the joint: on its axis, else in the middle of its contact."""

@@ -50,13 +50,13 @@ def _parts(context: Context, subject: Sequence[str]) -> list[Part]:
 
 def _part(context: Context, name: str) -> Part | None:
     """The part of that name, else the first of the body or group of that name."""
-    for part in context.assembly.parts:
-        if part.name == name:
-            return part
-    kinematics = context.design.kinematics
-    wholes = {str(group.name): group.parts for group in context.assembly.groups if group.name == name}
-    wholes |= {str(body.name): body.parts for body in kinematics.bodies if body.name == name} if kinematics else {}
-    return context.assembly.part(min(wholes[name])) if name in wholes else None
+    part = context.assembly.named_parts.get(name)
+    if part is not None:
+        return part
+    kinematics, group = context.design.kinematics, context.assembly.named_groups.get(name)
+    whole = None if kinematics is None else kinematics.named_bodies.get(name)
+    parts = whole.parts if whole is not None else () if group is None else group.parts
+    return context.assembly.part(min(parts)) if parts else None
 
 
 def _middle(parts: Sequence[Part]) -> tuple[float, float, float] | None:
@@ -77,7 +77,7 @@ def _declared(context: Context, subject: Sequence[str], joint: Joint | None) -> 
         for intended in context.function.joints:
             if resolve_joint(context.assembly, context.kinematics, intended.name).joint is joint:
                 return intended
-        second = next(body for body in context.kinematics.bodies if body.name == joint.bodies[1])
+        second = context.kinematics.named_bodies[joint.bodies[1]]
         return context.assembly.part(second.parts[0]).source
     parts = _parts(context, subject)
     return parts[0].source if parts else context.assembly.source

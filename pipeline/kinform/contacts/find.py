@@ -69,15 +69,28 @@ class _Work:
         for pair in self.order:
             meshes = {mesh.digest: len(mesh.faces) for name in pair if (mesh := self.parts[name].mesh) is not None}
             more += sum(count for digest, count in meshes.items() if digest not in known)
-            if chunk and (len(chunk) >= most or more > constants.TOGETHER_FACETS):
+            alone = self._is_alone(pair)
+            if chunk and (alone or len(chunk) >= most or more > constants.TOGETHER_FACETS):
                 out.append(tuple(chunk))
                 chunk, known = [], set()
             if not chunk:
-                # what is expected of a mesh of which only a part is known is expected of one pair
-                more = constants.TOGETHER_FACETS + 1 if max(meshes.values()) > LARGE_MESH else 0
+                more = constants.TOGETHER_FACETS + 1 if alone else 0
             chunk.append(pair)
             known |= meshes.keys()
         return [*out, tuple(chunk)] if chunk else out
+
+    def _is_alone(self, pair: Pair) -> bool:
+        """Whether one has a large mesh of which all may be near the other, so that what is expected of it is expected
+        of that pair."""
+        parts = [self.parts[name] for name in pair]
+        large = [part.mesh is not None and len(part.mesh.faces) > LARGE_MESH for part in parts]
+        if not any(large):
+            return False
+        (low, high), (low_other, high_other) = (
+            part.mesh.placed_box(part.X_WP) for part in (parts if large[0] else parts[::-1]) if part.mesh is not None
+        )
+        margin = self.tolerance[pair]
+        return all(large) or bool((low_other - margin <= low).all() and (high_other + margin >= high).all())
 
     def is_little(self, pairs: list[Pair]) -> bool:
         """Whether it takes no longer than other processes take to start."""

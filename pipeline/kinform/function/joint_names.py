@@ -36,12 +36,12 @@ def resolve_joint(assembly: Assembly, kinematics: Kinematics, name: str) -> Reso
 
     A `[[function.joint]]` of that name goes before a joint that kinform names so.
     """
-    for intended in assembly.function.joints:
-        if intended.name == name:
-            return _resolve_intended(assembly, kinematics, intended)
-    for joint in kinematics.joints:
-        if joint.name == name:
-            return Resolution(name, None, joint.bodies, joint, 1)
+    intended = assembly.function.named_joints.get(name)
+    if intended is not None:
+        return _resolve_intended(assembly, kinematics, intended)
+    joint = kinematics.named_joints.get(name)
+    if joint is not None:
+        return Resolution(name, None, joint.bodies, joint, 1)
     known = ", ".join([j.name for j in assembly.function.joints] + [j.name for j in kinematics.joints])
     return Resolution(name, None, ("", ""), None, 1, f'there is no joint "{name}"; known: {known or "none"}')
 
@@ -67,8 +67,7 @@ def _resolve_intended(assembly: Assembly, kinematics: Kinematics, intended: Inte
         return missing(why_first or why_second)
     if first == second:
         return missing(f'both sides belong to the body "{first}"')
-    pair = tuple(sorted((first, second)))
-    found = [joint for joint in kinematics.joints if tuple(sorted(joint.bodies)) == pair]
+    found = kinematics.joints_between(first, second)
     if not found:
         return missing(f'the bodies "{first}" and "{second}" do not touch')
     if len(found) > 1:

@@ -306,17 +306,19 @@ class Assembly:
 
     def part(self, name: str) -> Part:
         """The part of that name; KeyError otherwise."""
-        return self._named_parts[name]
+        return self.named_parts[name]
 
     def parts_of(self, name: str) -> tuple[PartName, ...]:
         """The parts that a part's or a group's name stands for; KeyError for unknown names."""
-        group = self._named_groups.get(name)
+        group = self.named_groups.get(name)
         return (self.part(name).name,) if group is None else group.parts
 
     @cached_property
-    def _named_parts(self) -> dict[str, Part]:
-        return {str(part.name): part for part in reversed(self.parts)}
+    def named_parts(self) -> dict[str, Part]:
+        """The parts by their names."""
+        return {str(part.name): part for part in self.parts}
 
     @cached_property
-    def _named_groups(self) -> dict[str, Group]:
-        return {str(group.name): group for group in reversed(self.groups)}
+    def named_groups(self) -> dict[str, Group]:
+        """The groups by their names."""
+        return {str(group.name): group for group in self.groups}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import field, replace
+from functools import cached_property
 from typing import Annotated, Any
 
 import numpy as np
@@ -214,6 +215,11 @@ class Function:
     springs: tuple[StatedSpring, ...] = ()
     complete: tuple[str, ...] = ()
     """Prefixes of the manifests whose joints are all that are meant to move; "" for the top one."""
+
+    @cached_property
+    def named_joints(self) -> dict[str, IntendedJoint]:
+        """The joints by their names."""
+        return {str(joint.name): joint for joint in self.joints}
 
     @property
     def as_named(self) -> Function:

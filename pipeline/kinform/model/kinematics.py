@@ -5,6 +5,7 @@ Twists are (ω; v), v the velocity of the point at the world's origin.
 
 from __future__ import annotations
 
+from collections.abc import Set as AbstractSet
 from functools import cached_property
 from typing import Annotated
 
@@ -506,8 +507,52 @@ class Kinematics:
         return self._body_of[part]
 
     @cached_property
+    def named_bodies(self) -> dict[str, Body]:
+        """The bodies by their names."""
+        return {str(body.name): body for body in self.bodies}
+
+    @cached_property
+    def named_joints(self) -> dict[str, Joint]:
+        """The joints by their names."""
+        return {str(joint.name): joint for joint in self.joints}
+
+    def joints_between(self, first: str, second: str) -> tuple[Joint, ...]:
+        """The joints of two bodies, in their order."""
+        return self._joints_between.get(frozenset((first, second)), ())
+
+    def joints_among(self, names: AbstractSet[str]) -> list[Joint]:
+        """The joints whose bodies are both among these, in their order."""
+        places = {k for name in names for k in self._joints_of.get(name, ())}
+        return [self.joints[k] for k in sorted(places) if names >= set(self.joints[k].bodies)]
+
+    @cached_property
+    def neighbours(self) -> dict[str, frozenset[str]]:
+        """The bodies that have a joint with each."""
+        near: dict[str, set[str]] = {name: set() for name in self.named_bodies}
+        for joint in self.joints:
+            first, second = joint.bodies
+            near.setdefault(first, set()).add(second)
+            near.setdefault(second, set()).add(first)
+        return {name: frozenset(others) for name, others in near.items()}
+
+    @cached_property
+    def _joints_between(self) -> dict[frozenset[str], tuple[Joint, ...]]:
+        out: dict[frozenset[str], list[Joint]] = {}
+        for joint in self.joints:
+            out.setdefault(frozenset(joint.bodies), []).append(joint)
+        return {pair: tuple(joints) for pair, joints in out.items()}
+
+    @cached_property
+    def _joints_of(self) -> dict[str, list[int]]:
+        out: dict[str, list[int]] = {}
+        for k, joint in enumerate(self.joints):
+            for name in joint.bodies:
+                out.setdefault(name, []).append(k)
+        return out
+
+    @cached_property
     def _body_of(self) -> dict[str, Body]:
-        return {str(part): body for body in reversed(self.bodies) for part in body.parts}
+        return {str(part): body for body in self.bodies for part in body.parts}
 
 
 def only_bodies(bodies: tuple[Body, ...]) -> Kinematics:

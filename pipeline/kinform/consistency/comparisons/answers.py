@@ -15,7 +15,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.consistency.comparisons.intended_joints import Comparison, compare_joint
+from kinform.consistency.comparisons.intended_joints import Comparison, compare_joints
 from kinform.design import Design
 from kinform.foundation.words import counted
 from kinform.frozen import dataclass
@@ -74,10 +74,9 @@ def answer_of(assembly: Assembly, c: Comparison) -> Answer:
 def answers(design: Design) -> tuple[Answer, ...]:
     """The answers to all intended joints, in the order of the function; needs kinematics."""
     assert design.kinematics is not None
-    return tuple(
-        answer_of(design.assembly, compare_joint(design.assembly, design.contacts, design.kinematics, joint))
-        for joint in design.assembly.function.joints
-    )
+    assembly = design.assembly
+    compared = compare_joints(assembly, design.contacts, design.kinematics, assembly.function.joints)
+    return tuple(answer_of(assembly, one) for one in compared)
 
 
 def _kind(tolerances: Tolerances, c: Comparison) -> tuple[str, str, str]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from functools import cached_property
 
 import numpy as np
 
@@ -101,11 +103,36 @@ def bodies_of(assembly: Assembly, kinematics: Kinematics, between: tuple[str, st
     return first, second
 
 
-def compare_joint(
-    assembly: Assembly, contacts: Contacts | None, kinematics: Kinematics, intended: IntendedJoint
+class _Known:
+    """What is asked about each of many intended joints, and the same for all."""
+
+    def __init__(self, assembly: Assembly, kinematics: Kinematics):
+        self._assembly, self._kinematics = assembly, kinematics
+
+    @cached_property
+    def named(self) -> frozenset[str]:
+        """Bodies that the function names."""
+        pairs = (bodies_of(self._assembly, self._kinematics, one.between) for one in self._assembly.function.joints)
+        return frozenset(name for pair in pairs for name in pair)
+
+    @cached_property
+    def extents(self) -> Extents:
+        """Of the assembly."""
+        return Extents(self._assembly)
+
+
+def compare_joints(
+    assembly: Assembly, contacts: Contacts | None, kinematics: Kinematics, intended: Iterable[IntendedJoint]
+) -> list[Comparison]:
+    """The intended joints beside what the geometry of their two bodies, and of loose parts that connect them, leaves
+    free."""
+    known = _Known(assembly, kinematics)
+    return [_compared(assembly, contacts, kinematics, one, known) for one in intended]
+
+
+def _compared(
+    assembly: Assembly, contacts: Contacts | None, kinematics: Kinematics, intended: IntendedJoint, known: _Known
 ) -> Comparison:
-    """The intended joint beside what the geometry of its two bodies, and of loose parts that connect
-    them, leaves free."""
     first, second = (kinematics.body_of(assembly.parts_of(name)[0]) for name in intended.between)
     bodies = (first, second)
     if first.name == second.name:
@@ -117,14 +144,12 @@ def compare_joint(
         return Comparison(
             intended, bodies, "one body", reason, one.type, one.axis, one.point, freedoms=freedoms, loose=True
         )
-    pair = {first.name, second.name}
-    direct = next((joint for joint in kinematics.joints if set(joint.bodies) == pair), None)
+    direct = next(iter(kinematics.joints_between(first.name, second.name)), None)
     if direct is not None and direct.status == "stated":
         return Comparison(intended, bodies, "taken", direct.reason, joint=direct)
     if direct is not None and direct.evidence == ("function",):
         return Comparison(intended, bodies, "stated", "the joint is taken from the function", joint=direct)
-    named = {name for joint in assembly.function.joints for name in bodies_of(assembly, kinematics, joint.between)}
-    motion = motion_through_helpers(kinematics, first.name, second.name, named)
+    motion = motion_through_helpers(kinematics, first.name, second.name, known.named)
     used: tuple[Joint, ...] = (direct,) if direct is not None else ()
     if motion is not None:
         used = motion.joints
@@ -140,6 +165,7 @@ def compare_joint(
     found = direct.twists if motion is None and direct is not None else motion.twists if motion else None
     if state == "found" and intended.closure and found is not None and _shares(intended, form.type, found):
         state, reason = "undecided", f"it only closes a loop, and by contact that joint is {form.type}"
+    size = _smaller(known.extents, bodies)
     return Comparison(
         intended,
         bodies,
@@ -156,8 +182,8 @@ def compare_joint(
         through=motion.helpers if motion is not None else (),
         angle_slack=angle_slack,
         position_slack=position_slack,
-        size=_smaller(assembly, bodies),
-        position_limit=assembly.tolerances.offset_limit(_smaller(assembly, bodies)),
+        size=size,
+        position_limit=assembly.tolerances.offset_limit(size),
     )
 
 
@@ -207,9 +233,8 @@ def _slack(patches: list[Patch]) -> tuple[float, float]:
     return max(p.uncertainty[0] for p in patches), max(p.uncertainty[1] for p in patches)
 
 
-def _smaller(assembly: Assembly, bodies: tuple[Body, Body]) -> float:
+def _smaller(extents: Extents, bodies: tuple[Body, Body]) -> float:
     """Diagonal (m) of the smaller of the bodies that have one; of the assembly where none has."""
-    extents = Extents(assembly)
     sizes = [size for body in bodies if (size := extents.diagonal(body.parts)) > 0.0]
     return min(sizes) if sizes else extents.assembly
 

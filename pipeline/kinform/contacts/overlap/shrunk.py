@@ -32,7 +32,7 @@ def are_within(a: PartView, b: PartView, least: float) -> bool:
     told: bool | None = False
     if len(facets_a) and len(facets_b):
         thinner = _corners(a, facets_a) - least * _outward(a, facets_a)
-        told = None if a.index.is_large or b.index.is_large else crossing(thinner, _corners(b, facets_b))
+        told = None if a.region.is_large or b.region.is_large else crossing(thinner, _corners(b, facets_b))
     # mostly some cross, which is seen sooner than where shells are
     if told or not (_outside(first, second, least) and _outside(second, first, least)):
         return False

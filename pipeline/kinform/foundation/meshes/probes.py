@@ -90,6 +90,11 @@ class Region:
         """Whether it is of no facets."""
         return self.facets is not None and not len(self.facets)
 
+    @property
+    def is_large(self) -> bool:
+        """Whether it is of so many facets, of a large mesh, that they are asked by models alone."""
+        return self.index.is_large and not (self.facets is not None and self._is_kept)
+
     @cached_property
     def bvh(self) -> fcl.BVHModel:
         """FCL's model of them, made when first asked for; there is none of an empty region."""
@@ -107,7 +112,7 @@ class Region:
 
     def depths(self, points: Array) -> tuple[Array, Ints]:
         """Distance (n,) m of points (n, 3) of the part frame to these facets, and the nearest of them (n,)."""
-        if not self.index.is_large:
+        if not self.is_large:
             told = self.triangles.nearest(points)
             if told is not None:
                 return told[0], told[1] if self.facets is None else self.facets[told[1]]
@@ -200,7 +205,7 @@ def crossings_of(asked: Sequence[tuple[Region, Region, Array]]) -> list[bool]:
     some = [
         k
         for k, (first, second, _) in enumerate(asked)
-        if not (first.empty or second.empty or first.index.is_large or second.index.is_large)
+        if not (first.empty or second.empty or first.is_large or second.is_large)
     ]
     triangles = [
         (first.corners(), times(second.corners(), X_SO[:3, :3].T) + X_SO[:3, 3])

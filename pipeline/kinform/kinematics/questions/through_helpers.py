@@ -37,39 +37,41 @@ def motion_through_helpers(
 ) -> HelperMotion | None:
     """The motion of `second` relative to `first` through bodies outside `named` and ground; None when
     no such body connects the two."""
-    fixed = {body.name for body in kinematics.bodies if body.ground}
-    helpers = [b.name for b in kinematics.bodies if b.name not in named | fixed | {first, second}]
-    used = _connecting(kinematics.joints, first, second, set(helpers))
-    if not used:
+    helpers = _connecting(kinematics, first, second, named)
+    if not helpers:
         return None
-    nodes = [first, second, *(name for name in helpers if name in used)]
+    nodes = [first, second, *(name for name in kinematics.named_bodies if name in helpers)]
     index = {name: k for k, name in enumerate(nodes)}
-    joints = [j for j in kinematics.joints if j.bodies[0] in index and j.bodies[1] in index]
+    joints = kinematics.joints_among(index.keys())
     edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in joints]
     spaces = [j.twists for j in joints]
     twists = body_twists(close(len(nodes), edges, spaces, 0), edges, spaces)[:, 1, :]
     points = np.array([j.point for j in joints if j.point is not None])
     frame = Frame.of(points) if len(points) else Frame(np.zeros(3), 1.0)
     basis = span(scaled(twists.T, frame))
-    names = tuple(sorted(used))
+    names = tuple(sorted(helpers))
     return HelperMotion(name_space(basis, frame), basis.shape[1], names, tuple(joints), twists)
 
 
-def _connecting(joints: tuple[Joint, ...], first: str, second: str, helpers: set[str]) -> set[str]:
-    """Helpers reached from `first` over helpers alone, if `second` is reached too; else none."""
-    near: dict[str, set[str]] = {}
-    for joint in joints:
-        a, b = joint.bodies
-        near.setdefault(a, set()).add(b)
-        near.setdefault(b, set()).add(a)
+def _connecting(kinematics: Kinematics, first: str, second: str, named: AbstractSet[str]) -> set[str]:
+    """Helpers, which are neither named nor ground, reached from `first` over helpers alone, if `second` is reached too;
+    else none."""
+
+    def helpers(of: str) -> list[str]:
+        near = kinematics.neighbours[of] - named - {first, second}
+        return sorted(name for name in near if not kinematics.named_bodies[name].ground)
+
+    # mostly one of them has no helper, and the other may have thousands of neighbours
+    if not all(map(helpers, sorted((first, second), key=lambda name: len(kinematics.neighbours[name])))):
+        return set()
     reached: set[str] = set()
-    queue = sorted(near.get(first, set()) & helpers)
+    queue = helpers(first)
     arrived = False
     while queue:
         name = queue.pop()
         if name in reached:
             continue
         reached.add(name)
-        arrived = arrived or second in near[name]
-        queue.extend(sorted(near[name] & helpers - reached))
+        arrived = arrived or second in kinematics.neighbours[name]
+        queue.extend(other for other in helpers(name) if other not in reached)
     return reached if arrived else set()

@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from kinform.consistency import Comparison, compare_joint
+from kinform.consistency import Comparison, compare_joints
 from kinform.design import Design
 from kinform.foundation import words
 from kinform.frozen import dataclass
@@ -73,9 +73,8 @@ class _Table:
         wanted = sorted(self.design.assembly.function.joints, key=lambda joint: joint.name)
         if kinematics is not None:
             yield self._mobility(kinematics)
-            compared = {
-                j.name: compare_joint(self.design.assembly, self.design.contacts, kinematics, j) for j in wanted
-            }
+            every = compare_joints(self.design.assembly, self.design.contacts, kinematics, wanted)
+            compared = {one.intended.name: one for one in every}
             matched = {c.joint.name for c in compared.values() if c.joint is not None}
             for joint in wanted:
                 yield self._intended(joint, compared[joint.name])
