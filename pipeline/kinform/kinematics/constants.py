@@ -86,6 +86,8 @@ CENTRE_SLACK = 1e-9
 """Share of the contact's size by which centres that are known exactly may be apart and be one."""
 DISTINCT_SLIDE = 0.25
 """Directions that differ by less than this share of the alignment are tried once."""
+MOST_LOOSE = 4
+"""Patches of facets of no known surface, the largest first, each of which suggests directions in a plane."""
 LEAST_MEETING = 0.1
 """Planes at a smaller angle (sine) have no line in common that could be told."""
 ONE_NORMAL = 1e-3

@@ -51,6 +51,8 @@ class Item:
     position: float
     """m: likewise for its line or centre."""
     interferes: bool
+    loose: bool = False
+    """Facets of no known surface, of no direction of their own."""
 
     @cached_property
     def middle(self) -> Array:
@@ -192,4 +194,5 @@ def _item(index: int, patch: Patch, turned: bool, tolerances: Tolerances, contac
         angle=LOOSE_ANGLE if loose else tolerances.alignment + SIGMAS * direction + 0.5 * patch.misalignment,
         position=SIGMAS * position + clearance + offset if coaxial else 0.0,
         interferes=patch.gap < -(patch.chord + SIGMAS * position),
+        loose=loose,
     )
