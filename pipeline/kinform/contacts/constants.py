@@ -105,6 +105,8 @@ tessellated by tangents: the chord error is most of it then."""
 
 TOUCHING = ("point", "line")
 """Kinds of higher pairs."""
+ROUND_KINDS = ("cylinder", "cone", "sphere", "torus", "revolution", "helicoid")
+"""Kinds of patches with an axis or a centre at a place."""
 OPPOSED_LEVEL = 0.99999
 """Cosine between opposed planes from which on they are as good as parallel, 0.26°."""
 FACING_NEVER = 0.25
@@ -117,9 +119,10 @@ FACING_ROUNDED = 1e-9
 MOST_ASKED = 20_000
 """Facets beyond which finding out which probes can hit any of them takes longer than casting all."""
 ENCLOSED_HELD = 0.02
-"""Singular value below which patches leave a motion that is to be looked at."""
+"""Singular value below which patches leave a motion that is to be looked at, turn of a unit twist below which it
+slides, and speed along its normal, as a share of that of its place, above which a point or a line holds a motion."""
 ENCLOSING_SPEED = 0.3
-"""Speed along its normal, of a unit twist, from which on a facet opposes it."""
+"""Speed along its normal, as a share of that of its place, from which on a facet opposes a motion."""
 OPENS_AGAINST = 0.2
 """Speed up to which a facet may be approached by a slide that opens all others, ..."""
 OPENS_SHARE = 0.02
