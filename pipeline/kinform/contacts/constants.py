@@ -211,6 +211,8 @@ BALL_BORE_SAMPLES = 16
 """Samples around a ball in a bore."""
 ROLLER_SAMPLES = 17
 """Samples along a roller on a plane or between two rollers."""
+SHORT_PLANE = 0.5
+"""Share of the length of a roller below which samples stand only where the plane is under it."""
 ROUND_AXIS = 1e-9
 """Share of its radius by which a ball may be off the axis of a cone and be on it; the same of a unit axis."""
 LINE_SAMPLES = 9

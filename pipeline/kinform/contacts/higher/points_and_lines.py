@@ -16,7 +16,8 @@ import numpy as np
 
 from kinform.contacts import constants
 from kinform.contacts.higher.meeting import Meeting
-from kinform.contacts.higher.rounds import meeting
+from kinform.contacts.higher.rounds import meeting, on_plane
+from kinform.contacts.higher.stations import where_short
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.narrow_phase import Probes, verify
 from kinform.contacts.search.pair_view import NearSurfaces, PairView, SurfacePair
@@ -177,6 +178,11 @@ def _touch(view: PairView, surfaces: SurfacePair, first: bool) -> _Touch | None:
     met = meeting(surfaces, parallel_within(surfaces, view.tolerances), limit)
     if met is None:
         return None
+    if surfaces.kinds == ("cylinder", "plane") and float(np.abs(met.gaps).min()) <= limit:
+        short = where_short(view, surfaces)
+        if short is not None:
+            met = on_plane(surfaces, parallel_within(surfaces, view.tolerances), short)
+            assert met is not None
     close = np.abs(met.gaps) <= limit
     if sum(surfaces.shifts) > constants.TOUCH * view.tolerance or not close.any():
         return None

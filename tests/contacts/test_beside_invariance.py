@@ -1,0 +1,121 @@
+"""What pins hold beside patches is the same in all poses and sizes, however the facets are listed, and whichever part
+comes first; and however near the axis they are, or short the wall that holds them."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from manifold3d import Manifold
+from support.solids import assembly, box, part, random_pose, rod
+
+from kinform import contacts, kinematics, surfaces
+
+
+def along_x(solid):
+    return solid.rotate((0, 90, 0))
+
+
+def half_let_in(tilt, play):
+    """A pin half let into a plate, in a slot of the plate on it, whose walls touch it where both begin."""
+    pin = along_x(Manifold.cylinder(20, 1.6, 1.6, 48, True)).rotate((0, 0, tilt)).translate((0, 0, 3))
+    wide = 3.2 + 2 * play
+    hub = Manifold.cube((40, 40, 6), True).translate((0, 0, 6)) - Manifold.cube((22, wide, wide), True).translate(
+        (0, 0, 3)
+    )
+    return Manifold.cube((40, 40, 6), True) + pin, hub
+
+
+def tongue(eccentric, length):
+    """A small pin on the end of a shaft, near the axis, in a slot at the end of its bore."""
+    shaft = rod(6, 0, length + 10, 56, 3.0) + rod(0.5, -3, 1, 32).translate((eccentric, 0, 0))
+    return shaft, box(-12, 12, -12, 12, -6, length) - rod(6, -1, length + 20, 64) - box(-3, 3, -0.5, 0.5, -4, 1)
+
+
+def tube(wall, half):
+    """A cross pin, long beside the wall of the tube whose slots hold it."""
+    shaft = rod(6, -25, 25, 56, 3.0) + rod(1, -half, half, 24, 5.0).rotate((-90, 0, 0))
+    return shaft, rod(6 + wall, -20, 20, 64) - rod(6, -30, 30, 64) - box(-1, 1, -13, 13, -9, 9)
+
+
+def against_a_wall(height):
+    """A cross pin against one wall."""
+    shaft = rod(6, -25, 25, 56, 3.0) + rod(1, 4, height, 24, 5.0).rotate((-90, 0, 0))
+    block = box(-12, 12, -12, height + 1, -12, 12) - rod(6, -13, 13, 64)
+    return shaft, block - box(-1, 9, 0, height + 2, -9, 9)
+
+
+def relisted(made, rng):
+    """The part with its vertices and facets in another order."""
+    mesh, order = made.mesh, rng.permutation(len(made.mesh.vertices))
+    faces = np.argsort(order)[mesh.faces][rng.permutation(len(mesh.faces))]
+    faces = np.stack([np.roll(face, k) for face, k in zip(faces, rng.integers(0, 3, len(faces)), strict=True)])
+    digest = hashlib.sha256(mesh.vertices[order].tobytes() + faces.tobytes()).hexdigest()
+    return replace(made, mesh=replace(mesh, vertices=mesh.vertices[order], faces=faces, digest=digest))
+
+
+def answer(solids, X, scale, rng=None):
+    """Type, status and freedoms of the joint of two solids, its axis in their frame, and the kinds of its contact."""
+    parts = [part(name, solid, X, scale) for name, solid in zip("ab", solids, strict=True)]
+    if rng is not None:
+        parts = [relisted(made, rng) for made in parts]
+    made = assembly(*parts)
+    found = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
+    touching = contacts.find(made, found)
+    (joint,) = kinematics.derive(made, found, touching).joints
+    axis = None if joint.axis is None else np.abs(joint.axis @ X[:3, :3])
+    return (joint.type, joint.status, joint.freedoms), sorted(patch.kind for patch in touching.patches), axis
+
+
+def answers(solids, seed):
+    """The answer as drawn, and others that must be the same, with how near to it axes have to be (rad). Facets of a
+    leaning pin know its axis to a quarter of a degree, and are others where it is tessellated more finely."""
+    rng = np.random.default_rng(seed)
+    yield answer(solids, np.eye(4), 1e-3), 0.0
+    for scale in (1e-5, 1e-2, 3.0):
+        yield answer(solids, random_pose(rng, 30 * scale), scale), 1e-6
+        yield answer(solids[::-1], random_pose(rng, 30 * scale), scale, rng), 1e-6
+    yield answer([solid.refine(3) for solid in solids], random_pose(rng), 1e-3), 5e-3
+
+
+def assert_same(solids, seed, wanted):
+    (first, _), *others = answers(solids, seed)
+    assert first[0] == wanted
+    for other, near in others:
+        assert other[:2] == first[:2]
+        if first[2] is not None:
+            assert other[2] == pytest.approx(first[2], abs=near)
+
+
+@pytest.mark.parametrize(("tilt", "play"), [(0.0, 0.0), (0.05, 0.01), (0.25, 0.0), (1.33, 0.01), (2.8, 0.0)])
+def test_a_pin_half_let_into_its_plate(tilt, play):
+    """Where it leans, and no line of it lies on the walls of its slot, its facets were held against whatever directions
+    lie across the plate by the axes of the world: prismatic in some poses, along up to 11° beside the slot, and planar
+    in others."""
+    assert_same(half_let_in(tilt, play), 1, ("prismatic", "ambiguous", 1))
+
+
+@pytest.mark.parametrize(("eccentric", "length"), [(2.0, 30), (0.8, 100), (0.5, 100)])
+def test_a_pin_near_the_axis(eccentric, length):
+    """Levers were compared with the length of the bore: the shaft was cylindrical, and determined."""
+    assert_same(tongue(eccentric, length), 2, ("prismatic", "ambiguous", 1))
+
+
+@pytest.mark.parametrize(("wall", "half"), [(1.39, 43.7), (0.87, 53.6), (2.31, 59.1)])
+def test_a_long_pin_in_a_thin_wall(wall, half):
+    """Samples along the pin missed the wall: the shaft was cylindrical, and determined."""
+    assert_same(tube(wall, half), 3, ("prismatic", "ambiguous", 1))
+
+
+@pytest.mark.parametrize("height", [9.0, 11.0, 20.0, 40.0])
+def test_a_pin_at_one_wall_holds_nothing_however_long_it_is(height):
+    """Its roundness does not oppose a slide along the wall, in neither sense."""
+    assert_same(against_a_wall(height), 4, ("cylindrical", "determined", 2))
+
+
+def test_an_eccentric_of_no_more_than_the_play_holds_nothing():
+    shaft = rod(5.9, 0, 40, 56, 3.0) + rod(0.5, -3, 1, 32).translate((0.08, 0, 0))
+    block = box(-12, 12, -12, 12, -6, 30) - rod(6, -1, 50, 64) - box(-3, 3, -0.5, 0.5, -4, 1)
+    assert answer((shaft, block), np.eye(4), 1e-3)[:2] == (("cylindrical", "determined", 2), ["cylinder"])
