@@ -209,6 +209,14 @@ the overlap at the other, up to which the step is there by the overlap alone. It
 STEP_CORNER = 0.5
 """Largest cosine between the normals of the two faces of a step."""
 
+# --- pair/slots ------------------------------------------------------------------------------------------------------
+
+SLOT_PLAY = math.radians(5.0)
+"""rad by which what a pin holds may turn until it touches either side of its slot: as with axes that mate, no play
+excuses a greater angle."""
+SLOT_OPPOSED = -0.999
+"""Greatest cosine between what two sides of a slot hold: as in `contacts`."""
+
 # --- pair/stops ------------------------------------------------------------------------------------------------------
 
 FACING_ONE_WAY = 1e-4

@@ -258,5 +258,6 @@ def _patch(pair: PairView, touch: _Touch, holds: Flags) -> Patch:
         uncertainty=(max(surfaces.turns), shift),
         chord=surfaces.chord,
         bends=met.bends,
+        flat=surfaces.kinds[1] == "plane",
     )
     return touch_patch(pair, touch.ids, samples, shift)
