@@ -113,7 +113,10 @@ FACING_NEVER = 0.25
 """Cosine between normals of surfaces up to which none of their facets face each other, whose normals scatter: half of
 what a probe asks for."""
 ENCLOSING_PROBES = 600
-"""Middles of facets of either part that are looked at."""
+"""Middles of facets of either part that are looked at, of those that may be near what they face, ..."""
+ENCLOSING_ASKED = 700
+"""... of so many for which that is asked: where there are no more, none hangs on how the parts lie. With 1,000 so100's
+contacts took 1.5 % longer than without, with 5,000 4 %; with this less than 1 %."""
 FACING_ROUNDED = 1e-9
 """By which the cosine of two facets may be off for rounding."""
 MOST_ASKED = 20_000

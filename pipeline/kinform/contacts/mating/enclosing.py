@@ -20,7 +20,7 @@ from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.constants import SLIVER_WIDTH
 from kinform.foundation.meshes.box_pairs import meeting_boxes
-from kinform.foundation.meshes.boxes import meeting_box, middles, triangle_boxes
+from kinform.foundation.meshes.boxes import meeting_box, middles
 from kinform.foundation.meshes.probes import Region
 from kinform.foundation.sorting import distinct, heads
 from kinform.frozen import dataclass
@@ -87,21 +87,23 @@ def _facing(view: PairView, unread: Flags) -> _Near | None:
     high = other.highs[columns].max(axis=0) + reach
     facets = np.concatenate([own.facets[k] for k in rows_])
     of_row = np.repeat(rows_, [len(own.facets[k]) for k in rows_])
-    corners = a.vertices.take(a.faces[facets], axis=0)
-    areas = a.index.areas(facets)
-    inside = meeting_box(*triangle_boxes(corners), low, high) & (areas > 0.0)
-    facets, of_row, areas, corners = facets[inside], of_row[inside], areas[inside], corners[inside]
-    if not len(facets):
+    points = middles(a.vertices.take(a.faces.take(facets, axis=0), axis=0))
+    inside = np.flatnonzero(meeting_box(points, points, low, high))
+    inside = inside[a.index.areas(facets[inside]) > 0.0]
+    if not len(inside):
         return None
-    chosen, weight = _evenly(areas, constants.ENCLOSING_PROBES)
-    points, normals = middles(corners[chosen]), a.normals(facets[chosen])
-    of_row = of_row[chosen]
+    chosen, weight = _evenly(a.index.areas(facets[inside]), constants.ENCLOSING_ASKED)
+    chosen = inside[chosen]
+    points, normals, of_row = points[chosen], a.normals(facets[chosen]), of_row[chosen]
     column = np.full(len(b.table.areas), -1)
     column[other.ids] = np.arange(len(other.ids))
     able, region = _can_hit(view, points, normals, reach, unread, of_row, column)
     if not len(able):
         return None
-    weight, points, normals, of_row = weight[able], points[able], normals[able], of_row[able]
+    # which can be hit hangs little on how the parts lie, and not at all where they are few
+    some, weight = _evenly(weight[able], constants.ENCLOSING_PROBES)
+    able = able[some]
+    points, normals, of_row = points[able], normals[able], of_row[able]
     hits = region.cast(b.to_part(points), b.turn_to_part(normals), np.full(len(points), reach))
     of_column = column[b.surfaces.labels[hits.facet]]
     wanted = (hits.facing < -constants.FACING_LEAST) & (of_column >= 0)
