@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from manifold3d import Manifold
+from manifold3d import CrossSection, Manifold
 from support.solids import assembly, box, part, random_pose, rod
 
 from kinform import contacts, kinematics, surfaces
@@ -113,6 +113,23 @@ def test_a_long_pin_in_a_thin_wall(wall, half):
 def test_a_pin_at_one_wall_holds_nothing_however_long_it_is(height):
     """Its roundness does not oppose a slide along the wall, in neither sense."""
     assert_same(against_a_wall(height), 4, ("cylindrical", "determined", 2))
+
+
+def in_a_helix(pitch):
+    """A cross pin with some play in a slot of the bore that winds about it."""
+    wide = 2.3 / np.sin(np.arctan2(pitch / (2 * np.pi), 8.5))
+    outline = CrossSection([np.array([[0, -wide / 2], [13, -wide / 2], [13, wide / 2], [0, wide / 2]])])
+    turn = 360 * 18 / pitch
+    slot = Manifold.extrude(outline, 18, 48, turn).translate((0, 0, -9)).rotate((0, 0, -turn / 2))
+    shaft = rod(6, -25, 25, 56, 3.0) + along_x(rod(1, 4, 11, 24, 5.0))
+    return shaft, box(-12, 12, -12, 12, -12, 12) - rod(6, -13, 13, 64) - slot
+
+
+@pytest.mark.parametrize("pitch", [60, 90])
+def test_a_pin_in_a_helical_slot_does_not_leave_the_shaft_free(pitch):
+    """Its facets were left out as strays, being few, and as far from it as play and bend make them: the shaft was
+    cylindrical, and determined."""
+    assert_same(in_a_helix(pitch), 5, ("cylindrical", "blocked", 2))
 
 
 def test_an_eccentric_of_no_more_than_the_play_holds_nothing():

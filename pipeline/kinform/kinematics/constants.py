@@ -64,6 +64,8 @@ SAME_PITCH = 5e-3
 """Relative difference of pitches that are one."""
 STRAY_SHARE = 0.02
 """Share of the contact area below which a one-sided patch counts only where it touches."""
+BOTH_SIDES = -0.9
+"""Least cosine between facets of such a patch that is on one side only."""
 UNKNOWN_DIRECTION = math.radians(2.0)
 """rad: standard uncertainty between two axes from which on it is not known that the surfaces mate. Of a knee of public
 robots it was 3° or 90° by the pose, and with it the mate was found or not; of all others that decide it is below 1°."""

@@ -17,7 +17,15 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import cross
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import GAP_BANDS, LOOSE_ANGLE, SIGMAS, STRAY_SHARE, TOUCHING_GAP, UNKNOWN_DIRECTION
+from kinform.kinematics.constants import (
+    BOTH_SIDES,
+    GAP_BANDS,
+    LOOSE_ANGLE,
+    SIGMAS,
+    STRAY_SHARE,
+    TOUCHING_GAP,
+    UNKNOWN_DIRECTION,
+)
 from kinform.kinematics.pair.lower_pairs import JointForm, name_space
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
@@ -158,13 +166,15 @@ def gather(patches: Sequence[Member], tolerances: Tolerances, contact: float, si
 
 
 def _stray(item: Item, total: float, contact: float) -> bool:
-    """Facets of no known surface that pass near a small bit of a surface without touching it say nothing. Nor do those
-    of a round surface that they leave unknown: its axis, and so whether it mates, hangs on their last digits."""
+    """Facets of no known surface that pass near a small bit of a surface without touching it say nothing, but where
+    they are on both sides of it, as of a pin in a slot. Nor do those of a round surface that they leave unknown: its
+    axis, and so whether it mates, hangs on their last digits."""
     unknown = item.patch.kind in COAXIAL and item.patch.mismatch[0] > UNKNOWN_DIRECTION
     return (
         (item.patch.one_sided or unknown)
         and item.patch.gap > TOUCHING_GAP * contact
         and item.area < STRAY_SHARE * total
+        and not (item.loose and float((item.normals @ item.normals.T).min()) < BOTH_SIDES)
     )
 
 
