@@ -97,6 +97,12 @@ def test_a_pin_half_let_into_its_plate(tilt, play):
     assert_same(half_let_in(tilt, play), 1, ("prismatic", "ambiguous", 1))
 
 
+@pytest.mark.parametrize("seed", range(6, 10))
+def test_a_line_above_the_middle_of_the_plate_holds_nothing(seed):
+    """Its lever is nothing but rounding, beside a way that is none."""
+    assert_same(half_let_in(0.0, 0.005), seed, ("prismatic", "ambiguous", 1))
+
+
 @pytest.mark.parametrize(("eccentric", "length"), [(2.0, 30), (0.8, 100), (0.5, 100)])
 def test_a_pin_near_the_axis(eccentric, length):
     """Levers were compared with the length of the bore: the shaft was cylindrical, and determined."""

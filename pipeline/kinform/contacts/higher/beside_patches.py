@@ -36,7 +36,8 @@ def holding_touches(pair: PairView, patches: Sequence[Patch]) -> list[Patch]:
     left = motions_left(patches, Frame.of(np.concatenate([patch.points for patch in patches])))
     if not len(left):
         return []
-    play = max((_play(patch) for patch in patches if patch.kind in constants.ROUND_KINDS), default=0.0)
+    play = max([_play(patch) for patch in patches if patch.kind in constants.ROUND_KINDS], default=0.0)
+    play = max(play, constants.EXACT_GAP * pair.tolerance)
 
     def opposed(points: Array, normals: Array) -> Flags:
         return _opposed(left, points, normals, play)

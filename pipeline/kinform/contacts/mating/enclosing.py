@@ -189,7 +189,7 @@ def _encloses(near: _Near, patches: list[Patch], tolerance: float) -> bool:
     for motion in motions:
         along = np.stack([own @ motion, other @ motion])
         way = np.sqrt(((velocities * motion[:, None]).sum(axis=1) ** 2).sum(axis=1))
-        large = np.abs(along).min(axis=0) > constants.ENCLOSING_SPEED * way
+        large = np.abs(along).min(axis=0) > np.maximum(constants.ENCLOSING_SPEED * way, constants.SURELY_FACING)
         senses = [float(near.areas[large & (along * sense > 0.0).all(axis=0)].sum()) for sense in (1.0, -1.0)]
         if min(senses) >= constants.PATCH_AREA * tolerance**2:
             return True
