@@ -18,10 +18,10 @@ def along_x(solid):
     return solid.rotate((0, 90, 0))
 
 
-def half_let_in(tilt, play):
+def half_let_in(tilt, play, radius=1.6):
     """A pin half let into a plate, in a slot of the plate on it, whose walls touch it where both begin."""
-    pin = along_x(Manifold.cylinder(20, 1.6, 1.6, 48, True)).rotate((0, 0, tilt)).translate((0, 0, 3))
-    wide = 3.2 + 2 * play
+    pin = along_x(Manifold.cylinder(20, radius, radius, 48, True)).rotate((0, 0, tilt)).translate((0, 0, 3))
+    wide = 2 * (radius + play)
     hub = Manifold.cube((40, 40, 6), True).translate((0, 0, 6)) - Manifold.cube((22, wide, wide), True).translate(
         (0, 0, 3)
     )
@@ -97,10 +97,13 @@ def test_a_pin_half_let_into_its_plate(tilt, play):
     assert_same(half_let_in(tilt, play), 1, ("prismatic", "ambiguous", 1))
 
 
-@pytest.mark.parametrize("seed", range(6, 10))
-def test_a_line_above_the_middle_of_the_plate_holds_nothing(seed):
-    """Its lever is nothing but rounding, beside a way that is none."""
-    assert_same(half_let_in(0.0, 0.005), seed, ("prismatic", "ambiguous", 1))
+def test_a_line_above_the_middle_of_the_plate_holds_nothing():
+    """Its lever is nothing but rounding, beside a way that is none: one of twenty was taken to hold a turn."""
+    rng = np.random.default_rng(10)
+    for _ in range(60):
+        solids = half_let_in(0.0, rng.choice([0.0, 0.005, 0.01]), 1.0 + 0.8 * rng.random())
+        kind, touching, _ = answer(solids, random_pose(rng, 0.0), 10.0 ** rng.uniform(-5, 1))
+        assert (kind, touching) == (("prismatic", "ambiguous", 1), ["line", "line", "plane"])
 
 
 @pytest.mark.parametrize(("eccentric", "length"), [(2.0, 30), (0.8, 100), (0.5, 100)])
