@@ -64,6 +64,8 @@ SAME_PITCH = 5e-3
 """Relative difference of pitches that are one."""
 STRAY_SHARE = 0.02
 """Share of the contact area below which a one-sided patch counts only where it touches."""
+BOTH_SIDES = -0.9
+"""Least cosine between facets of such a patch that is on one side only."""
 UNKNOWN_DIRECTION = math.radians(2.0)
 """rad: standard uncertainty between two axes from which on it is not known that the surfaces mate. Of a knee of public
 robots it was 3° or 90° by the pose, and with it the mate was found or not; of all others that decide it is below 1°."""
@@ -86,6 +88,8 @@ CENTRE_SLACK = 1e-9
 """Share of the contact's size by which centres that are known exactly may be apart and be one."""
 DISTINCT_SLIDE = 0.25
 """Directions that differ by less than this share of the alignment are tried once."""
+MOST_LOOSE = 4
+"""Patches of facets of no known surface, the largest first, each of which suggests directions in a plane."""
 LEAST_MEETING = 0.1
 """Planes at a smaller angle (sine) have no line in common that could be told."""
 ONE_NORMAL = 1e-3
@@ -206,6 +210,14 @@ STEP_WIDTH = 5.0
 the overlap at the other, up to which the step is there by the overlap alone. It is π to the rounding of the mesh."""
 STEP_CORNER = 0.5
 """Largest cosine between the normals of the two faces of a step."""
+
+# --- pair/slots ------------------------------------------------------------------------------------------------------
+
+SLOT_PLAY = math.radians(5.0)
+"""rad by which what a pin holds may turn until it touches either side of its slot: as with axes that mate, no play
+excuses a greater angle."""
+SLOT_OPPOSED = -0.999
+"""Greatest cosine between what two sides of a slot hold: as in `contacts`."""
 
 # --- pair/stops ------------------------------------------------------------------------------------------------------
 

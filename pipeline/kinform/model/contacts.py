@@ -68,6 +68,8 @@ class Patch:
     narrow: bool = False
     """True: the overlap is narrower than the lenses that two outlines of facets make of one edge, so that it is not
     known whether these faces touch. Found beside other patches only."""
+    flat: bool = False
+    """True: a point or a line on a plane, that of one of the two surfaces."""
     unknown: bool = False
     """True: the parts come this near, and no kind of contact that is known says how they touch: a point where they are
     nearest. Found where nothing else is. It holds nothing for sure, and says that nothing is free for sure."""

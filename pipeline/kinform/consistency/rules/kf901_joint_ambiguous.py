@@ -6,7 +6,8 @@ Why it matters: a guess could be wrong either way. Very short journals, slight t
 coarse facets are the usual causes.
 
 A face may also be read in two ways, as a guide or as an end stop: the bottom of a bore that a piston has reached, or
-the step bearing of a shaft. Both readings are named then, and an intended joint chooses among them.
+the step bearing of a shaft. Both readings are named then, and an intended joint chooses among them. A pin in a
+slot holds or has play; that it holds may be chosen so, and not that it has play.
 
 What to do: export a finer mesh, make the locating surface longer, part what overlaps where nothing mates, state the
 intended joint where there are two readings, or state the joint by `[[assume]]`.

@@ -16,7 +16,8 @@ import numpy as np
 
 from kinform.contacts import constants
 from kinform.contacts.higher.meeting import Meeting
-from kinform.contacts.higher.rounds import meeting
+from kinform.contacts.higher.rounds import meeting, on_plane
+from kinform.contacts.higher.stations import where_short
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.narrow_phase import Probes, verify
 from kinform.contacts.search.pair_view import NearSurfaces, PairView, SurfacePair
@@ -138,6 +139,10 @@ def touches_between(
         points, normals = zip(*((touch.meeting.points, touch.normals()) for touch in touches), strict=True)
         if not wanted(np.concatenate(points), np.concatenate(normals)).any():
             return []
+    views = pair.swapped, pair
+    touches = [close for touch in touches for close in [_at_wall(views[touch.first], touch)] if close is not None]
+    if not touches:
+        return []
     verdict = verify(pair, [_probes(touch, pair.tolerance) for touch in touches])
     held = zip(touches, verdict.holds, strict=True)
     return [_patch(pair, touch, holds) for touch, holds in held if holds.any()]
@@ -184,6 +189,23 @@ def _touch(view: PairView, surfaces: SurfacePair, first: bool) -> _Touch | None:
     line = met.line and (surfaces.kinds[1] == "plane" or bool(close.sum() > 1))
     tube = met.clearance is not None and met.clearance <= constants.CAPTIVE * view.tolerance
     return _Touch(surfaces, first, line, met.chosen(close), tube)
+
+
+def _at_wall(view: PairView, touch: _Touch) -> _Touch | None:
+    """The touch of a roller with a plane that is short beside it, looked at where that is; None where they keep apart
+    there."""
+    if touch.surfaces.kinds != ("cylinder", "plane"):
+        return touch
+    short = where_short(view, touch.surfaces)
+    if short is None:
+        return touch
+    met = on_plane(touch.surfaces, parallel_within(touch.surfaces, view.tolerances), short)
+    assert met is not None
+    band = constants.TOUCH * view.tolerance
+    if float(np.abs(touch.meeting.gaps).max()) > band:
+        band = constants.CAPTIVE * view.tolerance
+    close = np.abs(met.gaps) <= band
+    return replace(touch, meeting=met.chosen(close)) if close.any() else None
 
 
 def _held(touches: list[_Touch], tolerance: float) -> list[_Touch]:
@@ -252,5 +274,6 @@ def _patch(pair: PairView, touch: _Touch, holds: Flags) -> Patch:
         uncertainty=(max(surfaces.turns), shift),
         chord=surfaces.chord,
         bends=met.bends,
+        flat=surfaces.kinds[1] == "plane",
     )
     return touch_patch(pair, touch.ids, samples, shift)

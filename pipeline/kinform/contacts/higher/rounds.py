@@ -13,6 +13,7 @@ import numpy as np
 from kinform.contacts.constants import BALL_BORE_SAMPLES, ROLLER_SAMPLES, ROUND_AXIS
 from kinform.contacts.higher.meeting import Meeting
 from kinform.contacts.higher.rings import ring
+from kinform.contacts.higher.stations import evenly
 from kinform.contacts.higher.tapers import tapers
 from kinform.contacts.mating.charts import perpendicular
 from kinform.contacts.search.pair_view import SurfacePair
@@ -30,7 +31,7 @@ def meeting(surfaces: SurfacePair, parallel: float, limit: float) -> Meeting | N
         # a ball comes first
         return None if second == "sphere" and convex else ring(surfaces, parallel, limit)
     if second == "plane":
-        return _taper_on_plane(surfaces, parallel) if first == "cone" else _on_plane(surfaces, parallel)
+        return _taper_on_plane(surfaces, parallel) if first == "cone" else on_plane(surfaces, parallel)
     if (first, second) == ("sphere", "sphere") and convex:
         return _single(*surfaces.points, *surfaces.radii)
     if (first, second) == ("sphere", "cylinder"):
@@ -46,16 +47,17 @@ def meeting(surfaces: SurfacePair, parallel: float, limit: float) -> Meeting | N
     return None
 
 
-def _on_plane(surfaces: SurfacePair, parallel: float) -> Meeting | None:
-    """A ball or a roller on a plane."""
+def on_plane(surfaces: SurfacePair, parallel: float, places: tuple[Array, float] | None = None) -> Meeting | None:
+    """A ball or a roller on a plane, at `places` (n,) m along the roller, so far apart (m), else all along it."""
     (axis, normal), (point, origin), radius = surfaces.axes, surfaces.points, surfaces.radii[0]
     kind, along, spacing = surfaces.kinds[0], np.zeros(1), 0.0
     if kind == "cylinder":
         if math.asin(min(1.0, abs(float(axis @ normal)))) > parallel:
             return None
-        low, high = surfaces.extents[0]
-        along = low + (high - low) * (np.arange(ROLLER_SAMPLES) + 0.5) / ROLLER_SAMPLES
+        along = evenly(*surfaces.extents[0])
         spacing = float(along[1] - along[0])
+        if places is not None:
+            along, spacing = places
     elif kind != "sphere":
         return None
     centres = point + along[:, None] * axis

@@ -33,6 +33,8 @@ class TouchSamples:
     chord: float
     bends: bool = False
     """Whether the surfaces bend into each other along the line, and hold more than it says."""
+    flat: bool = False
+    """Whether one of them is a plane."""
 
 
 def touch_patch(pair: PairView, surfaces: tuple[int, int], touch: TouchSamples, exact: float) -> Patch:
@@ -57,4 +59,5 @@ def touch_patch(pair: PairView, surfaces: tuple[int, int], touch: TouchSamples, 
         uncertainty=touch.uncertainty,
         chord=touch.chord,
         fit=classify_fit(gaps, touch.chord, exact, pair.tolerance),
+        flat=touch.flat,
     )

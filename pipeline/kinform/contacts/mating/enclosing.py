@@ -14,13 +14,13 @@ import numpy as np
 from kinform.contacts import constants
 from kinform.contacts.mating.facing import may_face
 from kinform.contacts.mating.patches import classify_fit
-from kinform.contacts.mating.unread import motions_left, unread_surfaces
+from kinform.contacts.mating.unread import MotionsLeft, motions_left, unread_surfaces
 from kinform.contacts.search.pair_view import PairView, boxes_of
-from kinform.foundation.algebra.screws import Frame, rows
+from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.constants import SLIVER_WIDTH
 from kinform.foundation.meshes.box_pairs import meeting_boxes
-from kinform.foundation.meshes.boxes import meeting_box, middles, triangle_boxes
+from kinform.foundation.meshes.boxes import meeting_box, middles
 from kinform.foundation.meshes.probes import Region
 from kinform.foundation.sorting import distinct, heads
 from kinform.frozen import dataclass
@@ -36,15 +36,17 @@ class _Near:
     """(n, 3) half-way between the two (m)."""
     normals: Array
     """(n, 3) out of a."""
+    faced: Array
+    """(n, 3) the same of the facet that each faces, towards which it goes."""
     gaps: Array
     areas: Array
     """(n,) m² that each stands for."""
     surfaces: Ints
     """(n, 2) of a and of b."""
 
-    def where(self, rows: Flags) -> _Near:
-        """Some of them."""
-        return _Near(*(getattr(self, name)[rows] for name in self.__dataclass_fields__))
+    def turned(self) -> _Near:
+        """As the other part sees them."""
+        return _Near(self.points, -self.normals, -self.faced, self.gaps, self.areas, self.surfaces[:, ::-1])
 
 
 def enclosing_patches(pair: PairView, patches: list[Patch]) -> list[Patch]:
@@ -68,9 +70,7 @@ def _near(pair: PairView, unread: Flags) -> _Near | None:
     """Middles of facets that face a facet of the other part within the tolerance, of surfaces flagged in `unread`."""
     found = [_facing(pair, unread), _facing(pair.swapped, unread.T)]
     sides = [
-        _Near(near.points, -near.normals, near.gaps, near.areas, near.surfaces[:, ::-1]) if turned else near
-        for near, turned in zip(found, (False, True), strict=True)
-        if near is not None
+        near.turned() if turned else near for near, turned in zip(found, (False, True), strict=True) if near is not None
     ]
     if not sides:
         return None
@@ -87,21 +87,23 @@ def _facing(view: PairView, unread: Flags) -> _Near | None:
     high = other.highs[columns].max(axis=0) + reach
     facets = np.concatenate([own.facets[k] for k in rows_])
     of_row = np.repeat(rows_, [len(own.facets[k]) for k in rows_])
-    corners = a.vertices.take(a.faces[facets], axis=0)
-    areas = a.index.areas(facets)
-    inside = meeting_box(*triangle_boxes(corners), low, high) & (areas > 0.0)
-    facets, of_row, areas, corners = facets[inside], of_row[inside], areas[inside], corners[inside]
-    if not len(facets):
+    points = middles(a.vertices.take(a.faces.take(facets, axis=0), axis=0))
+    inside = np.flatnonzero(meeting_box(points, points, low, high))
+    inside = inside[a.index.areas(facets[inside]) > 0.0]
+    if not len(inside):
         return None
-    chosen, weight = _evenly(areas, constants.ENCLOSING_PROBES)
-    points, normals = middles(corners[chosen]), a.normals(facets[chosen])
-    of_row = of_row[chosen]
+    chosen, weight = _evenly(a.index.areas(facets[inside]), constants.ENCLOSING_ASKED)
+    chosen = inside[chosen]
+    points, normals, of_row = points[chosen], a.normals(facets[chosen]), of_row[chosen]
     column = np.full(len(b.table.areas), -1)
     column[other.ids] = np.arange(len(other.ids))
     able, region = _can_hit(view, points, normals, reach, unread, of_row, column)
     if not len(able):
         return None
-    weight, points, normals, of_row = weight[able], points[able], normals[able], of_row[able]
+    # which can be hit hangs little on how the parts lie, and not at all where they are few
+    some, weight = _evenly(weight[able], constants.ENCLOSING_PROBES)
+    able = able[some]
+    points, normals, of_row = points[able], normals[able], of_row[able]
     hits = region.cast(b.to_part(points), b.turn_to_part(normals), np.full(len(points), reach))
     of_column = column[b.surfaces.labels[hits.facet]]
     wanted = (hits.facing < -constants.FACING_LEAST) & (of_column >= 0)
@@ -115,6 +117,7 @@ def _facing(view: PairView, unread: Flags) -> _Near | None:
     return _Near(
         points[probe] + 0.5 * along[:, None] * normals[probe],
         normals[probe],
+        -b.normals(hits.facet[kept[first]]),
         along,
         0.5 * weight[probe],
         np.column_stack([own.ids[row], other.ids[col]]),
@@ -156,7 +159,10 @@ def _can_hit(
 
 
 def _evenly(areas: Array, count: int) -> tuple[Ints, Array]:
-    """At most `count` of the facets of these areas (n,), evenly by area, and the area that each stands for."""
+    """At most `count` of the facets of these areas (n,), evenly by area, and the area that each stands for; all where
+    they are no more: which others there are hangs on how the parts lie."""
+    if len(areas) <= count:
+        return np.arange(len(areas)), areas
     reached = np.cumsum(areas)
     shares = (np.arange(count) + 0.5) / count * reached[-1]
     # those at which a share is reached
@@ -171,26 +177,29 @@ def _evenly(areas: Array, count: int) -> tuple[Ints, Array]:
 
 def _encloses(near: _Near, patches: list[Patch], tolerance: float) -> bool:
     """Whether they oppose a motion that the patches leave, in both senses, with areas that are no stray touch."""
-    frame = Frame.of(np.concatenate([near.points, *(patch.points for patch in patches)]))
-    left = motions_left(patches, frame)
+    left = motions_left(patches, Frame.of(np.concatenate([near.points, *(patch.points for patch in patches)])))
     if not len(left) or _opens(near, left):
         return False
-    speeds = rows(near.points, near.normals, frame) @ left.T
-    _, _, motions = np.linalg.svd(np.sqrt(near.areas)[:, None] * speeds, full_matrices=False)
+    velocities = left.velocities(near.points)
+    turning = velocities[:, len(left.slides) :]
+    turning /= float(np.sqrt((turning**2).sum(axis=2)).max(initial=0.0)) or 1.0
+    # two facets that face each other oppose what both oppose: a round pin slides along a wall
+    own, other = ((velocities * normals[:, None]).sum(axis=2) for normals in (near.normals, near.faced))
+    _, _, motions = np.linalg.svd(np.sqrt(near.areas)[:, None] * (own + other), full_matrices=False)
     for motion in motions:
-        along = speeds @ motion
-        large = np.abs(along) > constants.ENCLOSING_SPEED
-        senses = [float(near.areas[large & (along * sense > 0.0)].sum()) for sense in (1.0, -1.0)]
+        along = np.stack([own @ motion, other @ motion])
+        way = np.sqrt(((velocities * motion[:, None]).sum(axis=1) ** 2).sum(axis=1))
+        large = np.abs(along).min(axis=0) > np.maximum(constants.ENCLOSING_SPEED * way, constants.SURELY_FACING)
+        senses = [float(near.areas[large & (along * sense > 0.0).all(axis=0)].sum()) for sense in (1.0, -1.0)]
         if min(senses) >= constants.PATCH_AREA * tolerance**2:
             return True
     return False
 
 
-def _opens(near: _Near, left: Array) -> bool:
-    """Whether some slide among the motions (k, 6) that are left takes the parts off each other everywhere: a wall, or
-    two at a corner, enclose nothing."""
-    _, turns, mixed = np.linalg.svd(left[:, :3].T, full_matrices=True)
-    slides = (mixed[int(np.count_nonzero(turns > constants.ENCLOSED_HELD)) :] @ left)[:, 3:]
+def _opens(near: _Near, left: MotionsLeft) -> bool:
+    """Whether some slide that is left takes the parts off each other everywhere: a wall, or two at a corner, enclose
+    nothing."""
+    slides = left.slides[:, 3:]
     mean = near.areas @ near.normals / near.areas.sum()
     away = slides.T @ (slides @ mean)
     if np.linalg.norm(away) < constants.ENCLOSING_SPEED:

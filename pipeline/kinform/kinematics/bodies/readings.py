@@ -1,8 +1,9 @@
 """Contact that may be read in two ways: what else is known chooses, or the joint stays ambiguous.
 
 Two things choose. The function, where it states a joint that one of the readings is: the joint is `inferred` then, and
-the other reading is kept beside it; nothing but the choice is taken from the function. And a pin that several bodies
-hold about one line is seated in the hole that it stands in, as dowels and bolts are: nothing could drive it along.
+the other reading is kept beside it; nothing but the choice is taken from the function. That a pin in a slot holds is
+chosen so, and never that it does not: both sides of the slot are there. And a pin that several bodies hold about one
+line is seated in the hole that it stands in, as dowels and bolts are: nothing could drive it along.
 """
 
 from __future__ import annotations
@@ -57,7 +58,8 @@ def _as_intended(
     """The reading that is the intended joint, as inferred; unchanged where none is."""
     assert answer.other is not None
     first, second = joint, answer.other
-    chosen = next((j for j in (first, second) if _is(j, intended, patches)), None)
+    open_to = (first,) if joint.readings[0].cause == "pin" else (first, second)
+    chosen = next((j for j in open_to if _is(j, intended, patches)), None)
     if chosen is None:
         return answer, joint
     left = reading_of(first, "") if chosen is second else joint.readings[0]

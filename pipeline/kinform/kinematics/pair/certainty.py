@@ -25,6 +25,7 @@ from kinform.kinematics.pair.in_step import Steps
 from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.kinematics.pair.preserved import preserved_motions
 from kinform.kinematics.pair.scraps import narrow, scraps
+from kinform.kinematics.pair.slots import pin_reading
 from kinform.kinematics.pair.stops import (
     ROLES,
     OtherReading,
@@ -80,7 +81,7 @@ def certainty(
         )
     form = evidence.form(basis)
     touching = momentary(evidence, basis) or (form.type == "general" and meets([item.patch for item in evidence.items]))
-    doubt, seat = "", None
+    doubt, seat, pin = "", None, None
     if touching:
         doubt = apart_doubt(evidence)
     else:
@@ -88,8 +89,11 @@ def certainty(
         sure = firm & (vague <= constants.VAGUE_DIRECTION)
         seat = yield from seat_reading(evidence, twists, preserved, basis, sure, tolerances)
         if seat is None:
-            loose = yield from _loose_doubt(evidence, twists, count, firm, vague, tolerances)
-            doubt = loose or stray_doubt(evidence)
+            pin = yield from pin_reading(evidence, twists, preserved, basis, sure, tolerances)
+        if seat is None and pin is None:
+            doubt = yield from _loose_doubt(evidence, twists, count, firm, vague, tolerances)
+        if seat is None:
+            doubt = doubt or stray_doubt(evidence)
     doubt = doubt or (yield from _near_axes_doubt(evidence, twists, count, tolerances))
     doubt = doubt or _thread_doubt(evidence, basis)
     doubt = doubt or (yield from _torn_doubt(evidence, twists, preserved, count, tolerances))
@@ -100,7 +104,7 @@ def certainty(
     if prism is not None:
         return Certainty("ambiguous", _prism_words(evidence, form, prism), prism)
     reading = _teeth_reading if touching else _scrap_reading
-    other = seat or (yield from reading(evidence, twists, preserved, basis, tolerances))
+    other = seat or pin or (yield from reading(evidence, twists, preserved, basis, tolerances))
     other = other or (yield from stop_reading(evidence, twists, preserved, basis, tolerances))
     if other is not None:
         faces = faces_in_words(evidence, other.out)

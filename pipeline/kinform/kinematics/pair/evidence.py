@@ -17,7 +17,15 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import cross
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import GAP_BANDS, LOOSE_ANGLE, SIGMAS, STRAY_SHARE, TOUCHING_GAP, UNKNOWN_DIRECTION
+from kinform.kinematics.constants import (
+    BOTH_SIDES,
+    GAP_BANDS,
+    LOOSE_ANGLE,
+    SIGMAS,
+    STRAY_SHARE,
+    TOUCHING_GAP,
+    UNKNOWN_DIRECTION,
+)
 from kinform.kinematics.pair.lower_pairs import JointForm, name_space
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
@@ -51,6 +59,8 @@ class Item:
     position: float
     """m: likewise for its line or centre."""
     interferes: bool
+    loose: bool = False
+    """Facets of no known surface, of no direction of their own."""
 
     @cached_property
     def middle(self) -> Array:
@@ -156,13 +166,15 @@ def gather(patches: Sequence[Member], tolerances: Tolerances, contact: float, si
 
 
 def _stray(item: Item, total: float, contact: float) -> bool:
-    """Facets of no known surface that pass near a small bit of a surface without touching it say nothing. Nor do those
-    of a round surface that they leave unknown: its axis, and so whether it mates, hangs on their last digits."""
+    """Facets of no known surface that pass near a small bit of a surface without touching it say nothing, but where
+    they are on both sides of it, as of a pin in a slot. Nor do those of a round surface that they leave unknown: its
+    axis, and so whether it mates, hangs on their last digits."""
     unknown = item.patch.kind in COAXIAL and item.patch.mismatch[0] > UNKNOWN_DIRECTION
     return (
         (item.patch.one_sided or unknown)
         and item.patch.gap > TOUCHING_GAP * contact
         and item.area < STRAY_SHARE * total
+        and not (item.loose and float((item.normals @ item.normals.T).min()) < BOTH_SIDES)
     )
 
 
@@ -192,4 +204,5 @@ def _item(index: int, patch: Patch, turned: bool, tolerances: Tolerances, contac
         angle=LOOSE_ANGLE if loose else tolerances.alignment + SIGMAS * direction + 0.5 * patch.misalignment,
         position=SIGMAS * position + clearance + offset if coaxial else 0.0,
         interferes=patch.gap < -(patch.chord + SIGMAS * position),
+        loose=loose,
     )

@@ -17,6 +17,7 @@ from kinform.foundation.algebra.vectors import canonical, cross, foot, norm, per
 from kinform.frozen import dataclass
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item, Line
+from kinform.kinematics.pair.least_held import slides_across, turns_about
 from kinform.kinematics.wording import components
 from kinform.model.arrays import Array
 
@@ -55,7 +56,7 @@ def candidate_motions(evidence: Evidence, alignment: float) -> tuple[Motion, ...
             twist = rotation(line.axis, line.point, frame, pitch)
             out.append(Motion(True, twist, line.axis, line.point, True, pitch))
     for centre in centres:
-        turns = [*np.eye(3), *(d for d, _ in directions), *(n for n, _ in normals)]
+        turns = [*turns_about(evidence, centre), *(d for d, _ in directions), *(n for n, _ in normals)]
         apart = constants.SEPARATE_CENTRES * frame.length
         turns += [canonical(c - centre) for c in centres if norm(c - centre) > apart]
         out += [Motion(True, rotation(d, centre, frame), d, centre, True) for d in turns]
@@ -196,7 +197,7 @@ def _slides(
     evidence: Evidence, lines: list[Line], normals: list[tuple[Array, float]], alignment: float
 ) -> list[tuple[Array, bool]]:
     """Directions that surfaces leave free, and whether a curved one does: axes, lines in which two planes meet, and
-    directions in a plane, across the axes and across the coordinate axes."""
+    directions in a plane, across the axes and those that facets beside it hold least."""
     planes = [(i.patch.axis, i.area) for i in evidence.items if i.patch.kind == "plane"]
     slides: list[tuple[Array, bool]] = [(line.axis, True) for line in lines]
     distinct = constants.DISTINCT_SLIDE * math.sin(alignment)
@@ -212,7 +213,7 @@ def _slides(
     heavy = [normal for normal, _ in normals[: constants.MOST_NORMALS]]
     meeting = [cross(a, b) for k, a in enumerate(heavy) for b in heavy[:k]]
     for normal in heavy[: constants.MOST_FACES]:
-        meeting += [*perpendicular(normal), *(cross(normal, line.axis) for line in lines)]
+        meeting += [*slides_across(evidence, normal), *(cross(normal, line.axis) for line in lines)]
     for direction in meeting:
         if norm(direction) > constants.LEAST_MEETING:
             add(_refine(canonical(direction), planes, alignment), False)

@@ -36,6 +36,7 @@ ROLES = {
     "sliver": "too slight to decide",
     "flank": "the flank of a tooth or cam, which bears nothing",
     "prism": "those of a prism",
+    "pin": "of a pin that has play in its slot",
 }
 """What faces are that may not be meant to hold."""
 
@@ -50,7 +51,8 @@ class OtherReading:
     out: tuple[int, ...]
     """Items that are left out."""
     role: str
-    """What those are then: stop, sliver or flank. prism: nothing is left out; flats do not let the bodies turn."""
+    """What those are then: stop, sliver, flank or pin. prism: nothing is left out; flats do not let the bodies
+    turn."""
 
 
 def stop_reading(
