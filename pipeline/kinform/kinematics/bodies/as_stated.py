@@ -17,7 +17,7 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, norm
-from kinform.foundation.words import counted, quoted
+from kinform.foundation.words import counted
 from kinform.frozen import dataclass
 from kinform.kinematics.bodies.complete import complete_joints, without_effect
 from kinform.kinematics.bodies.merging import Merger
@@ -28,24 +28,31 @@ from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Patch
 from kinform.model.function import IntendedJoint
-from kinform.model.kinematics import Aside, Joint
+from kinform.model.kinematics import Joint
 from kinform.model.names import PartName
 
 
 @dataclass(frozen=True, eq=False)
 class AsStated:
-    """The joints in force, and contact that constrains nothing."""
+    """The joints in force, and what contact would hold that constrains nothing."""
 
     joints: tuple[Joint, ...]
-    asides: tuple[Aside, ...]
+    beside: tuple[Joint, ...]
 
 
 def as_stated(
-    assembly: Assembly, merger: Merger, joints: Sequence[Joint], patches: Sequence[Patch], *, whole: bool
+    assembly: Assembly,
+    merger: Merger,
+    joints: Sequence[Joint],
+    beside: Sequence[Joint],
+    patches: Sequence[Patch],
+    *,
+    whole: bool,
 ) -> AsStated:
     """Joints by contact, sorted by their bodies, in the light of a function that states all joints.
 
-    `whole`: it states those of all parts; else contact of bodies that none of its joints reaches stays.
+    `beside`: of bodies that it moves by other joints. `whole`: it states those of all parts; else contact of bodies
+    that none of its joints reaches stays.
     """
     of_part = {part: body.name for body in merger.bodies() for part in body.parts}
     meshed = {of_part[part.name] for part in assembly.parts if part.mesh is not None}
@@ -59,7 +66,8 @@ def as_stated(
     sticks = {joint.bodies for joint in joints if not joint.patches}
     idle = without_effect(assembly, merger)
     some_part = {body: part for part, body in of_part.items()}
-    out, asides = [], []
+    out = []
+    aside = [joint for joint in beside if joint.bodies not in assumed]
     for pair in sorted({*derived, *wanted}):
         joint = derived.get(pair)
         if pair in wanted and pair not in assumed:
@@ -71,9 +79,9 @@ def as_stated(
             pair in assumed or pair in sticks or not (whole or idle(*(some_part[name] for name in pair)))
         ):
             out.append(joint)
-        elif joint is not None and not _unknown(joint, patches):
-            asides.append(_aside(joint, patches))
-    return AsStated(tuple(out), tuple(asides))
+        elif joint is not None:
+            aside.append(joint)
+    return AsStated(tuple(out), tuple(joint for joint in aside if not _unknown(joint, patches)))
 
 
 def leaves_free(twists: Array, motions: Array, place: Array, length: float) -> bool:
@@ -163,10 +171,3 @@ def _reach(corners: Array, place: Array) -> float:
 def _unknown(joint: Joint, patches: Sequence[Patch]) -> bool:
     """Whether all that touches does so in no known way."""
     return bool(joint.patches) and all(patches[k].unknown for k in joint.patches)
-
-
-def _aside(joint: Joint, patches: Sequence[Patch]) -> Aside:
-    """Contact that no stated joint goes with."""
-    area = float(sum(patches[k].area for k in joint.patches))
-    words = f"{quoted(joint.bodies)} touch; the function moves them otherwise"
-    return Aside(joint.name, joint.bodies, joint.type, joint.freedoms, joint.status, area, joint.axis, words)
