@@ -2,11 +2,12 @@
 
 The pins and bearings of most assemblies are in no mesh: parts end at a flush plane, or with a gap. Where the function
 states all joints, one that contact leaves free, with more beside, is taken as stated (`stated`), and so is one whose
-bodies do not touch; what contact says stays beside it as a reading. One that contact determines as it is stated stays
-as it was derived, and so does one that contact certainly forbids, in both senses: the function never overrides what
-holds, and a face that the motion only leaves (a lid that is drawn closed, a cylinder drawn in) holds nothing. Where
-contact is ambiguous or blocked the joint is taken as stated, too, and the doubt is kept. Contact between bodies that
-stated joints move relative to each other, without one of their own, constrains nothing and is set aside.
+bodies do not touch; what contact says stays beside it as a reading. One that points and lines hold, as the balls of a
+bearing do, is inferred. One that contact determines as it is stated stays as it was derived, and so does one that
+contact certainly forbids, in both senses: the function never overrides what holds, and a face that the motion only
+leaves (a lid that is drawn closed, a cylinder drawn in) holds nothing. Where contact is ambiguous or blocked the joint
+is taken as stated, too, and the doubt is kept. Contact between bodies that stated joints move relative to each other,
+without one of their own, constrains nothing and is set aside.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from kinform.frozen import dataclass
 from kinform.kinematics.bodies.complete import complete_joints, without_effect
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.bodies.stated_joints import Pair, joint_form, pair_between
-from kinform.kinematics.constants import ADMITTED, POINT_REACH
+from kinform.kinematics.constants import ADMITTED, EXACT_MOTION, POINT_REACH
 from kinform.kinematics.pair.joint import reading_of, stated_joint
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
@@ -84,9 +85,9 @@ def as_stated(
     return AsStated(tuple(out), tuple(joint for joint in aside if not _unknown(joint, patches)))
 
 
-def leaves_free(twists: Array, motions: Array, place: Array, length: float) -> bool:
-    """Whether a joint that allows `twists` (n, 6) lets a body do all of these motions (k, 6), but for a small share of
-    each; twists as (ω; v at the world's origin).
+def leaves_free(twists: Array, motions: Array, place: Array, length: float, missing: float = ADMITTED) -> bool:
+    """Whether a joint that allows `twists` (n, 6) lets a body do all of these motions (k, 6), but for a share `missing`
+    of each; twists as (ω; v at the world's origin).
 
     Speeds are compared at `place` (3,) m; `length` (m), of the contact or the bodies, makes turns and slides alike.
     """
@@ -98,7 +99,7 @@ def leaves_free(twists: Array, motions: Array, place: Array, length: float) -> b
     own, asked = _at(twists, place) * scale, _at(motions, place) * scale
     basis, _ = np.linalg.qr(own.T)
     left = asked - asked @ basis @ basis.T
-    return bool((np.linalg.norm(left, axis=1) <= ADMITTED * np.linalg.norm(asked, axis=1)).all())
+    return bool((np.linalg.norm(left, axis=1) <= missing * np.linalg.norm(asked, axis=1)).all())
 
 
 def _at(twists: Array, place: Array) -> Array:
@@ -140,9 +141,12 @@ def _in_force(
         return replace(taken, status="stated", reason=f"the bodies {what}: '{name}' is taken as stated", motion="")
     corners = np.concatenate([patches[k].points for k in joint.patches])
     place = corners.mean(axis=0) if taken.point is None else taken.point
+    reach = _reach(corners, place)
+    if _is_just(joint, taken, place, reach):
+        return _held_otherwise(taken, joint, name)
     if joint.status in ("ambiguous", "blocked"):
         cause, why = "doubt", "contact leaves it undecided"
-    elif leaves_free(joint.twists, taken.twists, place, _reach(corners, place)):
+    elif leaves_free(joint.twists, taken.twists, place, reach):
         cause, why = "contact", "contact leaves it free and does not hold it"
     elif (len(taken.twists) == 1 or joint.freedoms == 5) and opens(
         [patches[k] for k in joint.patches], taken.twists, first
@@ -159,6 +163,26 @@ def _in_force(
         patches=joint.patches,
         singular_values=joint.singular_values,
         readings=(replace(reading_of(replace(joint, blockers=()), ""), cause=cause),),
+    )
+
+
+def _is_just(joint: Joint, taken: Joint, place: Array, reach: float) -> bool:
+    """Whether contact is no lower pair, as of the balls of a bearing, and surely leaves what is stated and no more."""
+    known = (joint.type, joint.status, joint.freedoms) == ("general", "determined", len(taken.twists))
+    return known and leaves_free(joint.twists, taken.twists, place, reach, EXACT_MOTION)
+
+
+def _held_otherwise(taken: Joint, joint: Joint, name: str) -> Joint:
+    """The stated joint, which contact at points or along lines holds."""
+    return replace(
+        taken,
+        status="inferred",
+        reason=f"contact leaves what '{name}' lets move, and no more, though it is no {taken.type} pair: "
+        f"{joint.reason}",
+        motion="",
+        evidence=(*joint.evidence, "function"),
+        patches=joint.patches,
+        singular_values=joint.singular_values,
     )
 
 
