@@ -146,6 +146,8 @@ def _in_force(
         return _held_otherwise(taken, joint, name)
     if joint.status in ("ambiguous", "blocked"):
         cause, why = "doubt", "contact leaves it undecided"
+    elif joint.type != "general" and joint.freedoms == len(taken.twists):
+        return joint  # as many freedoms, and others, however little a fine thread advances
     elif leaves_free(joint.twists, taken.twists, place, reach):
         cause, why = "contact", "contact leaves it free and does not hold it"
     elif (len(taken.twists) == 1 or joint.freedoms == 5) and opens(
