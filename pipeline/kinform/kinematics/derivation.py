@@ -18,7 +18,7 @@ from kinform.kinematics.axes.proportions import fit_proportions
 from kinform.kinematics.axes.snapping import snap_axes
 from kinform.kinematics.bodies.as_stated import as_stated
 from kinform.kinematics.bodies.classification import Pairs, decide_all, decide_beside
-from kinform.kinematics.bodies.complete import complete_joints
+from kinform.kinematics.bodies.complete import complete_joints, rests
 from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.bodies.fasteners import (
     fasten,
@@ -157,7 +157,7 @@ def derive(
         asides=asides(beside, patches, bodies, out.mobility),
         membership=() if found is None else _membership(found, _body_of_part(bodies)),
         unparted=() if found is None else tuple(Unparted(joint, parts) for joint, parts in found.unparted.items()),
-        left_out=() if found is None else left_out(assembly, surfaces, contacts, bodies),
+        left_out=left_out(assembly, surfaces, contacts, bodies) if found is not None or rests(assembly) else (),
         sides=sides,
     )
 
