@@ -124,7 +124,8 @@ def compare_joint(
     if direct is not None and direct.evidence == ("function",):
         return Comparison(intended, bodies, "stated", "the joint is taken from the function", joint=direct)
     named = {name for joint in assembly.function.joints for name in bodies_of(assembly, kinematics, joint.between)}
-    motion = motion_through_helpers(kinematics, first.name, second.name, named)
+    size = _smaller(assembly, bodies)
+    motion = motion_through_helpers(kinematics, first.name, second.name, named, size)
     used: tuple[Joint, ...] = (direct,) if direct is not None else ()
     if motion is not None:
         used = motion.joints
@@ -156,8 +157,8 @@ def compare_joint(
         through=motion.helpers if motion is not None else (),
         angle_slack=angle_slack,
         position_slack=position_slack,
-        size=_smaller(assembly, bodies),
-        position_limit=assembly.tolerances.offset_limit(_smaller(assembly, bodies)),
+        size=size,
+        position_limit=assembly.tolerances.offset_limit(size),
     )
 
 

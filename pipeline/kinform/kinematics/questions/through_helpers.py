@@ -12,6 +12,7 @@ from collections.abc import Set as AbstractSet
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, scaled, span
+from kinform.foundation.algebra.vectors import box, norm
 from kinform.frozen import dataclass
 from kinform.kinematics.loops.assembly_closure import body_twists, close
 from kinform.kinematics.pair.lower_pairs import JointForm, name_space
@@ -33,10 +34,10 @@ class HelperMotion:
 
 
 def motion_through_helpers(
-    kinematics: Kinematics, first: str, second: str, named: AbstractSet[str]
+    kinematics: Kinematics, first: str, second: str, named: AbstractSet[str], size: float
 ) -> HelperMotion | None:
     """The motion of `second` relative to `first` through bodies outside `named` and ground; None when
-    no such body connects the two."""
+    no such body connects the two. `size` (m): of the smaller of the two."""
     fixed = {body.name for body in kinematics.bodies if body.ground}
     helpers = [b.name for b in kinematics.bodies if b.name not in named | fixed | {first, second}]
     used = _connecting(kinematics.joints, first, second, set(helpers))
@@ -49,10 +50,19 @@ def motion_through_helpers(
     spaces = [j.twists for j in joints]
     twists = body_twists(close(len(nodes), edges, spaces, 0), edges, spaces)[:, 1, :]
     points = np.array([j.point for j in joints if j.point is not None])
-    frame = Frame.of(points) if len(points) else Frame(np.zeros(3), 1.0)
+    frame = _frame(points, size)
     basis = span(scaled(twists.T, frame))
     names = tuple(sorted(used))
     return HelperMotion(name_space(basis, frame), basis.shape[1], names, tuple(joints), twists)
+
+
+def _frame(points: Array, size: float) -> Frame:
+    """Where joints are, by their points (n, 3). All of them may be at one place, but for rounding, which is no length:
+    what they move is as large as it is."""
+    if not len(points):
+        return Frame(np.zeros(3), size)
+    low, high = box(points)
+    return Frame(0.5 * (low + high), max(0.5 * norm(high - low), size))
 
 
 def _connecting(joints: tuple[Joint, ...], first: str, second: str, helpers: set[str]) -> set[str]:
