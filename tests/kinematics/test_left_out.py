@@ -82,6 +82,15 @@ def test_a_pivot_that_is_stated_as_fixed_is_not_held(placed):
     assert {body.parts for body in K.bodies} == {("base", "knob", "lever"), ("wheel",)}
 
 
+def test_a_pivot_is_not_held_either_where_all_is_stated_as_fixed(placed):
+    X, scale, backwards = placed
+    whole, touching, K = derived([STUCK], X, scale, backwards=backwards)
+    given = answer(whole, touching, K, "turn")
+    assert (given.answer, given.free) == ("not held", "revolute, 1 freedom by contact")
+    whole, touching, K = derived([("grip", ("lever", "knob"), "fixed", PIVOT)], X, scale, backwards=backwards)
+    assert answer(whole, touching, K, "grip").answer == "agrees"
+
+
 def test_what_is_stated_as_fixed_and_cannot_turn_agrees(placed):
     X, scale, backwards = placed
     whole, touching, K = derived(

@@ -17,8 +17,8 @@ from kinform.kinematics.axes.misfit import misfit_of, moves_between
 from kinform.kinematics.axes.proportions import fit_proportions
 from kinform.kinematics.axes.snapping import snap_axes
 from kinform.kinematics.bodies.as_stated import as_stated
-from kinform.kinematics.bodies.classification import Pairs, decide_all
-from kinform.kinematics.bodies.complete import complete_joints
+from kinform.kinematics.bodies.classification import Pairs, decide_all, decide_beside
+from kinform.kinematics.bodies.complete import complete_joints, rests
 from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.bodies.fasteners import (
     fasten,
@@ -29,6 +29,7 @@ from kinform.kinematics.bodies.fasteners import (
 )
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.bodies.readings import choose_readings
+from kinform.kinematics.bodies.set_aside import asides
 from kinform.kinematics.bodies.stated_joints import Pair, intended_joints, stated_joints
 from kinform.kinematics.constants import MOST_BASIS_NUMBERS
 from kinform.kinematics.loops.assembly_closure import Closure, body_twists
@@ -50,7 +51,6 @@ from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch, Suggestion
 from kinform.model.kinematics import (
-    Aside,
     Body,
     ConstraintMatrix,
     Coupling,
@@ -121,10 +121,10 @@ def derive(
     joints = turn_about_suggested_axes(assembly, contacts, [every[pair] for pair in sorted(every)], bodies)
     joints = label_inferred(joints, bodies)
     by_contact = JointGraph(bodies, tuple(joints)).close(size).mobility if settled else None
-    asides: tuple[Aside, ...] = ()
+    beside: tuple[Joint, ...] = ()
     if settled:
-        taken = as_stated(assembly, merger, joints, patches, whole=found is not None)
-        joints, asides = list(taken.joints), taken.asides
+        taken = as_stated(assembly, merger, joints, decide_beside(pairs, merger), patches, whole=found is not None)
+        joints, beside = list(taken.joints), taken.beside
         kept = {joint.name for joint in joints if joint.status != "stated"}
         answers_of = {name: answer for name, answer in answers_of.items() if name in kept}
     bounds = move_bounds(joints, patches, assembly.tolerances.alignment, size)
@@ -154,10 +154,10 @@ def derive(
         misfit=misfit_of(moves),
         misaligned=tuple(misaligned),
         moves=moves,
-        asides=asides,
+        asides=asides(beside, patches, bodies, out.mobility),
         membership=() if found is None else _membership(found, _body_of_part(bodies)),
         unparted=() if found is None else tuple(Unparted(joint, parts) for joint, parts in found.unparted.items()),
-        left_out=() if found is None else left_out(assembly, surfaces, contacts, bodies),
+        left_out=left_out(assembly, surfaces, contacts, bodies) if found is not None or rests(assembly) else (),
         sides=sides,
     )
 

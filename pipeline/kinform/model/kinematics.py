@@ -410,6 +410,12 @@ class Aside:
     area: SquareMetres
     axis: Direction | None
     words: str
+    """How the function moves the two, beside how the contact lies."""
+
+    @property
+    def loose(self) -> bool:
+        """Whether the contact is no joint by itself, or not surely one."""
+        return self.type in ("planar", "general") or self.status == "ambiguous"
 
 
 @dataclass(frozen=True)

@@ -149,7 +149,8 @@ def _compared(
         return Comparison(intended, bodies, "taken", direct.reason, joint=direct)
     if direct is not None and direct.evidence == ("function",):
         return Comparison(intended, bodies, "stated", "the joint is taken from the function", joint=direct)
-    motion = motion_through_helpers(kinematics, first.name, second.name, known.named)
+    size = _smaller(known.extents, bodies)
+    motion = motion_through_helpers(kinematics, first.name, second.name, known.named, size)
     used: tuple[Joint, ...] = (direct,) if direct is not None else ()
     if motion is not None:
         used = motion.joints
@@ -165,7 +166,6 @@ def _compared(
     found = direct.twists if motion is None and direct is not None else motion.twists if motion else None
     if state == "found" and intended.closure and found is not None and _shares(intended, form.type, found):
         state, reason = "undecided", f"it only closes a loop, and by contact that joint is {form.type}"
-    size = _smaller(known.extents, bodies)
     return Comparison(
         intended,
         bodies,

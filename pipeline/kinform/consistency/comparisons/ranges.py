@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from kinform.consistency import constants
 from kinform.consistency.comparisons.intended_joints import Comparison, bodies_of
 from kinform.consistency.context import Context
 from kinform.foundation.words import angle, length, quoted
 from kinform.frozen import dataclass
+from kinform.kinematics.separation.contact_rows import is_stated
 from kinform.model.collisions import RangeEnd
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
@@ -68,6 +70,8 @@ def _beside_ends(context: Context, intended: IntendedJoint, comparison: Comparis
     if reach is None:
         return RangeComparison(intended, reason="no range was computed for it")
     lower, upper = (reach.lower, reach.upper) if sign > 0.0 else (reach.upper, reach.lower)
+    if joint.status == "stated" or is_stated(joint):  # what guides it is in no mesh
+        lower, upper = replace(lower, leaves=None), replace(upper, leaves=None)
     # an end stop between the two bodies is where the range ends, though it is there as it is drawn
     taken = comparison.state == "taken" and all(reading.cause != "end" for reading in joint.readings)
     return RangeComparison(

@@ -3,6 +3,8 @@
 Applies when `[[function.joint]]` is stated at all, to bodies that an intended joint names. Joints to
 other bodies (pins, bearings, screws) are means and are not compared; those bodies are listed by KF408.
 Flat or irregular contact is KF407. Of a joint that is ambiguous the rule finds nothing, and is inconclusive.
+Where the function states all joints (`complete = true`), contact that goes against the motion that these let two bodies
+have is found here, or by KF407; the joints and the mobility are those of the function without it.
 
 Why it matters: a guide, journal or socket that nobody wanted takes freedoms away.
 
@@ -27,7 +29,7 @@ def check(context: Context) -> Outcome:
     unknown = [joint.name for joint in joints if joint.status == "ambiguous"]
     found = [joint for joint in joints if joint.name not in unknown and joint.type not in ("planar", "general")]
     findings = [_finding(context, joint) for joint in found]
-    findings += [_beside(context, one) for one in context.kinematics.asides if one.type not in ("planar", "general")]
+    findings += [_beside(context, aside) for aside in context.kinematics.asides if not aside.loose]
     return settled(findings, f"not intended and ambiguous: {quoted(unknown)}" if unknown else "")
 
 
@@ -45,8 +47,8 @@ def _finding(context: Context, joint: Joint) -> Finding:
 def _beside(context: Context, aside: Aside) -> Finding:
     return RULE.finding(
         [aside.name],
-        f"{quoted(aside.bodies)} touch like a {aside.type} joint over {area(aside.area, context.units)}, and the "
-        "function moves them otherwise: it is taken to hold nothing",
+        f"{quoted(aside.bodies)} touch like a {aside.type} joint over {area(aside.area, context.units)}, and "
+        f"{aside.words}: the contact is taken to hold nothing",
         found=aside.type + (f" about {direction(aside.axis)}" if aside.axis is not None else ""),
         intended="no joint",
         declared=context.assembly.source,

@@ -1,6 +1,7 @@
 """Two bodies of the function touch, and the function intends no joint between them.
 
-Like KF406, for contact that is no joint by itself: flat faces, or irregular contact.
+Like KF406, for contact that is no joint by itself: flat faces, or irregular contact. Where the function states all
+joints, contact of which it is not sure what it would hold is told here too.
 
 Why it matters: the bodies may rub or stop each other. Sometimes it is an end stop that is meant.
 
@@ -22,7 +23,7 @@ from kinform.model.kinematics import Aside, Joint
 def check(context: Context) -> Findings:
     """Planar and general contact between bodies of the function that no intended joint joins."""
     touching = [j for j in context.unintended_joints if j.type in ("planar", "general") and j.status != "ambiguous"]
-    beside = [aside for aside in context.kinematics.asides if aside.type in ("planar", "general")]
+    beside = [aside for aside in context.kinematics.asides if aside.loose]
     return [_finding(context, joint) for joint in touching] + [_beside(context, aside) for aside in beside]
 
 
@@ -41,11 +42,12 @@ def _finding(context: Context, joint: Joint) -> Finding:
 
 
 def _beside(context: Context, aside: Aside) -> Finding:
+    over = f" over {area(aside.area, context.units)}" if aside.area > 0.0 else ""
     return RULE.finding(
         [aside.name],
-        f"{quoted(aside.bodies)} touch over {area(aside.area, context.units)}, and the function moves them otherwise: "
-        "the contact is taken to hold nothing",
-        found=f"{aside.type} contact, {counted(aside.freedoms, 'freedom')} left",
+        f"{quoted(aside.bodies)} touch{over}, and {aside.words}: the contact is taken to hold nothing",
+        found=f"{'' if aside.status != 'ambiguous' else 'ambiguous '}{aside.type} contact, "
+        f"{counted(aside.freedoms, 'freedom')} left",
         intended="no contact",
         declared=context.assembly.source,
         remedy="Give the bodies a gap, or state the contact in [function] or by [[assume]].",

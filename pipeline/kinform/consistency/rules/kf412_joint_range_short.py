@@ -1,12 +1,13 @@
-"""Parts stop a joint before the end of the range that the function states.
+"""Parts stop a joint, or its slider leaves its guide, before the end of the range that the function states.
 
 A finding for each side of a stated range that is longer than what the meshes leave, from their pose and with all
 joints outside of its loops at rest, by more than 0.02° or 0.1 % of the range. A side stated as free (`inf`) must not
-be stopped.
+be stopped. A slide or screw that contact determines has left its guide where the last of the surfaces along which it
+goes ends; of one that is taken as stated the guide is in no mesh.
 
 Why it matters: the device cannot do what it is for.
 
-What to do: cut away what is in the way, move the stop, or state the range that is needed.
+What to do: cut away what is in the way, move the stop, lengthen the guide, or state the range that is needed.
 
 Example: a gimbal that shall turn by 45° hits its housing at 39°.
 """
@@ -39,9 +40,10 @@ def check(context: Context) -> Outcome:
             else SHORT_TURN
         )
         for side, stated, end, toward in (("lower", lower, item.lower, -1.0), ("upper", upper, item.upper, 1.0)):
-            if end is None or end.value is None or end.status != "found":
+            reach = _reach(end, stated)
+            if end is None or reach is None:
                 continue
-            value = item.sign * end.value
+            value = item.sign * reach
             if toward * (stated - value) > allowed:
                 span = upper - lower
                 short = toward * (stated - value) / span if math.isfinite(span) else math.inf
@@ -50,18 +52,32 @@ def check(context: Context) -> Outcome:
     return decided(finding for _, finding in found)
 
 
+def _reach(end: RangeEnd | None, stated: float) -> float | None:
+    """rad or m, of the joint: how far it goes to one side; None where nothing is known to end it. No guide is endless,
+    and a side stated as free asks for none that is."""
+    if end is None:
+        return None
+    if end.status == "unbounded":
+        return end.leaves if math.isfinite(stated) else None
+    return end.value if end.status == "found" else None
+
+
 def _finding(context: Context, item: RangeComparison, side: str, stated: float, value: float, end: RangeEnd) -> Finding:
     joint = item.intended
     end_value, intended = shown(value, joint, context.units), shown(stated, joint, context.units)
     by = f"{quoted(end.parts)} meet" if end.parts else end.reason
+    what, remedy = f"stops at {end_value}", "Cut away what is in the way, or state the range that is needed."
+    if end.status == "unbounded":
+        what = f"goes only to {end_value}"
+        remedy = "Lengthen the guide, add an end stop, or state the range that is needed."
     return RULE.finding(
         [joint.name, *end.parts],
-        f"joint '{joint.name}' stops at {end_value} on the {side} side ({by}), intended is {intended}",
+        f"joint '{joint.name}' {what} on the {side} side ({by}), intended is {intended}",
         found=end_value,
         intended=intended,
         place=end.place if end.place is not None else joint.point,
         declared=joint,
-        remedy="Cut away what is in the way, or state the range that is needed.",
+        remedy=remedy,
     )
 
 

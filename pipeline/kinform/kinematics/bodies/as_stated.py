@@ -2,11 +2,12 @@
 
 The pins and bearings of most assemblies are in no mesh: parts end at a flush plane, or with a gap. Where the function
 states all joints, one that contact leaves free, with more beside, is taken as stated (`stated`), and so is one whose
-bodies do not touch; what contact says stays beside it as a reading. One that contact determines as it is stated stays
-as it was derived, and so does one that contact certainly forbids, in both senses: the function never overrides what
-holds, and a face that the motion only leaves (a lid that is drawn closed, a cylinder drawn in) holds nothing. Where
-contact is ambiguous or blocked the joint is taken as stated, too, and the doubt is kept. Contact between bodies that
-stated joints move relative to each other, without one of their own, constrains nothing and is set aside.
+bodies do not touch; what contact says stays beside it as a reading. One that points and lines hold, as the balls of a
+bearing do, is inferred. One that contact determines as it is stated stays as it was derived, and so does one that
+contact certainly forbids, in both senses: the function never overrides what holds, and a face that the motion only
+leaves (a lid that is drawn closed, a cylinder drawn in) holds nothing. Where contact is ambiguous or blocked the joint
+is taken as stated, too, and the doubt is kept. Contact between bodies that stated joints move relative to each other,
+without one of their own, constrains nothing and is set aside.
 """
 
 from __future__ import annotations
@@ -17,35 +18,42 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, norm
-from kinform.foundation.words import counted, quoted
+from kinform.foundation.words import counted
 from kinform.frozen import dataclass
 from kinform.kinematics.bodies.complete import complete_joints, without_effect
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.bodies.stated_joints import Pair, joint_form, pair_between
-from kinform.kinematics.constants import ADMITTED, POINT_REACH
+from kinform.kinematics.constants import ADMITTED, EXACT_MOTION, POINT_REACH
 from kinform.kinematics.pair.joint import reading_of, stated_joint
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Patch
 from kinform.model.function import IntendedJoint
-from kinform.model.kinematics import Aside, Joint
+from kinform.model.kinematics import Joint
 from kinform.model.names import PartName
 
 
 @dataclass(frozen=True, eq=False)
 class AsStated:
-    """The joints in force, and contact that constrains nothing."""
+    """The joints in force, and what contact would hold that constrains nothing."""
 
     joints: tuple[Joint, ...]
-    asides: tuple[Aside, ...]
+    beside: tuple[Joint, ...]
 
 
 def as_stated(
-    assembly: Assembly, merger: Merger, joints: Sequence[Joint], patches: Sequence[Patch], *, whole: bool
+    assembly: Assembly,
+    merger: Merger,
+    joints: Sequence[Joint],
+    beside: Sequence[Joint],
+    patches: Sequence[Patch],
+    *,
+    whole: bool,
 ) -> AsStated:
     """Joints by contact, sorted by their bodies, in the light of a function that states all joints.
 
-    `whole`: it states those of all parts; else contact of bodies that none of its joints reaches stays.
+    `beside`: of bodies that it moves by other joints. `whole`: it states those of all parts; else contact of bodies
+    that none of its joints reaches stays.
     """
     of_part = {part: body.name for body in merger.bodies() for part in body.parts}
     meshed = {of_part[part.name] for part in assembly.parts if part.mesh is not None}
@@ -59,7 +67,8 @@ def as_stated(
     sticks = {joint.bodies for joint in joints if not joint.patches}
     idle = without_effect(assembly, merger)
     some_part = {body: part for part, body in of_part.items()}
-    out, asides = [], []
+    out = []
+    aside = [joint for joint in beside if joint.bodies not in assumed]
     for pair in sorted({*derived, *wanted}):
         joint = derived.get(pair)
         if pair in wanted and pair not in assumed:
@@ -71,14 +80,14 @@ def as_stated(
             pair in assumed or pair in sticks or not (whole or idle(*(some_part[name] for name in pair)))
         ):
             out.append(joint)
-        elif joint is not None and not _unknown(joint, patches):
-            asides.append(_aside(joint, patches))
-    return AsStated(tuple(out), tuple(asides))
+        elif joint is not None:
+            aside.append(joint)
+    return AsStated(tuple(out), tuple(joint for joint in aside if not _unknown(joint, patches)))
 
 
-def leaves_free(twists: Array, motions: Array, place: Array, length: float) -> bool:
-    """Whether a joint that allows `twists` (n, 6) lets a body do all of these motions (k, 6), but for a small share of
-    each; twists as (ω; v at the world's origin).
+def leaves_free(twists: Array, motions: Array, place: Array, length: float, missing: float = ADMITTED) -> bool:
+    """Whether a joint that allows `twists` (n, 6) lets a body do all of these motions (k, 6), but for a share `missing`
+    of each; twists as (ω; v at the world's origin).
 
     Speeds are compared at `place` (3,) m; `length` (m), of the contact or the bodies, makes turns and slides alike.
     """
@@ -90,7 +99,7 @@ def leaves_free(twists: Array, motions: Array, place: Array, length: float) -> b
     own, asked = _at(twists, place) * scale, _at(motions, place) * scale
     basis, _ = np.linalg.qr(own.T)
     left = asked - asked @ basis @ basis.T
-    return bool((np.linalg.norm(left, axis=1) <= ADMITTED * np.linalg.norm(asked, axis=1)).all())
+    return bool((np.linalg.norm(left, axis=1) <= missing * np.linalg.norm(asked, axis=1)).all())
 
 
 def _at(twists: Array, place: Array) -> Array:
@@ -132,9 +141,14 @@ def _in_force(
         return replace(taken, status="stated", reason=f"the bodies {what}: '{name}' is taken as stated", motion="")
     corners = np.concatenate([patches[k].points for k in joint.patches])
     place = corners.mean(axis=0) if taken.point is None else taken.point
+    reach = _reach(corners, place)
+    if _is_just(joint, taken, place, reach):
+        return _held_otherwise(taken, joint, name)
     if joint.status in ("ambiguous", "blocked"):
         cause, why = "doubt", "contact leaves it undecided"
-    elif leaves_free(joint.twists, taken.twists, place, _reach(corners, place)):
+    elif joint.type != "general" and joint.freedoms == len(taken.twists):
+        return joint  # as many freedoms, and others, however little a fine thread advances
+    elif leaves_free(joint.twists, taken.twists, place, reach):
         cause, why = "contact", "contact leaves it free and does not hold it"
     elif (len(taken.twists) == 1 or joint.freedoms == 5) and opens(
         [patches[k] for k in joint.patches], taken.twists, first
@@ -154,6 +168,26 @@ def _in_force(
     )
 
 
+def _is_just(joint: Joint, taken: Joint, place: Array, reach: float) -> bool:
+    """Whether contact is no lower pair, as of the balls of a bearing, and surely leaves what is stated and no more."""
+    known = (joint.type, joint.status, joint.freedoms) == ("general", "determined", len(taken.twists))
+    return known and leaves_free(joint.twists, taken.twists, place, reach, EXACT_MOTION)
+
+
+def _held_otherwise(taken: Joint, joint: Joint, name: str) -> Joint:
+    """The stated joint, which contact at points or along lines holds."""
+    return replace(
+        taken,
+        status="inferred",
+        reason=f"contact leaves what '{name}' lets move, and no more, though it is no {taken.type} pair: "
+        f"{joint.reason}",
+        motion="",
+        evidence=(*joint.evidence, "function"),
+        patches=joint.patches,
+        singular_values=joint.singular_values,
+    )
+
+
 def _reach(corners: Array, place: Array) -> float:
     """m: how far a contact reaches, with corners (n, 3) and asked about at a place (3,). One at a point has no size,
     and its distance counts."""
@@ -163,10 +197,3 @@ def _reach(corners: Array, place: Array) -> float:
 def _unknown(joint: Joint, patches: Sequence[Patch]) -> bool:
     """Whether all that touches does so in no known way."""
     return bool(joint.patches) and all(patches[k].unknown for k in joint.patches)
-
-
-def _aside(joint: Joint, patches: Sequence[Patch]) -> Aside:
-    """Contact that no stated joint goes with."""
-    area = float(sum(patches[k].area for k in joint.patches))
-    words = f"{quoted(joint.bodies)} touch; the function moves them otherwise"
-    return Aside(joint.name, joint.bodies, joint.type, joint.freedoms, joint.status, area, joint.axis, words)

@@ -69,41 +69,14 @@ class Pairs:
 def decide_all(pairs: Pairs, merger: Merger, *, fusing: bool = True) -> dict[Pair, tuple[Answer, Joint]]:
     """Decide every pair of touching bodies; fuse what is fixed; repeat until nothing fuses. Not `fusing`: bodies are
     known, and stay."""
-    known_answers: dict[tuple[int, ...], Answer] = {}
+    known: dict[tuple[int, ...], Answer] = {}
     stated = stated_roots(pairs.assembly, merger)
     while True:
-        bodies = merger.bodies()
-        of_name = {body.name: body for body in bodies}
-        of_part = {part: body.name for body in bodies for part in body.parts}
-        touching: dict[Pair, list[Member]] = defaultdict(list)
-        nothing = without_effect(pairs.assembly, merger)
-        for index, patch in enumerate(pairs.patches):
-            a, b = of_part[patch.parts[0]], of_part[patch.parts[1]]
-            if a != b and not nothing(*patch.parts):
-                touching[(a, b) if a < b else (b, a)].append((index, patch, a > b))
-        for pair, members in touching.items():
-            # what is known decides; what is not known leaves in doubt only what nothing else says
-            known = [member for member in members if not member[1].unknown]
-            touching[pair] = known or members
-        keys = {pair: tuple(-1 - i if turned else i for i, _, turned in touching[pair]) for pair in sorted(touching)}
-        new = {key: pair for pair, key in keys.items() if key not in known_answers}
-        decided = pairs.decide([(touching[pair], [of_name[n] for n in pair]) for pair in new.values()])
-        known_answers |= zip(new, decided, strict=True)
-        overlaps = deepest_overlaps(pairs.interferences, of_part)
-        out: dict[Pair, tuple[Answer, Joint]] = {}
+        touching = _touching(pairs, merger, beside=False)
+        out = _decided(pairs, merger, touching, known)
         fused = False
-        for pair, key in keys.items():
-            members, answer = touching[pair], known_answers[key]
-            if answer.joint is None:
-                continue
-            places = [index for index, _, _ in members]
-            joint = joint_between(answer.joint, pair, places)
-            if pair in overlaps:
-                joint = with_overlap(joint, overlaps[pair])
-            if answer.other is not None:
-                answer = replace(answer, other=joint_between(answer.other, pair, places))
-            out[pair] = answer, joint
-            parts = members[0][1].parts
+        for pair, (_, joint) in out.items():
+            parts = touching[pair][0][1].parts
             if not fusing or frozenset(merger.root(p) for p in parts) in stated:
                 continue
             if joint.type == "fixed" and joint.status == "determined":
@@ -111,6 +84,54 @@ def decide_all(pairs: Pairs, merger: Merger, *, fusing: bool = True) -> dict[Pai
                 fused = True
         if not fused:
             return out
+
+
+def decide_beside(pairs: Pairs, merger: Merger) -> list[Joint]:
+    """What contact would hold between bodies that a function which states all joints moves by others, sorted by their
+    bodies: it constrains nothing."""
+    decided = _decided(pairs, merger, _touching(pairs, merger, beside=True), {})
+    return [joint for _, (_, joint) in sorted(decided.items())]
+
+
+def _touching(pairs: Pairs, merger: Merger, *, beside: bool) -> dict[Pair, list[Member]]:
+    """Patches by pairs of bodies; `beside`: of those that constrain nothing, else of all others."""
+    of_part = {part: body.name for body in merger.bodies() for part in body.parts}
+    touching: dict[Pair, list[Member]] = defaultdict(list)
+    nothing = without_effect(pairs.assembly, merger)
+    for index, patch in enumerate(pairs.patches):
+        a, b = of_part[patch.parts[0]], of_part[patch.parts[1]]
+        if a != b and nothing(*patch.parts) == beside:
+            touching[(a, b) if a < b else (b, a)].append((index, patch, a > b))
+    for pair, members in touching.items():
+        # what is known decides; what is not known leaves in doubt only what nothing else says
+        touching[pair] = [member for member in members if not member[1].unknown] or members
+    return touching
+
+
+def _decided(
+    pairs: Pairs, merger: Merger, touching: Mapping[Pair, Sequence[Member]], known: dict[tuple[int, ...], Answer]
+) -> dict[Pair, tuple[Answer, Joint]]:
+    """The joint of each pair of bodies by its patches; `known` are answers by patches, and those of now are added."""
+    bodies = merger.bodies()
+    of_name = {body.name: body for body in bodies}
+    keys = {pair: tuple(-1 - i if turned else i for i, _, turned in touching[pair]) for pair in sorted(touching)}
+    new = {key: pair for pair, key in keys.items() if key not in known}
+    decided = pairs.decide([(touching[pair], [of_name[n] for n in pair]) for pair in new.values()])
+    known |= zip(new, decided, strict=True)
+    overlaps = deepest_overlaps(pairs.interferences, {part: body.name for body in bodies for part in body.parts})
+    out: dict[Pair, tuple[Answer, Joint]] = {}
+    for pair, key in keys.items():
+        answer = known[key]
+        if answer.joint is None:
+            continue
+        places = [index for index, _, _ in touching[pair]]
+        joint = joint_between(answer.joint, pair, places)
+        if pair in overlaps:
+            joint = with_overlap(joint, overlaps[pair])
+        if answer.other is not None:
+            answer = replace(answer, other=joint_between(answer.other, pair, places))
+        out[pair] = answer, joint
+    return out
 
 
 def evidence_between(

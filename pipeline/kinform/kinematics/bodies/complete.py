@@ -29,6 +29,12 @@ def complete_joints(assembly: Assembly) -> tuple[IntendedJoint, ...]:
     return tuple(j for j in assembly.function.joints if j.name[: j.name.rfind("/") + 1] in covered)
 
 
+def rests(assembly: Assembly) -> bool:
+    """Whether the manifest at the top says that it is complete, and states fixed joints alone: nothing moves."""
+    joints = assembly.function.joints
+    return "" in assembly.function.complete and bool(joints) and all(joint.type == "fixed" for joint in joints)
+
+
 def without_effect(assembly: Assembly, merger: Merger) -> Callable[[PartName, PartName], bool]:
     """Tells of two parts whether contact between them constrains nothing, as bodies are now."""
     pairs: set[frozenset[int]] = set()

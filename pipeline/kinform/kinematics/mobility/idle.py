@@ -17,7 +17,7 @@ from kinform.foundation.algebra.screws import Frame, rotation, scaled, span, twi
 from kinform.foundation.algebra.vectors import cross, dot, norm, sine, widest_gap
 from kinform.frozen import dataclass
 from kinform.kinematics import constants
-from kinform.kinematics.bodies.stated_joints import Pair, pair_between
+from kinform.kinematics.bodies.stated_joints import pair_between
 from kinform.kinematics.loops.joint_graph import JointGraph
 from kinform.kinematics.pair.evidence import COAXIAL
 from kinform.kinematics.pair.touches import TOUCHING
@@ -60,11 +60,11 @@ def idle_turns(
     `size` of the assembly (m); `balls`: what `touching_balls` gives.
     """
     of_part = {part: body.name for body in graph.bodies for part in body.parts}
-    intended: dict[Pair, list[IntendedJoint]] = defaultdict(list)
+    intended: dict[BodyName, list[IntendedJoint]] = defaultdict(list)
     for wanted in assembly.function.joints:
-        pair = pair_between(assembly, of_part, wanted.between)
-        if pair is not None:
-            intended[pair].append(wanted)
+        # a bush or a pin may be between the two that a joint names
+        for name in pair_between(assembly, of_part, wanted.between) or ():
+            intended[name].append(wanted)
     around: dict[BodyName, list[Joint]] = defaultdict(list)
     for joint in graph.joints:
         for name in joint.bodies:
@@ -79,8 +79,7 @@ def idle_turns(
         if len(joints) > 1:
             # a ball between others rolls; what lies on one other body only is there to move on it
             centres = {n: balls[k, p] for n, k in enumerate(indices) for p in body.parts if (k, p) in balls}
-        named = [w for j in joints for w in intended[j.bodies]]
-        held = _Held(body.ground, joints, [patches[k] for k in indices], named, size, centres)
+        held = _Held(body.ground, joints, [patches[k] for k in indices], intended[body.name], size, centres)
         out[body.name] = _idle_turns(held)
     return out
 
@@ -95,7 +94,7 @@ class _Held:
     patches: Sequence[Patch]
     """The contacts that carry them."""
     intended: Sequence[IntendedJoint]
-    """Between this body and its neighbours."""
+    """Those that name this body."""
     size: float
     """m: of the assembly."""
     balls: Mapping[int, Array]

@@ -12,6 +12,7 @@ from collections.abc import Set as AbstractSet
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, scaled, span
+from kinform.foundation.algebra.vectors import box, norm
 from kinform.frozen import dataclass
 from kinform.kinematics.loops.assembly_closure import body_twists, close
 from kinform.kinematics.pair.lower_pairs import JointForm, name_space
@@ -33,10 +34,10 @@ class HelperMotion:
 
 
 def motion_through_helpers(
-    kinematics: Kinematics, first: str, second: str, named: AbstractSet[str]
+    kinematics: Kinematics, first: str, second: str, named: AbstractSet[str], size: float
 ) -> HelperMotion | None:
     """The motion of `second` relative to `first` through bodies outside `named` and ground; None when
-    no such body connects the two."""
+    no such body connects the two. `size` (m): of the smaller of the two."""
     helpers = _connecting(kinematics, first, second, named)
     if not helpers:
         return None
@@ -47,10 +48,19 @@ def motion_through_helpers(
     spaces = [j.twists for j in joints]
     twists = body_twists(close(len(nodes), edges, spaces, 0), edges, spaces)[:, 1, :]
     points = np.array([j.point for j in joints if j.point is not None])
-    frame = Frame.of(points) if len(points) else Frame(np.zeros(3), 1.0)
+    frame = _frame(points, size)
     basis = span(scaled(twists.T, frame))
     names = tuple(sorted(helpers))
     return HelperMotion(name_space(basis, frame), basis.shape[1], names, tuple(joints), twists)
+
+
+def _frame(points: Array, size: float) -> Frame:
+    """Where joints are, by their points (n, 3). All of them may be at one place, but for rounding, which is no length:
+    what they move is as large as it is."""
+    if not len(points):
+        return Frame(np.zeros(3), size)
+    low, high = box(points)
+    return Frame(0.5 * (low + high), max(0.5 * norm(high - low), size))
 
 
 def _connecting(kinematics: Kinematics, first: str, second: str, named: AbstractSet[str]) -> set[str]:

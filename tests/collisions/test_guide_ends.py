@@ -1,0 +1,112 @@
+"""A slide or a screw goes as far as its guide: a range that is stated beyond it is told."""
+
+from __future__ import annotations
+
+import shutil
+
+import pytest
+from support.places import FIXTURES
+from support.solids import block, save
+
+from kinform import stages
+
+LIMIT = 120.0
+"""mm: half of the rail and half of the carriage."""
+
+
+def judged(manifest):
+    design = stages.joints(stages.contacts(stages.import_(manifest)))
+    design = stages.check(stages.simulate(stages.mass(design), ranges=True))
+    return design, [f for f in design.report.findings if f.code == "KF412"]
+
+
+def carriage(folder, stated, turned):
+    """A carriage of 40 mm along a channel of 200 mm, with a range."""
+    rail = block(200, 60, 20).translate((0, 0, -10))
+    walls = [block(200, 10, 40).translate((0, y, 0)) for y in (-25, 25)]
+    save(rail + walls[0] + walls[1], folder / "rail.stl")
+    save(block(40, 40, 20).translate((0, 0, 10)), folder / "carriage.stl")
+    between = ["carriage", "rail"] if turned else ["rail", "carriage"]
+    (folder / "guide.toml").write_text(f"""schema = 1
+[assembly]
+name = "guide"
+units = "mm"
+ground = "rail"
+[[part]]
+name = "rail"
+mesh = "rail.stl"
+[[part]]
+name = "carriage"
+mesh = "carriage.stl"
+[function]
+[[function.joint]]
+name = "stroke"
+between = {between}
+type = "prismatic"
+axis = [1, 0, 0]
+range = {stated}
+""")
+    return judged(folder / "guide.toml")
+
+
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize(
+    ("stated", "sides"),
+    [
+        ("[-110, 119]", []),
+        ("[-110, 120.1]", []),  # a hair beyond is no finding, as of stops
+        ("[-110, 130]", ["upper"]),
+        ("[-500, 110]", ["lower"]),
+        ("[-500, 500]", ["lower", "upper"]),
+        ("[-110, inf]", []),  # asks for no end, and for no endless rail
+    ],
+)
+def test_a_range_goes_no_further_than_the_guide(tmp_path, stated, sides, turned):
+    design, found = carriage(tmp_path, stated, turned)
+    assert [(joint.type, joint.status) for joint in design.kinematics.joints] == [("prismatic", "determined")]
+    assert sorted(side for f in found for side in ("lower", "upper") if side in f.message) == sides
+    for one in found:
+        assert one.severity == "error"
+        assert one.found.lstrip("-") == f"{LIMIT:g} mm"
+        assert "leaves its guide" in one.message
+
+
+def test_a_slide_that_is_taken_as_stated_has_its_guide_in_no_mesh(tmp_path):
+    """A block on a table: contact leaves it planar."""
+    save(block(200, 200, 20).translate((0, 0, -10)), tmp_path / "rail.stl")
+    save(block(40, 40, 20).translate((0, 0, 10)), tmp_path / "carriage.stl")
+    (tmp_path / "m.toml").write_text("""schema = 1
+[assembly]
+name = "table"
+units = "mm"
+ground = "rail"
+[[part]]
+name = "rail"
+mesh = "rail.stl"
+[[part]]
+name = "carriage"
+mesh = "carriage.stl"
+[function]
+complete = true
+[[function.joint]]
+name = "stroke"
+between = ["rail", "carriage"]
+type = "prismatic"
+axis = [1, 0, 0]
+range = [-500, 500]
+""")
+    design, found = judged(tmp_path / "m.toml")
+    assert [(joint.type, joint.status) for joint in design.kinematics.joints] == [("prismatic", "stated")]
+    assert not found
+
+
+@pytest.mark.parametrize("turns", [2.0, 400.0])
+def test_a_screw_goes_no_further_than_its_thread(tmp_path, turns):
+    """A nut on a lead screw: the last key of its manifest is that of its joint."""
+    shutil.copytree(FIXTURES / "pairs" / "screw_right", tmp_path / "screw")
+    manifest = tmp_path / "screw" / "screw_right.toml"
+    manifest.write_text(f"{manifest.read_text().rstrip()}\nrange = [-1, {360 * turns}]\n")
+    design, found = judged(manifest)
+    assert [(joint.type, joint.status) for joint in design.kinematics.joints] == [("screw", "determined")]
+    assert bool(found) == (turns > 10)
+    assert all("leaves its guide" in f.message for f in found)
