@@ -15,7 +15,7 @@ from kinform.changes.causes import Cause, Consequences, causes_of, grouped, rena
 from kinform.changes.change import Change, Measure, freedoms_changed, quoted, signed
 from kinform.changes.joints import joint_changes
 from kinform.changes.masses import mass_changes
-from kinform.changes.matching import holder, new_names, same_bodies, with_names
+from kinform.changes.matching import Holders, new_names, same_bodies, with_names
 from kinform.changes.tolerance import Tolerance
 from kinform.design import Design
 from kinform.frozen import dataclass
@@ -99,11 +99,12 @@ def compare_designs(before: Design, after: Design, tolerance: Tolerance | None =
 def _bodies(before: Snapshot, after: Snapshot, now: Mapping[str, str], other: Mapping[str, str]) -> Iterator[Change]:
     """Bodies that came, went, merged, were renamed or have other parts; parts with new names; the ground."""
     old, new = dict(before.bodies or ()), dict(after.bodies or ())
+    held_before, held_after = Holders(old), Holders(new)
     for was, name in sorted(other.items(), key=lambda item: item[1]):
         yield Change("part-renamed", (name,), f"was named {quoted(was)}, with the same mesh", was, name)
     for name in sorted(old):
         if name not in now:
-            into = holder(old[name], new)
+            into = held_after.of(old[name])
             if into is None:
                 yield Change("body-gone", (name,), "is gone", ", ".join(old[name]), None)
             else:
@@ -111,7 +112,7 @@ def _bodies(before: Snapshot, after: Snapshot, now: Mapping[str, str], other: Ma
     came_from = {body: name for name, body in now.items()}
     for name in sorted(new):
         if name not in came_from:
-            source = holder(new[name], old)
+            source = held_before.of(new[name])
             message = "is new" if source is None else f"was part of {quoted(source)}"
             yield Change("body-new", (name,), message, source, ", ".join(new[name]))
             continue

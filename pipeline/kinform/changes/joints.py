@@ -9,7 +9,7 @@ import numpy as np
 
 from kinform.changes.behaviours import Axis, JointState, Snapshot
 from kinform.changes.change import Change, Measure, freedoms_changed, quoted, signed
-from kinform.changes.matching import holder
+from kinform.changes.matching import Holders
 from kinform.foundation.words import angle, direction
 
 
@@ -17,7 +17,8 @@ def joint_changes(
     before: Snapshot, after: Snapshot, now: Mapping[str, str], measure: Measure, ranged: bool
 ) -> Iterator[Change]:
     """Joints that came, went or changed; ranges where `ranged`: known on both sides."""
-    into = {name: now.get(name) or holder(parts, dict(after.bodies or ())) for name, parts in before.bodies or ()}
+    holders = Holders(dict(after.bodies or ()))
+    into = {name: now.get(name) or holders.of(parts) for name, parts in before.bodies or ()}
     new = {frozenset(joint.bodies): joint for joint in after.joints or ()}
     still = set()
     for joint in before.joints or ():

@@ -55,13 +55,22 @@ def _now(name: str, other: Mapping[str, str]) -> str:
 def same_bodies(before: Snapshot, after: Snapshot) -> dict[str, str]:
     """By body before: the body after that holds most of its parts, where that is so the other way too."""
     old, new = dict(before.bodies or ()), dict(after.bodies or ())
-    there = {name: holder(parts, new) for name, parts in old.items()}
-    back = {name: holder(parts, old) for name, parts in new.items()}
+    holders = Holders(new), Holders(old)
+    there = {name: holders[0].of(parts) for name, parts in old.items()}
+    back = {name: holders[1].of(parts) for name, parts in new.items()}
     return {name: body for name, body in there.items() if body is not None and back[body] == name}
 
 
-def holder(parts: tuple[str, ...], bodies: Mapping[str, tuple[str, ...]]) -> str | None:
-    """The body that holds most of the parts; None where none holds any."""
-    shared = {name: len(set(parts).intersection(held)) for name, held in bodies.items()}
-    most = max(shared.values(), default=0)
-    return min((name for name, count in shared.items() if count == most), default=None) if most else None
+class Holders:
+    """Bodies, by name, and the parts that each holds."""
+
+    def __init__(self, bodies: Mapping[str, tuple[str, ...]]):
+        self._of: dict[str, list[str]] = {}
+        for name, held in bodies.items():
+            for part in sorted(set(held)):
+                self._of.setdefault(part, []).append(name)
+
+    def of(self, parts: tuple[str, ...]) -> str | None:
+        """The body that holds most of the parts; None where none holds any."""
+        shared = Counter(name for part in set(parts) for name in self._of.get(part, ()))
+        return min(shared, key=lambda name: (-shared[name], name), default=None)

@@ -11,9 +11,9 @@ from kinform.design import Design
 from kinform.foundation import words
 from kinform.frozen import dataclass
 from kinform.function import as_intended, designers_joints
-from kinform.model.collisions import RangeEnd
+from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.findings import SEVERITIES, RuleOutcome
-from kinform.model.kinematics import Joint
+from kinform.model.kinematics import Joint, Kinematics
 from kinform.reports.constants import MOST_LISTED_PATCHES
 from kinform.reports.page.phrases import assumption, joint_sentence, patch_words
 from kinform.reports.page.subjects import wanted_names
@@ -132,11 +132,14 @@ def joints(design: Design) -> list[JointFacts]:
     kinematics = design.ranged
     if kinematics is None:
         return []
-    wanted = wanted_names(design)
-    return [_joint(design, k, joint, wanted.get(joint.name, [])) for k, joint in enumerate(kinematics.joints)]
+    wanted, ranges = wanted_names(design), _ranges(design, kinematics)
+    return [
+        _joint(design, k, joint, wanted.get(joint.name, []), ranges.get(joint.name))
+        for k, joint in enumerate(kinematics.joints)
+    ]
 
 
-def _joint(design: Design, index: int, joint: Joint, wanted: list[str]) -> JointFacts:
+def _joint(design: Design, index: int, joint: Joint, wanted: list[str], computed: JointRange | None) -> JointFacts:
     """A joint with its contact, what its singular values say, its range, and what holds it or is in its way."""
     units = design.assembly.units
     patches = () if design.contacts is None else design.contacts.patches
@@ -152,7 +155,7 @@ def _joint(design: Design, index: int, joint: Joint, wanted: list[str]) -> Joint
         text = f"{words.counted(len(free), 'freedom')} below {tolerances.free:g}"
         facts.append(("singular values", text + (f"; the smallest other is {rest[0]:.3g}" if rest else "")))
     if joint.freedoms:
-        facts.append(("range", _range(design, joint)))
+        facts.append(("range", _range(design, computed)))
     if joint.held is not None:
         leaving = "; ".join(way.words for way in joint.releases[:4])
         facts.append(("held by contact", "yes" if joint.held else f"no: {leaving}" if leaving else "no"))
@@ -170,14 +173,18 @@ def _joint(design: Design, index: int, joint: Joint, wanted: list[str]) -> Joint
     )  # fmt: skip
 
 
-def _range(design: Design, joint: Joint) -> str:
-    """How far the joint goes to both sides, in the designer's sense where there is one, and what stops it there."""
+def _ranges(design: Design, kinematics: Kinematics) -> dict[str, JointRange]:
+    """By the names of derived joints: how far they go, in the designer's sense where there is one."""
     if design.simulation is None or design.kinematics is None:
-        return "not looked for"
+        return {}
     known = designers_joints(design.assembly, design.kinematics)
-    name = known[joint.name].name if joint.name in known else joint.name
-    ranges = as_intended(design.simulation, known).ranges or ()
-    computed = next((item for item in ranges if item.joint == name), None)
+    ranges = {item.joint: item for item in reversed(as_intended(design.simulation, known).ranges or ())}
+    names = {str(j.name): known[j.name].name if j.name in known else str(j.name) for j in kinematics.joints}
+    return {joint: ranges[name] for joint, name in names.items() if name in ranges}
+
+
+def _range(design: Design, computed: JointRange | None) -> str:
+    """How far a joint goes to both sides, and what stops it there."""
     if computed is None:
         return "not looked for"
     if computed.status == "unbounded":

@@ -80,12 +80,14 @@ class Artist:
         return self.drawn[index]
 
     def _prepare(self) -> None:
-        """Tell figures how fine errors, warnings and the whole will want them, so that each is drawn once for all."""
+        """Tell figures how fine the errors and warnings of a page, and the whole, will want them, so that each is drawn
+        once for all."""
         report = self.scene.design.report
         whole = _whole_view(*self._whole(), constants.OVERVIEW_WIDTH, constants.OVERVIEW_HEIGHT)
         for figure in self.known.values():
             figure.expect(whole)
-        for finding, focus in zip(report.findings if report else (), self.scene.focuses, strict=True):
+        findings = report.findings[: constants.MOST_PICTURES] if report else ()
+        for finding, focus in zip(findings, self.scene.focuses, strict=False):
             if finding.severity != "note" and focus.movement < 0:
                 stage = self._stage(focus)
                 if stage is not None:

@@ -26,8 +26,8 @@ def subjects_of(design: Design, names: Iterable[str]) -> tuple[list[str], list[s
             joints.setdefault(name)
         elif name in known.wanted and kinematics is not None:
             wanted = known.wanted
-            ends = {kinematics.body_of(assembly.parts_of(side)[0]).name for side in wanted[name].between}
-            direct = [joint.name for joint in known.derived.values() if set(joint.bodies) == ends]
+            first, second = (kinematics.body_of(assembly.parts_of(side)[0]).name for side in wanted[name].between)
+            direct = [joint.name for joint in kinematics.joints_between(first, second)]
             joints.update(dict.fromkeys(direct))
             if not direct:
                 parts.update(dict.fromkeys(p for side in wanted[name].between for p in assembly.parts_of(side)))
