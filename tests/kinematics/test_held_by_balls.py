@@ -12,7 +12,7 @@ from support.solids import ball, part, random_pose, rod
 
 from kinform import consistency, contacts, kinematics, surfaces
 from kinform.consistency.comparisons.answers import answer_of
-from kinform.consistency.comparisons.intended_joints import compare_joint
+from kinform.consistency.comparisons.intended_joints import compare_joints
 from kinform.design import Design
 from kinform.model.function import Function, IntendedJoint
 
@@ -41,7 +41,7 @@ def derived(groove, type_, X=None, scale=1e-3):
     found = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
     touching = contacts.find(made, found)
     K = kinematics.derive(made, found, touching)
-    answer = answer_of(made, compare_joint(made, touching, K, joint)).answer
+    answer = answer_of(made, *compare_joints(made, touching, K, [joint])).answer
     codes = {f.code for f in consistency.check(Design(made, found, touching, K)).findings}
     return K, answer, codes & {"KF401", "KF402", "KF414"}
 

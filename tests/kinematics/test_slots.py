@@ -9,7 +9,7 @@ from support.solids import box, part, random_pose, rod
 
 from kinform import contacts, kinematics, surfaces
 from kinform.consistency.comparisons.answers import answer_of
-from kinform.consistency.comparisons.intended_joints import compare_joint
+from kinform.consistency.comparisons.intended_joints import compare_joints
 from kinform.model.function import IntendedJoint
 
 SHAFT = rod(6, -25, 25, 56, 3.0)
@@ -50,7 +50,7 @@ def found(block, shaft, type_, along=(0, 0, 1), pose=None, scale=1e-3):
     touching = contacts.find(made, known)
     derived = kinematics.derive(made, known, touching)
     (joint,) = derived.joints
-    return joint, answer_of(made, compare_joint(made, touching, derived, wanted)).answer
+    return joint, answer_of(made, *compare_joints(made, touching, derived, [wanted])).answer
 
 
 HELD = {

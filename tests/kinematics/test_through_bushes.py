@@ -11,7 +11,7 @@ from support.solids import block, part, random_pose, rod
 
 from kinform import contacts, kinematics, surfaces
 from kinform.consistency.comparisons.answers import answer_of
-from kinform.consistency.comparisons.intended_joints import compare_joint
+from kinform.consistency.comparisons.intended_joints import compare_joints
 from kinform.model.function import Function, IntendedJoint
 
 BASE = block(60, 60, 20) - rod(14, -20, 20, 48)
@@ -31,7 +31,7 @@ def derived(type_, shaft, X=None, scale=1e-3):
     found = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
     touching = contacts.find(made, found)
     K = kinematics.derive(made, found, touching)
-    comparison = compare_joint(made, touching, K, joint)
+    (comparison,) = compare_joints(made, touching, K, [joint])
     return K, comparison, answer_of(made, comparison).answer
 
 

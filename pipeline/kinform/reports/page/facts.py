@@ -178,7 +178,7 @@ def _ranges(design: Design, kinematics: Kinematics) -> dict[str, JointRange]:
     if design.simulation is None or design.kinematics is None:
         return {}
     known = designers_joints(design.assembly, design.kinematics)
-    ranges = {item.joint: item for item in reversed(as_intended(design.simulation, known).ranges or ())}
+    ranges = {str(item.joint): item for item in reversed(as_intended(design.simulation, known).ranges or ())}
     names = {str(j.name): known[j.name].name if j.name in known else str(j.name) for j in kinematics.joints}
     return {joint: ranges[name] for joint, name in names.items() if name in ranges}
 
