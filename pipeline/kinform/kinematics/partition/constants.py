@@ -11,6 +11,8 @@ SLOW = 1e-4
 """The same as a share of the greatest speed in the contact: near the axis nothing moves."""
 OPPOSED_AREA = 0.05
 """Share of the area between two parts that may oppose a joint that parts them: scraps decide nothing."""
+OPPOSED_SOME = 5
+"""One of so many points of a contact is asked about all joints before all are: a fifth has several times that share."""
 JOURNAL = 40.0
 """Price of parting a journal, a collar or a guide."""
 LOOSE_JOURNAL = 35.0

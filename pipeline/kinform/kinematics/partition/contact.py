@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import dot, lengths, norm, widest_gap
+from kinform.foundation.algebra.vectors import cross, dot, lengths, norm, widest_gap
 from kinform.frozen import dataclass
 from kinform.kinematics.partition import constants
 from kinform.model.arrays import Array, Flags, Ints
@@ -151,11 +151,14 @@ class Contact:
         total = float(self.weights.sum())
         if not asked.numbers or total <= 0.0:
             return {}
-        opposed = self._opposed(asked.first)
-        among = np.arange(len(opposed))
         if all(patch.kind not in UNKNOWN for patch in self.patches):  # serrations would not count
-            among = np.flatnonzero(self._little(opposed))
-            opposed = opposed[among]
+            many = len(asked.first) * len(self.points) > constants.NUMBERS_AT_ONCE
+            among = np.flatnonzero(~self._surely_opposed(asked.first)) if many else np.arange(len(asked.first))
+            opposed = self._opposed(asked.first[among])
+            little = np.flatnonzero(self._little(opposed))
+            among, opposed = among[little], opposed[little]
+        else:
+            among, opposed = np.arange(len(asked.first)), self._opposed(asked.first)
         for row in np.flatnonzero(asked.more[among]).tolist():
             opposed[row] |= self._opposed(asked.motions[among[row]][1:]).any(axis=0)
         about = np.flatnonzero(asked.about[among])
@@ -198,16 +201,34 @@ class Contact:
         """m² of those."""
         return np.array([float(self.patches[k].weights.sum()) for k in self._filled])
 
+    def _surely_opposed(self, motions: Array) -> Flags:
+        """(k,) of which of k motions (k, 6) some of the points tell that they press on, or leave, more than next to
+        none of the area, or that it is not `_little`: of thousands of joints most are elsewhere, and do."""
+        some = slice(None, None, constants.OPPOSED_SOME)
+        middle, radius = self.ball
+        way = motions[:, 3:] + cross(motions[:, :3], np.broadcast_to(middle, (len(motions), 3)))
+        # no point of the ball is faster
+        fastest = (1.0 + 1e-9) * (lengths(way) + lengths(motions[:, :3]) * radius)
+        area = self._pressed(motions, self.points[some], self.normals[some], fastest) @ self.weights[some]
+        return np.asarray(area > (1.0 + 1e-6) * constants.OPPOSED_AREA * float(self.weights.sum()))
+
     def _opposed(self, motions: Array) -> Flags:
         """(k, n) whether each of k motions (k, 6) presses on each point or leaves it."""
-        out = np.empty((len(motions), len(self.points)), dtype=bool)
-        (x, y, z), (a, b, c) = (np.ascontiguousarray(rows.T) for rows in (self.points, self.normals))
+        return self._pressed(motions, self.points, self.normals, None)
+
+    @staticmethod
+    def _pressed(motions: Array, points: Array, normals: Array, fastest: Array | None) -> Flags:
+        """(k, n) the same of points (n, 3) with their normals; `fastest` (k,): what is slow is so beside that, instead
+        of beside the fastest of the points."""
+        out = np.empty((len(motions), len(points)), dtype=bool)
+        (x, y, z), (a, b, c) = (np.ascontiguousarray(rows.T) for rows in (points, normals))
         for some in _blocks(*out.shape):
             p, q, r, u, v, w = motions[some].T[:, :, None]
             forth, side, up = u + (q * z - r * y), v + (r * x - p * z), w + (p * y - q * x)
             pace = np.sqrt(forth * forth + side * side + up * up)
-            slow = constants.SLOW * pace.max(axis=1, initial=0.0, keepdims=True)
-            np.greater(np.abs(forth * a + up * c + side * b), constants.OPPOSED * pace + slow, out=out[some])
+            most = pace.max(axis=1, initial=0.0, keepdims=True) if fastest is None else fastest[some, None]
+            bound = constants.OPPOSED * pace + constants.SLOW * most
+            np.greater(np.abs(forth * a + up * c + side * b), bound, out=out[some])
         return out
 
     def _little(self, flags: Flags) -> Flags:
