@@ -71,6 +71,20 @@ def plate_with_pins(folder, pins, segments):
     return folder / "pins.toml"
 
 
+def with_turns_stated(manifest, pins):
+    """The plate with pins, and every pin's turn stated as a joint."""
+    side = int(np.ceil(np.sqrt(pins)))
+    stated = [f"[function]\nmobility = {pins}\n"]
+    stated += [
+        f'[[function.joint]]\nname = "turn{k}"\nbetween = ["plate", "pin{k}"]\ntype = "revolute"\n'
+        f"axis = [0, 0, 1]\npoint = [{10.0 * (k % side)}, {10.0 * (k // side)}, 0]\n"
+        for k in range(pins)
+    ]
+    path = manifest.with_name("stated.toml")
+    path.write_text(manifest.read_text() + "".join(stated))
+    return path
+
+
 def stack_of_copies(folder, facets):
     """Ten drilled plates on each other, one shape in ten poses, each a file of its own."""
     from manifold3d import Manifold, OpType

@@ -1,6 +1,7 @@
-"""`kinform show`, `report` and `export` of large assemblies: `python benchmarks/views.py [--quick]`.
+"""`kinform run`, `show`, `report` and `export` of large assemblies: `python benchmarks/views.py [--quick]`.
 
-A plate with 1,000 and 3,000 pins is derived once; then processor seconds of the whole commands, output to a file.
+A plate with 1,000 and 3,000 pins is derived once, and once with as many stated joints; then processor seconds of the
+whole commands, output to a file.
 Beside: the bytes of the results file read and hashed once.
 """
 
@@ -17,7 +18,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(Path(__file__).resolve().parent), str(ROOT / "pipeline"), str(ROOT / "cli")]
 
-from scale import plate_with_pins  # noqa: E402
+from scale import plate_with_pins, with_turns_stated  # noqa: E402
 from table import Row, peak, processor, show  # noqa: E402
 
 AIMS = {("show", 3000): 1.0, ("report", 1000): 5.0}
@@ -42,9 +43,19 @@ def rows(quick: bool) -> Iterator[Row]:
     for parts in (100, 300) if quick else (1000, 3000):
         with tempfile.TemporaryDirectory() as folder:
             manifest, results = plate_with_pins(Path(folder), parts, 24), Path(folder) / "pins.h5"
-            seconds = worked("run", str(manifest), "-o", str(results))
-            yield Row(f"run, {parts} parts", seconds, None, "s", f"{1e3 * seconds / parts:.1f} ms a part", peak())
+            yield run(manifest, results, f"run, {parts} parts", parts)
             yield from of_file(results, parts)
+            stated, page = with_turns_stated(manifest, parts), results.with_suffix(".html")
+            results = results.with_name("stated.h5")
+            yield run(stated, results, f"run, {parts} stated joints", parts)
+            seconds = worked("report", str(results), "-o", str(page))
+            yield Row(f"report, {parts} stated joints", seconds, None, "s", "", peak())
+
+
+def run(manifest: Path, results: Path, name: str, parts: int) -> Row:
+    """A row of the whole run, to a file of results."""
+    seconds = worked("run", str(manifest), "-o", str(results))
+    return Row(name, seconds, None, "s", f"{1e3 * seconds / parts:.1f} ms a part", peak())
 
 
 def of_file(results: Path, parts: int) -> Iterator[Row]:
