@@ -155,6 +155,24 @@ def test_a_grid_finds_the_boxes_that_comparison_finds(seed):
     assert [found.tolist() for found in by_grid] == [found.tolist() for found in every]
 
 
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 10**6), st.floats(0.5, 2.0), st.sampled_from([0, 20_000]), st.sampled_from([0, 600_000]))
+def test_of_more_boxes_than_are_wanted_it_is_told_that_they_are_too_many(seed, share, exact, matrix):
+    rng = np.random.default_rng(seed)
+    low = [rng.uniform(-1, 1, (count, 3)) for count in (70, 90)]
+    kinds = [(one, one + rng.uniform(0, 1, one.shape)) for one in low]
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(box_pairs, "BOXES_EXACT", exact)
+        patched.setattr(box_pairs, "BOXES_MATRIX", matrix)
+        every = box_pairs.meeting_boxes(*kinds)
+        most = share * len(every[0])
+        some = box_pairs.meeting_boxes(*kinds, most)
+    if len(every[0]) > most:
+        assert some is None
+    else:
+        assert [found.tolist() for found in some] == [found.tolist() for found in every]
+
+
 @pytest.mark.parametrize("most", [0, 10**9])
 def test_directions_are_asked_together_or_in_turn_with_one_answer(most, monkeypatch):
     first, second = scene(5)

@@ -17,8 +17,11 @@ from support.solids import box, part, rod
 from kinform import contacts, kinematics, surfaces
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics import propose, proposed_joints
+from kinform.kinematics.partition import constants
+from kinform.kinematics.partition.contact import Contact
 from kinform.kinematics.partition.labelling import Edge
 from kinform.kinematics.partition.one_body import joined_by_cost, one_body
+from kinform.kinematics.partition.parting import joint_twists, prices
 from kinform.kinematics.partition.standard_parts import standard_parts
 
 SEEDS = [3, 4, 9, 11]
@@ -50,6 +53,21 @@ def test_a_loop_of_decks_with_a_caged_bearing_comes_apart_at_its_joints_at_a_mil
     K = kinematics.derive(assembly, found, contacts.find(assembly, found))
     verdict = judge(made, K)
     assert verdict.exact and verdict.mobility == 1, verdict
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_joints_that_some_points_tell_apart_part_nothing(seed, monkeypatch):
+    """Of many joints a fifth of the points of a contact tells most that do not part it: the prices are the same."""
+    _, assembly, _, contact = touching(seed)
+    joints = [joint for joint in assembly.function.joints if joint.type != "fixed"]
+    twists = [joint_twists(joint) for joint in joints]
+    every = prices(joints, twists, contact.patches, contact.suggestions)
+    told = []
+    asked = Contact._surely_opposed
+    monkeypatch.setattr(Contact, "_surely_opposed", lambda of, motions: told.append(asked(of, motions)) or told[-1])
+    monkeypatch.setattr(constants, "NUMBERS_AT_ONCE", 1)
+    assert prices(joints, twists, contact.patches, contact.suggestions).by_joint == every.by_joint
+    assert np.concatenate(told).any() or len(joints) == 1
 
 
 @pytest.mark.parametrize("seed", SEEDS)
