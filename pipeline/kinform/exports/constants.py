@@ -21,6 +21,8 @@ GRAIN = 1e-9
 """kg and kg·m², of links and bodies whose mass is not known: small enough to change no motion."""
 MOST_FACETS = 200_000
 """More than these MuJoCo does not read from STL."""
+MOST_NESTED = 495
+"""Bodies in a row, each in the one before, that MuJoCo 4.0 reads: its XML reader takes 499 elements in each other."""
 STEP = 0.001
 """s, of RK4 without loops; a choice."""
 STEP_OF_LOOPS = 0.0002

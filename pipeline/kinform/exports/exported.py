@@ -37,10 +37,12 @@ def write(exported: Exported, folder: str | Path) -> tuple[Path, ...]:
 
     Returns their paths, sorted. Raises ResultsError, and OSError where a folder cannot be made.
     """
-    out = []
+    out: list[Path] = []
+    swept: set[Path] = set()
     for name, data in sorted(exported.files.items()):
         target = Path(folder) / name
         target.parent.mkdir(parents=True, exist_ok=True)
-        replace_file(target, data)
+        replace_file(target, data, sweeps=target.parent not in swept)
+        swept.add(target.parent)
         out.append(target)
     return tuple(out)

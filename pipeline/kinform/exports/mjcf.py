@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from kinform.behaviour.primitives import Ball
-from kinform.exports.constants import GRAIN, LEAST_MOMENT, MOST_FACETS, STEP, STEP_OF_LOOPS
-from kinform.exports.exported import Exported
+from kinform.exports.constants import GRAIN, LEAST_MOMENT, MOST_FACETS, MOST_NESTED, STEP, STEP_OF_LOOPS
+from kinform.exports.exported import Exported, ExportError
 from kinform.exports.mjcf_drives import actuators, gears, load, trains
 from kinform.exports.model import ExportModel, Limits
 from kinform.exports.names import MJCF, free_name
@@ -87,13 +87,14 @@ def export(model: ExportModel) -> Exported:
     robot = _with_moments(robot, lost)
     root, twins = _bodies(robot)
     equalities = [row for closing in robot.closing for row in _closure(robot, closing, twins)]
-    ordered = list(_walk(root))
+    nested = list(_nested(root))
+    ordered = [body for body, _, ends in nested if not ends]
     rows = actuators(robot, [body.link for body in ordered], lost)
     remarks = ["meshes do not collide, because mating surfaces always touch", *robot.remarks]
     if equalities:
         remarks.append("loops are stiff springs to MuJoCo: the shorter the step, the closer to rigid")
     text = render(
-        "model.mjcf.j2", robot=robot, root=root, equalities=equalities, actuators=rows, lost=lost,
+        "model.mjcf.j2", robot=robot, nested=nested, equalities=equalities, actuators=rows, lost=lost,
         remarks=remarks, materials=robot.materials, step=STEP_OF_LOOPS if equalities else STEP,
         qpos=[x for body in ordered for x in body.qpos], qvel=[x for body in ordered for x in body.qvel],
         loads=[load(robot, one) for one in robot.loads], most=MOST_FACETS, inf=np.inf,
@@ -231,10 +232,23 @@ def _state(robot: Robot, body: _Body) -> None:
             body.qvel.append(lead * body.qvel[-1])
 
 
-def _walk(body: _Body) -> Iterator[_Body]:
-    yield body
-    for child in body.children:
-        yield from _walk(child)
+def _nested(root: _Body) -> Iterator[tuple[_Body, int, bool]]:
+    """Each body with its depth, the world's being 1, where it begins, and where it ends, but for the world, after all
+    that are in it."""
+    left = [(root, 1, False)]
+    while left:
+        body, depth, ends = left.pop()
+        yield body, depth, ends
+        if ends:
+            continue
+        if depth > MOST_NESTED + 1:
+            raise ExportError(
+                f"more than {MOST_NESTED} bodies hang on each other in a row, and MuJoCo reads no more: choose a "
+                "`ground` in their middle, or export urdf or sdf"
+            )
+        if depth > 1:
+            left.append((body, depth, True))
+        left += [(child, depth + 1, False) for child in reversed(body.children)]
 
 
 def _closure(robot: Robot, closing: Closing, twins: dict[str, str]) -> list[_Equality]:

@@ -43,9 +43,10 @@ def check_target(path: str | Path) -> None:
         raise refuse(path, f"the folder {Path(path).parent} is read-only", "name a file in a writable folder")
 
 
-def replace_file(path: str | Path, *pieces: bytes) -> None:
+def replace_file(path: str | Path, *pieces: bytes, sweeps: bool = True) -> None:
     """Put these pieces, one after the other, at `path` in one step; keep a file that has them already, with a new time.
 
+    What killed processes left in the folder is removed, unless it has been (`sweeps`): of many files once.
     Raises ResultsError when that is not possible; the old file is then as it was.
     """
     check_target(path)
@@ -54,7 +55,7 @@ def replace_file(path: str | Path, *pieces: bytes) -> None:
         if _holds(target, pieces):
             os.utime(target)
         else:
-            _swap(target, pieces)
+            _swap(target, pieces, sweeps)
     except OSError as error:
         reason = error.strerror or str(error)
         raise refuse(
@@ -73,8 +74,9 @@ def _holds(target: Path, pieces: tuple[bytes, ...]) -> bool:
         return all(stream.read(len(piece)) == piece for piece in pieces)
 
 
-def _swap(target: Path, pieces: tuple[bytes, ...]) -> None:
-    _sweep(target.parent)
+def _swap(target: Path, pieces: tuple[bytes, ...], sweeps: bool) -> None:
+    if sweeps:
+        _sweep(target.parent)
     temporary, handle = _draft(target.parent)
     try:
         with open(handle, "wb") as stream:
@@ -113,9 +115,8 @@ def _sweep(folder: Path) -> None:
     if fcntl is None:
         return
     with contextlib.suppress(OSError):
-        for entry in sorted(os.listdir(folder)):
-            if entry.startswith(_PREFIX) and entry.endswith(_SUFFIX):
-                _remove_unless_locked(folder / entry)
+        for entry in sorted(e for e in os.listdir(folder) if e.startswith(_PREFIX) and e.endswith(_SUFFIX)):
+            _remove_unless_locked(folder / entry)
 
 
 def _remove_unless_locked(path: Path) -> None:
