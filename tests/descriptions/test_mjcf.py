@@ -378,3 +378,19 @@ def test_files_are_found_beside_the_file_that_includes_them_where_they_are_not_b
     first = mujoco.MjModel.from_xml_path(str(top)).body_mass[1]
     (tmp_path / "own.obj").unlink()
     assert mujoco.MjModel.from_xml_path(str(top)).body_mass[1] == pytest.approx(3.0 * first)
+
+
+@pytest.mark.parametrize(("deep", "read"), [(250, True), (300, False)])
+def test_a_chain_is_read_as_long_as_its_bodies_may_be_nested(tmp_path, deep, read):
+    mass = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
+    bodies = f'<body pos="0 0 .1"><joint axis="0 1 0"/>{mass}' * deep + "</body>" * deep
+    path = tmp_path / "chain.xml"
+    path.write_text(f"<mujoco><worldbody>{bodies}</worldbody></mujoco>")
+    if read:
+        assert len(form.load(path).function.joints) == deep
+    else:
+        with pytest.raises(InputError) as caught:
+            form.load(path)
+        problem = caught.value.problems[0]
+        assert "nested more than 255 deep" in problem.message
+        assert "URDF" in problem.remedy

@@ -164,6 +164,8 @@ FAULTS_SHOWN = 10
 
 XML_BYTES = 64 * 1024 * 1024
 """Largest XML text that is read: descriptions of robots with a thousand links have a tenth of it."""
+XML_DEPTH = 255
+"""Elements in each other that are read: bodies of MJCF in a row have one each."""
 
 PACKAGE_LEVELS = 4
 """Folders, from that of a description upwards, in which its package is looked for where nothing names it."""

@@ -13,7 +13,7 @@ from typing import Any
 
 from lxml import etree
 
-from kinform.form.constants import LARGEST_NUMBER, VALUE_LENGTH, XML_BYTES
+from kinform.form.constants import LARGEST_NUMBER, VALUE_LENGTH, XML_BYTES, XML_DEPTH
 from kinform.form.descriptions.robot import At
 from kinform.form.problems import Problems
 from kinform.foundation.colours import told
@@ -61,7 +61,11 @@ def parse_xml(data: bytes, file: str, problems: Problems) -> Element | None:
     if root is None or faults:
         line = max(faults[0].line, 1) if faults else 1
         words = faults[0].message.strip() if faults else message
-        problems.add(f"is not well-formed XML: {words}", file, line, "correct the syntax there")
+        if words.startswith("Excessive depth"):
+            problems.add(f"has elements nested more than {XML_DEPTH} deep, and no more are read", file, line,
+                         "write bodies side by side, from a root in their middle, or as URDF")  # fmt: skip
+        else:
+            problems.add(f"is not well-formed XML: {words}", file, line, "correct the syntax there")
         return None
     declared = root.getroottree().docinfo.internalDTD
     if declared is not None and any(True for _ in declared.iterentities()):
