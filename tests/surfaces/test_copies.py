@@ -82,16 +82,22 @@ def test_symmetric_shapes_are_copies_too():
 
 def test_copies_are_found_by_the_rounding_of_their_files():
     """Where a mesh lies far from the origin of its file, its frame is moved there, and its coordinates are small."""
-    step = 2.0**-20
-    first = replace(bracket(), resolution=step)
+    step, origin = 2.0**-20, np.array([8.0, 0.0, 0.0])
+    first = replace(bracket(), origin=origin)
     moved = first.vertices @ pose(6)[:3, :3].T
     rounded = named(replace(first, vertices=np.round(moved / step) * step))
     assert len(rigid_copies(by_digest(first, rounded))) == 1
-    precise = [replace(mesh, resolution=0.0) for mesh in (first, rounded)]
-    assert rigid_copies(by_digest(*precise)) == {}
+    near = [replace(mesh, origin=np.zeros(3)) for mesh in (first, rounded)]
+    assert rigid_copies(by_digest(*near)) == {}
     bent = rounded.vertices.copy()
     bent[3] += 4.0 * step
     assert rigid_copies(by_digest(first, named(replace(rounded, vertices=bent)))) == {}
+
+
+def test_what_coarse_numbers_still_tell_apart_are_no_copies():
+    """A radius is better known than one vertex: shafts that differ by a step of their files are two shafts."""
+    rods = [named(of_manifold(centred_rod(radius, 0.02, 40))) for radius in (5.0e-3, 5.01e-3)]
+    assert rigid_copies(by_digest(*(replace(rod, resolution=1e-5) for rod in rods))) == {}
 
 
 def test_a_copy_is_one_of_the_first_shape_that_it_fits():

@@ -101,8 +101,9 @@ class _Cloud:
 
 
 def _rounding(mesh: Mesh, far: float) -> float:
-    """m, of its coordinates up to `far` (m): that of its file is coarser where the mesh lies far from its origin."""
-    return max(EPS32 * far, mesh.resolution)
+    """m, of coordinates up to `far` (m) as its file has them in single precision: the mesh may lie far from its origin.
+    Coarser numbers are not taken for more: a radius is better known than one of its vertices."""
+    return EPS32 * (far + float(np.abs(mesh.origin).max()))
 
 
 class _Originals:
