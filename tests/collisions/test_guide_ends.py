@@ -20,11 +20,9 @@ def judged(manifest):
     return design, [f for f in design.report.findings if f.code == "KF412"]
 
 
-def carriage(folder, stated, turned):
-    """A carriage of 40 mm along a channel of 200 mm, with a range."""
-    rail = block(200, 60, 20).translate((0, 0, -10))
-    walls = [block(200, 10, 40).translate((0, y, 0)) for y in (-25, 25)]
-    save(rail + walls[0] + walls[1], folder / "rail.stl")
+def slide(folder, rail, stated, *, turned=False, complete=False):
+    """A carriage of 40 mm on a rail, with the range of its stroke."""
+    save(rail, folder / "rail.stl")
     save(block(40, 40, 20).translate((0, 0, 10)), folder / "carriage.stl")
     between = ["carriage", "rail"] if turned else ["rail", "carriage"]
     (folder / "guide.toml").write_text(f"""schema = 1
@@ -39,6 +37,7 @@ mesh = "rail.stl"
 name = "carriage"
 mesh = "carriage.stl"
 [function]
+{"complete = true" if complete else ""}
 [[function.joint]]
 name = "stroke"
 between = {between}
@@ -47,6 +46,12 @@ axis = [1, 0, 0]
 range = {stated}
 """)
     return judged(folder / "guide.toml")
+
+
+def channel():
+    """200 mm long."""
+    walls = [block(200, 10, 40).translate((0, y, 0)) for y in (-25, 25)]
+    return block(200, 60, 20).translate((0, 0, -10)) + walls[0] + walls[1]
 
 
 @pytest.mark.parametrize("turned", [False, True])
@@ -62,7 +67,7 @@ range = {stated}
     ],
 )
 def test_a_range_goes_no_further_than_the_guide(tmp_path, stated, sides, turned):
-    design, found = carriage(tmp_path, stated, turned)
+    design, found = slide(tmp_path, channel(), stated, turned=turned)
     assert [(joint.type, joint.status) for joint in design.kinematics.joints] == [("prismatic", "determined")]
     assert sorted(side for f in found for side in ("lower", "upper") if side in f.message) == sides
     for one in found:
@@ -73,29 +78,8 @@ def test_a_range_goes_no_further_than_the_guide(tmp_path, stated, sides, turned)
 
 def test_a_slide_that_is_taken_as_stated_has_its_guide_in_no_mesh(tmp_path):
     """A block on a table: contact leaves it planar."""
-    save(block(200, 200, 20).translate((0, 0, -10)), tmp_path / "rail.stl")
-    save(block(40, 40, 20).translate((0, 0, 10)), tmp_path / "carriage.stl")
-    (tmp_path / "m.toml").write_text("""schema = 1
-[assembly]
-name = "table"
-units = "mm"
-ground = "rail"
-[[part]]
-name = "rail"
-mesh = "rail.stl"
-[[part]]
-name = "carriage"
-mesh = "carriage.stl"
-[function]
-complete = true
-[[function.joint]]
-name = "stroke"
-between = ["rail", "carriage"]
-type = "prismatic"
-axis = [1, 0, 0]
-range = [-500, 500]
-""")
-    design, found = judged(tmp_path / "m.toml")
+    table = block(200, 200, 20).translate((0, 0, -10))
+    design, found = slide(tmp_path, table, "[-500, 500]", complete=True)
     assert [(joint.type, joint.status) for joint in design.kinematics.joints] == [("prismatic", "stated")]
     assert not found
 
