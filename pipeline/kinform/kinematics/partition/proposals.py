@@ -15,14 +15,15 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical_sign, norm
-from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.words import counted, quoted
 from kinform.frozen import dataclass
 from kinform.kinematics.part_volumes import volumes
 from kinform.kinematics.partition import constants
 from kinform.kinematics.partition.bodies import partition
 from kinform.kinematics.partition.contact import ROUND, Asked, Contact, PartPair, contact_of_pairs, near_each
+from kinform.kinematics.partition.known_axes import KnownAxes
 from kinform.kinematics.partition.parting import hints_of, joint_twists
+from kinform.kinematics.partition.sides import Sides, TouchingParts
 from kinform.kinematics.partition.standard_parts import HOLDERS, standard_parts
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
@@ -30,9 +31,6 @@ from kinform.model.contacts import Contacts, Patch
 from kinform.model.function import IntendedJoint
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces
-
-Sides = tuple[tuple[PartName, ...], tuple[PartName, ...]]
-"""The parts of two bodies."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +80,7 @@ def propose(
     screws = {pair: 0.0 if worth <= constants.FASTENED["spigot"] else worth for pair, worth in hints.items()}
     free = _freed_near(axes, pairs, screws, constants.PROPOSED[0])
     known = [[name for name in names if name in volume] for names in together]
-    graph = _Parts(parts, sorted(pairs), volume, [names for names in known if len(names) > 1])
+    graph = TouchingParts(parts, sorted(pairs), volume, [names for names in known if len(names) > 1])
     standard = standard_parts(assembly, surfaces)
     holders = {name for name, one in standard.items() if one.kind in HOLDERS}
     journals = [frozenset(p for p in cut if pairs[p].journal(axis)) for axis, cut in zip(axes, free, strict=True)]
@@ -123,10 +121,10 @@ def propose(
     ground = set() if assembly.ground is None else set(assembly.parts_of(assembly.ground))
     total = sum(volume.values()) or 1.0  # parts without any volume: nothing is substantial
     shares = [min(sum(volume[name] for name in side) for side in sides) / total for _, sides, _ in ways]
+    alike, of_one = graph.alike([sides for _, sides, _ in ways]), _of_one([joint for joint, _, _ in ways])
     out = []
-    for (joint, sides, touching), share in zip(ways, shares, strict=True):
-        largest = max(its for (other, _, _), its in zip(ways, shares, strict=True) if _one(other, joint))
-        twice = any(not _one(other, joint) and graph.alike(sides, theirs) for other, theirs, _ in ways)
+    for k, ((joint, sides, touching), share) in enumerate(zip(ways, shares, strict=True)):
+        largest, twice = max(shares[other] for other in of_one[k]), alike[k] - of_one[k]
         if not twice and share >= constants.BESIDE * largest:
             assert joint.point is not None
             turned = sides if not ground & set(sides[1]) else sides[::-1]
@@ -197,24 +195,32 @@ def _once(proposals: Sequence[Proposal]) -> list[Proposal]:
     return out
 
 
-def _one(joint: IntendedJoint, other: IntendedJoint) -> bool:
-    """Whether two are the same joint, or balls with the same centre."""
-    return joint is other or (joint.axis is None and other.axis is None and _same(joint, other, constants.SAME_CENTRE))
+def _of_one(joints: Sequence[IntendedJoint]) -> list[set[int]]:
+    """Where each joint is once more, itself included: the same one, or balls with the same centre."""
+    places: dict[int, set[int]] = {}
+    for k, joint in enumerate(joints):
+        places.setdefault(id(joint), set()).add(k)
+    balls = [k for k, joint in enumerate(joints) if joint.axis is None]
+    return [
+        places[id(joint)] | {k for k in balls if joint.axis is None and _same(joint, joints[k], constants.SAME_CENTRE)}
+        for joint in joints
+    ]
 
 
 def _candidates(patches: Sequence[Patch]) -> list[IntendedJoint]:
     """The axes of all journals, each once, and the centres of ball joints."""
     out: list[IntendedJoint] = []
+    known = KnownAxes(len(patches))
     for patch in sorted(patches, key=lambda patch: -patch.area):
         if patch.narrow or patch.kind not in ROUND:
             continue
         reach = norm(np.ptp(patch.points, axis=0)) or 1e-6
-        if patch.kind == "sphere":
-            joint = _joint("spherical", None, patch.point)
-        else:
-            joint = _joint("revolute", patch.axis * canonical_sign(patch.axis), patch.point)
-        if not any(_same(joint, other, constants.SAME_AXIS_OFF * reach) for other in out):
+        axis = None if patch.kind == "sphere" else patch.axis * canonical_sign(patch.axis)
+        joint = _joint("spherical" if axis is None else "revolute", axis, patch.point)
+        off = constants.SAME_AXIS_OFF * reach
+        if not any(_same(joint, out[k], off) for k in known.near(patch.point, axis, off)):
             out.append(joint)
+            known.add(patch.point, axis)
     return out
 
 
@@ -253,64 +259,3 @@ def _freed_each(
             if price + hints.get(pair, 0.0) <= most:
                 out[k].append(pair)
     return [frozenset(freed) for freed in out]
-
-
-@dataclass(frozen=True, eq=False)
-class _Parts:
-    """The parts and what touches."""
-
-    parts: Sequence[PartName]
-    pairs: Sequence[PartPair]
-    volume: Mapping[PartName, float]
-    together: Sequence[Sequence[PartName]]
-
-    def sides(self, own: frozenset[PartPair], cut: frozenset[PartPair]) -> list[Sides]:
-        """The pairs of bodies that pairs of a joint (`own`) lie between once all of `cut` is parted, the larger one
-        first. What is small, or a ring, lies between the others."""
-        number = {name: k for k, name in enumerate(self.parts)}
-        sets = UnionFind(len(self.parts))
-        for names in self.together:
-            for name in names[1:]:
-                sets.union(number[names[0]], number[name])
-        for pair in self.pairs:
-            if pair not in cut:
-                sets.union(number[pair[0]], number[pair[1]])
-        members: dict[int, list[PartName]] = {}
-        for name in self.parts:
-            members.setdefault(sets.find(number[name]), []).append(name)
-        size = {root: sum(self.volume[name] for name in names) for root, names in members.items()}
-        least = constants.PROPOSED_SHARE * sum(size.values())
-        near: dict[int, set[int]] = {}
-        for pair in own:
-            first, second = (sets.find(number[name]) for name in pair)
-            if first != second:
-                near.setdefault(first, set()).add(second)
-                near.setdefault(second, set()).add(first)
-
-        def between(root: int) -> bool:
-            """Whether it is small, or a single part between larger ones: a ring, a bush, a pin."""
-            larger = sum(size[other] > size[root] for other in near[root])
-            return size[root] < least or (len(members[root]) == 1 and larger > 1)
-
-        large = sorted((root for root in near if not between(root)), key=lambda root: (-size[root], root))
-        out = []
-        for k, one in enumerate(large):
-            reached, waiting = {one}, [one]
-            while waiting:
-                for other in near[waiting.pop()]:
-                    if other not in reached:
-                        reached.add(other)
-                        if between(other):
-                            waiting.append(other)
-            out += [(tuple(members[one]), tuple(members[other])) for other in large[k + 1 :] if other in reached]
-        return out
-
-    def size(self, side: Sequence[PartName]) -> float:
-        """Volume of a side."""
-        return sum(self.volume[name] for name in side)
-
-    def alike(self, one: Sides, other: Sides) -> bool:
-        """Whether these are the same two bodies, but for what is small."""
-        least = constants.PROPOSED_SHARE * sum(self.volume.values())
-        odd = (set(a) ^ set(b) for a, b in zip(one, other, strict=True))
-        return all(sum(self.volume[name] for name in names) < least for names in odd)
