@@ -68,9 +68,24 @@ def test_parts_of_bodies_that_move_as_one_meet_those_that_each_of_them_meets(see
             if not still and posed_pairs._steps(relative, corners[one], corners[other]) is not None
         ]
         assert near.among(a, b) == each
+        assert b in near.after(a) or not each
         assert (near.relative(a, b) is None) == still
         count += len(each)
     assert count > 10
+
+
+def test_bodies_that_stay_away_from_each_other_are_not_looked_at():
+    rng = np.random.default_rng(4)
+    displacements = np.stack([turned(rng, 15) for _ in range(6)], axis=1)
+    displacements[:, 3:, 0, 3] += 9.0
+    corners = {f"{body}": box_corners(np.full(3, -0.5), np.full(3, 0.5), np.eye(4)) for body in range(6)}
+    shapes = SimpleNamespace(
+        size=1.0,
+        mesh=lambda name: SimpleNamespace(vertices=corners[name]),
+        part=lambda _: SimpleNamespace(X_WP=np.eye(4)),
+    )
+    near = posed_pairs._Near(shapes, [[f"{body}"] for body in range(6)], displacements)
+    assert [near.after(body) for body in range(6)] == [[1, 2], [2], [], [4, 5], [5], []]
 
 
 @pytest.mark.parametrize("seed", range(8))

@@ -137,6 +137,8 @@ STILL = 1e-9
 """rad, and share of the assembly's size, that bodies at rest to each other move by rounding."""
 REMEMBERED = 64
 """Displacements of a pair that are kept: the same are asked for several times."""
+WORLD_BOXES = 64
+"""Times for which bodies are boxed in the world, to see which of them stay away from each other."""
 CHORD_SLACK = 1.05
 """Points between two poses may travel more than their straight distance."""
 
@@ -265,8 +267,12 @@ OUTPUT_TURN = 0.2
 """rad that a joint may turn between outputs: then arcs are as good as straight."""
 OUTPUT_SLIDE = 0.05
 """The same of a slide, as a share of the assembly's size."""
+OUTPUT_PEAK = 0.005
+"""Share of these that a joint may go further on between outputs than at them, where it turns back."""
 OUTPUTS_MOST = 50_000
 """Outputs up to which a run is asked for again."""
+OUTPUTS_FOR_PEAKS = 2_000
+"""The same where that is for what happens where joints turn back: impacts would ask for any number."""
 RUN_ASKED = 3
 """How often: with more outputs more of the motion is seen."""
 DEPTH_SOON = 17

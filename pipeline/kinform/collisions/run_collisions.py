@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from functools import lru_cache
 from itertools import combinations, product
 
 import numpy as np
 
 from kinform.collisions import constants
+from kinform.collisions.between_outputs import nodes_of
 from kinform.collisions.joint_ranges import shapes_of
 from kinform.collisions.pair.advancement import first_crossing
 from kinform.collisions.pair.course import Course
-from kinform.collisions.pair.posed_pairs import Nodes, moving_pairs
+from kinform.collisions.pair.posed_pairs import moving_pairs
 from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.parts.shapes import Shapes
-from kinform.foundation.algebra.rotations import matrices, rotation_vectors, turned
 from kinform.foundation.progress import Progress
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Part
@@ -48,7 +47,7 @@ def along(
     shapes = shapes_of(assembly, surfaces, contacts, kinematics)
     simulation, coarse = _followed(simulation, shapes.size, finer)
     names = list(simulation.body_names)
-    nodes = _nodes(simulation)
+    nodes = nodes_of(simulation, kinematics.joints)
     pairs = moving_pairs(shapes, names, kinematics.joints, nodes)
     untested: list[tuple[str, str, str]] = []
     out = []
@@ -95,7 +94,7 @@ def _followed(simulation: Simulation, size: float, finer: Callable[[int], Simula
     has)."""
     if finer is None:
         return simulation, ""
-    times, wanted = 1, _parts_of_a_step(simulation, size)
+    times, (wanted, _) = 1, _parts_of_a_step(simulation, size)
     for _ in range(constants.RUN_ASKED):
         if wanted == 1 or 2 * wanted * len(simulation.time) > constants.OUTPUTS_MOST:
             break
@@ -104,8 +103,12 @@ def _followed(simulation: Simulation, size: float, finer: Callable[[int], Simula
         if len(again.time) < 2:
             break
         simulation = again
-        wanted = _parts_of_a_step(simulation, size)
+        wanted, _ = _parts_of_a_step(simulation, size)
     if wanted == 1:
+        _, wished = _parts_of_a_step(simulation, size)
+        if 1 < wished and wished * len(simulation.time) <= constants.OUTPUTS_FOR_PEAKS:
+            again = finer(times * wished)
+            simulation = again if len(again.time) > len(simulation.time) else simulation
         return simulation, ""
     return simulation, (
         "joints move far between output times, so that what parts meet between them is not known: "
@@ -123,8 +126,9 @@ def _apart(shapes: Shapes, names: Sequence[str], met: Collection[tuple[str, str]
     return [pair for pair in pairs if pair not in met and pair[::-1] not in met]
 
 
-def _parts_of_a_step(simulation: Simulation, size: float) -> int:
-    """Into how many parts to cut the time between outputs, for joints to move evenly and not far in it; `size` in m.
+def _parts_of_a_step(simulation: Simulation, size: float) -> tuple[int, int]:
+    """Into how many parts to cut the time between outputs, for joints to move evenly and not far in it, and for them to
+    turn back no further on than where outputs show them; `size` in m.
 
     Rates tell how far they go, and accelerations where they are at rest at the outputs only.
     """
@@ -133,43 +137,14 @@ def _parts_of_a_step(simulation: Simulation, size: float) -> int:
     owner = np.repeat(np.arange(len(simulation.joint_types)), np.diff(simulation.joint_offset))
     reach = np.array([constants.OUTPUT_TURN if turns[int(joint)] else constants.OUTPUT_SLIDE * size for joint in owner])
     if not len(reach):
-        return 1
+        return 1, 1
     rate, acceleration = (
-        np.abs(np.nan_to_num(values)).max(axis=0, initial=0.0) / reach
+        float((np.abs(np.nan_to_num(values)).max(axis=0, initial=0.0) / reach).max(initial=0.0))
         for values in (simulation.joint_velocity, simulation.joint_acceleration)
     )
-    parts = max(float(rate.max()) * step, float(np.sqrt(0.5 * acceleration.max(initial=0.0))) * step)
-    return max(1, int(np.ceil(parts - 1e-6)))
-
-
-def _displacements(simulation: Simulation) -> Array:
-    out = np.zeros((*simulation.p_WB.shape[:2], 4, 4))
-    out[..., :3, :3] = matrices(simulation.q_WB)
-    out[..., :3, 3] = simulation.p_WB
-    out[..., 3, 3] = 1.0
-    return out
-
-
-def _nodes(simulation: Simulation) -> Nodes:
-    """The displacements of all bodies at the output times, and between them along screws of constant rotation."""
-    displacements, time = _displacements(simulation), simulation.time
-    R = displacements[..., :3, :3]
-    turns = rotation_vectors(np.swapaxes(R[:-1], 2, 3) @ R[1:])
-
-    def between(s: float) -> Array:
-        out = np.zeros((displacements.shape[1], 4, 4))
-        n = int(np.searchsorted(time, s))
-        if n < len(time) and time[n] == s:
-            return np.asarray(displacements[n])
-        n = min(max(int(np.searchsorted(time, s, side="right")) - 1, 0), len(time) - 2)
-        share = (s - time[n]) / (time[n + 1] - time[n])
-        out[:, :3, :3] = R[n] @ turned(share * turns[n])
-        out[:, :3, 3] = (1.0 - share) * displacements[n, :, :3, 3] + share * displacements[n + 1, :, :3, 3]
-        out[:, 3, 3] = 1.0
-        return out
-
-    # pairs halve the same steps: most poses are asked for by several
-    return Nodes(time, displacements, lru_cache(maxsize=None)(between))
+    parts = max(rate * step, float(np.sqrt(0.5 * acceleration)) * step)
+    peaks = float(np.sqrt(0.125 * acceleration / constants.OUTPUT_PEAK)) * step
+    return max(1, int(np.ceil(parts - 1e-6))), max(1, int(np.ceil(peaks - 1e-6)))
 
 
 def _depth(test: PairTest, course: Course, time: Array, hit: float) -> float:

@@ -5,15 +5,26 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 
-from kinform.collisions.constants import CERTAIN, CHORD_SLACK, HIGHER_KINDS, LOWER_TYPES, REMEMBERED, SPARE_SHARE, STILL
+from kinform.collisions.constants import (
+    CERTAIN,
+    CHORD_SLACK,
+    HIGHER_KINDS,
+    LOWER_TYPES,
+    REMEMBERED,
+    SPARE_SHARE,
+    STILL,
+    WORLD_BOXES,
+)
 from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.distance_bounds import Wholes
 from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.displacements import inverse
+from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import box_corners
 from kinform.frozen import dataclass
 from kinform.kinematics.mobility.guides import preserved
@@ -52,7 +63,7 @@ def moving_pairs(shapes: Shapes, names: Sequence[str], joints: Sequence[Joint], 
     near = _Near(shapes, parts, nodes.displacements)
     out: list[Moving] = []
     for a, first in enumerate(names):
-        for b in range(a + 1, len(names)):
+        for b in near.after(a):
             relative = near.relative(a, b)
             if relative is None:
                 continue
@@ -73,8 +84,39 @@ class _Near:
         self._motion = [
             numbers.setdefault(displacements[:, n].tobytes(), len(numbers)) for n in range(displacements.shape[1])
         ]
+        self._may = self._may_meet(len(numbers))
         self._relative: dict[tuple[int, int], Array | None] = {}
         self._among: dict[tuple[int, int], dict[tuple[int, int], list[tuple[str, str]]]] = {}
+
+    def _may_meet(self, count: int) -> Flags:
+        """(M, M) which motions have bodies that may come near each other, by boxes of all parts of a motion in the
+        world, over some outputs at once."""
+        parts: list[list[str]] = [[] for _ in range(count)]
+        for motion, names in zip(self._motion, self._parts, strict=True):
+            parts[motion] += names
+        lows, highs = np.full((2, count, len(self._displacements), 3), [[[[np.inf]]], [[[-np.inf]]]])
+        for motion, body in {motion: body for body, motion in enumerate(self._motion)}.items():
+            own = parts[motion]
+            if not own:
+                continue
+            corners = np.concatenate([_corners(self._shapes, name) for name in own])
+            box = box_corners(corners.min(axis=0), corners.max(axis=0), np.eye(4))
+            places, steps = _moved(self._displacements[:, body], box)
+            spare = CHORD_SLACK * np.append(steps, 0.0)[:, None] + SPARE_SHARE * self._shapes.size
+            lows[motion], highs[motion] = places.min(axis=1) - spare, places.max(axis=1) + spare
+        out = np.zeros((count, count), bool)
+        for begin, end in pairwise(np.unique(np.linspace(0, lows.shape[1], WORLD_BOXES + 1).astype(int)).tolist()):
+            boxes = lows[:, begin:end].min(axis=1), highs[:, begin:end].max(axis=1)
+            met = meeting_boxes(boxes, boxes)
+            if met is None:
+                return np.ones((count, count), bool)
+            out[met] = True
+        return out
+
+    def after(self, a: int) -> list[int]:
+        """The bodies after one of which parts may come near."""
+        may = self._may[self._motion[a]]
+        return [b for b in range(a + 1, len(self._motion)) if may[self._motion[b]]]
 
     def relative(self, a: int, b: int) -> Array | None:
         """(T, 4, 4) of the second body, as the first sees it; None where they do not move relative to each other."""

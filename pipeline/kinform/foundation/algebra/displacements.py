@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from kinform.foundation.algebra.rotations import matrices, rotation_vectors
+from kinform.foundation.algebra.rotations import matrices, rotation_vectors, turned
 from kinform.foundation.algebra.vectors import cross, cross_matrix
 from kinform.model.arrays import Array
 
@@ -69,6 +69,36 @@ def twist_of(X: Array) -> Array:
     spin = cross_matrix(omega)
     _, versine, rest = _shares(float(np.linalg.norm(omega)))
     return np.concatenate([omega, np.linalg.solve(np.eye(3) + versine * spin + rest * spin @ spin, X[:3, 3])])
+
+
+def twists_of(X: Array) -> Array:
+    """(…, 6) the same of displacements (…, 4, 4)."""
+    omega = rotation_vectors(X[..., :3, :3])
+    square = (omega * omega).sum(axis=-1)[..., None]
+    small = square < 0.0025
+    safe = np.where(small, 1.0, square)
+    angle = np.sqrt(safe)
+    share = (1.0 - 0.5 * angle * np.sin(angle) / (1.0 - np.cos(angle))) / safe
+    share = np.where(small, (1.0 + square / 60.0 + square * square / 2520.0) / 12.0, share)
+    across = cross(omega, X[..., :3, 3])
+    return np.concatenate([omega, X[..., :3, 3] - 0.5 * across + share * cross(omega, across)], axis=-1)
+
+
+def displacements(twists: Array) -> Array:
+    """(…, 4, 4) exponentials of twists (…, 6) (ω; v at the origin) over unit time."""
+    omega, v = twists[..., :3], twists[..., 3:]
+    square = (omega * omega).sum(axis=-1)[..., None]
+    small = square < 1e-4
+    safe = np.where(small, 1.0, square)
+    angle = np.sqrt(safe)
+    versine = np.where(small, 0.5 - square / 24.0 + square * square / 720.0, 2.0 * np.sin(0.5 * angle) ** 2 / safe)
+    rest = np.where(small, 1.0 / 6.0 - square / 120.0 + square * square / 5040.0, (1.0 - np.sin(angle) / angle) / safe)
+    across = cross(omega, v)
+    out = np.zeros((*twists.shape[:-1], 4, 4))
+    out[..., :3, :3] = turned(omega)
+    out[..., :3, 3] = v + versine * across + rest * cross(omega, across)
+    out[..., 3, 3] = 1.0
+    return out
 
 
 def poses(positions: Array, quaternions: Array) -> Array:
