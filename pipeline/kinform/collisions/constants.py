@@ -275,6 +275,8 @@ OUTPUTS_FOR_PEAKS = 2_000
 """The same where that is for what happens where joints turn back: impacts would ask for any number."""
 RUN_ASKED = 3
 """How often: with more outputs more of the motion is seen."""
+COLLISIONS_MOST = 100
+"""Collisions after which later ones are not looked for."""
 DEPTH_SOON = 17
 """Times within an output step of the first contact at which the depth is measured too."""
 DEPTH_TIMES = 12

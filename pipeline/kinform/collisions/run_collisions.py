@@ -9,10 +9,11 @@ import numpy as np
 
 from kinform.collisions import constants
 from kinform.collisions.between_outputs import nodes_of
+from kinform.collisions.first_crossings import FirstCrossings
 from kinform.collisions.joint_ranges import shapes_of
-from kinform.collisions.pair.advancement import first_crossing
+from kinform.collisions.pair.advancement import First
 from kinform.collisions.pair.course import Course
-from kinform.collisions.pair.posed_pairs import moving_pairs
+from kinform.collisions.pair.posed_pairs import Moving, Nodes, moving_pairs
 from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.progress import Progress
@@ -38,7 +39,8 @@ def along(
     """The first contact of each pair of parts of different bodies outside of their mates, sorted by time and names.
 
     Second: pairs of which that is not known, and why: they overlap from the start, stay too close, or roll or mesh and
-    overlap where they do; or the output times are too far apart to tell what happens between them. Between output
+    overlap where they do; or very many others had collided before; or the output times are too far apart to tell what
+    happens between them. Between output
     times bodies are taken to move evenly: where joints move far, the run is asked for again from `finer`, with so many
     times as many outputs; without it the outputs are trusted. Empty for runs without poses.
     """
@@ -49,39 +51,50 @@ def along(
     names = list(simulation.body_names)
     nodes = nodes_of(simulation, kinematics.joints)
     pairs = moving_pairs(shapes, names, kinematics.joints, nodes)
-    untested: list[tuple[str, str, str]] = []
-    out = []
     end, step = float(simulation.time[-1]), float(np.diff(simulation.time).min())
-    for done, item in enumerate(pairs):
-        if progress is not None:
-            progress(done, len(pairs))
-        test = item.test
-        crossing = first_crossing(test, item.course, end, constants.CONTACT_TIME * step, start=item.free)
-        first, second = test.part_names
-        if crossing.overlaps:
-            untested.append((first, second, "they overlap from the start"))
-        if crossing.exhausted is not None:
-            untested.append((first, second, f"they stay too close to be followed after t = {crossing.exhausted:.6g} s"))
-        if crossing.hit is not None and crossing.place is not None:
-            if item.rolls:
-                reason = f"they roll or mesh, and overlap by more than chord errors at t = {crossing.hit:.6g} s"
-                untested.append((first, second, reason))
-                continue
-            place = (nodes.between(crossing.hit)[item.first] @ np.append(crossing.place, 1.0))[:3]
-            depth = _depth(test, item.course, simulation.time, crossing.hit)
-            if crossing.before > 0.0 and depth <= constants.OVERLAP_SAME * crossing.before + test.scrape:
-                untested.append((first, second, "they overlap from the start, and again later"))
-                continue
-            if depth <= 0.0 and all(_closed(assembly.part(name)) for name in test.part_names):
-                reason = f"facets cross at t = {crossing.hit:.6g} s, but no point of one is found in the other"
-                untested.append((first, second, reason))
-                continue
-            out.append(Collision(test.part_names, crossing.hit, place, depth))
+    met = FirstCrossings(pairs, end, constants.CONTACT_TIME * step, progress)
+    untested: list[tuple[str, str, str]] = []
+    out: list[Collision] = []
+    most = constants.COLLISIONS_MOST
+    while True:
+        for k, crossing in met.up_to(most):
+            found = _judged(assembly, simulation, nodes, pairs[k], crossing)
+            if isinstance(found, Collision):
+                out.append(found)
+            else:
+                untested += [(*pairs[k].test.part_names, reason) for reason in found]
+        if met.end >= end or len(out) >= constants.COLLISIONS_MOST:
+            break
+        most *= 2
+    late = f"not followed after t = {met.end:.6g} s, by when {len(out)} other pairs had collided"
+    untested += [(*pairs[k].test.part_names, late) for k in met.left_out]
     if coarse:
         untested += [(*pair, coarse) for pair in _apart(shapes, names, {c.parts for c in out})]
     if progress is not None:
         progress(len(pairs), len(pairs))
     return tuple(sorted(out, key=lambda c: (c.time, c.parts))), tuple(sorted(untested))
+
+
+def _judged(
+    assembly: Assembly, simulation: Simulation, nodes: Nodes, item: Moving, crossing: First
+) -> Collision | list[str]:
+    """The collision of a pair that crosses; else what is not known of it, and why."""
+    test, why = item.test, list[str]()
+    if crossing.overlaps:
+        why.append("they overlap from the start")
+    if crossing.exhausted is not None:
+        why.append(f"they stay too close to be followed after t = {crossing.exhausted:.6g} s")
+    if crossing.hit is None or crossing.place is None:
+        return why
+    if item.rolls:
+        return [*why, f"they roll or mesh, and overlap by more than chord errors at t = {crossing.hit:.6g} s"]
+    place = (nodes.between(crossing.hit)[item.first] @ np.append(crossing.place, 1.0))[:3]
+    depth = _depth(test, item.course, simulation.time, crossing.hit)
+    if crossing.before > 0.0 and depth <= constants.OVERLAP_SAME * crossing.before + test.scrape:
+        return [*why, "they overlap from the start, and again later"]
+    if depth <= 0.0 and all(_closed(assembly.part(name)) for name in test.part_names):
+        return [*why, f"facets cross at t = {crossing.hit:.6g} s, but no point of one is found in the other"]
+    return Collision(test.part_names, crossing.hit, place, depth)
 
 
 def _closed(part: Part) -> bool:
