@@ -236,6 +236,12 @@ BESIDE_AXIS = math.radians(200.0)
 SHORT_FLANK = 0.5
 """Length of a flank over that of the faces beside it below which it guides nothing."""
 
+# --- pair/hollows ----------------------------------------------------------------------------------------------------
+
+HOLLOW_ARC = math.radians(15.0)
+"""rad by which the end of a slot may go further round its pin than half: patches have bins of up to 15°, and facets of
+the slot begin where they will."""
+
 # --- pair/joint -----------------------------------------------------------------------------------------------------
 
 LEAST_MISALIGNMENT = 1e-4

@@ -21,6 +21,7 @@ from kinform.frozen import dataclass
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.pair.freedoms import freedoms, freedoms_beyond
+from kinform.kinematics.pair.hollows import hollow_reading
 from kinform.kinematics.pair.in_step import Steps
 from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.kinematics.pair.preserved import preserved_motions
@@ -106,6 +107,7 @@ def certainty(
     reading = _teeth_reading if touching else _scrap_reading
     other = seat or pin or (yield from reading(evidence, twists, preserved, basis, tolerances))
     other = other or (yield from stop_reading(evidence, twists, preserved, basis, tolerances))
+    other = other or (yield from hollow_reading(evidence, twists, preserved, basis, tolerances))
     if other is not None:
         faces = faces_in_words(evidence, other.out)
         words = f"{form.type} if {faces} holds; {other.form.type} if it is {ROLES[other.role]}"
