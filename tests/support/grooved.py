@@ -175,7 +175,7 @@ def twisted(pitch: float) -> Callable[[Pin], Grooved]:
 
     def made(pin: Pin) -> Grooved:
         lead = pitch / (2 * math.pi)
-        wide = 2 * pin.slot * math.sqrt(1 + ((SHAFT + WALL) / 2 / lead) ** 2)
+        wide = 2 * pin.slot * math.sqrt(1 + (WALL / lead) ** 2)
         outline = CrossSection([np.array([[0, -wide / 2], [17, -wide / 2], [17, wide / 2], [0, wide / 2]])])
         angle = 360 * 2 * (HALF + 3) / pitch
         slot = Manifold.extrude(outline, 2 * (HALF + 3), 48, angle).translate((0, 0, -HALF - 3))
@@ -183,6 +183,18 @@ def twisted(pitch: float) -> Callable[[Pin], Grooved]:
         return Grooved(f"twisted slot {pitch:g}", sleeve() - slot, shaft(pin), (np.array([turn(lead=lead)]),))
 
     return made
+
+
+def drilled(pin: Pin) -> Grooved:
+    """In a hole all round."""
+    return in_sleeve("drilled", pin, [(0, 0)], (np.zeros((0, 6)),))
+
+
+def helical_end(pin: Pin) -> Grooved:
+    """At the rounded end of a helical slot."""
+    end = 360 * pin.radius * pin.play / 60
+    poses = [(a, 60 * a / 360) for a in arcs(-60, end)]
+    return in_sleeve("end of a helical slot", pin, poses, (np.array([turn(lead=60 / (2 * math.pi))]),))
 
 
 L_SHAPE = [(0, h) for h in (-20, 0)] + [(a, 0) for a in arcs(0, 50)[1:]]
@@ -379,6 +391,8 @@ KINDS: dict[str, Callable[[Pin], Grooved]] = {
     "round about": round_about,
     "ring groove": ring_groove,
     **{f"helical {p}": helical(p) for p in (25, -40, 60, -90, 150)},
+    "drilled": drilled,
+    "helical end": helical_end,
     **{f"twisted {p}": twisted(p) for p in (45, -60, 90)},
     **{f"bayonet {p}": bayonet(p) for p in ("arm", "corner", "round", "end", "hook", "in hook")},
     "barrel wave": barrel_wave,
@@ -425,4 +439,5 @@ def pins(rng, count: int) -> Iterator[Pin]:
     for _ in range(count):
         play = rng.choice([0.0, 0.0, 0.005, 0.01, 0.02, 0.05])
         segments = int(rng.choice([12, 16, 24, 32, 48, 64, 96, 128]))
-        yield Pin(play=float(play), segments=segments, phase=float(rng.uniform(0, 360 / segments)))
+        radius = float(rng.choice([0.8, 1.5, 1.5, 2.5]))
+        yield Pin(radius, play=float(play), segments=segments, phase=float(rng.uniform(0, 360 / segments)))

@@ -241,6 +241,9 @@ SHORT_FLANK = 0.5
 HOLLOW_ARC = math.radians(15.0)
 """rad by which the end of a slot may go further round its pin than half: patches have bins of up to 15°, and facets of
 the slot begin where they will."""
+HOLLOW_FACET = math.radians(12.0)
+"""rad: half of the angle of a facet from which on, chord errors of both sides taken together, nobody knows whether a
+hollow goes half round its pin or less: of 20 facets and fewer."""
 
 # --- pair/joint -----------------------------------------------------------------------------------------------------
 

@@ -1,9 +1,9 @@
 """Decides what two bodies may do relative to each other, from the evidence of their contacts.
 
 The freedoms are the motions that every patch preserves. Where that leaves nothing, consensus: patches may be left out
-only if they interfere, or oppose the motion in one direction only, and only when they are a small part of the contact; the
-answer is then `blocked`. What opposes it both ways holds it, as two sides of a slot hold a pin, be it of known surfaces
-or of facets. The room's docstring has an example.
+only if they interfere, or oppose the motion in one direction only, and only when they are a small part of the contact;
+the answer is then `blocked`. What opposes it both ways holds it, as two sides of a slot hold a pin, be it of known
+surfaces or of facets. The room's docstring has an example.
 """
 
 from __future__ import annotations
