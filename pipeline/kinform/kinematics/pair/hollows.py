@@ -69,7 +69,7 @@ def _leaving(speeds: Array, candidates: Array, coarse: bool) -> Array:
     few facets (`coarse`) candidates have to be near it."""
     if not speeds.shape[1]:
         return np.zeros((0, 0))
-    even = np.linalg.lstsq(speeds, np.ones(len(speeds)), constants.RCOND)[0]
+    even = np.asarray(np.linalg.lstsq(speeds, np.ones(len(speeds)), constants.RCOND)[0], dtype=np.float64)
     found = [m for m in candidates.T if _leaves(speeds, m) and not (coarse and _differ(speeds @ m, speeds @ even))]
     if not found and norm(even) > 0.0 and _leaves(speeds, even):
         found = [even / norm(even)]
