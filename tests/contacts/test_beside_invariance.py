@@ -137,8 +137,8 @@ def in_a_helix(pitch):
 @pytest.mark.parametrize("pitch", [60, 90])
 def test_a_pin_in_a_helical_slot_does_not_leave_the_shaft_free(pitch):
     """Its facets were left out as strays, being few, and as far from it as play and bend make them: the shaft was
-    cylindrical, and determined."""
-    assert_same(in_a_helix(pitch), 5, ("cylindrical", "blocked", 2))
+    cylindrical, and determined; then as what blocks it, though they hold it in both senses."""
+    assert_same(in_a_helix(pitch), 5, ("fixed", "ambiguous", 0))
 
 
 def test_an_eccentric_of_no_more_than_the_play_holds_nothing():

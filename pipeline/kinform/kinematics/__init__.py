@@ -60,7 +60,7 @@ __all__ = [
     "stated_proposals",
 ]
 
-CODE_VERSION = 49
+CODE_VERSION = 50
 """Bumped when the results of this stage change for the same input."""
 
 __getattr__ = first_used(

@@ -236,6 +236,15 @@ BESIDE_AXIS = math.radians(200.0)
 SHORT_FLANK = 0.5
 """Length of a flank over that of the faces beside it below which it guides nothing."""
 
+# --- pair/hollows ----------------------------------------------------------------------------------------------------
+
+HOLLOW_ARC = math.radians(15.0)
+"""rad by which the end of a slot may go further round its pin than half: patches have bins of up to 15°, and facets of
+the slot begin where they will."""
+HOLLOW_FACET = math.radians(12.0)
+"""rad: half of the angle of a facet from which on, chord errors of both sides taken together, nobody knows whether a
+hollow goes half round its pin or less: of 20 facets and fewer."""
+
 # --- pair/joint -----------------------------------------------------------------------------------------------------
 
 LEAST_MISALIGNMENT = 1e-4

@@ -3,12 +3,13 @@ keeps it from turning; the pin of a ball in its socket; a flat under a pin.
 
 Beside patches, surfaces that merely pass close to each other are many, and say little. Those count that hold a motion
 which all patches leave, in both senses: as two sides of a slot do, or the two ends of one line. What opposes a motion
-in one sense only is a stop.
+in one sense only is a stop, and says nothing; but where one pin is at two stops, at the corner of a slot, neither of
+two motions that are left is free.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -22,7 +23,8 @@ from kinform.model.contacts import Patch
 
 
 def holding_touches(pair: PairView, patches: Sequence[Patch]) -> list[Patch]:
-    """Points and lines of contact beside these patches that hold what these leave, in the frame of the pair.
+    """Points and lines of contact beside these patches that hold what these leave, or one pin at the corner of two
+    walls, in the frame of the pair.
 
     None beside other points and lines, and none of surfaces that have a patch, or that are next to one that has.
     """
@@ -40,14 +42,37 @@ def holding_touches(pair: PairView, patches: Sequence[Patch]) -> list[Patch]:
     play = max(play, constants.EXACT_GAP * pair.tolerance)
 
     def opposed(points: Array, normals: Array) -> Flags:
-        return _opposed(left, points, normals, play)
+        return _any_cosine(left, points, normals, play, _opposite)
 
-    touches = touches_between(pair, unread, opposed)
+    def wanted(points: Array, normals: Array) -> Flags:
+        flags = opposed(points, normals)
+        return flags if flags.any() or len(left) != 2 else _any_cosine(left, points, normals, play, _askew)
+
+    touches = touches_between(pair, unread, wanted)
     if not touches:
         return []
     held = opposed(*(np.concatenate([getattr(patch, name) for patch in touches]) for name in ("points", "normals")))
     owner = np.repeat(np.arange(len(touches)), [len(patch.points) for patch in touches])
-    return [touches[k] for k in np.unique(owner[held])]
+    if held.any() or len(left) != 2:
+        return [touches[k] for k in np.unique(owner[held])]
+    return _cornered(pair, touches, left, play)
+
+
+def _cornered(pair: PairView, touches: list[Patch], left: MotionsLeft, play: float) -> list[Patch]:
+    """Those of a pin, or a ball, that touches two planes which oppose different motions."""
+    close = [p for p in touches if p.flat and float(np.abs(p.gaps).max()) <= constants.TOUCH * pair.tolerance]
+    pins: dict[tuple[int, int], list[Patch]] = {}
+    for patch in close:
+        side = 0 if patch.radii[0] > 0.0 else 1
+        pins.setdefault((side, patch.surfaces[side]), []).append(patch)
+    out = []
+    for walls in pins.values():
+        points, normals = (np.concatenate([getattr(patch, name) for patch in walls]) for name in ("points", "normals"))
+        askew = _any_cosine(left, points, normals, play, _askew)
+        owner = np.repeat(np.arange(len(walls)), [len(patch.points) for patch in walls])
+        if len(walls) > 1:
+            out += [walls[k] for k in np.unique(owner[askew])]
+    return out
 
 
 def _play(patch: Patch) -> float:
@@ -55,9 +80,19 @@ def _play(patch: Patch) -> float:
     return max(patch.gap, 0.0) + patch.offset + constants.SIGMAS * patch.uncertainty[1]
 
 
-def _opposed(left: MotionsLeft, points: Array, normals: Array, play: float) -> Flags:
-    """(n,) which samples, at points (n, 3) m with normals (n, 3), hold some motion that is left, and have another that
-    opposes what they let pass. No lever within `play` (m) of the axis holds a turn."""
+def _opposite(cosine: Array) -> Flags:
+    return np.asarray(cosine < constants.OPPOSITE_COSINE)
+
+
+def _askew(cosine: Array) -> Flags:
+    return np.asarray(np.abs(cosine) < constants.CORNER_COSINE)
+
+
+def _any_cosine(
+    left: MotionsLeft, points: Array, normals: Array, play: float, wanted: Callable[[Array], Flags]
+) -> Flags:
+    """(n,) which samples, at points (n, 3) m with normals (n, 3), hold some motion that is left, and have another of
+    which the cosine between what the two hold is `wanted`. No lever within `play` (m) of the axis holds a turn."""
     count, velocities = len(left.slides), left.velocities(points)
     speeds = (velocities * normals[:, None]).sum(axis=2)
     cosines, levers, way = speeds[:, :count], speeds[:, count:], np.linalg.norm(velocities[:, count:], axis=2)
@@ -70,5 +105,5 @@ def _opposed(left: MotionsLeft, points: Array, normals: Array, play: float) -> F
     scale = np.maximum(np.maximum(long[:, None], long), np.finfo(np.float64).tiny)
     size = np.sqrt(slid[:, None] + long[:, None] / scale)
     cosine = (slide @ slide.T + lever @ lever.T / scale) / (size * size.T)
-    flags[holds] = (cosine < constants.OPPOSITE_COSINE).any(axis=1)
+    flags[holds] = wanted(cosine).any(axis=1)
     return flags

@@ -9,6 +9,8 @@ is a stop, and says nothing of what holds.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from kinform.contacts import constants
@@ -22,7 +24,7 @@ from kinform.foundation.constants import SLIVER_WIDTH
 from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import meeting_box, middles
 from kinform.foundation.meshes.probes import Region
-from kinform.foundation.sorting import distinct, heads
+from kinform.foundation.sorting import among, distinct, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
@@ -48,6 +50,12 @@ class _Near:
         """As the other part sees them."""
         return _Near(self.points, -self.normals, -self.faced, self.gaps, self.areas, self.surfaces[:, ::-1])
 
+    def few(self, count: int) -> _Near:
+        """At most so many of them, evenly by area."""
+        chosen, areas = _evenly(self.areas, count)
+        near = _Near(*(getattr(self, name)[chosen] for name in _Near.__dataclass_fields__))
+        return replace(near, areas=areas)
+
 
 def enclosing_patches(pair: PairView, patches: list[Patch]) -> list[Patch]:
     """What encloses one of the parts beside these patches, as one patch at most.
@@ -63,7 +71,7 @@ def enclosing_patches(pair: PairView, patches: list[Patch]) -> list[Patch]:
     near = _near(pair, unread)
     if near is None or not _encloses(near, patches, pair.tolerance):
         return []
-    return [_patch(pair, near)]
+    return [_patch(pair, near.few(constants.ENCLOSING_SAMPLES))]
 
 
 def _near(pair: PairView, unread: Flags) -> _Near | None:
@@ -87,21 +95,22 @@ def _facing(view: PairView, unread: Flags) -> _Near | None:
     high = other.highs[columns].max(axis=0) + reach
     facets = np.concatenate([own.facets[k] for k in rows_])
     of_row = np.repeat(rows_, [len(own.facets[k]) for k in rows_])
+    if a.region.facets is not None:
+        beside = among(facets, a.region.facets).nonzero()[0]
+        facets, of_row = facets[beside], of_row[beside]
     points = middles(a.vertices.take(a.faces.take(facets, axis=0), axis=0))
     inside = np.flatnonzero(meeting_box(points, points, low, high))
     inside = inside[a.index.areas(facets[inside]) > 0.0]
     if not len(inside):
         return None
-    chosen, weight = _evenly(a.index.areas(facets[inside]), constants.ENCLOSING_ASKED)
-    chosen = inside[chosen]
-    points, normals, of_row = points[chosen], a.normals(facets[chosen]), of_row[chosen]
+    points, normals, of_row = points[inside], a.normals(facets[inside]), of_row[inside]
+    areas = a.index.areas(facets[inside])
     column = np.full(len(b.table.areas), -1)
     column[other.ids] = np.arange(len(other.ids))
     able, region = _can_hit(view, points, normals, reach, unread, of_row, column)
     if not len(able):
         return None
-    # which can be hit hangs little on how the parts lie, and not at all where they are few
-    some, weight = _evenly(weight[able], constants.ENCLOSING_PROBES)
+    some, weight = _evenly(areas[able], constants.ENCLOSING_PROBES)
     able = able[some]
     points, normals, of_row = points[able], normals[able], of_row[able]
     hits = region.cast(b.to_part(points), b.turn_to_part(normals), np.full(len(points), reach))
@@ -160,7 +169,7 @@ def _can_hit(
 
 def _evenly(areas: Array, count: int) -> tuple[Ints, Array]:
     """At most `count` of the facets of these areas (n,), evenly by area, and the area that each stands for; all where
-    they are no more: which others there are hangs on how the parts lie."""
+    they are no more."""
     if len(areas) <= count:
         return np.arange(len(areas)), areas
     reached = np.cumsum(areas)

@@ -44,8 +44,9 @@ The steps
    they are its blockers. What holds a shaft, a ball or a locating face is never left out, nor what holds both ways.
 6. `certainty`: what makes the answer doubtful. It is `ambiguous` then, never silently one or the other. `uncertainty`
    says how well the fits know the axis and its place; `scraps` which patches are too slight for the answer to hang on
-   them; `stops` which faces may end a motion at this pose and not guide it, `slots` what pins hold. Of the last three
-   the other reading is kept (`Joint.readings`), and the stated function may choose (`bodies.readings`).
+   them; `stops` which faces may end a motion at this pose and not guide it, and `hollows` which rounds; `slots` what
+   pins hold. Of the last four the other reading is kept (`Joint.readings`), and the stated function may choose
+   (`bodies.readings`).
 7. `joint` has the result as a `Joint`; `question` is all of it as a function of what it depends on; `extremes` are
    the samples that the constraint matrix has rows for.
 

@@ -21,6 +21,7 @@ from kinform.frozen import dataclass
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.pair.freedoms import freedoms, freedoms_beyond
+from kinform.kinematics.pair.hollows import hollow_reading
 from kinform.kinematics.pair.in_step import Steps
 from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.kinematics.pair.preserved import preserved_motions
@@ -106,6 +107,11 @@ def certainty(
     reading = _teeth_reading if touching else _scrap_reading
     other = seat or pin or (yield from reading(evidence, twists, preserved, basis, tolerances))
     other = other or (yield from stop_reading(evidence, twists, preserved, basis, tolerances))
+    hollow = None if other else (yield from hollow_reading(evidence, twists, preserved, basis, tolerances))
+    if hollow is not None and hollow.basis.shape[1] > 1:
+        faces = faces_in_words(evidence, hollow.out)
+        return Certainty("ambiguous", f"{form.type} if {faces} holds; as a corner it leaves two ways, one at a time")
+    other = other or hollow
     if other is not None:
         faces = faces_in_words(evidence, other.out)
         words = f"{form.type} if {faces} holds; {other.form.type} if it is {ROLES[other.role]}"

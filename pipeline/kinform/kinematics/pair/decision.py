@@ -1,8 +1,9 @@
 """Decides what two bodies may do relative to each other, from the evidence of their contacts.
 
 The freedoms are the motions that every patch preserves. Where that leaves nothing, consensus: patches may be left out
-only if they interfere, or oppose the motion in one direction only, or lie on facets of no known surface, and only
-when they are a small part of the contact; the answer is then `blocked`. The room's docstring has an example.
+only if they interfere, or oppose the motion in one direction only, and only when they are a small part of the contact;
+the answer is then `blocked`. What opposes it both ways holds it, as two sides of a slot hold a pin, be it of known
+surfaces or of facets. The room's docstring has an example.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from kinform.kinematics.pair.hypotheses import Motion, candidate_motions
 from kinform.kinematics.pair.in_step import Steps, remains
 from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.kinematics.pair.preserved import preserved_by_each
+from kinform.kinematics.pair.touches import TOUCHING
 from kinform.kinematics.pair.uncertainty import uncertainty_doubt
 from kinform.model.arrays import Array, Flags
 from kinform.model.tolerances import Tolerances
@@ -164,6 +166,8 @@ def _excusable(evidence: Evidence, motion: Motion, out: Flags, *, stops_only: bo
     one patch or two that face each other. An overlap excuses a patch where it is a mistake, not a press: well
     beyond what the patches that are kept overlap by.
     """
+    if _in_corner(evidence, out):
+        return False
     guides = [item for item in evidence.chosen(~out) if _guides(item, motion)]
     press = max([0.0, *(-item.patch.gap for item in guides)])
     senses: set[int] = set()
@@ -172,7 +176,10 @@ def _excusable(evidence: Evidence, motion: Motion, out: Flags, *, stops_only: bo
         curved = item.patch.kind in GUIDES
         if curved and not item.patch.one_sided:
             return False
-        if not curved and item.patch.one_sided and not stops_only:
+        along = evidence.rows[evidence.start[k] : evidence.start[k + 1]] @ motion.twist
+        large = constants.OPPOSING_SPEED * float(np.abs(along).max())
+        up, down = bool((along > large).any()), bool((along < -large).any())
+        if not curved and item.patch.one_sided and not stops_only and not (up and down):
             continue
         deep = item.interferes and not stops_only
         if (
@@ -181,13 +188,19 @@ def _excusable(evidence: Evidence, motion: Motion, out: Flags, *, stops_only: bo
             and -item.patch.gap > constants.PRESS_RATIO * press + constants.DEEP_OVERLAP * evidence.contact
         ):
             continue
-        along = evidence.rows[evidence.start[k] : evidence.start[k + 1]] @ motion.twist
-        large = constants.OPPOSING_SPEED * float(np.abs(along).max())
-        up, down = bool((along > large).any()), bool((along < -large).any())
         if up and down:
             return False
         senses.add(1 if up else -1)
     return len(senses) <= 1
+
+
+def _in_corner(evidence: Evidence, out: Flags) -> bool:
+    """Would a pin be taken off one wall that stays at another? Which of them should not hold is not known."""
+    held, left = (
+        {(item.patch.parts[k], item.patch.surfaces[k]) for item in of for k in (0, 1) if item.patch.radii[k] > 0.0}
+        for of in ([i for i in evidence.chosen(flags) if i.patch.kind in TOUCHING] for flags in (~out, out))
+    )
+    return not held.isdisjoint(left)
 
 
 def _guides(item: Item, motion: Motion) -> bool:

@@ -140,8 +140,7 @@ def gather(patches: Sequence[Member], tolerances: Tolerances, contact: float, si
         for index, patch, turned in patches
         if patch.area > 0.0 and len(patch.points) > 0
     ]
-    total = sum(item.area for item in items)
-    items = [item for item in items if not _stray(item, total, contact)]
+    items = _without_strays(items, contact)
     if not items:
         return None
     points = np.concatenate([item.points for item in items])
@@ -165,16 +164,27 @@ def gather(patches: Sequence[Member], tolerances: Tolerances, contact: float, si
     )
 
 
-def _stray(item: Item, total: float, contact: float) -> bool:
-    """Facets of no known surface that pass near a small bit of a surface without touching it say nothing, but where
-    they are on both sides of it, as of a pin in a slot. Nor do those of a round surface that they leave unknown: its
-    axis, and so whether it mates, hangs on their last digits."""
-    unknown = item.patch.kind in COAXIAL and item.patch.mismatch[0] > UNKNOWN_DIRECTION
+def _without_strays(items: list[Item], contact: float) -> list[Item]:
+    """The items without those that say nothing: facets of no known surface that pass near a small bit of a surface
+    without touching it, but where they are on both sides of it, as of a pin in a slot, in one patch or in several; and
+    small bits of a round surface that they leave unknown: its axis, and so whether it mates, hangs on their last
+    digits."""
+    total = sum(item.area for item in items)
+    slight = [item for item in items if item.patch.gap > TOUCHING_GAP * contact and item.area < STRAY_SHARE * total]
+    unknown = {
+        item.index for item in slight if item.patch.kind in COAXIAL and item.patch.mismatch[0] > UNKNOWN_DIRECTION
+    }
+    passing = [item for item in slight if item.patch.one_sided and item.index not in unknown]
+    strays = unknown | {item.index for item in passing if not any(_face(item, other) for other in passing)}
+    return [item for item in items if item.index not in strays]
+
+
+def _face(item: Item, other: Item) -> bool:
+    """Are they on either side of one surface of a part?"""
     return (
-        (item.patch.one_sided or unknown)
-        and item.patch.gap > TOUCHING_GAP * contact
-        and item.area < STRAY_SHARE * total
-        and not (item.loose and float((item.normals @ item.normals.T).min()) < BOTH_SIDES)
+        item.patch.parts == other.patch.parts
+        and any(a == b for a, b in zip(item.patch.surfaces, other.patch.surfaces, strict=True))
+        and float((item.normals @ other.normals.T).min()) < BOTH_SIDES
     )
 
 
