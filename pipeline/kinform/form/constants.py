@@ -174,6 +174,9 @@ SHEAR = 1e-5
 """Cosine between the axes of a scaled or placed mesh up to which they are at right angles: ten roundings of single
 precision, times ten for chains of nodes; quaternions are often printed with six digits."""
 
+FITTED_FLAT = 1e-6
+"""Thickness of a mesh over its length below which no primitive is fitted to it: MuJoCo refuses such sizes."""
+
 QUARTER_TURN = 1e-11
 """Quarter turns by which an angle may miss a whole one and be taken for it: what eleven printed digits lose. The pose
 that "1.5708" states is kept as it is: it differs by more than forward kinematics is compared to."""
