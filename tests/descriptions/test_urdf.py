@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from tests.support.robots import ARM, BASE, JOINT, ring, urdf, write
+from tests.support.robots import ARM, BASE, JOINT, TOOL, ring, urdf, write
 
 from kinform import form
 from kinform.errors import InputError
@@ -151,6 +151,22 @@ def test_bad_input_is_told_with_file_line_and_remedy(tmp_path, case):
     assert problems[0].remedy
     assert line is None or problems[0].line == line
     assert len(problems) == 1
+
+
+def test_a_mimic_of_nobody_is_told_the_joints_there_are_or_that_there_is_none(tmp_path):
+    mimic = JOINT + '<mimic joint="tarn"/>'
+    alone = urdf(joint=mimic).replace(TOOL, "").replace('<link name="tool"/>\n', "")
+    assert faults(write(tmp_path, alone))[0].remedy == "remove <mimic>: no joint could lead"
+    assert faults(write(tmp_path, urdf(joint=mimic)))[0].remedy == "the joints: tip"
+
+
+@pytest.mark.parametrize("file", [".", "./", "there.obj"])
+def test_a_folder_in_the_place_of_a_mesh_is_told(tmp_path, monkeypatch, file):
+    path = write(tmp_path, urdf(base=BASE.replace("package://arm/base.obj", file)))
+    (path.parent / "there.obj").mkdir()
+    monkeypatch.chdir(path.parent)
+    (problem,) = faults(path.name)
+    assert "is a folder" in problem.message and problem.line == 2 and problem.remedy
 
 
 def test_packages_are_found_where_the_user_and_the_environment_say(tmp_path, monkeypatch):

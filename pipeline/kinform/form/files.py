@@ -12,7 +12,7 @@ from kinform.form.constants import HASHED_AT_ONCE
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, scaled
 from kinform.form.problems import Problems
 from kinform.form.sources import AS_IT_IS, Reading, is_scene
-from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.meant import did_you_mean, first_names, in_quotes
 from kinform.foundation.regular import AS_A_FILE, listing, not_a_file
 from kinform.foundation.units import metres_per
 from kinform.frozen import dataclass
@@ -169,8 +169,11 @@ class DesignFiles:
             self.problems.add(f"{what} {stated} cannot be looked for: {error.strerror}", file, line, "correct its name")
             return None
         if not there:
-            near = [p.name for p in path.parent.iterdir() if p.is_file()] if path.parent.is_dir() else []
-            if not_a_file(path):
+            near = _files_in(path.parent)
+            if path.is_dir():
+                meshes = [name for name in _files_in(path) if is_mesh(Path(name))]
+                remedy = f"name a file in it: {first_names(meshes)}" if meshes else "name a file"
+            elif not_a_file(path):
                 remedy = AS_A_FILE
             elif near:
                 remedy = did_you_mean(path.name, near, "the files there")
@@ -322,6 +325,14 @@ class DesignFiles:
                 self.problems.add(f"the mesh {fault.message}", self.shown(path), fault.line, fault.remedy)
             else:
                 self.problems.add(f"mesh {self.shown(path)} {fault.message}", file, line, fault.remedy)
+
+
+def _files_in(folder: Path) -> list[str]:
+    """Names of the files of a folder, sorted; none where there is no folder, or none that may be read."""
+    try:
+        return sorted(path.name for path in folder.iterdir() if path.is_file())
+    except OSError:
+        return []
 
 
 def _unreadable(error: OSError) -> MeshError:
