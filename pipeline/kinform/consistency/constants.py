@@ -18,6 +18,12 @@ UNCERTAIN_RATIO = 0.05
 DEVIATIONS = 3.0
 """Standard uncertainties of a derived ratio within which a stated one agrees."""
 
+# --- comparisons/free_links -------------------------------------------------------------------------------------------
+
+OPENS = 1e-3
+"""Least speed with which all of a contact must open, for a motion of 1: normals of surfaces that were recovered from
+meshes are off by less, and a bore that reaches half round, less one facet of 3000, still opens."""
+
 # --- comparisons/limits -----------------------------------------------------------------------------------------------
 
 RATE_RESOLVED = 0.1
