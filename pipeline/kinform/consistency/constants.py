@@ -62,6 +62,8 @@ OUTLIER = 100.0
 MIXED = 1000.0
 """Parts whose largest is so many times larger than the smallest, with a gap between two sizes of `OUTLIER`, are in
 different units: metres and millimetres."""
+MIXED_ROUNDING = 1e-3
+"""By so much less may they differ: the same part in metres and in millimetres has numbers that are rounded."""
 
 # --- rules/kf121_mass_invalid -----------------------------------------------------------------------------------------
 
