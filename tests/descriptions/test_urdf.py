@@ -186,6 +186,35 @@ def test_packages_are_found_where_the_user_and_the_environment_say(tmp_path, mon
     assert form.load(path).part("base.obj").mesh.digest == meant.digest
 
 
+LAYOUTS = {
+    "beside each other": ("ws/arm_repo/arm", "ws/arm_repo/elsewhere", "elsewhere"),
+    "in two repositories": ("ws/src/arm_repo/arm", "ws/src/other_repo/elsewhere", "elsewhere"),
+    "in a group of repositories": ("ws/src/mine/arm_repo/arm", "ws/src/theirs/other_repo/elsewhere", "elsewhere"),
+    "in folders of other names": ("ws/src/arm", "ws/src/description", "elsewhere"),
+    "without a workspace, in folders of other names": ("ws/mine", "ws/theirs", "elsewhere"),
+    "as colcon installs them": ("install/arm/share/arm", "install/elsewhere/share/elsewhere", "elsewhere"),
+    "as colcon installs them together": ("install/share/arm", "install/share/elsewhere", "elsewhere"),
+}
+"""Where the description's package lies, and the one of its mesh."""
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_a_package_is_found_in_the_workspace_of_the_description(tmp_path, layout):
+    mine, theirs, name = LAYOUTS[layout]
+    written = write(tmp_path, urdf(base=BASE.replace("package://arm/", f"package://{name}/meshes/")))
+    for package, said in ((mine, "arm"), (theirs, name)):
+        (tmp_path / package).mkdir(parents=True)
+        (tmp_path / package / "package.xml").write_text(f"<package>\n<name> {said} </name></package>")
+    (tmp_path / mine / "urdf").mkdir()
+    (tmp_path / theirs / "meshes").mkdir()
+    (tmp_path / "arm" / "base.obj").rename(tmp_path / theirs / "meshes" / "base.obj")
+    path = written.rename(tmp_path / mine / "urdf" / "arm.urdf")
+    assert form.load(path).part("base.obj").mesh is not None
+    (tmp_path / theirs / "package.xml").write_text("<package><name>another</name></package>")
+    if layout not in ("beside each other", "as colcon installs them", "as colcon installs them together"):
+        assert f"--package {name}=FOLDER" in faults(path)[0].remedy
+
+
 def test_a_package_is_where_the_user_says_though_a_folder_of_its_name_is_above(tmp_path):
     path = write(tmp_path, urdf())
     own = form.load(path).part("base.obj").mesh

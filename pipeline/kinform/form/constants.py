@@ -169,6 +169,10 @@ XML_DEPTH = 255
 
 PACKAGE_LEVELS = 4
 """Folders, from that of a description upwards, in which its package is looked for where nothing names it."""
+WORKSPACE_LEVELS = 4
+"""Folders below the `src` of a workspace in which packages are looked for: `src/group/repository/package`, and one."""
+PACKAGE_BYTES = 64 * 1024
+"""Of a package.xml, that are searched for its name, which stands near the beginning."""
 
 SHEAR = 1e-5
 """Cosine between the axes of a scaled or placed mesh up to which they are at right angles: ten roundings of single
