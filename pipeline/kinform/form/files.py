@@ -25,6 +25,10 @@ OTHER_MESHES = (".dae", ".glb", ".gltf", ".3mf", ".step", ".stp", ".ply", ".off"
 """Suffixes of mesh files that descriptions name besides, and of scenes."""
 
 
+IN_METRES = (".dae", ".glb", ".gltf", ".step", ".stp")
+"""Suffixes of files whose lengths are metres when they are read, whatever unit they are in."""
+
+
 def no_file(path: Path) -> str:
     """What is wrong with a path at which no file is, as the end of a sentence."""
     return "is a folder" if path.is_dir() else not_a_file(path) or "does not exist"
@@ -60,6 +64,8 @@ def _check_file(path: Path) -> None:
 
 
 def _parsed(path: Path, data: bytes, reading: Reading = AS_IT_IS) -> RawMesh:
+    if data.startswith(b"version https://git-lfs"):
+        raise MeshError([Fault("is a pointer of Git LFS, not the mesh", "fetch it: git lfs pull")])
     if not is_mesh(path):
         raise MeshError([Fault(f"is no mesh that kinform reads ({path.suffix or 'no suffix'})", "export STL or OBJ")])
     if path.suffix.lower() == ".stl":
@@ -253,6 +259,19 @@ class DesignFiles:
                 self._complain(error, path, file, line)
                 self._meshes[key] = None
         return self._meshes[key]
+
+    def unit(self, path: Path) -> str | None:
+        """The unit of length of a mesh file whose format has one; None where it has none, or cannot be read."""
+        if path.suffix.lower() in IN_METRES:
+            return "m"
+        if path.suffix.lower() != ".3mf":
+            return None
+        from kinform.form.scenes.registry import scene_once
+
+        try:
+            return scene_once(self._bytes(path), path, self.reading).units
+        except (MeshError, OSError):
+            return None
 
     def _build(self, path: Path, use: MeshUse) -> Mesh:
         from kinform.form.meshes.bodies import select_body
