@@ -354,3 +354,52 @@ def test_includes_that_double_are_refused_at_a_number_of_models(tmp_path):
         form.load(tmp_path / "d25.sdf")
     (problem,) = caught.value.problems
     assert "more than 2,000 models" in problem.message and problem.line and problem.remedy
+
+
+WORLD = (
+    '<sdf version="1.9"><world name="w">{}<include><uri>model://tool</uri></include>'
+    '<model name="a"><link name="l"><visual name="v"><geometry><mesh><uri>model://tool/m.obj</uri></mesh></geometry>'
+    "</visual></link></model></world></sdf>"
+)
+TOOL = f'<sdf version="1.9"><model name="tool"><link name="t"><visual name="v">{BOX}</visual></link></model></sdf>'
+
+
+def a_world(folder, models, more=""):
+    """A world, and a model in another folder."""
+    (folder / models / "tool").mkdir(parents=True)
+    (folder / models / "tool" / "model.config").write_text("<model><sdf>model.sdf</sdf></model>")
+    (folder / models / "tool" / "model.sdf").write_text(TOOL)
+    (folder / models / "tool" / "m.obj").write_text(ring(0.1, 0.3, 0.6))
+    (folder / "sim" / "worlds").mkdir(parents=True, exist_ok=True)
+    path = folder / "sim" / "worlds" / "w.sdf"
+    path.write_text(WORLD.format(more))
+    return path
+
+
+@pytest.mark.parametrize("models", ["sim/worlds/models", "sim/models", "models", "sim/worlds", "sim"])
+def test_models_are_found_beside_worlds_and_above_them(tmp_path, models):
+    assert len(form.load(a_world(tmp_path, models)).parts) == 2
+
+
+@pytest.mark.parametrize("variable", ["GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "SDF_PATH"])
+def test_models_are_found_where_the_environment_says(tmp_path, monkeypatch, variable):
+    path = a_world(tmp_path, "far/off")
+    with pytest.raises(InputError, match="model://tool") as caught:
+        form.load(path)
+    assert "--package tool=FOLDER" in caught.value.problems[0].remedy
+    monkeypatch.setenv(variable, str(tmp_path / "far" / "off"))
+    assert len(form.load(path).parts) == 2
+
+
+@pytest.mark.parametrize(
+    "uri",
+    ["model://sun", "model://ground_plane", "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Ground%20Plane"],
+)
+def test_the_light_and_the_plane_of_gazebo_are_left_out_where_they_are_not_there(tmp_path, uri):
+    path = a_world(tmp_path, "sim/models", f"<include><uri>{uri}</uri></include>")
+    assembly = form.load(path)
+    assert len(assembly.parts) == 2 and any(uri in note for note in assembly.notes)
+    own = tmp_path / "sim" / "models" / uri.rpartition("/")[2]
+    own.mkdir()
+    (own / "model.sdf").write_text(TOOL.replace('name="tool"', 'name="own"'))
+    assert len(form.load(path).parts) == (3 if uri.startswith("model") else 2)

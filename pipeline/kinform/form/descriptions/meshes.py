@@ -14,6 +14,10 @@ from kinform.frozen import dataclass
 
 _PACKAGE = re.compile(r"(?:package|model)://([^/]*)/?(.*)", re.DOTALL)
 _PACKAGE_FILES = ("package.xml", "model.config")
+MODELS = "models"
+"""Folder beside which worlds of Gazebo stand, and in which their models are."""
+SEARCHED = ("ROS_PACKAGE_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "SDF_PATH")
+"""Variables that name folders of packages and of models."""
 _NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
 
 
@@ -47,7 +51,7 @@ class MeshFiles:
         text = text.replace("\\", "/")
         match = _PACKAGE.fullmatch(text)
         if match:
-            return self._in_package(match[1], match[2])
+            return self._in_package(match[1], match[2], text)
         if text.startswith("file:"):
             text = re.sub(r"^file:(//)?", "", text)
         elif "://" in text:
@@ -63,7 +67,7 @@ class MeshFiles:
         there = [root for root in self._roots(name) if root.is_dir()]
         return next((root for root in there if _is_package(root)), next(iter(there), None))
 
-    def _in_package(self, name: str, rest: str) -> Found:
+    def _in_package(self, name: str, rest: str, stated: str) -> Found:
         for root in self._roots(name):
             path = root / rest
             if path.is_file():
@@ -82,7 +86,7 @@ class MeshFiles:
                 if base.joinpath(*parts[k:-1]).is_dir():
                     return Found(base.joinpath(*parts[k:]), base)
         remedy = f"add --package {name}=FOLDER, or set ROS_PACKAGE_PATH"
-        return Found(None, message=f"package://{name}/{rest} is not found: no folder {name} is known", remedy=remedy)
+        return Found(None, message=f"{stated} is not found: no folder {name} is known", remedy=remedy)
 
     def _roots(self, name: str) -> Iterator[Path]:
         """Folders that may be the package: as stated, beside the description, then as the environment says."""
@@ -96,9 +100,11 @@ class MeshFiles:
                 yield above
             if (above / name).is_dir():
                 yield from (above / name, above / name / "share" / name)  # which is where colcon installs it
+            if (above / MODELS / name).is_dir():
+                yield above / MODELS / name
         for prefix in _paths(self._environment.get("AMENT_PREFIX_PATH")):
             yield prefix / "share" / name
-        for folder in _paths(self._environment.get("ROS_PACKAGE_PATH")):
+        for folder in (path for variable in SEARCHED for path in _paths(self._environment.get(variable))):
             yield from (folder / name, folder) if folder.name == name else (folder / name,)
         if name in self._around:
             yield self._around[name]

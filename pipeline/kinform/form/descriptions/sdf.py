@@ -63,7 +63,7 @@ class _Reader:
     def __init__(self, xml: Xml, meshes: MeshFiles):
         self.xml, self.values, self.left = xml, Values(xml), Count()
         self.frames = Frames(xml)
-        self.models = Models(xml, meshes, self.frames)
+        self.models = Models(xml, meshes, self.frames, self.left)
         self.links = Links(self.values, self.frames, meshes, self.left)
         self.joints: dict[str, RobotJoint] = {}
         self.stated: dict[str, tuple[Model, Element]] = {}
@@ -229,7 +229,7 @@ class _Reader:
         """The pose (4, 4) of a joint, which is relative to its child unless it says otherwise."""
         X, relative = self.values.pose(element)
         below = relative or self.values.text(element, "child") or ""
-        full = self.frames.full(model.scope, below, element, "the pose is relative_to")
+        full = self.frames.full(model.scope, below, element, "the pose: its relative_to")
         X_FB = None if full is None else self.frames.pose(full)
         return None if X_FB is None else np.asarray(X_FB @ X)
 
@@ -298,7 +298,10 @@ class _Reader:
         if leader not in self.stated or leader == name:
             others = [other.removeprefix(model.scope) for other in self.stated if other != name]
             message = f"joint {in_quotes(name)} mimics {in_quotes(mimic.get('joint') or '')}, which is no other joint"
-            self.xml.complain(mimic, message, did_you_mean(mimic.get("joint") or "", others, "the joints"))
+            remedy = "remove <mimic>: no joint could lead"
+            if others:
+                remedy = did_you_mean(mimic.get("joint") or "", others, "the joints")
+            self.xml.complain(mimic, message, remedy)
             return None
         ratio = self.values.finite(mimic, "multiplier", 1.0)
         if self.values.finite(mimic, "offset", 0.0) or self.values.finite(mimic, "reference", 0.0):

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from pathlib import Path
+from urllib.parse import unquote
 
 import numpy as np
 
@@ -18,8 +19,13 @@ from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.sdf_frames import MODEL, WORLD, Frame, Frames
 from kinform.form.descriptions.sdf_text import Included
 from kinform.form.descriptions.sdf_values import Values
+from kinform.form.descriptions.tree import Count
 from kinform.foundation.meant import in_quotes
 from kinform.frozen import dataclass
+
+
+SCENERY = ("sun", "ground_plane")
+"""Models of Gazebo that nearly every world includes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,8 +54,8 @@ class _Here:
 class Models:
     """Collects models, and the frames that they state."""
 
-    def __init__(self, xml: Xml, meshes: MeshFiles, frames: Frames):
-        self._xml, self._meshes, self._frames = xml, meshes, frames
+    def __init__(self, xml: Xml, meshes: MeshFiles, frames: Frames, left: Count):
+        self._xml, self._meshes, self._frames, self._left = xml, meshes, frames, left
         self._values = Values(xml)
         self.models: list[Model] = []
         self.files: list[Path] = []
@@ -124,6 +130,9 @@ class Models:
         if uri is None:
             xml.complain(element, "<include> has no <uri>", "add <uri>model://NAME</uri>")
             return
+        if self._is_scenery(uri):
+            self._left.add(f"<include> of {uri}")
+            return
         path = self._file(element, uri, here.folder) if len(self.models) < SDF_MODELS else None
         if path is None:
             if len(self.models) == SDF_MODELS and not self._full:
@@ -158,6 +167,13 @@ class Models:
             versions = here.version, inside.version
             self.included.append(Included(element, models[0], name, (here.folder, path.parent), versions))
             self._model(models[0], element, name, here, inside)
+
+    def _is_scenery(self, uri: str) -> bool:
+        """Whether an include is of a model of Gazebo's own that is not here, and in which nothing is that is read: a
+        light, an endless plane."""
+        name = unquote(uri).rstrip("/").rpartition("/")[2].lower().replace(" ", "_")
+        known = uri.startswith("model://") and self._meshes.package(name) is not None
+        return name in SCENERY and "://" in uri and not uri.startswith("file://") and not known
 
     def _file(self, element: Element, uri: str, folder: Path) -> Path | None:
         """The SDF that an include names; None after noting why there is none."""
