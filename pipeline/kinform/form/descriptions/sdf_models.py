@@ -23,7 +23,6 @@ from kinform.form.descriptions.tree import Count
 from kinform.foundation.meant import in_quotes
 from kinform.frozen import dataclass
 
-
 SCENERY = ("sun", "ground_plane")
 """Models of Gazebo that nearly every world includes."""
 
