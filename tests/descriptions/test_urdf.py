@@ -153,6 +153,20 @@ def test_bad_input_is_told_with_file_line_and_remedy(tmp_path, case):
     assert len(problems) == 1
 
 
+@pytest.mark.parametrize(
+    ("data", "remedy"),
+    [
+        ("<?xml version='1.0'?>\n<!-- \xe9 -->".encode("latin-1"), "save it as UTF-8"),
+        (b"<?xml version='1.0' encoding='latin-one'?>\n", "save it as UTF-8"),
+        (b"\n<?xml version='1.0'?>\n", "remove what stands before <?xml"),
+    ],
+)
+def test_what_stands_before_the_robot_is_told_with_what_mends_it(tmp_path, data, remedy):
+    path = write(tmp_path, "")
+    path.write_bytes(data + urdf().encode())
+    assert faults(path)[0].remedy.startswith(remedy)
+
+
 def test_a_mimic_of_nobody_is_told_the_joints_there_are_or_that_there_is_none(tmp_path):
     mimic = JOINT + '<mimic joint="tarn"/>'
     alone = urdf(joint=mimic).replace(TOOL, "").replace('<link name="tool"/>\n', "")

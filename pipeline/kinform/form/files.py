@@ -145,6 +145,7 @@ class DesignFiles:
         self.unsettled = False
         """Something counts that is no file that was read: nothing may be taken for unchanged."""
         self._allowed: set[Path] = set()
+        self._by_name: dict[str, dict[Path, Path]] | None = None
         self._outside = allow_outside
         self._earlier = earlier or {}
         self._data: dict[Path, bytes] = {}
@@ -175,20 +176,38 @@ class DesignFiles:
             self.problems.add(f"{what} {stated} cannot be looked for: {error.strerror}", file, line, "correct its name")
             return None
         if not there:
-            near = _files_in(path.parent)
+            near = [name for name in _files_in(path.parent) if is_mesh(Path(name)) or not is_mesh(path)]
+            elsewhere = self._elsewhere(path.name) if is_mesh(path) else []
             if path.is_dir():
                 meshes = [name for name in _files_in(path) if is_mesh(Path(name))]
                 remedy = f"name a file in it: {first_names(meshes)}" if meshes else "name a file"
             elif not_a_file(path):
                 remedy = AS_A_FILE
+            elif elsewhere:
+                remedy = f"did you mean {' or '.join(in_quotes(self.shown(other)) for other in elsewhere)}?"
             elif near:
                 remedy = did_you_mean(path.name, near, "the files there")
+            elif path.parent.is_dir():
+                remedy = f"no mesh lies in {_folder_in_words(path.parent, folder)}"
             else:
                 remedy = f"there is no folder {_first_missing(folder, Path(stated).parent)}"
             self.problems.add(f"{what} {stated} {no_file(path)}", file, line, remedy)
             return None
         self.note(path)
         return path
+
+    def _elsewhere(self, name: str) -> list[Path]:
+        """Meshes of this name, whatever its case, below the folder of the top, else below others that may be read; two at
+        most."""
+        if self._by_name is None:
+            from kinform.form.descriptions.meshes import files_below
+
+            self._by_name = {}
+            for root in (self.top, *sorted(self._allowed - {self.top})):
+                for path in files_below(root, MESHES + OTHER_MESHES):
+                    self._by_name.setdefault(path.name.lower(), {})[path.resolve()] = path
+        every = list(self._by_name.get(name.lower(), {}).values())
+        return ([path for path in every if path.is_relative_to(self.top)] or every)[:2]
 
     def allow(self, folders: Iterable[Path]) -> None:
         """Files below these folders may be read as well: those of the package of a description."""
@@ -344,6 +363,12 @@ class DesignFiles:
                 self.problems.add(f"the mesh {fault.message}", self.shown(path), fault.line, fault.remedy)
             else:
                 self.problems.add(f"mesh {self.shown(path)} {fault.message}", file, line, fault.remedy)
+
+
+def _folder_in_words(folder: Path, seen_from: Path) -> str:
+    """A folder as it is seen from another."""
+    path = os.path.relpath(folder, seen_from)
+    return "its folder" if path == "." else path
 
 
 def _files_in(folder: Path) -> list[str]:

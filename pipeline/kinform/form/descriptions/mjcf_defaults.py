@@ -124,6 +124,10 @@ class Compiler:
             if set(element.get("eulerseq", "xyz")) - set("xyzXYZ"):
                 xml.complain(element, "eulerseq has other letters than x, y, z", 'give eulerseq="xyz"')
                 said.pop("eulerseq")
+            if element.get("angle", "degree") not in ("degree", "radian"):
+                wrong = f"angle cannot be {in_quotes(element.get('angle'))}"
+                xml.complain(element, wrong, 'give angle="degree" or angle="radian"')
+                said.pop("angle")
             if element.get("coordinate", "local") != "local":
                 xml.complain(element, "coordinate is \"global\", which MuJoCo reads no more since version 2.3.4",
                              "load it in MuJoCo 2.3.3, and save it: that gives local coordinates")  # fmt: skip
