@@ -397,12 +397,14 @@ def test_a_chain_is_read_as_long_as_its_bodies_may_be_nested(tmp_path, deep, rea
 
 
 def test_meshes_without_their_meshdir_are_told_where_they_are(tmp_path):
-    path = write(tmp_path, text().replace('meshdir="meshes"', ""))
+    folder = tmp_path / "package" / "mjcf"
+    folder.mkdir(parents=True)
+    path = write(folder, text().replace('meshdir="meshes"', ""))
     with pytest.raises(InputError) as caught:
         form.load(path)
     (problem,) = caught.value.problems
     assert "does not exist" in problem.message and problem.remedy == 'did you mean "meshes/ring.obj"?'
-    (tmp_path / "meshes" / "ring.obj").unlink()
+    (folder / "meshes" / "ring.obj").unlink()
     with pytest.raises(InputError) as caught:
         form.load(path)
     assert caught.value.problems[0].remedy == "no mesh lies in its folder"

@@ -197,8 +197,8 @@ class DesignFiles:
         return path
 
     def _elsewhere(self, name: str) -> list[Path]:
-        """Meshes of this name, whatever its case, below the folder of the top, else below others that may be read; two at
-        most."""
+        """Meshes of this name, whatever its case, below the folder of the top, else below others that may be read: two
+        at most."""
         if self._by_name is None:
             from kinform.form.descriptions.meshes import files_below
 
