@@ -18,7 +18,7 @@ from kinform.form.descriptions.elements import Element, Xml, parse_xml, tag_of
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.poses import place
 from kinform.form.descriptions.robot import Limits, Link, Ratio, Robot, RobotJoint, bounded
-from kinform.form.descriptions.sdf_frames import MODEL, WORLD, Frame, Frames
+from kinform.form.descriptions.sdf_frames import WORLD, Frame, Frames
 from kinform.form.descriptions.sdf_links import Links
 from kinform.form.descriptions.sdf_models import Model, Models, version_of
 from kinform.form.descriptions.sdf_text import whole_text
@@ -142,7 +142,7 @@ class _Reader:
         known[full] = model, element
         X, relative = self.values.pose(element)
         if tag == "link":
-            self.frames.add(full, Frame(model.scope, relative or MODEL, X, element))
+            self.frames.add(full, Frame(model.scope, relative or model.home, X, element))
         else:
             below = self.values.text(element, "child") or ""
             self.frames.add(full, Frame(model.scope, relative or below, X, element, below))
@@ -261,7 +261,7 @@ class _Reader:
         child = self.xml.child(axis, "xyz")
         stated = (child.get("expressed_in") or "").strip() if child is not None else ""
         if not stated and (model.version < (1, 5) or self.values.true(axis, "use_parent_model_frame")):
-            stated = MODEL
+            stated = model.home
         if not stated:
             return np.asarray(X[:3, :3])
         full = self.frames.full(model.scope, stated, axis, f"{what}: expressed_in")
