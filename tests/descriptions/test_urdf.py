@@ -119,6 +119,12 @@ BAD = {
     "no child": (urdf(joint=JOINT.replace('<child link="arm"/>', "")), 5, "has no <child>"),
     "missing package": (urdf(base=BASE.replace("package://arm/base", "package://other/no")), 2, "no folder other"),
     "missing mesh": (urdf(base=BASE.replace("package://arm/base.obj", "../bose.obj")), 2, "does not exist"),
+    "long name": (urdf(base=BASE.replace("package://arm/base.obj", 300 * "x" + ".obj")), 2, "no file can have"),
+    "long name in a package": (
+        urdf(base=BASE.replace("/base.obj", "/" + 99 * "/ü" + 256 * "ü")),
+        2,
+        "no file can have",
+    ),
     "no geometry": (urdf(arm="<visual><geometry/></visual>"), 3, "has no geometry"),
     "negative size": (urdf(arm=ARM.replace('"0.06"', '"-0.06"')), 3, "not positive"),
     "mimics nobody": (urdf(joint=JOINT + '<mimic joint="tarn"/>'), 5, "is no joint"),

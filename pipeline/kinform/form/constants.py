@@ -171,6 +171,8 @@ PACKAGE_LEVELS = 4
 """Folders, from that of a description upwards, in which its package is looked for where nothing names it."""
 WORKSPACE_LEVELS = 4
 """Folders below the `src` of a workspace in which packages are looked for: `src/group/repository/package`, and one."""
+NAME_BYTES = 255
+"""Of the name of a file, or of a folder: the most that file systems take."""
 PACKAGE_BYTES = 64 * 1024
 """Of a package.xml, that are searched for its name, which stands near the beginning."""
 

@@ -9,7 +9,14 @@ from functools import cached_property
 from pathlib import Path
 from urllib.parse import unquote
 
-from kinform.form.constants import ENTRIES_MOST, PACKAGE_BYTES, PACKAGE_LEVELS, WORKSPACE_LEVELS
+from kinform.form.constants import (
+    ENTRIES_MOST,
+    NAME_BYTES,
+    PACKAGE_BYTES,
+    PACKAGE_LEVELS,
+    VALUE_LENGTH,
+    WORKSPACE_LEVELS,
+)
 from kinform.frozen import dataclass
 
 _PACKAGE = re.compile(r"(?:package|model)://([^/]*)/?(.*)", re.DOTALL)
@@ -49,6 +56,10 @@ class MeshFiles:
         """The file that a description names; `folder` is where plain paths begin, else that of the description."""
         text = unquote(stated.strip()) if "://" in stated else stated.strip()
         text = text.replace("\\", "/")
+        if any(len(os.fsencode(part)) > NAME_BYTES for part in text.split("/")):
+            return Found(
+                None, message=f"{stated[:VALUE_LENGTH]}… has a name that no file can have", remedy="shorten it"
+            )
         match = _PACKAGE.fullmatch(text)
         if match:
             return self._in_package(match[1], match[2], text)
