@@ -17,7 +17,8 @@ from kinform.collisions import constants
 from kinform.collisions.driving import candidates
 from kinform.collisions.pair import distance_bounds
 from kinform.consistency import check
-from kinform.model.function import Law, SimulationRequest
+from kinform.model.assembly import Group, Source
+from kinform.model.function import Function, IntendedJoint, Law, SimulationRequest
 
 
 def found(X=None, scale=1e-3, **solids):
@@ -306,3 +307,23 @@ def test_a_loop_with_a_loose_pin_stops_where_its_slider_meets_a_stop():
     item, joint = known["crank~frame"]
     turned = sorted(abs(end.value) for end in (item.lower, item.upper))
     assert turned == pytest.approx([0.9 - stop, 2 * pi - stop - 0.9], abs=1e-4)
+
+
+def hinge_with_a_pin(groups=()):
+    """Two leaves on a loose pin with heads, whose hinge states a range, as it is judged."""
+    leaf = rod(10, 0, 10, 64) + box(0, 60, -4, 4, 0, 10) - rod(5, -1, 11, 64)
+    pin = rod(5, -1, 21, 64) + rod(8, -4, 0, 64) + rod(8, 20, 24, 64)
+    other, X = leaf.rotate((0, 0, 180)).translate((0, 0, 10)), np.eye(4)
+    made = assembly(part("a", leaf, X), part("b", other, X), part("pin", pin, X))
+    z, zero = np.array([0.0, 0.0, 1.0]), np.zeros(3)
+    hinge = IntendedJoint("hinge", ("a", "b"), "revolute", z, None, zero, None, (-1.0, 1.0), "m.toml", 1)
+    made = replace(made, ground="a", function=Function(joints=(hinge,)), groups=groups)
+    design = stages.mass(stages.joints(stages.contacts(stages.import_assembly(made))))
+    return {f.code: f for f in check(stages.simulate(design, ranges=True)).findings}
+
+
+def test_a_hinge_on_a_loose_pin_says_that_the_pin_is_why_its_range_is_not_known():
+    finding = hinge_with_a_pin()["KF904"]
+    assert "'pin' may move in both of its sides" in finding.message and "[[group]]" in finding.message
+    fastened = hinge_with_a_pin((Group("leaf", ("a", "pin"), Source("m.toml", 1)),))
+    assert not {"KF401", "KF402", "KF412", "KF904"} & set(fastened)

@@ -285,6 +285,7 @@ ELSEWHERE = {
     "KF132": "tests/descriptions/test_described.py",
     "KF411": "tests/consistency/test_couplings.py",
     "KF415": "tests/descriptions/test_described.py",
+    "KF417": "tests/descriptions/test_free_links.py",
     "KF412": "tests/collisions/test_ranges.py",
     "KF450": "tests/cli/test_change.py",
     "KF505": "tests/collisions/test_ranges.py",

@@ -381,3 +381,32 @@ def test_a_limit_beyond_what_the_parts_allow_is_told_also_where_nothing_holds_th
         x, y = 0.03, wall - 0.01
         meeting = np.degrees(np.arctan2(y, x) - np.arcsin(0.01 / np.hypot(x, y)))
         assert float(found[0].found.rstrip("°")) == pytest.approx(meeting, abs=0.1)
+
+
+def of_sizes(folder, scales):
+    """A description whose links are the same mesh, each with a scale of its own, one above the other."""
+    (folder / "m.obj").write_text("v 0 0 0\nv 0.1 0 0\nv 0 0.2 0\nv 0 0 0.3\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n")
+    links = "".join(
+        f'<link name="l{k}"><visual><geometry><mesh filename="m.obj" scale="{s} {s} {s}"/></geometry></visual></link>'
+        for k, s in enumerate(scales)
+    )
+    joints = "".join(
+        f'<joint name="j{k}" type="fixed"><parent link="l0"/><child link="l{k}"/><origin xyz="0 0 {0.4 * k}"/></joint>'
+        for k in range(1, len(scales))
+    )
+    path = folder / "sizes.urdf"
+    path.write_text(f'<robot name="r">{links}{joints}</robot>')
+    (outcome,) = (rule.outcome(Context(Design(form.load(path)))) for rule in RULES if rule.code == "KF110")
+    return [(f.severity, f.subject) for f in outcome.findings]
+
+
+def test_the_same_mesh_in_metres_and_in_millimetres_is_an_error_that_names_it(tmp_path):
+    assert of_sizes(tmp_path, [1, 1, 1, 1]) == []
+    assert of_sizes(tmp_path, [1, 1, 1000, 1]) == [("error", ("m#3",))]
+    assert of_sizes(tmp_path, [1000, 1, 1000, 1000]) == [("error", ("m#2",))]
+    assert of_sizes(tmp_path, [0.001, 0.001, 1, 0.001, 0.001]) == [("error", ("m#3",))]
+
+
+def test_one_part_that_dwarfs_all_others_is_named_and_not_the_whole(tmp_path):
+    assert of_sizes(tmp_path, [1, 1, 500, 1]) == [("warning", ("m#3",))]
+    assert of_sizes(tmp_path, [500, 500, 500]) == [("warning", ("r",))]

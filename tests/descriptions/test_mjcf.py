@@ -394,3 +394,23 @@ def test_a_chain_is_read_as_long_as_its_bodies_may_be_nested(tmp_path, deep, rea
         problem = caught.value.problems[0]
         assert "nested more than 255 deep" in problem.message
         assert "URDF" in problem.remedy
+
+
+def test_meshes_without_their_meshdir_are_told_where_they_are(tmp_path):
+    folder = tmp_path / "package" / "mjcf"
+    folder.mkdir(parents=True)
+    path = write(folder, text().replace('meshdir="meshes"', ""))
+    with pytest.raises(InputError) as caught:
+        form.load(path)
+    (problem,) = caught.value.problems
+    assert "does not exist" in problem.message and problem.remedy == 'did you mean "meshes/ring.obj"?'
+    (folder / "meshes" / "ring.obj").unlink()
+    with pytest.raises(InputError) as caught:
+        form.load(path)
+    assert caught.value.problems[0].remedy == "no mesh lies in its folder"
+
+
+def test_an_angle_in_no_known_unit_is_told(tmp_path):
+    with pytest.raises(InputError, match="angle cannot be") as caught:
+        form.load(write(tmp_path, text().replace('angle="degree"', 'angle="Radian"')))
+    assert caught.value.problems[0].line == 2

@@ -354,3 +354,117 @@ def test_includes_that_double_are_refused_at_a_number_of_models(tmp_path):
         form.load(tmp_path / "d25.sdf")
     (problem,) = caught.value.problems
     assert "more than 2,000 models" in problem.message and problem.line and problem.remedy
+
+
+WORLD = (
+    '<sdf version="1.9"><world name="w">{}<include><uri>model://tool</uri></include>'
+    '<model name="a"><link name="l"><visual name="v"><geometry><mesh><uri>model://tool/m.obj</uri></mesh></geometry>'
+    "</visual></link></model></world></sdf>"
+)
+TOOL = f'<sdf version="1.9"><model name="tool"><link name="t"><visual name="v">{BOX}</visual></link></model></sdf>'
+
+
+def a_world(folder, models, more=""):
+    """A world, and a model in another folder."""
+    (folder / models / "tool").mkdir(parents=True)
+    (folder / models / "tool" / "model.config").write_text("<model><sdf>model.sdf</sdf></model>")
+    (folder / models / "tool" / "model.sdf").write_text(TOOL)
+    (folder / models / "tool" / "m.obj").write_text(ring(0.1, 0.3, 0.6))
+    (folder / "sim" / "worlds").mkdir(parents=True, exist_ok=True)
+    path = folder / "sim" / "worlds" / "w.sdf"
+    path.write_text(WORLD.format(more))
+    return path
+
+
+@pytest.mark.parametrize("models", ["sim/worlds/models", "sim/models", "models", "sim/worlds", "sim"])
+def test_models_are_found_beside_worlds_and_above_them(tmp_path, models):
+    assert len(form.load(a_world(tmp_path, models)).parts) == 2
+
+
+@pytest.mark.parametrize("variable", ["GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "SDF_PATH"])
+def test_models_are_found_where_the_environment_says(tmp_path, monkeypatch, variable):
+    path = a_world(tmp_path, "far/off")
+    with pytest.raises(InputError, match="model://tool") as caught:
+        form.load(path)
+    assert "--package tool=FOLDER" in caught.value.problems[0].remedy
+    monkeypatch.setenv(variable, str(tmp_path / "far" / "off"))
+    assert len(form.load(path).parts) == 2
+
+
+@pytest.mark.parametrize(
+    "uri",
+    ["model://sun", "model://ground_plane", "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Ground%20Plane"],
+)
+def test_the_light_and_the_plane_of_gazebo_are_left_out_where_they_are_not_there(tmp_path, uri):
+    path = a_world(tmp_path, "sim/models", f"<include><uri>{uri}</uri></include>")
+    assembly = form.load(path)
+    assert len(assembly.parts) == 2 and any(uri in note for note in assembly.notes)
+    own = tmp_path / "sim" / "models" / uri.rpartition("/")[2]
+    own.mkdir()
+    (own / "model.sdf").write_text(TOOL.replace('name="tool"', 'name="own"'))
+    assert len(form.load(path).parts) == (3 if uri.startswith("model") else 2)
+
+
+PLATFORM = (
+    '<sdf version="1.9"><model name="platform"><pose>9 9 9 0 0 0</pose>'
+    f"{link('base', '<pose>0.1 0 0 0 0 0.2</pose>')}"
+    '<frame name="mount"><pose>0 0 0.5 0.3 0 0</pose></frame>'
+    + link("mast", '<pose relative_to="mount">0 0.2 0 0 0.4 0</pose>')
+    + f"{joint('turn', 'base', 'mast', axis='<axis><xyz>0 0 1</xyz></axis>')}"
+    '<link name="foot"><visual name="m"><geometry><mesh><uri>meshes/m.obj</uri></mesh></geometry></visual></link>'
+    f"{joint('stand', 'base', 'foot', 'fixed', '')}"
+    "</model></sdf>"
+)
+"""What is merged; the frames of its own are named once."""
+
+
+def merged(folder, how, uri="platform", platform=PLATFORM):
+    """A model that takes the platform in: merged, or nested as `platform`."""
+    (folder / "platform" / "meshes").mkdir(parents=True, exist_ok=True)
+    (folder / "platform" / "model.config").write_text("<model><sdf>model.sdf</sdf></model>")
+    (folder / "platform" / "model.sdf").write_text(platform)
+    (folder / "platform" / "meshes" / "m.obj").write_text(ring(0.1, 0.3, 0.6))
+    scope = "" if how else "platform::"
+    path = folder / "robot" / "model.sdf"
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(
+        f'<sdf version="1.9"><model name="robot"><pose>1 2 3 0.5 0.6 0.7</pose>\\n<include {how}><uri>{uri}</uri>'
+        "<pose>0.2 0.3 0.4 0.1 0.2 0.3</pose></include>\\n"
+        + link("arm", f'<pose relative_to="{scope}mast">0 0 0.3 0 0 0</pose>')
+        + joint("lift", f"{scope}mast", "arm", "prismatic", more="<pose>0 0 0 0.1 0 0</pose>")
+        + "</model></sdf>"
+    )
+    return path
+
+
+def places(path):
+    assembly = form.load(path)
+    parts = [(p.name.rpartition("::")[2], p.X_WP) for p in assembly.parts]
+    joints = [(j.name.rpartition("::")[2], j.axis) for j in assembly.function.joints]
+    return assembly, dict(parts), dict(joints)
+
+
+@pytest.mark.parametrize("uri", ["platform", "model://platform", "../platform/model.sdf"])
+def test_what_is_merged_stands_where_it_would_if_it_were_nested_and_has_no_prefix(tmp_path, uri):
+    flat, parts, joints = places(merged(tmp_path, 'merge="true"', uri))
+    nested, others, axes = places(merged(tmp_path, "", uri))
+    assert parts.keys() == others.keys() and joints.keys() == axes.keys() and len(parts) == 4
+    assert all(np.allclose(parts[name], others[name], atol=1e-12) for name in parts)
+    assert all(axes[name] is None or np.allclose(joints[name], axes[name], atol=1e-12) for name in joints)
+    assert {g.name for g in flat.groups} == {"arm", "base", "mast", "foot"}
+    assert "platform::base" in {g.name for g in nested.groups}
+    assert flat.descriptions[0].text == "" and flat.descriptions[0].format == "sdf"
+
+
+@pytest.mark.parametrize(
+    ("platform", "words"),
+    [
+        (PLATFORM.replace('name="mast"', 'name="arm"').replace(">mast<", ">arm<"), 'two links are named "arm"'),
+        (PLATFORM.replace('"mount">0 0.2', '"__model__">0 0.2'), "names the frame __model__"),
+        (PLATFORM.replace('name="platform"', 'name="platform" placement_frame="mount"'), "has a placement_frame"),
+    ],
+)
+def test_what_cannot_be_merged_is_told_and_not_placed_somewhere_else(tmp_path, platform, words):
+    with pytest.raises(InputError) as caught:
+        form.load(merged(tmp_path, 'merge="true"', platform=platform))
+    assert any(words in problem.message and problem.line and problem.remedy for problem in caught.value.problems)

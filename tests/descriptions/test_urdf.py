@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from tests.support.robots import ARM, BASE, JOINT, ring, urdf, write
+from tests.support.robots import ARM, BASE, JOINT, TOOL, ring, urdf, write
 
 from kinform import form
 from kinform.errors import InputError
@@ -119,6 +119,12 @@ BAD = {
     "no child": (urdf(joint=JOINT.replace('<child link="arm"/>', "")), 5, "has no <child>"),
     "missing package": (urdf(base=BASE.replace("package://arm/base", "package://other/no")), 2, "no folder other"),
     "missing mesh": (urdf(base=BASE.replace("package://arm/base.obj", "../bose.obj")), 2, "does not exist"),
+    "long name": (urdf(base=BASE.replace("package://arm/base.obj", 300 * "x" + ".obj")), 2, "no file can have"),
+    "long name in a package": (
+        urdf(base=BASE.replace("/base.obj", "/" + 99 * "/ü" + 256 * "ü")),
+        2,
+        "no file can have",
+    ),
     "no geometry": (urdf(arm="<visual><geometry/></visual>"), 3, "has no geometry"),
     "negative size": (urdf(arm=ARM.replace('"0.06"', '"-0.06"')), 3, "not positive"),
     "mimics nobody": (urdf(joint=JOINT + '<mimic joint="tarn"/>'), 5, "is no joint"),
@@ -153,6 +159,36 @@ def test_bad_input_is_told_with_file_line_and_remedy(tmp_path, case):
     assert len(problems) == 1
 
 
+@pytest.mark.parametrize(
+    ("data", "remedy"),
+    [
+        ("<?xml version='1.0'?>\n<!-- \xe9 -->".encode("latin-1"), "save it as UTF-8"),
+        (b"<?xml version='1.0' encoding='latin-one'?>\n", "save it as UTF-8"),
+        (b"\n<?xml version='1.0'?>\n", "remove what stands before <?xml"),
+    ],
+)
+def test_what_stands_before_the_robot_is_told_with_what_mends_it(tmp_path, data, remedy):
+    path = write(tmp_path, "")
+    path.write_bytes(data + urdf().encode())
+    assert faults(path)[0].remedy.startswith(remedy)
+
+
+def test_a_mimic_of_nobody_is_told_the_joints_there_are_or_that_there_is_none(tmp_path):
+    mimic = JOINT + '<mimic joint="tarn"/>'
+    alone = urdf(joint=mimic).replace(TOOL, "").replace('<link name="tool"/>\n', "")
+    assert faults(write(tmp_path, alone))[0].remedy == "remove <mimic>: no joint could lead"
+    assert faults(write(tmp_path, urdf(joint=mimic)))[0].remedy == "the joints: tip"
+
+
+@pytest.mark.parametrize("file", [".", "./", "there.obj"])
+def test_a_folder_in_the_place_of_a_mesh_is_told(tmp_path, monkeypatch, file):
+    path = write(tmp_path, urdf(base=BASE.replace("package://arm/base.obj", file)))
+    (path.parent / "there.obj").mkdir()
+    monkeypatch.chdir(path.parent)
+    (problem,) = faults(path.name)
+    assert "is a folder" in problem.message and problem.line == 2 and problem.remedy
+
+
 def test_packages_are_found_where_the_user_and_the_environment_say(tmp_path, monkeypatch):
     path = write(tmp_path, urdf(base=BASE.replace("package://arm/", "package://elsewhere/meshes/")))
     folder = tmp_path / "x" / "elsewhere" / "meshes"
@@ -168,6 +204,35 @@ def test_packages_are_found_where_the_user_and_the_environment_say(tmp_path, mon
     folder.parent.rename(tmp_path / "ament" / "share" / "elsewhere")
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "ament"))
     assert form.load(path).part("base.obj").mesh.digest == meant.digest
+
+
+LAYOUTS = {
+    "beside each other": ("ws/arm_repo/arm", "ws/arm_repo/elsewhere", "elsewhere"),
+    "in two repositories": ("ws/src/arm_repo/arm", "ws/src/other_repo/elsewhere", "elsewhere"),
+    "in a group of repositories": ("ws/src/mine/arm_repo/arm", "ws/src/theirs/other_repo/elsewhere", "elsewhere"),
+    "in folders of other names": ("ws/src/arm", "ws/src/description", "elsewhere"),
+    "without a workspace, in folders of other names": ("ws/mine", "ws/theirs", "elsewhere"),
+    "as colcon installs them": ("install/arm/share/arm", "install/elsewhere/share/elsewhere", "elsewhere"),
+    "as colcon installs them together": ("install/share/arm", "install/share/elsewhere", "elsewhere"),
+}
+"""Where the description's package lies, and the one of its mesh."""
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_a_package_is_found_in_the_workspace_of_the_description(tmp_path, layout):
+    mine, theirs, name = LAYOUTS[layout]
+    written = write(tmp_path, urdf(base=BASE.replace("package://arm/", f"package://{name}/meshes/")))
+    for package, said in ((mine, "arm"), (theirs, name)):
+        (tmp_path / package).mkdir(parents=True)
+        (tmp_path / package / "package.xml").write_text(f"<package>\n<name> {said} </name></package>")
+    (tmp_path / mine / "urdf").mkdir()
+    (tmp_path / theirs / "meshes").mkdir()
+    (tmp_path / "arm" / "base.obj").rename(tmp_path / theirs / "meshes" / "base.obj")
+    path = written.rename(tmp_path / mine / "urdf" / "arm.urdf")
+    assert form.load(path).part("base.obj").mesh is not None
+    (tmp_path / theirs / "package.xml").write_text("<package><name>another</name></package>")
+    if layout not in ("beside each other", "as colcon installs them", "as colcon installs them together"):
+        assert f"--package {name}=FOLDER" in faults(path)[0].remedy
 
 
 def test_a_package_is_where_the_user_says_though_a_folder_of_its_name_is_above(tmp_path):

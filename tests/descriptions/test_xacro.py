@@ -70,7 +70,10 @@ def test_packages_are_found_where_the_user_says_and_not_where_another_robot_had_
 
 BAD = {
     "a name that is none": ({"mass": "${nothing}"}, "arm.urdf.xacro", 4, "'nothing' is not defined"),
-    "no file": ({"include": "gone.xacro"}, "arm.urdf.xacro", 2, "No such file"),
+    "no file": ({"include": "gone.xacro"}, "arm.urdf.xacro", 2, "the file gone.xacro does not exist"),
+    "no variable": ({"mass": "$(env NO_SUCH_VARIABLE)"}, "arm.urdf.xacro", 4, "variable NO_SUCH_VARIABLE is not set"),
+    "no argument": ({"mass": "$(arg none)"}, "arm.urdf.xacro", 4, "the argument none has no value"),
+    "no macro": ({"mass": '1"/><xacro:bor name="'}, "arm.urdf.xacro", 4, "there is no macro xacro:bor"),
     "itself": ({"include": "arm.urdf.xacro"}, "arm.urdf.xacro", 1, "contain themselves"),
     "no link": ({"child": "amr"}, "arm.urdf.xacro", 6, 'its child "amr" is no link'),
     "no number": ({"mass": "1e999"}, "arm.urdf.xacro", 4, "no finite number"),

@@ -34,6 +34,17 @@ def test_the_folder_that_is_missing_is_named(tmp_path, mesh, missing):
     assert (problem.line, problem.remedy) == (7, f"there is no folder {missing}")
 
 
+@pytest.mark.parametrize("mesh", ["there", "there.stl", "there/"])
+def test_a_folder_in_the_place_of_a_mesh_is_told_with_the_meshes_in_it(tmp_path, mesh):
+    for folder in ("there", "there.stl"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "in_it.stl").write_text("")
+    with pytest.raises(InputError, match="is a folder") as caught:
+        read(tmp_path, HEAD + f'[[part]]\nname = "a"\nmesh = "{mesh}"\n')
+    (problem,) = caught.value.problems
+    assert (problem.line, problem.remedy) == (7, "name a file in it: in_it.stl")
+
+
 def test_poses_and_units_of_sub_assemblies_compose(tmp_path):
     read(
         tmp_path,
@@ -242,6 +253,17 @@ WRONG = {
         "range = [2, 1]\n",
         14, "range",
     ),
+    **{
+        f"range of {said}": (
+            TWO + '[[function.joint]]\nname = "j"\nbetween = ["a", "b"]\n'
+            f'type = "prismatic"\naxis = [0, 0, 1]\nrange = {said}\n',
+            14, word,
+        )
+        for said, word in (
+            ("[nan, 90]", "number that is none"), ("[0, nan]", "number that is none"),
+            ('"nan 90"', "list in brackets"), ("[5, 5]", "not ascending"),
+        )
+    },
     "drive on nothing": (
         TWO + '[[function.drive]]\njoint = "j"\nkind = "effort"\nlaw = {type = "constant", value = 1}\n', 10, '"j"',
     ),

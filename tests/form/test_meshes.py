@@ -184,12 +184,48 @@ def closed_soups(draw):
 @given(closed_soups())
 def test_status_and_duplicates_are_those_of_manifold3d_and_of_a_count(mesh):
     vertices, faces = mesh
-    health = built(vertices, faces, solid=False).health
+    made = built(vertices, faces, solid=False)
+    health = made.health
     alike = [tuple(sorted(face)) for face in faces.tolist()]
     assert health.duplicate_facets == len(alike) - len(set(alike))
-    if not health.overused_edges:
-        asked = manifold3d.Manifold(manifold3d.Mesh64(vertices, faces.astype(np.uint64))).status().name
+    if health.watertight and health.consistent_winding:  # of others it reads beyond its tables
+        corners = made.faces.astype(np.uint64)
+        asked = manifold3d.Manifold(manifold3d.Mesh64(made.vertices.copy(), corners)).status().name
         assert health.manifold_status == asked
+
+
+def repetitions():
+    """Cubes with copies of facets, and how many these are."""
+    back = SIDES[:, ::-1]
+    yield "a shell twice", np.vstack([SIDES, SIDES]), 12
+    yield "each facet twice", np.repeat(SIDES, 2, axis=0), 12
+    yield (
+        "each facet three times, from another corner",
+        np.vstack([SIDES, np.roll(SIDES, 1, 1), np.roll(SIDES, 2, 1)]),
+        24,
+    )
+    yield "two facets twice", np.vstack([SIDES, SIDES[3:5]]), 2
+    yield "both sides of each facet", np.vstack([SIDES, back]), 12
+    yield "both sides, one after the other", np.stack([SIDES, back], axis=1).reshape(-1, 3), 12
+    yield "both sides of some, and some twice", np.vstack([SIDES, back[:3], SIDES[6:]]), 9
+
+
+@pytest.mark.parametrize("faces,copies", [pytest.param(f, n, id=name) for name, f, n in repetitions()])
+def test_facets_that_are_there_more_than_once_are_taken_once(faces, copies):
+    mesh, alone = built(CUBE, faces), built(CUBE, SIDES)
+    assert np.array_equal(mesh.faces, alone.faces)
+    assert (mesh.health.facets, mesh.health.duplicate_facets) == (12 + copies, copies)
+    assert (mesh.health.watertight, mesh.health.shells, mesh.health.degenerate_facets) == (True, 1, 0)
+    assert mesh.health.volume == pytest.approx(1.0, rel=1e-14)
+
+
+def test_the_back_of_a_facet_is_kept_where_the_mesh_is_not_closed_without_it():
+    flap = np.vstack([SIDES[2:], SIDES[2:3, ::-1]])  # an open cube, with one facet drawn from both sides
+    mesh = built(CUBE, flap)
+    assert (len(mesh.faces), mesh.health.duplicate_facets, mesh.health.watertight) == (11, 1, False)
+    stacked = np.vstack([SIDES, SIDES + 8])  # two cubes one on the other: the face between is in both
+    cubes = built(np.vstack([CUBE, CUBE + [0, 0, 1]]), stacked)
+    assert (len(cubes.faces), cubes.health.duplicate_facets, cubes.health.shells) == (24, 2, 2)
 
 
 @pytest.mark.parametrize("count", [1, 63, 64, 65, 1000])

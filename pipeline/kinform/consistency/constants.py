@@ -18,6 +18,12 @@ UNCERTAIN_RATIO = 0.05
 DEVIATIONS = 3.0
 """Standard uncertainties of a derived ratio within which a stated one agrees."""
 
+# --- comparisons/free_links -------------------------------------------------------------------------------------------
+
+OPENS = 1e-3
+"""Least speed with which all of a contact must open, for a motion of 1: normals of surfaces that were recovered from
+meshes are off by less, and a bore that reaches half round, less one facet of 3000, still opens."""
+
 # --- comparisons/limits -----------------------------------------------------------------------------------------------
 
 RATE_RESOLVED = 0.1
@@ -56,6 +62,8 @@ OUTLIER = 100.0
 MIXED = 1000.0
 """Parts whose largest is so many times larger than the smallest, with a gap between two sizes of `OUTLIER`, are in
 different units: metres and millimetres."""
+MIXED_ROUNDING = 1e-3
+"""By so much less may they differ: the same part in metres and in millimetres has numbers that are rounded."""
 
 # --- rules/kf121_mass_invalid -----------------------------------------------------------------------------------------
 

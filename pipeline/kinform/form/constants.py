@@ -169,10 +169,19 @@ XML_DEPTH = 255
 
 PACKAGE_LEVELS = 4
 """Folders, from that of a description upwards, in which its package is looked for where nothing names it."""
+WORKSPACE_LEVELS = 4
+"""Folders below the `src` of a workspace in which packages are looked for: `src/group/repository/package`, and one."""
+NAME_BYTES = 255
+"""Of the name of a file, or of a folder: the most that file systems take."""
+PACKAGE_BYTES = 64 * 1024
+"""Of a package.xml, that are searched for its name, which stands near the beginning."""
 
 SHEAR = 1e-5
 """Cosine between the axes of a scaled or placed mesh up to which they are at right angles: ten roundings of single
 precision, times ten for chains of nodes; quaternions are often printed with six digits."""
+
+FITTED_FLAT = 1e-6
+"""Thickness of a mesh over its length below which no primitive is fitted to it: MuJoCo refuses such sizes."""
 
 QUARTER_TURN = 1e-11
 """Quarter turns by which an angle may miss a whole one and be taken for it: what eleven printed digits lose. The pose

@@ -12,7 +12,7 @@ from kinform.form.constants import HASHED_AT_ONCE
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, scaled
 from kinform.form.problems import Problems
 from kinform.form.sources import AS_IT_IS, Reading, is_scene
-from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.meant import did_you_mean, first_names, in_quotes
 from kinform.foundation.regular import AS_A_FILE, listing, not_a_file
 from kinform.foundation.units import metres_per
 from kinform.frozen import dataclass
@@ -23,6 +23,10 @@ MESHES = (".stl", ".obj")
 
 OTHER_MESHES = (".dae", ".glb", ".gltf", ".3mf", ".step", ".stp", ".ply", ".off")
 """Suffixes of mesh files that descriptions name besides, and of scenes."""
+
+
+IN_METRES = (".dae", ".glb", ".gltf", ".step", ".stp")
+"""Suffixes of files whose lengths are metres when they are read, whatever unit they are in."""
 
 
 def no_file(path: Path) -> str:
@@ -60,6 +64,8 @@ def _check_file(path: Path) -> None:
 
 
 def _parsed(path: Path, data: bytes, reading: Reading = AS_IT_IS) -> RawMesh:
+    if data.startswith(b"version https://git-lfs"):
+        raise MeshError([Fault("is a pointer of Git LFS, not the mesh", "fetch it: git lfs pull")])
     if not is_mesh(path):
         raise MeshError([Fault(f"is no mesh that kinform reads ({path.suffix or 'no suffix'})", "export STL or OBJ")])
     if path.suffix.lower() == ".stl":
@@ -139,6 +145,7 @@ class DesignFiles:
         self.unsettled = False
         """Something counts that is no file that was read: nothing may be taken for unchanged."""
         self._allowed: set[Path] = set()
+        self._by_name: dict[str, dict[Path, Path]] | None = None
         self._outside = allow_outside
         self._earlier = earlier or {}
         self._data: dict[Path, bytes] = {}
@@ -169,17 +176,38 @@ class DesignFiles:
             self.problems.add(f"{what} {stated} cannot be looked for: {error.strerror}", file, line, "correct its name")
             return None
         if not there:
-            near = [p.name for p in path.parent.iterdir() if p.is_file()] if path.parent.is_dir() else []
-            if not_a_file(path):
+            near = [name for name in _files_in(path.parent) if is_mesh(Path(name)) or not is_mesh(path)]
+            elsewhere = self._elsewhere(path.name) if is_mesh(path) else []
+            if path.is_dir():
+                meshes = [name for name in _files_in(path) if is_mesh(Path(name))]
+                remedy = f"name a file in it: {first_names(meshes)}" if meshes else "name a file"
+            elif not_a_file(path):
                 remedy = AS_A_FILE
+            elif elsewhere:
+                remedy = f"did you mean {' or '.join(in_quotes(self.shown(other)) for other in elsewhere)}?"
             elif near:
                 remedy = did_you_mean(path.name, near, "the files there")
+            elif path.parent.is_dir():
+                remedy = f"no mesh lies in {_folder_in_words(path.parent, folder)}"
             else:
                 remedy = f"there is no folder {_first_missing(folder, Path(stated).parent)}"
             self.problems.add(f"{what} {stated} {no_file(path)}", file, line, remedy)
             return None
         self.note(path)
         return path
+
+    def _elsewhere(self, name: str) -> list[Path]:
+        """Meshes of this name, whatever its case, below the folder of the top, else below others that may be read: two
+        at most."""
+        if self._by_name is None:
+            from kinform.form.descriptions.meshes import files_below
+
+            self._by_name = {}
+            for root in (self.top, *sorted(self._allowed - {self.top})):
+                for path in files_below(root, MESHES + OTHER_MESHES):
+                    self._by_name.setdefault(path.name.lower(), {})[path.resolve()] = path
+        every = list(self._by_name.get(name.lower(), {}).values())
+        return ([path for path in every if path.is_relative_to(self.top)] or every)[:2]
 
     def allow(self, folders: Iterable[Path]) -> None:
         """Files below these folders may be read as well: those of the package of a description."""
@@ -250,6 +278,19 @@ class DesignFiles:
                 self._complain(error, path, file, line)
                 self._meshes[key] = None
         return self._meshes[key]
+
+    def unit(self, path: Path) -> str | None:
+        """The unit of length of a mesh file whose format has one; None where it has none, or cannot be read."""
+        if path.suffix.lower() in IN_METRES:
+            return "m"
+        if path.suffix.lower() != ".3mf":
+            return None
+        from kinform.form.scenes.registry import scene_once
+
+        try:
+            return scene_once(self._bytes(path), path, self.reading).units
+        except (MeshError, OSError):
+            return None
 
     def _build(self, path: Path, use: MeshUse) -> Mesh:
         from kinform.form.meshes.bodies import select_body
@@ -322,6 +363,20 @@ class DesignFiles:
                 self.problems.add(f"the mesh {fault.message}", self.shown(path), fault.line, fault.remedy)
             else:
                 self.problems.add(f"mesh {self.shown(path)} {fault.message}", file, line, fault.remedy)
+
+
+def _folder_in_words(folder: Path, seen_from: Path) -> str:
+    """A folder as it is seen from another."""
+    path = os.path.relpath(folder, seen_from)
+    return "its folder" if path == "." else path
+
+
+def _files_in(folder: Path) -> list[str]:
+    """Names of the files of a folder, sorted; none where there is no folder, or none that may be read."""
+    try:
+        return sorted(path.name for path in folder.iterdir() if path.is_file())
+    except OSError:
+        return []
 
 
 def _unreadable(error: OSError) -> MeshError:

@@ -36,7 +36,8 @@ Declared = Annotated[Source, columns("source_file", "source_line")]
 
 @dataclass(frozen=True)
 class MeshHealth:
-    """Facts about one mesh, measured before anything was repaired (counts; volume in m³, signed)."""
+    """Facts about one mesh, measured before anything was repaired (counts; volume in m³, signed), but that facets which
+    are there more than once count once, as far as `form/meshes/repeated` takes them so."""
 
     facets: int
     vertices: int
@@ -50,6 +51,7 @@ class MeshHealth:
     """Signed volume (m³); negative: inside out. Meaningful when watertight."""
     degenerate_facets: int
     duplicate_facets: int
+    """Copies of other facets in the file."""
     open_edges: int
     overused_edges: int
     shells: int

@@ -24,6 +24,7 @@ from kinform.consistency.constants import (
     LARGE,
     MASSIVE,
     MIXED,
+    MIXED_ROUNDING,
     OUTLIER,
     SCALE_OUTLIER,
     SCALE_SPREAD,
@@ -59,7 +60,7 @@ def doubts(assembly: Assembly) -> tuple[Doubt, ...]:
     mixed = _mixed(assembly)
     if mixed is not None:
         return (mixed,)
-    return (whole,) if whole is not None else tuple(_outliers(assembly))
+    return tuple(_outliers(assembly)) or (() if whole is None else (whole,))  # which part it is says more
 
 
 def _scaled(assembly: Assembly) -> Iterator[Doubt]:
@@ -129,7 +130,7 @@ def _mixed(assembly: Assembly) -> Doubt | None:
     sized = sorted(meshed, key=lambda item: (item[0], item[1].name))
     sizes = np.array([size for size, _ in sized])
     apart = np.flatnonzero(sizes[1:] > OUTLIER * sizes[:-1])
-    if not len(apart) or sizes[-1] < MIXED * sizes[0]:
+    if not len(apart) or sizes[-1] < (1.0 - MIXED_ROUNDING) * MIXED * sizes[0]:
         return None
     small, large = (sized[k] for k in (apart[0], apart[0] + 1))
     few = [part for _, part in (sized[: apart[0] + 1] if 2 * apart[0] < len(sized) - 1 else sized[apart[0] + 1 :])]

@@ -61,6 +61,12 @@ def _of_sticks(context: Context, intended: IntendedJoint) -> RangeComparison | N
 
 def _beside_ends(context: Context, intended: IntendedJoint, comparison: Comparison) -> RangeComparison:
     run, match = context.design.simulation, joint_as_intended(comparison)
+    if match is None and comparison.right_type and comparison.through:
+        loose = quoted(comparison.through)
+        reason = (
+            f"{loose} may move in both of its sides: where it is fastened to one, by a [[group]], the range is found"
+        )
+        return RangeComparison(intended, reason=reason)
     if match is None:
         return RangeComparison(intended, reason="no joint of that type was found directly between its parts")
     joint, sign = match

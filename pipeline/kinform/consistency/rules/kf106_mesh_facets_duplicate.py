@@ -1,7 +1,10 @@
 """A mesh holds the same facet more than once.
 
-Why it matters: duplicated facets count twice in areas and volumes, and make edges with more than two
-facets.
+A copy that is wound as its facet is taken once. So is one that is wound against it, as for its back, where the others
+make a closed mesh then; elsewhere both are kept.
+
+Why it matters: copies that are kept count in areas and volumes, and make edges with more than two facets. And who wrote
+a body twice may not know that it is there twice.
 
 What to do: remove duplicates in a mesh program, or export again. Often a body was exported twice.
 

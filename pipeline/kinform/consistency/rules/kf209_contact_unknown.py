@@ -1,9 +1,9 @@
 """Two parts come as near each other as parts that touch do, and no contact that is known says how.
 
 Contact is found by pairings of surfaces that are known: planes, cylinders, cones, balls, tori, threads, rims and edges
-on them. An elliptical rim in a bore, a straight edge on a barrel, or corners that meet are none of these. The meshes
-say how near the parts come all the same. What such a contact holds is not known: where nothing else joins the two
-bodies, their joint is ambiguous (KF901), and neither is free.
+on them. An elliptical rim in a bore, a straight edge on a barrel, a roller along the inside of a ring, or corners that
+meet are none of these. The meshes say how near the parts come all the same. What such a contact holds is not known:
+where nothing else joins the two bodies, their joint is ambiguous (KF901), and neither is free.
 
 A warning between bodies with no other contact; a note where contact that is known decides their joint, or the function
 states it. Within one body there is nothing to say.

@@ -65,7 +65,8 @@ def parse_xml(data: bytes, file: str, problems: Problems) -> Element | None:
             problems.add(f"has elements nested more than {XML_DEPTH} deep, and no more are read", file, line,
                          "write bodies side by side, from a root in their middle, or as URDF")  # fmt: skip
         else:
-            problems.add(f"is not well-formed XML: {words}", file, line, "correct the syntax there")
+            remedy = next((remedy for said, remedy in _SYNTAX if said in words), "correct the syntax there")
+            problems.add(f"is not well-formed XML: {words}", file, line, remedy)
         return None
     declared = root.getroottree().docinfo.internalDTD
     if declared is not None and any(True for _ in declared.iterentities()):
@@ -73,6 +74,12 @@ def parse_xml(data: bytes, file: str, problems: Problems) -> Element | None:
         return None
     return root
 
+
+_SYNTAX = (
+    ("encoding", "save it as UTF-8, and let its first line say so, or nothing"),
+    ("XML declaration allowed only", "remove what stands before <?xml"),
+)
+"""What some faults of syntax are mended by."""
 
 _ENCODING = re.compile(r"""\s*<\?xml[^>]*encoding\s*=\s*["']([A-Za-z0-9._-]+)""")
 

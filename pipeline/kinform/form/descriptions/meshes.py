@@ -5,14 +5,27 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
 from urllib.parse import unquote
 
-from kinform.form.constants import ENTRIES_MOST, PACKAGE_LEVELS
+from kinform.form.constants import (
+    ENTRIES_MOST,
+    NAME_BYTES,
+    PACKAGE_BYTES,
+    PACKAGE_LEVELS,
+    VALUE_LENGTH,
+    WORKSPACE_LEVELS,
+)
 from kinform.frozen import dataclass
 
 _PACKAGE = re.compile(r"(?:package|model)://([^/]*)/?(.*)", re.DOTALL)
 _PACKAGE_FILES = ("package.xml", "model.config")
+MODELS = "models"
+"""Folder beside which worlds of Gazebo stand, and in which their models are."""
+SEARCHED = ("ROS_PACKAGE_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "SDF_PATH")
+"""Variables that name folders of packages and of models."""
+_NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
 
 
 @dataclass(frozen=True)
@@ -43,9 +56,13 @@ class MeshFiles:
         """The file that a description names; `folder` is where plain paths begin, else that of the description."""
         text = unquote(stated.strip()) if "://" in stated else stated.strip()
         text = text.replace("\\", "/")
+        if any(len(os.fsencode(part)) > NAME_BYTES for part in text.split("/")):
+            return Found(
+                None, message=f"{stated[:VALUE_LENGTH]}… has a name that no file can have", remedy="shorten it"
+            )
         match = _PACKAGE.fullmatch(text)
         if match:
-            return self._in_package(match[1], match[2])
+            return self._in_package(match[1], match[2], text)
         if text.startswith("file:"):
             text = re.sub(r"^file:(//)?", "", text)
         elif "://" in text:
@@ -54,10 +71,14 @@ class MeshFiles:
         return Found(path, self.home)
 
     def package(self, name: str) -> Path | None:
-        """The folder of a package."""
-        return next((root for root in self._roots(name) if root.is_dir()), None)
+        """The folder of a package: the one that is stated, else the first that says of itself that it is one, else the
+        first of its name."""
+        if name in self.packages and self.packages[name].is_dir():
+            return self.packages[name]
+        there = [root for root in self._roots(name) if root.is_dir()]
+        return next((root for root in there if _is_package(root)), next(iter(there), None))
 
-    def _in_package(self, name: str, rest: str) -> Found:
+    def _in_package(self, name: str, rest: str, stated: str) -> Found:
         for root in self._roots(name):
             path = root / rest
             if path.is_file():
@@ -76,7 +97,7 @@ class MeshFiles:
                 if base.joinpath(*parts[k:-1]).is_dir():
                     return Found(base.joinpath(*parts[k:]), base)
         remedy = f"add --package {name}=FOLDER, or set ROS_PACKAGE_PATH"
-        return Found(None, message=f"package://{name}/{rest} is not found: no folder {name} is known", remedy=remedy)
+        return Found(None, message=f"{stated} is not found: no folder {name} is known", remedy=remedy)
 
     def _roots(self, name: str) -> Iterator[Path]:
         """Folders that may be the package: as stated, beside the description, then as the environment says."""
@@ -89,11 +110,65 @@ class MeshFiles:
             if above.name == name:
                 yield above
             if (above / name).is_dir():
-                yield above / name
+                yield from (above / name, above / name / "share" / name)  # which is where colcon installs it
+            if (above / MODELS / name).is_dir():
+                yield above / MODELS / name
         for prefix in _paths(self._environment.get("AMENT_PREFIX_PATH")):
             yield prefix / "share" / name
-        for folder in _paths(self._environment.get("ROS_PACKAGE_PATH")):
+        for folder in (path for variable in SEARCHED for path in _paths(self._environment.get(variable))):
             yield from (folder / name, folder) if folder.name == name else (folder / name,)
+        if name in self._around:
+            yield self._around[name]
+
+    @cached_property
+    def _around(self) -> Mapping[str, Path]:
+        """The packages of the workspace of the description, by the names that they give themselves: those below the
+        folder `src` that it is in; without one, those beside its own."""
+        full = self.home.resolve()
+        source = next((above for above in full.parents if above.name == "src"), None)
+        return packages_below(full.parent, 1) if source is None else packages_below(source, WORKSPACE_LEVELS)
+
+
+def packages_below(folder: Path, levels: int) -> dict[str, Path]:
+    """The packages in a folder, and so many levels of folders below it, by the names that they give themselves; of
+    several of one name the nearest, then the first by name. Until so many entries were looked at that the folder is no
+    workspace."""
+    out: dict[str, Path] = {}
+    level, looked_at = [folder], 0
+    for _ in range(levels):
+        deeper: list[Path] = []
+        for above in level:
+            try:
+                entries = sorted(os.scandir(above), key=lambda entry: entry.name)
+            except OSError:
+                continue
+            looked_at += len(entries)
+            if looked_at > ENTRIES_MOST:
+                return out
+            for entry in entries:
+                if entry.name.startswith(".") or not entry.is_dir():
+                    continue
+                name = package_name(Path(entry.path))
+                if name is not None:
+                    out.setdefault(name, Path(entry.path))
+                elif not entry.is_symlink():
+                    deeper.append(Path(entry.path))
+        level = deeper
+    return out
+
+
+def package_name(folder: Path) -> str | None:
+    """The name that a package gives itself; None where the folder is none."""
+    try:
+        with open(folder / _PACKAGE_FILES[0], "rb") as stream:
+            stated = _NAME.search(stream.read(PACKAGE_BYTES))
+    except OSError:
+        return None
+    return None if stated is None else stated[1].decode("utf-8", "replace")
+
+
+def _is_package(folder: Path) -> bool:
+    return any((folder / name).is_file() for name in _PACKAGE_FILES)
 
 
 def files_below(folder: Path, suffixes: Sequence[str]) -> list[Path]:
@@ -141,6 +216,6 @@ def _home(folder: Path) -> Path:
     """The nearest folder above with the file of a package; else the one above the description's."""
     full = folder.resolve()
     for above in [full, *full.parents][:PACKAGE_LEVELS]:
-        if any((above / name).is_file() for name in _PACKAGE_FILES):
+        if _is_package(above):
             return above
     return full.parent

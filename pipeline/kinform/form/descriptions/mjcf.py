@@ -47,7 +47,7 @@ def read(path: Path, data: bytes, file: str, problems: Problems, meshes: MeshFil
     # what attached models say is in no text that could be written back
     text = "" if budget.known else _whole(root, data, changed)
     folders = tuple(sorted(set(robot.folders) | budget.folders))
-    return replace(robot, format="mjcf", text=text, files=tuple(budget.files), folders=folders)
+    return replace(robot, format="mjcf", text=text, files=(*budget.files, *robot.files), folders=folders)
 
 
 def _opened(
@@ -78,6 +78,7 @@ def _model(path: Path, xml: Xml, meshes: MeshFiles, budget: Budget) -> tuple[str
         return None
     budget.notes += reader.left.sentences(xml.file)
     budget.folders |= reader.shapes.folders
+    budget.files += sorted(reader.shapes.files)
     return root.get("model") or path.stem, content
 
 
@@ -127,6 +128,7 @@ class _Reader:
             root=WORLD if WORLD in self.links else next(iter(self.links), None),
             notes=(*self.left.sentences(self.xml.file), *dict.fromkeys(self.budget.notes)),
             folders=tuple(sorted(self.shapes.folders)),
+            files=tuple(sorted(self.shapes.files)),
         )
 
     def content(self, root: Element) -> Content | None:

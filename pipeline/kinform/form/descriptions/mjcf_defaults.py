@@ -12,8 +12,9 @@ import numpy as np
 from kinform.form.constants import INCLUDES, SHEAR
 from kinform.form.descriptions.elements import FILE, Element, Xml, parse_xml, tag_of
 from kinform.form.descriptions.meshes import MeshFiles
+from kinform.form.descriptions.mjcf_fits import INERTIAS
 from kinform.form.descriptions.poses import about, pose, quaternion, turn
-from kinform.foundation.meant import in_quotes
+from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
@@ -109,6 +110,10 @@ class Compiler:
     autolimits: bool = True
     strip: bool = False
     from_geometry: bool = False
+    fit_around: bool = False
+    """Primitives are fitted to the boxes around meshes."""
+    inertia: str = INERTIAS[0]
+    """Of meshes that state no other way to it."""
 
     @staticmethod
     def of(xml: Xml, root: Element) -> Compiler:
@@ -119,6 +124,10 @@ class Compiler:
             if set(element.get("eulerseq", "xyz")) - set("xyzXYZ"):
                 xml.complain(element, "eulerseq has other letters than x, y, z", 'give eulerseq="xyz"')
                 said.pop("eulerseq")
+            if element.get("angle", "degree") not in ("degree", "radian"):
+                wrong = f"angle cannot be {in_quotes(element.get('angle'))}"
+                xml.complain(element, wrong, 'give angle="degree" or angle="radian"')
+                said.pop("angle")
             if element.get("coordinate", "local") != "local":
                 xml.complain(element, "coordinate is \"global\", which MuJoCo reads no more since version 2.3.4",
                              "load it in MuJoCo 2.3.3, and save it: that gives local coordinates")  # fmt: skip
@@ -130,6 +139,8 @@ class Compiler:
             autolimits=said.get("autolimits", "true") == "true",
             strip=said.get("strippath", "false") == "true",
             from_geometry=said.get("inertiafromgeom", "auto") == "true",
+            fit_around=said.get("fitaabb", "false") == "true",
+            inertia="exact" if said.get("exactmeshinertia", "false") == "true" else INERTIAS[0],
         )
 
     def radians(self, angle: float) -> float:
@@ -227,6 +238,8 @@ class MeshAsset:
     file: str
     scale: tuple[float, float, float]
     X: Array | None
+    inertia: str
+    """The way to its inertia, in MuJoCo's words."""
     element: Element
 
 
@@ -245,7 +258,12 @@ def mesh_assets(xml: Xml, root: Element, compiler: Compiler, defaults: Defaults)
         turned = xml.numbers(element, said.get("refquat", "1 0 0 0"), "refquat", 4) or (1.0, 0.0, 0.0, 0.0)
         along, X = _scale_and_pose(np.array(scale), quaternion(turned), np.array(position))
         x, y, z = map(float, along)
-        out[name] = MeshAsset(Path(file).name if compiler.strip else file, (x, y, z), X, element)
+        inertia = said.get("inertia", compiler.inertia)
+        if inertia not in INERTIAS:
+            wrong = f"mesh {in_quotes(name)}: inertia {in_quotes(inertia)} is not known"
+            xml.complain(element, wrong, did_you_mean(inertia, INERTIAS, "the ways"))
+            inertia = compiler.inertia
+        out[name] = MeshAsset(Path(file).name if compiler.strip else file, (x, y, z), X, inertia, element)
     return out
 
 

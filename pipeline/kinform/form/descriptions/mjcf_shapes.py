@@ -12,9 +12,11 @@ from kinform.form.descriptions.elements import Element, Xml, colour_of, tag_of
 from kinform.form.descriptions.inertials import placed, symmetric
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.mjcf_defaults import Compiler, Defaults, from_z, mesh_assets
+from kinform.form.descriptions.mjcf_fits import FITTED, fitted
 from kinform.form.descriptions.poses import pose
 from kinform.form.descriptions.robot import Inertial, Shape, Solid, Stated
 from kinform.form.descriptions.tree import Count
+from kinform.form.meshes.raw import REEXPORT, Fault, MeshError, RawMesh, scaled
 from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.model.arrays import Array
 
@@ -33,6 +35,9 @@ class Shapes:
             for said in (defaults.said(element, None) for element in xml.children(assets, "material"))
         }
         self.folders: set[Path] = set()
+        self.files: set[Path] = set()
+        """Meshes that were read, for what was fitted to them."""
+        self._raw: dict[Path, RawMesh] = {}
 
     def inertial(self, element: Element, name: str, X: Array) -> Inertial | None:
         """The stated mass of a body whose pose in F is X; None after noting that there is none."""
@@ -79,16 +84,16 @@ class Shapes:
 
     def _geom(self, element: Element, said: Mapping[str, str], link: str, X: Array) -> tuple[Shape | None, bool]:
         xml = self._xml
-        kind = said.get("type", "mesh" if "mesh" in said else "sphere")
-        if "mesh" in said and "type" not in said:
-            self._left.add("sphere fitted to the mesh of a geom without type, which is taken as it is")
+        kind = said.get("type", "sphere")
         seen = said.get("contype", "1").strip() == "0" and said.get("conaffinity", "1").strip() == "0"
         X_FG = X @ self._compiler.pose(xml, element, said)
         name = (said.get("name") or "").replace("/", "_") or None
         if kind == "mesh" or (kind == "sdf" and "mesh" in said):
             return self._mesh(element, said, link, X_FG, name), seen
-        if kind in ("plane", "hfield", "sdf") or "mesh" in said:
-            self._left.add(f"geom of type {kind}" + (" fitted to a mesh" if "mesh" in said else ""))
+        if kind in FITTED and "mesh" in said:
+            return self._fitted(element, said, link, X_FG, name, kind), seen
+        if kind in ("plane", "hfield", "sdf"):
+            self._left.add(f"geom of type {kind}")
             return None, seen
         size = list(xml.numbers(element, said.get("size", ""), "size", None) or ())
         if "fromto" in said:
@@ -107,6 +112,44 @@ class Shapes:
         if kind in ("capsule", "cylinder"):
             sizes = [size[0], 2.0 * size[1]]
         return Shape(name, Solid(kind, tuple(sizes)), (1.0, 1.0, 1.0), X_FG, xml.at(element)), seen
+
+    def _fitted(
+        self, element: Element, said: Mapping[str, str], link: str, X: Array, name: str | None, kind: str
+    ) -> Shape | None:
+        """The primitive that is fitted to a mesh; None after noting why there is none."""
+        mesh = self._mesh(element, said, link, X, name)
+        if mesh is None or not isinstance(mesh.geometry, Path):
+            return None
+        if not mesh.geometry.is_file():
+            return mesh  # which is told as any mesh that is not there
+        inertia, around = self._assets[said["mesh"]].inertia, self._compiler.fit_around
+        scale = (self._xml.numbers(element, said.get("fitscale", "1"), "fitscale", 1) or (1.0,))[0]
+        if scale <= 0.0:
+            self._xml.complain(element, "<geom>: fitscale is not positive", 'give fitscale="1"')
+            return None
+        try:
+            raw = scaled(self._read(mesh.geometry), mesh.scale)
+        except (MeshError, OSError) as error:
+            wrong = f"mesh {in_quotes(said['mesh'])}, to which a {kind} is fitted, {error}"
+            self._xml.complain(self._assets[said["mesh"]].element, wrong, REEXPORT)
+            return None
+        fit = fitted(kind, np.asarray(raw.vertices, np.float64), raw.faces, inertia, scale, around=around)
+        if fit is None:
+            self._left.add(f"{kind} fitted to a mesh that is flat")
+            return None
+        self.files.add(mesh.geometry)
+        return replace(mesh, geometry=fit.solid, scale=(1.0, 1.0, 1.0), X_FG=mesh.X_FG @ fit.X)
+
+    def _read(self, path: Path) -> RawMesh:
+        """The facets of a mesh that lies where the description may look; once a file."""
+        from kinform.form.files import read_raw  # which asks for readers of descriptions itself
+
+        if path not in self._raw:
+            roots = [self._meshes.home, *self.folders]
+            if not any(path.resolve().is_relative_to(root.resolve()) for root in roots):
+                raise MeshError([Fault("lies outside the folder", "move it there")])
+            self._raw[path] = read_raw(path)
+        return self._raw[path]
 
     def _mesh(self, element: Element, said: Mapping[str, str], link: str, X: Array, name: str | None) -> Shape | None:
         stated = said.get("mesh", "")

@@ -161,7 +161,7 @@ class Robot:
     notes: tuple[str, ...] = ()
     """What the reader did on its own account, and what cannot be carried, in sentences."""
     files: tuple[Path, ...] = ()
-    """Files that were read besides the description: includes."""
+    """Files that were read besides the description: includes, and meshes that primitives are fitted to."""
     format: str = ""
     """"urdf", "sdf" or "mjcf": what `text` is."""
     text: str = ""

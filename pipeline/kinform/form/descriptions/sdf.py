@@ -18,7 +18,7 @@ from kinform.form.descriptions.elements import Element, Xml, parse_xml, tag_of
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.poses import place
 from kinform.form.descriptions.robot import Limits, Link, Ratio, Robot, RobotJoint, bounded
-from kinform.form.descriptions.sdf_frames import MODEL, WORLD, Frame, Frames
+from kinform.form.descriptions.sdf_frames import WORLD, Frame, Frames
 from kinform.form.descriptions.sdf_links import Links
 from kinform.form.descriptions.sdf_models import Model, Models, version_of
 from kinform.form.descriptions.sdf_text import whole_text
@@ -63,7 +63,7 @@ class _Reader:
     def __init__(self, xml: Xml, meshes: MeshFiles):
         self.xml, self.values, self.left = xml, Values(xml), Count()
         self.frames = Frames(xml)
-        self.models = Models(xml, meshes, self.frames)
+        self.models = Models(xml, meshes, self.frames, self.left)
         self.links = Links(self.values, self.frames, meshes, self.left)
         self.joints: dict[str, RobotJoint] = {}
         self.stated: dict[str, tuple[Model, Element]] = {}
@@ -142,7 +142,7 @@ class _Reader:
         known[full] = model, element
         X, relative = self.values.pose(element)
         if tag == "link":
-            self.frames.add(full, Frame(model.scope, relative or MODEL, X, element))
+            self.frames.add(full, Frame(model.scope, relative or model.home, X, element))
         else:
             below = self.values.text(element, "child") or ""
             self.frames.add(full, Frame(model.scope, relative or below, X, element, below))
@@ -229,7 +229,7 @@ class _Reader:
         """The pose (4, 4) of a joint, which is relative to its child unless it says otherwise."""
         X, relative = self.values.pose(element)
         below = relative or self.values.text(element, "child") or ""
-        full = self.frames.full(model.scope, below, element, "the pose is relative_to")
+        full = self.frames.full(model.scope, below, element, "the pose: its relative_to")
         X_FB = None if full is None else self.frames.pose(full)
         return None if X_FB is None else np.asarray(X_FB @ X)
 
@@ -261,7 +261,7 @@ class _Reader:
         child = self.xml.child(axis, "xyz")
         stated = (child.get("expressed_in") or "").strip() if child is not None else ""
         if not stated and (model.version < (1, 5) or self.values.true(axis, "use_parent_model_frame")):
-            stated = MODEL
+            stated = model.home
         if not stated:
             return np.asarray(X[:3, :3])
         full = self.frames.full(model.scope, stated, axis, f"{what}: expressed_in")
@@ -298,7 +298,10 @@ class _Reader:
         if leader not in self.stated or leader == name:
             others = [other.removeprefix(model.scope) for other in self.stated if other != name]
             message = f"joint {in_quotes(name)} mimics {in_quotes(mimic.get('joint') or '')}, which is no other joint"
-            self.xml.complain(mimic, message, did_you_mean(mimic.get("joint") or "", others, "the joints"))
+            remedy = "remove <mimic>: no joint could lead"
+            if others:
+                remedy = did_you_mean(mimic.get("joint") or "", others, "the joints")
+            self.xml.complain(mimic, message, remedy)
             return None
         ratio = self.values.finite(mimic, "multiplier", 1.0)
         if self.values.finite(mimic, "offset", 0.0) or self.values.finite(mimic, "reference", 0.0):

@@ -101,7 +101,7 @@ class Frames:
         return self._poses[key]
 
     def _composed(self, frame: Frame, name: str, base: str, above: tuple[str, ...]) -> Array | None:
-        relative = self.full(frame.scope, frame.relative, frame.element, "the pose is relative_to")
+        relative = self.full(frame.scope, frame.relative, frame.element, "the pose: its relative_to")
         if relative is None:
             return None
         X = self._pose(relative, base, above)

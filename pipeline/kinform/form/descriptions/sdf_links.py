@@ -69,7 +69,7 @@ class Links:
         X, relative = self.values.pose(element)
         if not relative:
             return X_FL @ X
-        full = self.frames.full(model.scope, relative, element, "the pose is relative_to")
+        full = self.frames.full(model.scope, relative, element, "the pose: its relative_to")
         X_FR = None if full is None else self.frames.pose(full)
         return None if X_FR is None else X_FR @ X
 

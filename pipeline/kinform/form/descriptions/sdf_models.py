@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from pathlib import Path
+from urllib.parse import unquote
 
 import numpy as np
 
@@ -18,8 +19,12 @@ from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.sdf_frames import MODEL, WORLD, Frame, Frames
 from kinform.form.descriptions.sdf_text import Included
 from kinform.form.descriptions.sdf_values import Values
+from kinform.form.descriptions.tree import Count
 from kinform.foundation.meant import in_quotes
 from kinform.frozen import dataclass
+
+SCENERY = ("sun", "ground_plane")
+"""Models of Gazebo that nearly every world includes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +36,8 @@ class Model:
     folder: Path
     version: tuple[int, ...]
     static: bool
+    home: str = MODEL
+    """The frame in which its links stand: its own, or of one that is merged the frame where that is put."""
 
 
 @dataclass(frozen=True)
@@ -43,13 +50,15 @@ class _Here:
     above: tuple[Path, ...]
     """The files that include each other up to here."""
     static: bool = False
+    home: str = MODEL
+    """As `Model.home`."""
 
 
 class Models:
     """Collects models, and the frames that they state."""
 
-    def __init__(self, xml: Xml, meshes: MeshFiles, frames: Frames):
-        self._xml, self._meshes, self._frames = xml, meshes, frames
+    def __init__(self, xml: Xml, meshes: MeshFiles, frames: Frames, left: Count):
+        self._xml, self._meshes, self._frames, self._left = xml, meshes, frames, left
         self._values = Values(xml)
         self.models: list[Model] = []
         self.files: list[Path] = []
@@ -79,7 +88,7 @@ class Models:
             name = self._values.name(child)
             if name is not None and self._is_new(name, child, taken):
                 inner = WORLD if single else f"{here.scope}{name}::"
-                self._model(child, child, name, here, replace(here, scope=inner))
+                self._model(child, child, name, here, replace(here, scope=inner, home=MODEL))
 
     def _is_new(self, name: str, element: Element, taken: dict[str, Element]) -> bool:
         if name in taken:
@@ -100,7 +109,7 @@ class Models:
         first = xml.child(element, "model", "include") if first is None else first
         canonical = (element.get("canonical_link") or ("" if first is None else first.get("name") or "")).strip()
         attached = inner.removeprefix(scope) + canonical if canonical else None
-        relative = relative or (MODEL if inner else WORLD)
+        relative = relative or (here.home if inner else WORLD)
         self._frames.add(inner + MODEL, Frame(scope, relative, X, placed, attached, frame))
         if inner:
             self._frames.add(scope + name, Frame(scope, f"{name}::{MODEL}", np.eye(4), placed, f"{name}::{MODEL}"))
@@ -124,6 +133,9 @@ class Models:
         if uri is None:
             xml.complain(element, "<include> has no <uri>", "add <uri>model://NAME</uri>")
             return
+        if self._is_scenery(uri):
+            self._left.add(f"<include> of {uri}")
+            return
         path = self._file(element, uri, here.folder) if len(self.models) < SDF_MODELS else None
         if path is None:
             if len(self.models) == SDF_MODELS and not self._full:
@@ -146,9 +158,7 @@ class Models:
                 element, f"the include {in_quotes(uri)} is no SDF with one model", "include an SDF of one model"
             )
             return
-        if element.get("merge", "false").strip().lower() in ("1", "true"):
-            xml.complain(element, "<include merge> is not read", "include it as a nested model")
-            return
+        merged = element.get("merge", "false").strip().lower() in ("1", "true")
         name = (self._values.text(element, "name") or models[0].get("name") or "").strip().replace("/", "_")
         if not name or "::" in name:
             xml.complain(element, f"the include {in_quotes(uri)} gives no name that a model can have", "add <name>")
@@ -156,8 +166,40 @@ class Models:
             above = (*here.above, path.resolve())
             inside = _Here(f"{here.scope}{name}::", path.parent, version_of(root), above)
             versions = here.version, inside.version
-            self.included.append(Included(element, models[0], name, (here.folder, path.parent), versions))
-            self._model(models[0], element, name, here, inside)
+            self.included.append(Included(element, models[0], name, (here.folder, path.parent), versions, merged))
+            if merged:
+                self._merge(models[0], element, name, here, inside)
+            else:
+                self._model(models[0], element, name, here, inside)
+
+    def _merge(self, model: Element, element: Element, name: str, here: _Here, inside: _Here) -> None:
+        """What a model holds, as if it stood in the one around the include; its frame is `_merged__NAME__model__`."""
+        xml, values, scope = self._xml, self._values, here.scope
+        around = element.getparent()
+        if around is None or tag_of(around) != "model":
+            xml.complain(element, "<include merge> stands in no model", "remove merge, or put it in a model")
+            return
+        placed = values.text(element, "placement_frame") or model.get("placement_frame")
+        if placed or any(MODEL in (*e.attrib.values(), (e.text or "").strip()) for e in model.iter() if e is not model):
+            what = "has a placement_frame" if placed else f"names the frame {MODEL}"
+            xml.complain(element, f"<include merge> of a model that {what} is not read", "include it as a nested model")
+            return
+        X, relative = values.pose(element if xml.child(element, "pose") is not None else model)
+        first = xml.child(model, "link")
+        canonical = (model.get("canonical_link") or ("" if first is None else first.get("name") or "")).strip()
+        home = f"_merged__{name}{MODEL}"
+        self._frames.add(scope + home, Frame(scope, relative or here.home, X, element, canonical or None))
+        self.models.append(Model(scope, model, inside.folder, inside.version, here.static, home))
+        for child in xml.children(model, "frame"):
+            self._frame(child, scope, home)
+        self._below(model, replace(inside, scope=scope, static=here.static, home=home))
+
+    def _is_scenery(self, uri: str) -> bool:
+        """Whether an include is of a model of Gazebo's own that is not here, and in which nothing is that is read: a
+        light, an endless plane."""
+        name = unquote(uri).rstrip("/").rpartition("/")[2].lower().replace(" ", "_")
+        known = uri.startswith("model://") and self._meshes.package(name) is not None
+        return name in SCENERY and "://" in uri and not uri.startswith("file://") and not known
 
     def _file(self, element: Element, uri: str, folder: Path) -> Path | None:
         """The SDF that an include names; None after noting why there is none."""
@@ -174,7 +216,8 @@ class Models:
             path, allowed = package / match[2], package
         else:
             path, allowed = folder / uri.removeprefix("file://"), self._meshes.home
-            package = None
+            package = None if path.exists() or not re.fullmatch(r"[\w.-]+", uri) else self._meshes.package(uri)
+            path, allowed = (path, allowed) if package is None else (package, package)  # a name is that of a model
         if not path.resolve().is_relative_to(allowed.resolve()):
             self._xml.complain(element, f"the include {in_quotes(uri)} lies outside the folder", "move it there")
             return None

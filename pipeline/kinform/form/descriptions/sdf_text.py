@@ -34,6 +34,8 @@ class Included:
     """Of the file that includes, and of the one that is included."""
     versions: tuple[tuple[int, ...], tuple[int, ...]]
     """As `folders`."""
+    merged: bool = False
+    """What the model holds comes in its place, and not the model."""
 
 
 def whole_text(root: Element, data: bytes, includes: Sequence[Included]) -> str:
@@ -42,7 +44,10 @@ def whole_text(root: Element, data: bytes, includes: Sequence[Included]) -> str:
         return xml_text(data)
     if any(one != other and min(one, other) < MODERN for one, other in (i.versions for i in includes)):
         return ""
-    if any(i.element.getparent() is None or _is_alone(i.element, root) or _is_dressed(i.element) for i in includes):
+    if any(
+        i.merged or i.element.getparent() is None or _is_alone(i.element, root) or _is_dressed(i.element)
+        for i in includes
+    ):
         return ""
     for included in reversed(includes):  # the inner ones are later
         _put_in(included)

@@ -238,7 +238,7 @@ def _label(link: Link, shape: Shape) -> str:
         return shape.name if shape.name != link.name else f"{shape.name} shape"
     if isinstance(shape.geometry, Solid):
         return f"{link.name} {shape.geometry.type}"
-    stem = shape.geometry.stem
+    stem = shape.geometry.stem or f"{link.name} mesh"  # a folder, which is told later, may have none
     return stem if stem != link.name else shape.geometry.name
 
 

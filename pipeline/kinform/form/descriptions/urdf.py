@@ -332,7 +332,8 @@ class _Reader:
                 wrong = f"joint {in_quotes(name)} mimics {in_quotes(leader)}, which is "
                 wrong += "itself" if leader == name else "no joint"
                 others = [other for other in joints if other != name]
-                self.xml.complain(mimic, wrong, did_you_mean(leader, others, "the joints"))
+                remedy = did_you_mean(leader, others, "the joints") if others else "remove <mimic>: no joint could lead"
+                self.xml.complain(mimic, wrong, remedy)
                 continue
             ratio = self.xml.number(mimic, "multiplier", 1.0)
             if self.xml.number(mimic, "offset", 0.0):

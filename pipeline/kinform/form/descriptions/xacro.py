@@ -15,7 +15,7 @@ from typing import Any
 from kinform.form.constants import XACRO_FILES, XACRO_MEMORY, XACRO_SECONDS
 from kinform.form.descriptions import urdf
 from kinform.form.descriptions.elements import declares_entities
-from kinform.form.descriptions.meshes import MeshFiles, files_below
+from kinform.form.descriptions.meshes import MeshFiles, files_below, package_name
 from kinform.form.descriptions.robot import Robot
 from kinform.form.problems import Problems
 from kinform.foundation.processes import Crash, in_own_process
@@ -121,18 +121,44 @@ def _complain(fault: _Fault, file: str, path: Path, problems: Problems) -> None:
         words = f"package {unknown[1]} is not found"
         remedy = f"add --package {unknown[1]}=FOLDER, or set ROS_PACKAGE_PATH"
     elif remedy is None:
-        words, remedy = f"cannot be expanded by xacro: {words}", "correct it, or expand it yourself"
+        words, remedy = _told(words, path)
     try:
         written = at.read_text("utf-8", "replace")
     except OSError:
         written = ""
-    stated = _LINE.search(words)
-    said = [m[1] for m in (pattern.search(words) for pattern in (_EXPRESSION, _FILE, _NO_PACKAGE)) if m is not None]
+    stated = _LINE.search(fault.words)
+    searched = (_EXPRESSION, _FILE, _NO_PACKAGE, *(pattern for pattern, *_ in _SAID))
+    said = [m[1] for m in (pattern.search(fault.words) for pattern in searched) if m is not None]
     said += [unknown[1]] if unknown is not None else []
     places = [written.find(Path(text).name if "/" in text else text) for text in said]
     line = int(stated[1]) if stated else next((written.count("\n", 0, k) + 1 for k in places if k >= 0), 1)
     problems.add(words, file, line, remedy)
 
+
+def _told(words: str, path: Path) -> tuple[str, str]:
+    """What xacro says, without what is of Python alone, and a remedy."""
+    absent = _FILE.search(words)
+    if absent is not None:
+        return f"the file {os.path.relpath(absent[1], path.parent)} does not exist", "correct the name, or add the file"
+    for pattern, said, remedy in _SAID:
+        match = pattern.search(words)
+        if match is not None:
+            return said.format(match[1]), remedy.format(match[1])
+    return f"cannot be expanded by xacro: {words}", "correct it, or expand it yourself"
+
+
+_SAID = (
+    (re.compile(r"environment variable '([^']+)' is not set"),
+     "the environment variable {} is not set", "set it, or write $(optenv {} DEFAULT)"),
+    (re.compile(r"Undefined substitution argument (\S+)"),
+     "the argument {} has no value", 'give it one: <xacro:arg name="{}" default="…"/>'),
+    (re.compile(r"unknown macro name: (\S+)"),
+     "there is no macro {}", "include the file that defines it, or correct the name"),
+    (re.compile(r"unbound prefix(): line"),
+     "has elements of xacro, and does not declare its name space",
+     'write <robot xmlns:xacro="http://www.ros.org/wiki/xacro">'),
+)  # fmt: skip
+"""What is often wrong: how xacro says it, how it is told, and what to do."""
 
 _LINE = re.compile(r"line (\d+), column")
 _EXPRESSION = re.compile(r"evaluating expression '(.+)'")
@@ -142,9 +168,7 @@ _NO_PACKAGE = re.compile(r"Package not found: (\S+)")
 
 def _package(name: str, meshes: MeshFiles) -> Path | None:
     """The folder of a package: that of the description, where its package.xml says so, else as for meshes."""
-    own = meshes.home / "package.xml"
-    stated = re.search(rb"<name>\s*([^<\s]+)\s*</name>", own.read_bytes()) if own.is_file() else None
-    return meshes.home if stated is not None and stated[1].decode("utf-8", "replace") == name else meshes.package(name)
+    return meshes.home if package_name(meshes.home) == name else meshes.package(name)
 
 
 _FIND = re.compile(rb"\$\(find ([^)\s]+)\)")

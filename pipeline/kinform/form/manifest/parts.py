@@ -28,7 +28,9 @@ class AssemblyTable(Table):
     """`[assembly]`."""
 
     name: Name = Field(description="name of the assembly, any text but '/'")
-    units: Unit = Field(description="lengths of this file and of its meshes: m, cm, mm, um, in or ft")
+    units: Unit = Field(
+        description="lengths of this file and of its meshes, unless they say their own: m, cm, mm, um, in or ft"
+    )
     from_: Reference | None = Field(
         None,
         alias="from",
@@ -119,7 +121,11 @@ class Part(Posed):
         None,
         description="one body of a mesh file that holds several: OBJ o or g, ASCII solid, mesh of a GLB, 'shell N'",
     )
-    units: Unit | None = Field(None, description="length unit of this mesh, where it differs from the assembly's")
+    units: Unit | None = Field(
+        None,
+        description="length unit of this mesh, where it is another than the assembly's, or than that of its format "
+        "(GLB, glTF, 3MF, DAE and STEP say their own)",
+    )
     material: Reference | None = Field(None, description="a [materials.NAME] or a built-in material")
     density: Positive | None = Field(None, description="kg/m³; in place of material")
     mass: Positive | None = Field(None, description="kg; overrides the geometry, with centre_of_mass and inertia")

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from kinform.form.constants import EPS32, FAR, FLAT, SLIVER, SMALLEST_MESH, WELD_SHARE, WELD_STEPS
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh
+from kinform.form.meshes.repeated import taken_once
 from kinform.form.meshes.weld import merge_close, merge_exact, used_only
 from kinform.foundation.algebra.vectors import box, dot
 from kinform.foundation.meshes.boxes import bounds
@@ -48,8 +49,9 @@ def build_mesh(raw: RawMesh, metres: float, weld: float | None, *, path: str, bo
             "has zero thickness: all its vertices lie in one plane",
             "export a closed solid, or state solid = false for a part that is surfaces only",
         )])  # fmt: skip
-    edges = unsorted_edge_table(kept, len(shape))
-    health = _health(shape, centred, kept, edges, raw, distance)
+    collapsed_facets = len(raw.faces) - len(kept)
+    kept, edges, copies = taken_once(kept, unsorted_edge_table(kept, len(shape)), len(shape))
+    health = _health(shape, centred, kept, edges, len(raw.faces), collapsed_facets, copies, distance)
     if health.watertight and health.consistent_winding and health.volume < 0.0:
         kept = np.ascontiguousarray(kept[:, ::-1])
     usual = EPS32 * float(np.abs(shape).max())
@@ -125,22 +127,28 @@ def _thickness(centred: Array) -> float:
 
 
 def _health(
-    vertices: Array, centred: Array, faces: Ints, edges: EdgeTable, raw: RawMesh, distance: float
+    vertices: Array,
+    centred: Array,
+    faces: Ints,
+    edges: EdgeTable,
+    facets: int,
+    collapsed: int,
+    copies: int,
+    distance: float,
 ) -> MeshHealth:
     """The facts about a mesh of these vertices, as rows and as columns from their mean, and faces, which were welded
-    within the distance (m)."""
+    within the distance (m); the file has `facets`, some of which `collapsed`, and some are `copies` of others."""
     corners = [centred.take(faces[:, k], axis=1) for k in range(3)]
-    duplicates = _duplicates(faces[_doubled(edges)], len(vertices))
     watertight = edges.open == 0 and edges.overused == 0
     return MeshHealth(
-        facets=len(raw.faces),
+        facets=facets,
         vertices=len(vertices),
         watertight=watertight,
         consistent_winding=not ((edges.balance != 0) & (edges.counts & 1 == 0)).any(),
-        manifold_status=_manifold_status(vertices, faces, edges, duplicates),
+        manifold_status=_manifold_status(vertices, faces, edges, copies),
         volume=float(np.cumsum(_dots(corners[0], _crossed(corners[1], corners[2])))[-1] / 6.0),
-        degenerate_facets=len(raw.faces) - len(faces) + _slivers(corners),
-        duplicate_facets=duplicates,
+        degenerate_facets=collapsed + _slivers(corners),
+        duplicate_facets=copies,
         open_edges=edges.open,
         overused_edges=edges.overused,
         shells=int(shells_of(vertices, faces, edges).max()) + 1,
@@ -171,33 +179,7 @@ def _dots(a: Array, b: Array) -> Array:
     return dot(a.T, b.T)
 
 
-def _doubled(edges: EdgeTable) -> NDArray[np.bool_]:
-    """(F,) facets that may have the vertices of another: it meets them, and perhaps more, at all three edges."""
-    beside = np.full(len(edges.half_edges), -1)
-    first, second = edges.pairs
-    beside[first], beside[second] = second // 3, first // 3
-    if edges.overused:
-        beside[edges.half_edges[np.repeat(edges.counts > 2, edges.counts)]] = -2
-    a, b, c = np.ascontiguousarray(beside.reshape(-1, 3).T)
-    alike: NDArray[np.bool_] = (a == b) & (b == c) & (a != -1)
-    return alike | (a == -2) | (b == -2) | (c == -2) if edges.overused else alike
-
-
-def _duplicates(faces: Ints, count: int) -> int:
-    """Facets of the same three vertices as another, whichever way round, less one of each."""
-    low = np.minimum(np.minimum(faces[:, 0], faces[:, 1]), faces[:, 2])
-    high = np.maximum(np.maximum(faces[:, 0], faces[:, 1]), faces[:, 2])
-    middle = faces[:, 0] + faces[:, 1] + faces[:, 2] - low - high
-    pair = low * np.int64(count) + high
-    order = np.argsort(pair, kind="stable")
-    alike = np.flatnonzero(np.diff(pair[order]) == 0)
-    if not len(alike):
-        return 0
-    facets = np.unique(np.r_[order[alike], order[alike + 1]])
-    return len(facets) - len(np.unique(np.stack([pair[facets], middle[facets]], axis=1), axis=0))
-
-
-def _manifold_status(vertices: Array, faces: Ints, edges: EdgeTable, duplicates: int) -> str:
+def _manifold_status(vertices: Array, faces: Ints, edges: EdgeTable, copies: int) -> str:
     """What manifold3d says of the mesh, scaled to unit size.
 
     It pairs the half-edges of an edge that run against each other, and reads beyond its tables where they are not as
@@ -207,7 +189,7 @@ def _manifold_status(vertices: Array, faces: Ints, edges: EdgeTable, duplicates:
     """
     if (edges.balance != 0).any():
         return "NotManifold"
-    if not edges.overused and not duplicates:
+    if not edges.overused and not copies:
         return "NoError"
     size = float(np.ptp(vertices, axis=0).max()) or 1.0
     scaled = np.ascontiguousarray((vertices - vertices.mean(axis=0)) / size)

@@ -292,14 +292,15 @@ class _AssemblyReader:
         if "/" in table.name and not scope.of_scene(table):
             scope.complain(f"{what} has a '/' in its name, which separates sub-assemblies",
                            "remove it, or place a [[subassembly]]", *path, "name")  # fmt: skip
-        units = table.units or scope.manifest.assembly.units
+        unit: str = table.units or scope.manifest.assembly.units
         mesh = None
         scale = _scale(scope, table, what, *path)
         if table.mesh is not None:
             where = scope.where(*path, "mesh")
             file = self.files.find(table.mesh, scope.folder, *where, f"{what}: the mesh")
             if file is not None:
-                use = MeshUse(table.body, metres_per(units), tolerances.weld, table.solid, scale)
+                unit = table.units or self.files.unit(file) or unit
+                use = MeshUse(table.body, metres_per(unit), tolerances.weld, table.solid, scale)
                 mesh = self.files.mesh(file, use, *where)
             if table.shape is not None:
                 scope.complain(f"{what} has both mesh and shape", "remove one of them", *path, "shape")
@@ -319,7 +320,7 @@ class _AssemblyReader:
             material=table.material,
             density=_density(scope, table, what, *path),
             override=override,
-            units=units,
+            units=unit,
             source=scope.source(*path),
             scale=np.array(scale),
             colour=None if table.colour is None else table.colour.lower(),

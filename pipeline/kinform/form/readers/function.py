@@ -151,8 +151,12 @@ class FunctionReader:
         if table.range is None:
             return None
         lower, upper = table.range
-        if not lower < upper:
-            self.scope.complain(f"{what}: the range [{lower}, {upper}] is not ascending", "swap it", *path, "range")
+        if math.isnan(lower) or math.isnan(upper):
+            wrong = f"{what}: the range [{lower}, {upper}] has a number that is none"
+            self.scope.complain(wrong, "write two numbers, and inf for a side that is free", *path, "range")
+        elif not lower < upper:
+            remedy = "swap it" if lower > upper else "state how far it goes, or a joint of type fixed"
+            self.scope.complain(f"{what}: the range [{lower}, {upper}] is not ascending", remedy, *path, "range")
         if any(LARGEST_NUMBER < abs(value) < math.inf for value in table.range):
             wrong = f"{what}: the range reaches beyond {LARGEST_NUMBER:g}"
             self.scope.complain(wrong, "write inf for a side that is free", *path, "range")

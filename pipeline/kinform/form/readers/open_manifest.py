@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from kinform.form.constants import MANIFEST_BYTES
-from kinform.form.files import DesignFiles
+from kinform.form.files import DesignFiles, is_mesh
 from kinform.form.keys import changed
 from kinform.form.manifest import Manifest
 from kinform.form.manifest.parts import Part
@@ -203,6 +203,7 @@ def _from_source(
     if tables is not None:
         for other in tables.files:
             files.note(other)
+        files.hash_meshes([other for other in tables.files if is_mesh(other)])
         files.allow(tables.folders)
     return tables
 

@@ -108,7 +108,7 @@ def _words(item: Any, path: Path, where: str, node: dict[str, Any], owner: dict[
     if key == "schema":
         return f"schema {_value(item['input'])} is not one that this version reads", "write schema = 1"
     wrong = item["msg"].replace("Input should be", "must be").replace(" after validation", "")
-    wrong = wrong.replace(f"{LARGEST_NUMBER:.0f}", f"{LARGEST_NUMBER:g}")
+    wrong = wrong.replace("a valid list", "a list in brackets").replace(f"{LARGEST_NUMBER:.0f}", f"{LARGEST_NUMBER:g}")
     message = f"{where}: {name} {wrong[:1].lower()}{wrong[1:]}, not {_value(item['input'])}"
     if kind in ("too_short", "too_long"):
         bound = context.get("min_length", context.get("max_length"))
