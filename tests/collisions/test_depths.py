@@ -8,6 +8,7 @@ from support.solids import assembly, ball, box, part, rod
 
 from kinform import surfaces
 from kinform.collisions.pair.prepared_pair import PairTest
+from kinform.collisions.pair.states import State
 from kinform.collisions.parts.shapes import Shapes
 
 
@@ -72,3 +73,16 @@ def test_what_is_told_of_several_places_together_is_what_is_told_of_each(seed):
         assert shallow == alone
         assert not any(known and depth > deep for known, depth, deep in zip(shallow, depths, least, strict=True))
         assert share > 1.0 or not any(shallow)
+
+
+def test_states_told_together_are_as_deep_as_each_alone():
+    test = pair_of(wall=box(0, 10, -20, 20, -20, 20), block=box(-30, -1, -5, 5, -5, 5))
+    poses = [slid(1.0 + deep) for deep in (-0.5, 0.005, 0.02, 0.06, 0.3, 2.0)]
+    for least in (None, 1e-4):
+        together = [State(test, D, True) for D in poses]
+        State.cross(together, least)
+        alone = [State(test, D, False) for D in poses]
+        allowed = [state.crossing.slack if least is None else least for state in alone]
+        deeper = [state.deeper(deep) for state, deep in zip(together, allowed, strict=True)]
+        assert deeper == [state.deeper(deep) for state, deep in zip(alone, allowed, strict=True)]
+        assert set(deeper) == {False, True}
