@@ -226,17 +226,18 @@ class PairTest:
             )
         return self._passages.ordered(path)
 
-    def heights(self, D: Array, chosen: Ints, away: bool = True) -> Array:
+    def heights(self, D: Array, chosen: Ints, away: bool = True, *, alike: bool = False) -> Array:
         """(k,) m: how deep some of both parts' `probes`, counted through, are inside the other part; outside, the
-        negative of a distance that they keep at least, 0 unless it is asked how far `away` they are."""
+        negative of a distance that they keep at least, 0 unless it is asked how far `away` they are. `alike`: those
+        that are less deep than mates may be are measured as the others, so that the deepest can be told."""
         X = self.pose(D)
         near, far = self.probes
         count = len(near.points)
         first, second = (self._shapes.index(name) for name in self.names)
         mine, other = chosen[chosen < count], chosen[chosen >= count] - count
-        out = np.zeros(len(chosen))
-        out[chosen < count] = near.heights(second, np.asarray(np.linalg.inv(X)), mine, away, self.loose)
-        out[chosen >= count] = far.heights(first, X, other, away, self.loose)
+        out, shallow = np.zeros(len(chosen)), 0.0 if alike else self.loose
+        out[chosen < count] = near.heights(second, np.asarray(np.linalg.inv(X)), mine, away, shallow)
+        out[chosen >= count] = far.heights(first, X, other, away, shallow)
         return out
 
     def places(self, D: Array) -> Array:
@@ -248,7 +249,7 @@ class PairTest:
     def sunk(self, D: Array) -> tuple[float, Array]:
         """m: how deep the deepest of these points is inside, 0 where that is rounding; and where it is (3,), world."""
         places = self.places(D)
-        heights = self.heights(D, np.arange(len(places)), away=False)
+        heights = self.heights(D, np.arange(len(places)), away=False, alike=True)
         n = int(np.argmax(heights))
         depth = float(heights[n])
         return depth if depth > constants.SPECK * self.size else 0.0, (self.X_WA @ np.append(places[n], 1.0))[:3]

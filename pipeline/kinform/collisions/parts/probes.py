@@ -27,8 +27,8 @@ class Probes:
 
     def heights(self, other: MeshIndex, X: Array, chosen: Ints, away: bool = True, shallow: float = 0.0) -> Array:
         """(k,) m: how deep some of the points are inside another part, in whose frame the pose of this one is X (4, 4);
-        outside of it, the negative of a distance that they keep at least, about 0 unless `away` is asked. Most are
-        expected to be no deeper than `shallow` (m), if at all."""
+        outside of it, the negative of a distance that they keep at least, about 0 unless `away` is asked. Those
+        no deeper than `shallow` (m) are measured together."""
         placed = self.points[chosen] @ X[:3, :3].T + X[:3, 3]
         beyond = np.maximum(np.maximum(other.low - placed, placed - other.high), 0.0)
         out = -np.linalg.norm(beyond, axis=1)
@@ -37,7 +37,7 @@ class Probes:
             inside = other.contains(placed[near])
             deep, clear = near[inside], near[~inside]
             out[clear] = -other.away(placed[clear]) if away else 0.0
-            if len(deep) > DEPTH_MEASURED:
+            if shallow > 0.0 and len(deep) > DEPTH_MEASURED:
                 out[deep] = other.depths_up_to(placed[deep], np.nextafter(shallow, np.inf))
                 deep = deep[out[deep] > shallow]
             out[deep] = other.depths(placed[deep])
