@@ -25,7 +25,7 @@ from random_assemblies.shapes import union  # noqa: E402
 from support.solids import box, rod, save  # noqa: E402
 from table import Row, peak, processor, show  # noqa: E402
 
-SCREWS = {9: 4.0, 12: 9.0, 16: 4.0, 18: 6.0}
+SCREWS = {9: 5.0, 12: 9.0, 16: 4.0, 18: 6.0}
 """Seeds of screws, with the most seconds that each should take."""
 KNUCKLES = (3, 7, 15, 31)
 GROWTH = 1.0
