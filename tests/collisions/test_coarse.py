@@ -106,14 +106,25 @@ def test_points_are_as_deep_by_some_facets_at_a_time_as_by_all(seed):
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_points_that_are_not_beside_a_facet_are_further_from_all(seed):
+def test_points_are_as_deep_up_to_a_limit_as_they_are(seed):
     rng = np.random.default_rng(seed)
     mesh = mesh_of(perforated()) if seed % 2 else strewn(rng, 900)
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     on = samples(rng, mesh.vertices, mesh.faces, 40)
     points = np.concatenate([rng.uniform(low, high, (60, 3)), on, on + 1e-9 * mesh.diagonal, [3 * high]])
     index = MeshIndex(mesh)
-    for reach in (1e-9 * mesh.diagonal, 1e-3 * mesh.diagonal):
-        beside, near = index.beside(points, reach), index.depths(points) <= reach
-        assert beside[near].all() and near.sum() >= 40
-        assert not beside.all()
+    depth = index.depths(points)
+    each = mesh.diagonal * rng.uniform(0.0, 0.3, len(points))
+    for enough in (1e-8 * mesh.diagonal, 1e-3 * mesh.diagonal, 0.1 * mesh.diagonal, each):
+        told = index.depths_up_to(points, enough)
+        assert told == pytest.approx(np.minimum(depth, enough), rel=1e-9, abs=1e-12 * mesh.diagonal)
+        assert (told < enough).sum() >= 20
+
+
+def test_points_that_many_facets_are_about_are_as_deep_by_a_model_of_all():
+    """On the axis of a tube, the facets of which are all as near: they ask until that is worth a model."""
+    mesh = mesh_of(rod(10, -200, 200, 600) - rod(8, -300, 300, 600))
+    index, axis = MeshIndex(mesh), 1e-3 * np.linspace([0, 0, -150], [0, 0, 150], 90)
+    asked = [index.depths(axis) for _ in range(5)]
+    assert index.depths(axis[:3]) == pytest.approx(8e-3 * np.cos(np.pi / 600), rel=1e-9)
+    assert all(again.tobytes() == asked[0].tobytes() for again in asked)

@@ -8,6 +8,8 @@ from re import search
 
 import numpy as np
 import pytest
+import random_assemblies
+from random_assemblies.case import Wear
 from support.places import FIXTURES
 from support.slots import lever_between_pegs
 from support.solids import assembly, box, part, random_pose, rod
@@ -16,6 +18,7 @@ from kinform import collisions, contacts, kinematics, stages, surfaces
 from kinform.collisions import constants
 from kinform.collisions.driving import candidates
 from kinform.collisions.pair import distance_bounds
+from kinform.collisions.pair.states import States
 from kinform.consistency import check
 from kinform.model.assembly import Group, Source
 from kinform.model.function import Function, IntendedJoint, Law, SimulationRequest
@@ -327,3 +330,22 @@ def test_a_hinge_on_a_loose_pin_says_that_the_pin_is_why_its_range_is_not_known(
     assert "'pin' may move in both of its sides" in finding.message and "[[group]]" in finding.message
     fastened = hinge_with_a_pin((Group("leaf", ("a", "pin"), Source("m.toml", 1)),))
     assert not {"KF401", "KF402", "KF412", "KF904"} & set(fastened)
+
+
+@pytest.mark.parametrize(("seed", "family", "known"), [(1392, None, True), (74, "revolute", False)])
+def test_what_is_told_ahead_of_parts_in_touch_changes_nothing(seed, family, known, tmp_path, monkeypatch):
+    """A clevis of coarse facets that scrape on each other on the way, and a hinge whose parts overlap as they are
+    drawn."""
+    path = random_assemblies.case(seed, family, wear=Wear(coarse=True)).write(tmp_path)
+    design = stages.joints(stages.contacts(stages.import_(path)))
+    asked, expect = [], States.expect
+    monkeypatch.setattr(States, "expect", lambda self, places, least: (asked.append(1), expect(self, places, least)))
+    told = []
+    for steps in (constants.STEPS_TOUCHED, 10**9):
+        monkeypatch.setattr(constants, "STEPS_TOUCHED", steps)
+        asked.clear()
+        (item,) = collisions.ranges(design.assembly, design.surfaces, design.contacts, design.kinematics)
+        assert (item.lower.status == "found") == known
+        assert bool(asked) == (steps < 10**9)
+        told.append([(end.status, end.value, end.parts, end.reason) for end in (item.lower, item.upper)])
+    assert told[0] == told[1]

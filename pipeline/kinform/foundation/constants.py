@@ -55,11 +55,14 @@ PLACE_BITS = 10
 
 DEPTH_FACETS = 128
 """Facets of a group."""
-ABOUT_FACET = 1e-6
-"""Share of a mesh's size beyond a facet's box from which on a point is clear of it: far more than what its measured
-distance is rounded by."""
-PLANE_ROUNDING = 1e-14
-"""Of the product of a facet's sides and of how far a point is from a corner: what their volume is rounded by."""
+MODEL_WORTH = 1.0
+"""Questions to groups, a facet, that cost as much as a model of all facets: 8 us each, as what it takes a facet."""
+DEPTH_PART = 16
+"""Facets of a part of a group."""
+DEPTH_POINTS = 2048
+"""Points that are asked together which facets they are near: 40 MB where 200 parts of groups are about each."""
+SLIVER_HEIGHT = 1e-6
+"""Share of a facet's longest side: of a lower one the plane may be off by more than 1e-9 of that."""
 
 # meshes/balls
 

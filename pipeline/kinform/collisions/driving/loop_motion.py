@@ -66,6 +66,7 @@ class Linkage:
         self.edges = edges
         self.held = np.eye(len(self.owner))[self._columns(kinematics, idle)]
         """(k, n) rows of coordinates that are held, each of an idle freedom."""
+        self._asked: tuple[Array, Array, Array] | None = None
 
     def _columns(self, kinematics: Kinematics, idle: Sequence[Freedom]) -> list[int]:
         """For each idle freedom a coordinate in which it is seen, each another: holding these holds the freedoms."""
@@ -113,23 +114,29 @@ class Linkage:
         """The nearest coordinates at which the loops close."""
         left = math.inf
         for _ in range(constants.CLOSING_STEPS):
-            loops = self.system.close(q[None])
-            residual = loops.residual[0]
+            residual, jacobian = self._loops(q)
             before, left = left, float(np.abs(residual).max())
             if left < constants.CLOSED_EXACTLY or (left < constants.CLOSED and left > 0.5 * before):
                 return q
-            rows = np.vstack([loops.jacobian[0], self.held])
+            rows = np.vstack([jacobian, self.held])
             wanted = np.concatenate([residual, self.held @ q])
             q = np.asarray(q - np.linalg.lstsq(rows, wanted, rcond=3.0 * constants.LOOP_RANK)[0], float)
-        return q if np.abs(self.system.close(q[None]).residual).max() < constants.CLOSED else None
+        return q if np.abs(self._loops(q)[0]).max() < constants.CLOSED else None
+
+    def _loops(self, q: Array) -> tuple[Array, Array]:
+        """Residual (m,) and Jacobian (m, n) of the loops at q (n,), which is asked several times before the next."""
+        if self._asked is None or not np.array_equal(self._asked[0], q):
+            loops = self.system.close(q[None])
+            self._asked = q, loops.residual[0], loops.jacobian[0]
+        return self._asked[1:]
 
     def jacobian(self, q: Array) -> Array:
         """(m, n) of the loops at q."""
-        return np.asarray(self.system.close(q[None]).jacobian[0])
+        return self._loops(q)[1]
 
     def tangent(self, q: Array) -> tuple[Array, bool] | None:
         """Unit null vector at q, and whether it is the only one; None where there is none."""
-        jacobian = np.vstack([self.system.close(q[None]).jacobian[0], self.held])
+        jacobian = np.vstack([self._loops(q)[1], self.held])
         _, values, rows = np.linalg.svd(jacobian, full_matrices=True)
         values = np.concatenate([values, np.zeros(max(len(rows) - len(values), 0))])[: len(rows)]
         count = int((values < constants.LOOP_RANK).sum())

@@ -8,8 +8,8 @@ a resolution. What happens within the resolution, free at both ends, is a graze 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection
-from functools import cached_property, partial
+from collections.abc import Callable, Collection, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -17,7 +17,8 @@ from kinform.collisions import constants
 from kinform.collisions.pair.course import Course, narrowed
 from kinform.collisions.pair.deep_entry import Entry, Inside
 from kinform.collisions.pair.mate_surfaces import SurfacePair
-from kinform.collisions.pair.prepared_pair import NONE, Crossing, PairTest
+from kinform.collisions.pair.prepared_pair import PairTest
+from kinform.collisions.pair.states import State, States
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
@@ -64,38 +65,6 @@ class Near:
     """The length of a piece."""
 
 
-class _State:
-    """A pair at one displacement; `touching`: whether it is likely to touch there."""
-
-    def __init__(self, test: PairTest, D: Array, touching: bool):
-        self.test, self._D = test, D
-        # to ask for what touches costs no more than to ask how far apart it is
-        known = test.hits(D) if touching else None
-        self.distance = 0.0 if known is not None and len(known) else self._found[0]
-        """m: of the facets that count."""
-        if known is not None:
-            self.hits = known
-
-    @cached_property
-    def _found(self) -> tuple[float, tuple[int, int]]:
-        return self.test.distance(self._D)
-
-    @property
-    def nearest(self) -> tuple[int, int]:
-        """The facets that are nearest to each other."""
-        return self._found[1]
-
-    @cached_property
-    def hits(self) -> Ints:
-        """(n, 2) facets that touch or cross."""
-        return self.test.hits(self._D)
-
-    @cached_property
-    def crossing(self) -> Crossing:
-        """What crosses; where facets are apart there is nothing."""
-        return NONE if self.distance > 0.0 else self.test.crossing(self._D, self.hits)
-
-
 class Search:
     """The first crossing of a pair on a course from `start` up to at most `end`, looked for piece by piece, to within
     `fine`."""
@@ -113,16 +82,15 @@ class Search:
         """Crossing since the start, by more than chord errors."""
         self.since: dict[SurfacePair, tuple[float, float] | None] = {}
         """Surfaces that cross, and the step in which they began to; None: at the start."""
-        self.tried = 0
         self.before = 0.0
         """m: overlap at the start."""
         self.place: Array | None = None
         """(3,) m, world: where."""
         self._deeper = math.inf
         """Where parts that have crossed since the start were seen to be deeper."""
-        self._known: dict[float, _State] = {}
-        self._touching = False
-        """Whether the pair touched where it was last asked."""
+        self._states = States(course, self._asked)
+        self._touched = 0
+        """Steps that have been followed to the resolution, one after the other."""
         self._inside: Inside | None = None
         self._drawn = course.travel(start) <= 0.0
         """Whether it begins where the motion does: further on parts have been apart."""
@@ -179,6 +147,7 @@ class Search:
                     left = self.skip(stack.pop())
                     continue
             way = self.course.travel(right) - self.course.travel(left)
+            self._look_ahead(left, stack)
             if (
                 self.state(left).distance + self.state(right).distance
                 > (1.0 + 1e-6) * way + constants.CROSSING_LEAST * self.test.size
@@ -187,13 +156,15 @@ class Search:
                 entered = self.entered(left, right, end, fine, resolution) if right >= end else None
                 if entered is not None:
                     return entered
+                self._touched = 0
                 left = self.pass_(left, stack.pop())
                 continue
-            if way > (constants.OVERLAPPING if self.overlaps else 1.0) * resolution and right - left > fine:
-                if self.tried > constants.WORK:
+            if self._long(left, right):
+                if self._states.tried > constants.WORK:
                     return First(None, None, None, self.overlaps, left)
                 stack.append(self.course.middle(left, right))
                 continue
+            self._touched += 1
             if self.too_deep(right):
                 return self.sooner(right, fine, self.located(left, right, fine, resolution))
             if self.through(left, right):
@@ -221,20 +192,45 @@ class Search:
             middles = crossing.segments().mean(axis=1)
             self.place = self._world(middles[np.argmin(np.linalg.norm(middles - middles.mean(axis=0), axis=1))])
 
-    def state(self, s: float) -> _State:
-        if s not in self._known:
-            self.tried += 1
-            self._known[s] = _State(self._asked(s), self.course.displacement(s), self._touching)
-            self._touching = self._known[s].distance <= 0.0
-        return self._known[s]
+    def _long(self, left: float, right: float) -> bool:
+        """Whether a step is to be halved where parts are in touch."""
+        way = self.course.travel(right) - self.course.travel(left)
+        return way > (constants.OVERLAPPING if self.overlaps else 1.0) * self._resolution and right - left > self._fine
+
+    def _look_ahead(self, left: float, stack: Sequence[float]) -> None:
+        """Where parts have been in touch for some steps, make ready what is asked of as many more of them: they are
+        likely to be so further on."""
+        if self._touched < constants.STEPS_TOUCHED or stack[-1] in self._states:
+            return
+        most, stack, places = min(self._touched, constants.STEPS_AHEAD), list(stack), dict[float, None]()
+        while stack and len(places) < most:
+            right = stack[-1]
+            if self.course.meets is not None:
+                meets, until = self.course.meets(left)
+                if left < until < right:
+                    stack.append(until)
+                    right = until
+                if not meets:
+                    left = stack.pop()
+                    continue
+            if right not in self._states:
+                places[right] = None
+            if self._long(left, right):
+                stack.append(self.course.middle(left, right))
+            else:
+                left = stack.pop()
+        self._states.expect(places, self.test.going_deeper(self.before) if self.overlaps else None)
+
+    def state(self, s: float) -> State:
+        """At s."""
+        return self._states.at(s)
 
     def _cover(self, begin: float, end: float) -> None:
         """Ask from here to there what can meet there, in one piece."""
         if self._near is None:
             return
         test = self._near.between(begin, end)
-        here = self._known.get(begin)
-        self._known = {begin: here} if here is not None and here.test is test else {}
+        self._states.only(begin, test)
         self._piece = begin, end, test
 
     def _asked(self, s: float) -> PairTest:
@@ -257,7 +253,7 @@ class Search:
         heights = [self._heights(left, right, state) for state in (before, after) if state.distance > 0.0]
         return any(low > least >= high or (abs(low) <= least and high < -least) for low, high in heights)
 
-    def _heights(self, left: float, right: float, state: _State) -> tuple[float, float]:
+    def _heights(self, left: float, right: float, state: State) -> tuple[float, float]:
         low, high = (state.test.height(self.course.displacement(s), state.nearest) for s in (left, right))
         return low, high
 
@@ -329,7 +325,7 @@ class Search:
         place = state.test.middle(self.course.displacement(right), *state.nearest)
         return First(left, right, self._world(place), before=self.before)
 
-    def _behind(self, state: _State, s: float) -> bool:
+    def _behind(self, state: State, s: float) -> bool:
         height = state.test.height(self.course.displacement(s), state.nearest)
         return height <= constants.CROSSING_LEAST * self.test.size
 
@@ -339,25 +335,25 @@ class Search:
         self.since = {pair: self.since.get(pair, (left, right)) for pair in crossing.shared}
         if self.overlaps:
             self.overlaps, self._apart = bool(crossing), right
-            least = self.test.going_deeper(self.before)
-            if crossing and self.test.depth(self.course.displacement(right), crossing.segments(), least) > least:
+            if self.state(right).deeper(self.test.going_deeper(self.before)):
                 self._deeper = right
-        self._known = {key: state for key, state in self._known.items() if key >= right}
+        self._states.forget_before(right)
         return right
 
     def skip(self, right: float) -> float:
         """Go on from `right`, where nothing can cross, nor on the way there."""
         self.since = {}
+        self._touched = 0
         if self.overlaps:
             self.overlaps, self._apart = False, right
-        self._known = {key: state for key, state in self._known.items() if key >= right}
+        self._states.forget_before(right)
         return right
 
     def too_deep(self, s: float) -> bool:
         """Whether the parts go deeper into each other at s than chord errors explain, and did not from the start."""
-        return not self.overlaps and bool(self.state(s).crossing) and self._deep(s, None)
+        return not self.overlaps and self.state(s).deeper(self.state(s).crossing.slack)
 
-    def _deep(self, s: float, pairs: Collection[SurfacePair] | None) -> bool:
+    def _deep(self, s: float, pairs: Collection[SurfacePair]) -> bool:
         crossing = self.state(s).crossing
         segments = crossing.segments(pairs)
         return self.test.depth(self.course.displacement(s), segments, crossing.slack) > crossing.slack

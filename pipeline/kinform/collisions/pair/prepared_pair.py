@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cached_property
+from itertools import pairwise
 
 import fcl
 import numpy as np
@@ -17,12 +18,12 @@ from kinform.collisions import constants
 from kinform.collisions.pair.facet_crossings import crossings
 from kinform.collisions.pair.mate_surfaces import Mates, SurfacePair
 from kinform.collisions.pair.passages import Passages, Path, passages
+from kinform.collisions.pair.penetration import Penetration
 from kinform.collisions.parts.probes import Probes
 from kinform.collisions.parts.shapes import Shapes
-from kinform.foundation.algebra.vectors import dot, perpendicular
+from kinform.foundation.algebra.vectors import perpendicular
 from kinform.foundation.at_work import at_work_on
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_pose
-from kinform.foundation.meshes.index import MeshIndex
 from kinform.foundation.sorting import distinct
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
@@ -225,17 +226,18 @@ class PairTest:
             )
         return self._passages.ordered(path)
 
-    def heights(self, D: Array, chosen: Ints, away: bool = True) -> Array:
+    def heights(self, D: Array, chosen: Ints, away: bool = True, *, alike: bool = False) -> Array:
         """(k,) m: how deep some of both parts' `probes`, counted through, are inside the other part; outside, the
-        negative of a distance that they keep at least, 0 unless it is asked how far `away` they are."""
+        negative of a distance that they keep at least, 0 unless it is asked how far `away` they are. `alike`: those
+        that are less deep than mates may be are measured as the others, so that the deepest can be told."""
         X = self.pose(D)
         near, far = self.probes
         count = len(near.points)
         first, second = (self._shapes.index(name) for name in self.names)
         mine, other = chosen[chosen < count], chosen[chosen >= count] - count
-        out = np.zeros(len(chosen))
-        out[chosen < count] = near.heights(second, np.asarray(np.linalg.inv(X)), mine, away)
-        out[chosen >= count] = far.heights(first, X, other, away)
+        out, shallow = np.zeros(len(chosen)), 0.0 if alike else self.loose
+        out[chosen < count] = near.heights(second, np.asarray(np.linalg.inv(X)), mine, away, shallow)
+        out[chosen >= count] = far.heights(first, X, other, away, shallow)
         return out
 
     def places(self, D: Array) -> Array:
@@ -247,7 +249,7 @@ class PairTest:
     def sunk(self, D: Array) -> tuple[float, Array]:
         """m: how deep the deepest of these points is inside, 0 where that is rounding; and where it is (3,), world."""
         places = self.places(D)
-        heights = self.heights(D, np.arange(len(places)), away=False)
+        heights = self.heights(D, np.arange(len(places)), away=False, alike=True)
         n = int(np.argmax(heights))
         depth = float(heights[n])
         return depth if depth > constants.SPECK * self.size else 0.0, (self.X_WA @ np.append(places[n], 1.0))[:3]
@@ -270,28 +272,41 @@ class PairTest:
     def crossing(self, D: Array, hits: Ints | None = None) -> Crossing:
         """Facets that count and cross at a displacement (4, 4), other than along mates; `hits`: where these are
         known."""
-        hits = self.hits(D) if hits is None else hits
-        if not len(hits):
-            return NONE
-        X = self.pose(D)
-        f, g = self.facets[0][hits[:, 0]], self.facets[1][hits[:, 1]]
-        first = self._corners(0, hits[:, 0])
-        second = self._corners(1, hits[:, 1]) @ X[:3, :3].T + X[:3, 3]
-        normals = self._normals[0][hits[:, 0]], self._normals[1][hits[:, 1]] @ X[:3, :3].T
-        cross, segments = crossings(first, second, normals, constants.CROSSING_LEAST * self.size)
-        if not cross.any():
-            return NONE
-        first_labels, second_labels = self._surfaces[0].labels[f[cross]], self._surfaces[1].labels[g[cross]]
-        segments = segments[cross]
-        if self.mates:
-            apart = ~self.mates.along((first_labels, second_labels), segments)
-            first_labels, second_labels, segments = first_labels[apart], second_labels[apart], segments[apart]
+        return self.crossings([D], [self.hits(D) if hits is None else hits])[0]
+
+    def crossings(self, displacements: Sequence[Array], hits: Sequence[Ints]) -> list[Crossing]:
+        """The same of several displacements, with the facets (n, 2) that touch or cross at each."""
+        if not any(map(len, hits)):
+            return [NONE] * len(hits)
+        poses = [self.pose(D) for D in displacements]
+        placed = [self._touching(X, some) for X, some in zip(poses, hits, strict=True) if len(some)]
+        first, second, *normals = (np.concatenate(sides) for sides in zip(*placed, strict=True))
+        cross, segments = crossings(first, second, (normals[0], normals[1]), constants.CROSSING_LEAST * self.size)
+        rows = np.flatnonzero(cross)
+        every, segments = np.concatenate(hits)[rows], segments[rows]
+        labels = self.counted(0)[every[:, 0]], self.counted(1)[every[:, 1]]
+        if self.mates and len(rows):
+            apart = np.flatnonzero(~self.mates.along(labels, segments))
+            rows, segments, labels = rows[apart], segments[apart], (labels[0][apart], labels[1][apart])
+        ends = np.searchsorted(rows, np.cumsum([0, *map(len, hits)])).tolist()
+        return [
+            self._crossed((labels[0][i:j], labels[1][i:j]), segments[i:j]) if j > i else NONE for i, j in pairwise(ends)
+        ]
+
+    def _touching(self, X: Array, hits: Ints) -> tuple[Array, Array, Array, Array]:
+        """Corners (n, 3, 3) of facets of both at a pose (4, 4) of the second in the first, and their normals (n, 3)."""
+        first, second = hits.T
+        corners = self._corners(1, second) @ X[:3, :3].T + X[:3, 3]
+        return self._corners(0, first), corners, self._normals[0][first], self._normals[1][second] @ X[:3, :3].T
+
+    def _crossed(self, labels: tuple[Ints, Ints], segments: Array) -> Crossing:
+        """Of facets (n,) of surfaces of either part that share segments (n, 2, 3)."""
         out: dict[SurfacePair, Array] = {}
         slack = self.scrape
-        for pair in sorted(set(zip(first_labels.tolist(), second_labels.tolist(), strict=True))):
-            out[pair] = segments[(first_labels == pair[0]) & (second_labels == pair[1])]
+        for pair in sorted(set(zip(labels[0].tolist(), labels[1].tolist(), strict=True))):
+            out[pair] = segments[(labels[0] == pair[0]) & (labels[1] == pair[1])]
             slack = max(slack, sum(self._surfaces[k].surfaces[pair[k]].chord for k in (0, 1)))
-        return Crossing(out, slack) if out else NONE
+        return Crossing(out, slack)
 
     def of_surfaces(self, hits: Ints, pairs: Collection[SurfacePair]) -> Ints:
         """(k, 2) those of facets (n, 2), as counted by FCL, that are of some pairs of surfaces."""
@@ -307,81 +322,31 @@ class PairTest:
         first, second = (s.labels[f] for s, f in zip(self._surfaces, self.facets, strict=True))
         return first, second
 
-    def _in_both(self, first: MeshIndex, second: MeshIndex, points: Array, other: Array) -> Ints:
-        """Which points (n, 3), in the frame of either part, are inside both: within rounding on the surface of one, and
-        inside the other, is inside. Facets that cross a flat face do so in its plane, and so do the middles between."""
-        least = constants.CROSSING_LEAST * self.size
-        within = np.column_stack([first.contains(points), second.contains(other)])
-        for index, places, k in ((first, points, 0), (second, other, 1)):
-            asked = np.flatnonzero(within[:, 1 - k] & ~within[:, k])
-            if len(asked) > constants.DEPTH_MEASURED:
-                # most are clear of what they are not in
-                asked = asked[index.beside(places[asked], least)]
-            if len(asked):
-                within[asked, k] = index.depths(places[asked]) <= least
-        return np.flatnonzero(within.all(axis=1))
-
-    def _deeper(self, middles: Array, other: Array, segments: Array, least: float) -> bool:
-        """Whether any of `middles` (n, 3), in the frame of either part, is inside both and deeper than `least` (m):
-        none that is near some of `segments` (m, 2, 3), which are on both, nor any that is near enough to the facets."""
-        chosen = np.unique(np.linspace(0, len(segments) - 1, constants.DEPTH_SEGMENTS).astype(int))
-        near = 2.0 * _from_segments(middles, segments[chosen])
-        asked = np.flatnonzero(near > constants.CERTAIN * least)
-        first, second = self._shapes.index(self.names[0]), self._shapes.index(self.names[1])
-        with at_work_on(*self.names):
-            if len(asked) > constants.DEPTH_MEASURED:
-                asked = asked[self._in_both(first, second, middles[asked], other[asked])]
-                return bool((first.depths(middles[asked]) + second.depths(other[asked]) > least).any())
-            asked = asked[first.depths(middles[asked]) + second.depths(other[asked]) > least]
-            return bool(len(asked)) and len(self._in_both(first, second, middles[asked], other[asked])) > 0
-
     def depth(self, D: Array, segments: Array, least: float = 0.0, finer: int = 1) -> float:
         """m: how deep the parts go into each other between `segments` (n, 2, 3) where they cross, or points (n, 3)
         inside either; 0 where it is not above `least`, which is asked of segments only. Asked at `finer` times as many
         places."""
-        points = segments.reshape(-1, 3)
-        points = points[np.unique(np.linspace(0, len(points) - 1, finer * constants.DEPTH_ENDS).astype(int))]
-        a, b = np.triu_indices(len(points), 1)
-        order = np.argsort(np.linalg.norm(points[a] - points[b], axis=1), kind="stable")
-        # of near ones and far ones: parts may be thin, or deep in each other
-        order = (
-            order[np.unique(np.linspace(0, len(order) - 1, finer * constants.DEPTH_MIDDLES).astype(int))]
-            if len(order)
-            else order
-        )
-        a, b = a[order], b[order]
-        middles = 0.5 * (points[a] + points[b])
-        X = self.pose(D)
-        other = (middles - X[:3, 3]) @ X[:3, :3]
-        first, second = self._shapes.index(self.names[0]), self._shapes.index(self.names[1])
-        if least > 0.0 and not self._deeper(middles, other, segments, least):
+        if least > 0.0 and self.shallow([D], [segments], [least])[0]:
             return 0.0
         with at_work_on(*self.names):
-            inside = self._in_both(first, second, middles, other)
-        inside = (
-            inside[np.unique(np.linspace(0, len(inside) - 1, finer * constants.DEPTH_INSIDE).astype(int))]
-            if len(inside)
-            else inside
-        )
-        with at_work_on(*self.names):
-            total = first.depths(middles[inside]) + second.depths(other[inside])
-        deepest = float(total.max(initial=0.0))
+            deepest = self._penetration.deepest(self.pose(D), segments, finer)
         return deepest if deepest > least else 0.0
+
+    def shallow(self, displacements: Sequence[Array], segments: Sequence[Array], least: Sequence[float]) -> list[bool]:
+        """Of several displacements (4, 4), whether the parts certainly go no deeper into each other than `least` (m)
+        between segments (n, 2, 3) where they cross there."""
+        with at_work_on(*self.names):
+            return self._penetration.shallow([self.pose(D) for D in displacements], segments, least)
+
+    @cached_property
+    def _penetration(self) -> Penetration:
+        first, second = (self._shapes.index(name) for name in self.names)
+        return Penetration(first, second, constants.CROSSING_LEAST * self.size)
 
 
 def _moved(points: Array, X: Array) -> Array:
     """Points (…, 3) by a displacement (4, 4)."""
     return np.asarray(points @ X[:3, :3].T + X[:3, 3])
-
-
-def _from_segments(points: Array, segments: Array) -> Array:
-    """(n,) m of points (n, 3) from the nearest of segments (m, 2, 3)."""
-    start, along = segments[:, 0], segments[:, 1] - segments[:, 0]
-    from_start = [points[:, k, None] - start[:, k] for k in range(3)]
-    share = sum(apart * along[:, k] for k, apart in enumerate(from_start)) / np.maximum(dot(along, along), 1e-300)
-    share = np.clip(share, 0.0, 1.0)
-    square = sum((apart - share * along[:, k]) ** 2 for k, apart in enumerate(from_start))
-    return np.asarray(np.sqrt(np.min(square, axis=1, initial=np.inf)))
 
 
 def _hits(first: fcl.CollisionObject, second: fcl.CollisionObject) -> Ints:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.collisions.constants import POINTS_FAR, POINTS_FINE, POINTS_PART, POINTS_SURFACE
+from kinform.collisions.constants import DEPTH_MEASURED, POINTS_FAR, POINTS_FINE, POINTS_PART, POINTS_SURFACE
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.meshes.divided import inner_weights, longest_sides
 from kinform.foundation.meshes.index import MeshIndex
@@ -25,9 +25,10 @@ class Probes:
 
     points: Array
 
-    def heights(self, other: MeshIndex, X: Array, chosen: Ints, away: bool = True) -> Array:
+    def heights(self, other: MeshIndex, X: Array, chosen: Ints, away: bool = True, shallow: float = 0.0) -> Array:
         """(k,) m: how deep some of the points are inside another part, in whose frame the pose of this one is X (4, 4);
-        outside of it, the negative of a distance that they keep at least, about 0 unless `away` is asked."""
+        outside of it, the negative of a distance that they keep at least, about 0 unless `away` is asked. Those
+        no deeper than `shallow` (m) are measured together."""
         placed = self.points[chosen] @ X[:3, :3].T + X[:3, 3]
         beyond = np.maximum(np.maximum(other.low - placed, placed - other.high), 0.0)
         out = -np.linalg.norm(beyond, axis=1)
@@ -36,6 +37,9 @@ class Probes:
             inside = other.contains(placed[near])
             deep, clear = near[inside], near[~inside]
             out[clear] = -other.away(placed[clear]) if away else 0.0
+            if shallow > 0.0 and len(deep) > DEPTH_MEASURED:
+                out[deep] = other.depths_up_to(placed[deep], np.nextafter(shallow, np.inf))
+                deep = deep[out[deep] > shallow]
             out[deep] = other.depths(placed[deep])
         return np.asarray(out)
 

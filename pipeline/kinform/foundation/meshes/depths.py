@@ -9,9 +9,11 @@ import fcl
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
-from kinform.foundation.constants import ABOUT_FACET, DEPTH_FACETS, PLANE_ROUNDING
+from kinform.foundation.constants import DEPTH_FACETS, DEPTH_PART, DEPTH_POINTS, MODEL_WORTH, SLIVER_HEIGHT
 from kinform.foundation.meshes.boxes import along_curve, facet_boxes
-from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, partial_model, point_model
+from kinform.foundation.meshes.closest import distances_between
+from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, partial_model, point_model
+from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
 
@@ -28,57 +30,106 @@ class Depths:
         self._high = np.maximum.reduceat(high[order], starts)
         self._facets = np.split(order, starts[1:])
         self._objects: list[fcl.CollisionObject | None] = [None] * len(starts)
+        self._asked = 0
+        """Questions to groups so far."""
 
     def of(self, points: Array) -> Array:
         """(n,) m distances of points (n, 3) of the part frame from the facets.
 
         No facet is nearer than its group's box: groups are asked from the nearest box on, until the next is no nearer
-        than the nearest facet.
+        than the nearest facet. Points that many groups are about, as those on the axis of a thread, would ask most of
+        them: where that has cost as much as a model of all facets, such a one is asked, to the same bits.
         """
-        beyond = np.maximum(np.maximum(self._low - points[:, None], points[:, None] - self._high), 0.0)
-        least = (1.0 - 1e-9) * np.sqrt((beyond * beyond).sum(axis=2))
-        point, out, first = fcl.CollisionObject(point_model()), np.empty(len(points)), least.argmin(axis=1).tolist()
-        for k, p in enumerate(UNIT * points):
-            point.setTranslation(p)
-            distance = fcl_distance(self._object(first[k]), point)
-            near = (least[k] < distance).nonzero()[0]
-            if len(near) > 1:
-                for n in near[least[k][near].argsort(kind="stable")].tolist():
-                    if n != first[k] and least[k, n] < distance:
-                        distance = min(distance, fcl_distance(self._object(n), point))
-            out[k] = distance
+        out, least = np.empty(len(points)), self._least(points)
+        point = fcl.CollisionObject(point_model())
+        for k, place in enumerate(UNIT * points):
+            point.setTranslation(place)
+            many = self._asked > MODEL_WORTH * len(self._mesh.faces)
+            out[k] = fcl_distance(self._whole, point) if many else self._nearest(point, least[k])
+        return out
+
+    def up_to(self, points: Array, enough: float | Array) -> Array:
+        """(n,) the same where that is less than `enough` (m), of all or each (n,), else this: all together, measured
+        from those facets whose boxes come so near; but for slivers, whose planes are not known well enough."""
+        out = np.full(len(points), enough)
+        for begin in range(0, len(points), DEPTH_POINTS):
+            some = slice(begin, begin + DEPTH_POINTS)
+            point, facet = self._near(points[some], out[some])
+            if not len(point):
+                continue
+            away = distances_between(points[some][point], self._mesh.vertices[self._mesh.faces[facet]])
+            starts = heads(point).nonzero()[0]
+            place = begin + point[starts]
+            out[place] = np.minimum(out[place], np.minimum.reduceat(away, starts))
+            beside = begin + np.unique(point[self._slivers[facet]])
+            if len(beside):
+                out[beside] = np.minimum(np.broadcast_to(enough, out.shape)[beside], self.of(points[beside]))
         return out
 
     @cached_property
-    def _grouped(self) -> tuple[Ints, list[Array], list[Array]]:
-        """(g, DEPTH_FACETS) facets of each group, and their boxes along each axis; the last facet fills its group."""
-        order = np.concatenate(self._facets)
-        facets = np.append(order, np.repeat(order[-1:], -len(order) % DEPTH_FACETS)).reshape(-1, DEPTH_FACETS)
-        low, high = facet_boxes(self._mesh.vertices, self._mesh.faces)
-        return facets, [column[facets] for column in low.T], [column[facets] for column in high.T]
+    def _slivers(self) -> Flags:
+        """(F,) facets whose height is no more than a small share of their longest side."""
+        first, second, third = (self._mesh.vertices.take(corners, axis=0) for corners in self._mesh.faces.T)
+        sides = first - second, second - third, third - first
+        spanned = cross(sides[0], sides[1])
+        longest = np.maximum.reduce([dot(side, side) for side in sides])
+        return np.asarray(dot(spanned, spanned) <= (SLIVER_HEIGHT * longest) ** 2)
 
-    def beside(self, points: Array, reach: float) -> Flags:
-        """(n,) which points (n, 3) of the part frame are about the box of any facet and its plane: none of the others
-        is found as near as a small `reach` (m) by `of`."""
-        wide = reach + ABOUT_FACET * float(np.linalg.norm(self._high.max(axis=0) - self._low.min(axis=0)))
-        point, group = np.nonzero(_beside(self._low, self._high, points[:, None], wide))
-        facets, low, high = self._grouped
-        held = np.ones((len(point), DEPTH_FACETS), dtype=bool)
+    def _near(self, points: Array, reach: Array) -> tuple[Ints, Ints]:
+        """Points (k,) by their places, ascending, and facets (k,) whose boxes come as near as `reach` (n,) m along each
+        axis: of groups, of parts of these, and of facets."""
+        low, high = (np.ascontiguousarray(side.T) for side in (points - reach[:, None], points + reach[:, None]))
+        order, levels = self._levels
+        point, place = np.nonzero(np.ones((len(points), 1), dtype=bool))
+        for lows, highs in levels:
+            # boxes of one in the level above are in a row
+            held = np.ones((len(point), lows[0].shape[1]), dtype=bool)
+            for axis in range(3):
+                held &= lows[axis].take(place, axis=0) <= high[axis].take(point)[:, None]
+                held &= highs[axis].take(place, axis=0) >= low[axis].take(point)[:, None]
+            row, column = np.nonzero(held)
+            point, place = point[row], place[row] * held.shape[1] + column
+        return point, order[place]
+
+    @cached_property
+    def _levels(self) -> tuple[Ints, list[tuple[list[Array], list[Array]]]]:
+        """All facets, the last one repeated to fill its group, and the boxes, axis by axis, of groups (1, g), of the
+        parts of each (g, …) and of the facets of these (…, n)."""
+        order = np.concatenate(self._facets)
+        order = np.append(order, np.repeat(order[-1:], -len(order) % DEPTH_FACETS))
+        low, high = (side[order].T for side in facet_boxes(self._mesh.vertices, self._mesh.faces))
+        levels = []
+        for size, row in ((DEPTH_FACETS, -1), (DEPTH_PART, DEPTH_FACETS // DEPTH_PART), (1, DEPTH_PART)):
+            lows = [column.reshape(-1, size).min(axis=1).reshape(-1 if row > 0 else 1, row) for column in low]
+            highs = [column.reshape(-1, size).max(axis=1).reshape(-1 if row > 0 else 1, row) for column in high]
+            levels.append((lows, highs))
+        return order, levels
+
+    def _nearest(self, point: fcl.CollisionObject, least: Array) -> float:
+        """m of a point, no nearer to the facets of each group than `least` (g,)."""
+        first = int(least.argmin())
+        distance = fcl_distance(self._object(first), point)
+        self._asked += 1
+        near = (least < distance).nonzero()[0]
+        for n in near[least[near].argsort(kind="stable")].tolist() if len(near) > 1 else ():
+            if n != first and least[n] < distance:
+                distance = min(distance, fcl_distance(self._object(n), point))
+                self._asked += 1
+        return distance
+
+    def _least(self, points: Array) -> Array:
+        """(n, g) m that points (n, 3) keep from the box of each group at least."""
+        square = np.zeros((len(points), len(self._low)))
         for axis in range(3):
-            place = points[point, axis, None]
-            held &= low[axis].take(group, axis=0) <= place + wide
-            held &= high[axis].take(group, axis=0) >= place - wide
-        row, column = np.nonzero(held)
-        point, facet = point[row], facets[group[row], column]
-        first, second, third = (self._mesh.vertices.take(c, axis=0) for c in self._mesh.faces[facet].T)
-        one, other, away = second - first, third - first, points[point] - first
-        normal = cross(one, other)
-        # rounding of a sliver's normal may turn it anywhere
-        rounding = PLANE_ROUNDING * np.sqrt(dot(one, one) * dot(other, other) * dot(away, away))
-        near = np.abs(dot(normal, away)) <= wide * np.sqrt(dot(normal, normal)) + rounding
-        out = np.zeros(len(points), dtype=bool)
-        out[point[near]] = True
-        return out
+            place = points[:, axis, None]
+            beyond = np.maximum(self._low[:, axis] - place, place - self._high[:, axis])
+            beyond = np.maximum(beyond, 0.0, out=beyond)
+            square += np.square(beyond, out=beyond)
+        return np.asarray((1.0 - 1e-9) * np.sqrt(square, out=square))
+
+    @cached_property
+    def _whole(self) -> fcl.CollisionObject:
+        return fcl.CollisionObject(fcl_model(self._mesh.vertices, self._mesh.faces))
 
     def _object(self, n: int) -> fcl.CollisionObject:
         known = self._objects[n]
@@ -86,12 +137,3 @@ class Depths:
             model = partial_model(self._mesh.vertices, self._mesh.faces[self._facets[n]])
             known = self._objects[n] = fcl.CollisionObject(model)
         return known
-
-
-def _beside(low: Array, high: Array, points: Array, wide: float) -> Flags:
-    """Whether points (…, 3) are in boxes (…, 3), or no more than `wide` beside them along each axis."""
-    out = np.asarray((points[..., 0] >= low[..., 0] - wide) & (points[..., 0] <= high[..., 0] + wide))
-    for axis in (1, 2):
-        out &= points[..., axis] >= low[..., axis] - wide
-        out &= points[..., axis] <= high[..., axis] + wide
-    return out

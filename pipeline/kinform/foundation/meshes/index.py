@@ -272,10 +272,9 @@ class MeshIndex:
         """(n,) m distances of points (n, 3) of the part frame from the mesh: as of `whole`, without a model of it."""
         return self._measured().of(points)
 
-    def beside(self, points: Array, reach: float) -> Flags:
-        """(n,) which points (n, 3) of the part frame may be found by `depths` to be no further than a small `reach` (m)
-        from the mesh."""
-        return self._measured().beside(points, reach)
+    def depths_up_to(self, points: Array, enough: float | Array) -> Array:
+        """(n,) the same where that is less than `enough` (m), of all or each (n,), else this: of many points sooner."""
+        return self._measured().up_to(points, enough)
 
     def _measured(self) -> Depths:
         if self._depths is None:
