@@ -41,7 +41,7 @@ __all__ = [
     "with_baseline",
 ]
 
-CODE_VERSION: int = 49
+CODE_VERSION: int = 50
 
 __getattr__ = first_used(
     __name__,

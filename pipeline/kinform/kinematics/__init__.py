@@ -24,7 +24,7 @@ from kinform.foundation.lazily import first_used
 
 if TYPE_CHECKING:
     from kinform.kinematics.axes.higher_pairs import is_higher
-    from kinform.kinematics.derivation import derive, functional, mobility_within
+    from kinform.kinematics.derivation import derive, functional, idle_within, mobility_within
     from kinform.kinematics.mobility.couplings import coupling_aside
     from kinform.kinematics.mobility.named_freedoms import Motions
     from kinform.kinematics.partition import propose, proposed_joints, stated_proposals
@@ -49,6 +49,7 @@ __all__ = [
     "coupling_aside",
     "derive",
     "functional",
+    "idle_within",
     "insight",
     "intended_answers",
     "is_higher",
@@ -68,6 +69,7 @@ __getattr__ = first_used(
     {
         "derive": "derivation",
         "functional": "derivation",
+        "idle_within": "derivation",
         "mobility_within": "derivation",
         "coupling_aside": "mobility.couplings",
         "is_higher": "axes.higher_pairs",

@@ -218,6 +218,14 @@ def mobility_within(kinematics: Kinematics, part_names: Sequence[str]) -> int | 
     return count if finite.count is None else finite.count
 
 
+def idle_within(kinematics: Kinematics, part_names: Sequence[str]) -> int:
+    """Idle freedoms of bodies all of whose joints are between some parts: `mobility_within` counts them."""
+    wanted = set(part_names)
+    names = {body.name for body in kinematics.bodies if wanted.intersection(body.parts)}
+    outside = {name for joint in kinematics.joints if not names.issuperset(joint.bodies) for name in joint.bodies}
+    return sum(freedom.idle and freedom.body in names - outside for freedom in kinematics.mobility.named)
+
+
 def _body_of_part(bodies: Sequence[Body]) -> dict[PartName, BodyName]:
     return {part: body.name for body in bodies for part in body.parts}
 

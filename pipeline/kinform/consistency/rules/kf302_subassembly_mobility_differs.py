@@ -1,7 +1,8 @@
 """A sub-assembly, taken alone, has more or fewer freedoms than its manifest states.
 
 Why it matters: a sub-assembly that is reused, such as a motor, must move inside every design as it does
-on its own. Contacts with the surrounding parts are left out.
+on its own. Contacts with the surrounding parts are left out, and so are idle freedoms, as in KF301: pins and
+screws that only spin.
 
 What to do: check the sub-assembly on its own with `kinform run`; correct it, or its `mobility`.
 
@@ -14,7 +15,7 @@ from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, quoted
-from kinform.kinematics import mobility_within
+from kinform.kinematics import idle_within, mobility_within
 
 
 def check(context: Context) -> Outcome:
@@ -31,12 +32,15 @@ def check(context: Context) -> Outcome:
         if mobility is None:
             unknown.append(sub.name)
             continue
+        idle = idle_within(kinematics, parts)
+        mobility -= idle
         if mobility != sub.mobility:
+            spinning = f" ({counted(idle, 'idle freedom')} not counted)" if idle else ""
             findings.append(
                 RULE.finding(
                     [sub.name],
                     f"the sub-assembly {quoted([sub.name])} has {counted(mobility, 'freedom')} of its own, "
-                    f"intended are {sub.mobility}",
+                    f"intended are {sub.mobility}{spinning}",
                     found=str(mobility),
                     intended=str(sub.mobility),
                     declared=sub.source,
