@@ -19,7 +19,8 @@ sys.path[:0] = [str(HERE), str(ROOT / "pipeline"), str(ROOT / "cli"), str(ROOT /
 from table import HEADER, line  # noqa: E402
 
 MODULES = (
-    "pace", "geometry", "machines", "chains", "native", "first_run", "mobility", "views", "ranges", "arms", "batch",
+    "pace", "geometry", "machines", "chains", "native", "first_run", "mobility", "views", "linked", "ranges", "arms",
+    "batch",
 )  # fmt: skip
 """Those that have `rows`."""
 
