@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from support.assemblies import contacts as no_contacts
@@ -54,7 +54,9 @@ def test_what_moves_needs_no_correction():
     st.floats(2e-6, 3e-4), st.integers(0, 10_000), st.sampled_from([0.01, 1.0, 100.0]),
 )  # fmt: skip
 def test_a_hinge_beside_its_place_is_named_with_the_other_end_of_its_crank(name, side, angle, far, seed, scale):
-    """Moved back, or the other end moved along: nothing else brings the three cranks into one motion."""
+    """Moved back, or the other end moved along: nothing else brings the three cranks into one motion. Along the crank
+    it is hardly out of place: to first order the cranks go on moving together, and nothing need be named."""
+    assume(abs(np.sin(angle - np.arctan2(ARM[1], ARM[0]))) > 0.05)
     shift = far * np.array([np.cos(angle), np.sin(angle), 0.0])
     turn = Rotation.random(random_state=seed).as_matrix()
     found = near_motions(locomotive({f"{side}~{name}": shift}, turn, scale))

@@ -105,17 +105,22 @@ def _profile(shapes: Shapes, name: str, twist: Array) -> Profile:
 def _candidates(
     shapes: Shapes, profiles: dict[str, Profile], twist: Array, still: Sequence[str], moving: Sequence[str]
 ) -> list[Candidate]:
-    """Pairs whose parts sweep over places of each other."""
+    """Pairs whose parts may meet on the way, as far as the places tell that they sweep over, and spheres about them."""
     if not (still and moving):
         return []
     (low, high), (from_, to) = (
         (np.stack(sides) for sides in zip(*(profiles[name].bounds for name in names), strict=True))
         for names in (still, moving)
     )
-    near = (low[:, None] <= to).all(axis=2) & (from_ <= high[:, None]).all(axis=2)
+    row, column = np.nonzero((low[:, None] <= to).all(axis=2) & (from_ <= high[:, None]).all(axis=2))
+    if profiles[moving[0]].turns:
+        # what turns sweeps over places that it never comes to
+        first, second = (np.array([profiles[name].sphere for name in names]).T for names in (still, moving))
+        meet = np.isfinite(first_touch(first[:, row], second[:, column], True, 1, 0.0))
+        row, column = row[meet], column[meet]
     return [
         Candidate(shapes, (PartName(still[i]), PartName(moving[j])), (profiles[still[i]], profiles[moving[j]]), twist)
-        for i, j in np.argwhere(near).tolist()
+        for i, j in zip(row.tolist(), column.tolist(), strict=True)
     ]
 
 
