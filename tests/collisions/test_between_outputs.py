@@ -13,7 +13,7 @@ from support.solids import box, rod
 
 from kinform import collisions
 from kinform.collisions.between_outputs import nodes_of
-from kinform.foundation.algebra.displacements import displacement, displacements, twists_of
+from kinform.foundation.algebra.displacements import displacement
 from kinform.model.simulation import Simulation
 
 
@@ -29,16 +29,6 @@ def run(time, poses, names, turn=None, acceleration=None):
     for name, value in values.items():
         object.__setattr__(made, name, value)
     return made
-
-
-@pytest.mark.parametrize("scale", [1e-9, 1e-3, 0.0099, 0.0101, 0.049, 0.051, 1.0, 3.0])
-def test_displacements_of_twists_in_stacks_are_those_of_each(scale):
-    rng = np.random.default_rng(5)
-    twists = rng.normal(size=(20, 6))
-    twists[:, :3] *= scale / np.linalg.norm(twists[:, :3], axis=1)[:, None]
-    X = displacements(twists)
-    assert np.abs(X - [displacement(twist) for twist in twists]).max() < 1e-12
-    assert np.abs(twists_of(X) - twists).max() < 1e-12
 
 
 def chain(rng, above, away):

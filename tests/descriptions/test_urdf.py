@@ -225,6 +225,8 @@ def test_a_package_is_found_in_the_workspace_of_the_description(tmp_path, layout
     for package, said in ((mine, "arm"), (theirs, name)):
         (tmp_path / package).mkdir(parents=True)
         (tmp_path / package / "package.xml").write_text(f"<package>\n<name> {said} </name></package>")
+    for folder in {(tmp_path / package).parent for package in (mine, theirs)}:
+        (folder / "loop").symlink_to("loop")  # a link to itself hides nothing
     (tmp_path / mine / "urdf").mkdir()
     (tmp_path / theirs / "meshes").mkdir()
     (tmp_path / "arm" / "base.obj").rename(tmp_path / theirs / "meshes" / "base.obj")

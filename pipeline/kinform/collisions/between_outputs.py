@@ -14,8 +14,7 @@ from functools import lru_cache
 import numpy as np
 
 from kinform.collisions.pair.posed_pairs import Nodes
-from kinform.foundation.algebra.displacements import displacements, inverse, twists_of
-from kinform.foundation.algebra.rotations import matrices
+from kinform.foundation.algebra.displacements import displacement, inverse, poses, twist_of
 from kinform.foundation.graphs.graph import Edge, UnionFind, forest
 from kinform.model.arrays import Array, Ints
 from kinform.model.kinematics import Joint
@@ -24,19 +23,10 @@ from kinform.model.simulation import Simulation
 
 def nodes_of(simulation: Simulation, joints: Sequence[Joint]) -> Nodes:
     """The displacements of all bodies at the output times, and between them."""
-    at_outputs, time = _at_outputs(simulation), simulation.time
+    at_outputs, time = poses(simulation.p_WB, simulation.q_WB), simulation.time
     between = _between(time, at_outputs, _above(simulation.body_names, joints))
     # pairs halve the same steps: most poses are asked for by several
     return Nodes(time, at_outputs, lru_cache(maxsize=None)(between))
-
-
-def _at_outputs(simulation: Simulation) -> Array:
-    """(T, B, 4, 4)."""
-    out = np.zeros((*simulation.p_WB.shape[:2], 4, 4))
-    out[..., :3, :3] = matrices(simulation.q_WB)
-    out[..., :3, 3] = simulation.p_WB
-    out[..., 3, 3] = 1.0
-    return out
 
 
 def _above(names: Sequence[str], joints: Sequence[Joint]) -> Ints:
@@ -59,7 +49,7 @@ def _between(time: Array, at_outputs: Array, above: Ints) -> Callable[[float], A
     count = len(above)
     still = np.broadcast_to(np.eye(4), (len(time), 1, 4, 4))
     relative = inverse(np.concatenate([at_outputs, still], axis=1)[:, above]) @ at_outputs
-    twists = twists_of(inverse(relative[:-1]) @ relative[1:])
+    twists = twist_of(inverse(relative[:-1]) @ relative[1:])
 
     def between(s: float) -> Array:
         n = int(np.searchsorted(time, s))
@@ -68,7 +58,7 @@ def _between(time: Array, at_outputs: Array, above: Ints) -> Callable[[float], A
         n = min(max(int(np.searchsorted(time, s, side="right")) - 1, 0), len(time) - 2)
         share = (s - time[n]) / (time[n + 1] - time[n])
         out, up = np.empty((count + 1, 4, 4)), np.append(above, count)
-        out[:count], out[count] = relative[n] @ displacements(share * twists[n]), np.eye(4)
+        out[:count], out[count] = relative[n] @ displacement(share * twists[n]), np.eye(4)
         # by each round twice as many joints are composed
         while (up < count).any():
             out, up = out[up] @ out, up[up]

@@ -40,9 +40,9 @@ def along(
 
     Second: pairs of which that is not known, and why: they overlap from the start, stay too close, or roll or mesh and
     overlap where they do; or very many others had collided before; or the output times are too far apart to tell what
-    happens between them. Between output
-    times bodies are taken to move evenly: where joints move far, the run is asked for again from `finer`, with so many
-    times as many outputs; without it the outputs are trusted. Empty for runs without poses.
+    happens between them. Between output times joints are taken to move evenly: where they move far, or turn back, the
+    run is asked for again from `finer`, with so many times as many outputs; without it the outputs are trusted. Empty
+    for runs without poses.
     """
     if len(simulation.time) < 2 or not len(simulation.body_names):
         return (), ()

@@ -45,7 +45,7 @@ class Swept:
 def along(groups: Apart, first: Array, second: Array, required: float) -> Swept:
     """Along displacements (T, 4, 4) of both groups from the pose of the meshes."""
     relative = inverse(first) @ second
-    twists = [twist_of(X) for X in inverse(relative[:-1]) @ relative[1:]]
+    twists = twist_of(inverse(relative[:-1]) @ relative[1:])
     moved = np.array([_speed(twist, groups) for twist in twists])
     way = np.concatenate([[0.0], np.cumsum(moved)])
     floor = FLOOR * groups.size

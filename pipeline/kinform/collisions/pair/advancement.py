@@ -134,18 +134,13 @@ class Search:
         while stack:
             if self.deeper < math.inf:
                 break
-            right = stack[-1]
-            if self.course.meets is not None:
-                meets, until = self.course.meets(left)
-                if left < until < right:
-                    stack.append(until)
-                    right = until
-                if not meets:
-                    entered = self.entered(left, right, end, fine, resolution) if right >= end else None
-                    if entered is not None:
-                        return entered
-                    left = self.skip(stack.pop())
-                    continue
+            right, meets = self._step(left, stack)
+            if not meets:
+                entered = self.entered(left, right, end, fine, resolution) if right >= end else None
+                if entered is not None:
+                    return entered
+                left = self.skip(stack.pop())
+                continue
             way = self.course.travel(right) - self.course.travel(left)
             self._look_ahead(left, stack)
             if (
@@ -192,6 +187,15 @@ class Search:
             middles = crossing.segments().mean(axis=1)
             self.place = self._world(middles[np.argmin(np.linalg.norm(middles - middles.mean(axis=0), axis=1))])
 
+    def _step(self, left: float, stack: list[float]) -> tuple[float, bool]:
+        """Where the step from `left` ends, which is put on the stack, and whether anything can meet in it."""
+        if self.course.meets is None:
+            return stack[-1], True
+        meets, until = self.course.meets(left)
+        if left < until < stack[-1]:
+            stack.append(until)
+        return stack[-1], meets
+
     def _long(self, left: float, right: float) -> bool:
         """Whether a step is to be halved where parts are in touch."""
         way = self.course.travel(right) - self.course.travel(left)
@@ -204,15 +208,10 @@ class Search:
             return
         most, stack, places = min(self._touched, constants.STEPS_AHEAD), list(stack), dict[float, None]()
         while stack and len(places) < most:
-            right = stack[-1]
-            if self.course.meets is not None:
-                meets, until = self.course.meets(left)
-                if left < until < right:
-                    stack.append(until)
-                    right = until
-                if not meets:
-                    left = stack.pop()
-                    continue
+            right, meets = self._step(left, stack)
+            if not meets:
+                left = stack.pop()
+                continue
             if right not in self._states:
                 places[right] = None
             if self._long(left, right):

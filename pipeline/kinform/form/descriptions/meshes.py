@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from urllib.parse import unquote
@@ -131,29 +131,17 @@ class MeshFiles:
 
 def packages_below(folder: Path, levels: int) -> dict[str, Path]:
     """The packages in a folder, and so many levels of folders below it, by the names that they give themselves; of
-    several of one name the nearest, then the first by name. Until so many entries were looked at that the folder is no
-    workspace."""
+    several of one name the nearest, then the first by name. Linked folders are packages, or not entered."""
     out: dict[str, Path] = {}
-    level, looked_at = [folder], 0
-    for _ in range(levels):
-        deeper: list[Path] = []
-        for above in level:
-            try:
-                entries = sorted(os.scandir(above), key=lambda entry: entry.name)
-            except OSError:
+    for entries, deeper in _level_by_level(folder, levels):
+        for entry in entries:
+            if entry.name.startswith(".") or not _is(entry.is_dir):
                 continue
-            looked_at += len(entries)
-            if looked_at > ENTRIES_MOST:
-                return out
-            for entry in entries:
-                if entry.name.startswith(".") or not entry.is_dir():
-                    continue
-                name = package_name(Path(entry.path))
-                if name is not None:
-                    out.setdefault(name, Path(entry.path))
-                elif not entry.is_symlink():
-                    deeper.append(Path(entry.path))
-        level = deeper
+            name = package_name(Path(entry.path))
+            if name is not None:
+                out.setdefault(name, Path(entry.path))
+            elif not entry.is_symlink():
+                deeper.append(Path(entry.path))
     return out
 
 
@@ -172,32 +160,40 @@ def _is_package(folder: Path) -> bool:
 
 
 def files_below(folder: Path, suffixes: Sequence[str]) -> list[Path]:
-    """Files with these suffixes in a folder and those below it, sorted; folder by folder, the near ones first, until
-    so many entries were looked at that the folder is no package. Linked folders are not entered."""
-    out, left, looked_at = [], [folder], 0
-    while left and looked_at < ENTRIES_MOST:
+    """Files with these suffixes in a folder and those below it, sorted. Linked folders are not entered."""
+    out: list[Path] = []
+    for entries, deeper in _level_by_level(folder):
+        for entry in entries:
+            if entry.is_dir(follow_symlinks=False):
+                deeper.append(Path(entry.path))
+            elif entry.name.lower().endswith(tuple(suffixes)) and _is(entry.is_file):
+                out.append(Path(entry.path))
+    return sorted(out)
+
+
+def _level_by_level(folder: Path, levels: int | None = None) -> Iterator[tuple[list[os.DirEntry[str]], list[Path]]]:
+    """What a folder holds, by name, and a list for those of its folders that are to be entered, which follow when all
+    of its level have been; until so many entries were looked at that it is no package and no workspace."""
+    level, looked_at = [folder], 0
+    while level and (levels is None or levels > 0):
+        levels = None if levels is None else levels - 1
         deeper: list[Path] = []
-        for above in left:
+        for above in level:
             try:
                 entries = sorted(os.scandir(above), key=lambda entry: entry.name)
             except OSError:
                 continue
             looked_at += len(entries)
             if looked_at > ENTRIES_MOST:
-                break
-            for entry in entries:
-                if entry.is_dir(follow_symlinks=False):
-                    deeper.append(Path(entry.path))
-                elif entry.name.lower().endswith(tuple(suffixes)) and _is_file(entry):
-                    out.append(Path(entry.path))
-        left = deeper
-    return sorted(out)
+                return
+            yield entries, deeper
+        level = deeper
 
 
-def _is_file(entry: os.DirEntry[str]) -> bool:
-    """Whether it is a file, or a link to one; a link to itself is none."""
+def _is(asked: Callable[[], bool]) -> bool:
+    """Whether an entry is what is asked, or a link to such a thing; a link to itself is nothing."""
     try:
-        return entry.is_file()
+        return asked()
     except OSError:
         return False
 

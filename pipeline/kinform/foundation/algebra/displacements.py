@@ -13,13 +13,19 @@ from kinform.model.arrays import Array
 
 
 def displacement(twist: Array) -> Array:
-    """(4, 4) exponential of a twist (ω; v at the origin) over unit time."""
-    spin = cross_matrix(twist[:3])
-    twice = spin @ spin
-    sine, versine, rest = _shares(float(np.linalg.norm(twist[:3])))
-    out = np.eye(4)
-    out[:3, :3] += sine * spin + versine * twice
-    out[:3, 3] = twist[3:] + versine * (spin @ twist[3:]) + rest * (twice @ twist[3:])
+    """(…, 4, 4) exponentials of twists (…, 6) (ω; v at the origin) over unit time."""
+    omega, v = twist[..., :3], twist[..., 3:]
+    square = (omega * omega).sum(axis=-1)[..., None]
+    small = square < 1e-4
+    safe = np.where(small, 1.0, square)
+    angle = np.sqrt(safe)
+    versine = np.where(small, 0.5 - square / 24.0 + square * square / 720.0, 2.0 * np.sin(0.5 * angle) ** 2 / safe)
+    rest = np.where(small, 1.0 / 6.0 - square / 120.0 + square * square / 5040.0, (1.0 - np.sin(angle) / angle) / safe)
+    across = cross(omega, v)
+    out = np.zeros((*twist.shape[:-1], 4, 4))
+    out[..., :3, :3] = turned(omega)
+    out[..., :3, 3] = v + versine * across + rest * cross(omega, across)
+    out[..., 3, 3] = 1.0
     return out
 
 
@@ -64,15 +70,7 @@ def exponentials(screws: Array, q: Array) -> Array:
 
 
 def twist_of(X: Array) -> Array:
-    """(6,) twist (ω; v at the origin) whose displacement is X (4, 4), by less than half a turn."""
-    omega = rotation_vectors(X[:3, :3])
-    spin = cross_matrix(omega)
-    _, versine, rest = _shares(float(np.linalg.norm(omega)))
-    return np.concatenate([omega, np.linalg.solve(np.eye(3) + versine * spin + rest * spin @ spin, X[:3, 3])])
-
-
-def twists_of(X: Array) -> Array:
-    """(…, 6) the same of displacements (…, 4, 4)."""
+    """(…, 6) twists (ω; v at the origin) whose displacements are X (…, 4, 4), by less than half a turn."""
     omega = rotation_vectors(X[..., :3, :3])
     square = (omega * omega).sum(axis=-1)[..., None]
     small = square < 0.0025
@@ -84,28 +82,11 @@ def twists_of(X: Array) -> Array:
     return np.concatenate([omega, X[..., :3, 3] - 0.5 * across + share * cross(omega, across)], axis=-1)
 
 
-def displacements(twists: Array) -> Array:
-    """(…, 4, 4) exponentials of twists (…, 6) (ω; v at the origin) over unit time."""
-    omega, v = twists[..., :3], twists[..., 3:]
-    square = (omega * omega).sum(axis=-1)[..., None]
-    small = square < 1e-4
-    safe = np.where(small, 1.0, square)
-    angle = np.sqrt(safe)
-    versine = np.where(small, 0.5 - square / 24.0 + square * square / 720.0, 2.0 * np.sin(0.5 * angle) ** 2 / safe)
-    rest = np.where(small, 1.0 / 6.0 - square / 120.0 + square * square / 5040.0, (1.0 - np.sin(angle) / angle) / safe)
-    across = cross(omega, v)
-    out = np.zeros((*twists.shape[:-1], 4, 4))
-    out[..., :3, :3] = turned(omega)
-    out[..., :3, 3] = v + versine * across + rest * cross(omega, across)
-    out[..., 3, 3] = 1.0
-    return out
-
-
 def poses(positions: Array, quaternions: Array) -> Array:
-    """(n, 4, 4) poses at positions (n, 3), turned by unit quaternions (n, 4) wxyz."""
-    out = np.tile(np.eye(4), (len(positions), 1, 1))
-    out[:, :3, :3] = matrices(quaternions)
-    out[:, :3, 3] = positions
+    """(…, 4, 4) poses at positions (…, 3), turned by unit quaternions (…, 4) wxyz."""
+    out = identities(*positions.shape[:-1])
+    out[..., :3, :3] = matrices(quaternions)
+    out[..., :3, 3] = positions
     return out
 
 
@@ -133,11 +114,3 @@ def adjoint(X: Array) -> Array:
     out[..., :3, :3] = out[..., 3:, 3:] = R
     out[..., 3:, :3] = cross_matrix(X[..., :3, 3]) @ R
     return out
-
-
-def _shares(angle: float) -> tuple[float, float, float]:
-    """sin a / a, (1 − cos a) / a² and (a − sin a) / a³, by their series near zero."""
-    if angle < 1e-4:
-        square = angle * angle
-        return 1.0 - square / 6.0, 0.5 - square / 24.0, 1.0 / 6.0 - square / 120.0
-    return np.sin(angle) / angle, (1.0 - np.cos(angle)) / angle**2, (angle - np.sin(angle)) / angle**3
