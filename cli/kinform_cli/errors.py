@@ -1,7 +1,7 @@
 """From exceptions to messages and exit codes.
 
-0: written, or verified. 1: findings. 2: not written, or not verified. 141: who reads the output left before its end. An
-exception is always 2: a crash must never read as a verdict.
+0: written, or verified. 1: findings. 2: not written, or not verified. An exception is always 2: a
+crash must never read as a verdict.
 """
 
 from __future__ import annotations
@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 OK = 0
 FINDINGS = 1
 NOT_VERIFIED = 2
-READER_LEFT = 141
-"""What shells have of a program that SIGPIPE ended: 128 and its number."""
 
 _INTERRUPTED = 130
 """What typer makes of Ctrl-C."""
@@ -90,17 +88,10 @@ def from_typer(code: object) -> int:
     return code if isinstance(code, int) else OK
 
 
-def of_stop(stop: SystemExit) -> int:
-    """The exit code where typer ended the process itself: what it could not write is no pass."""
-    if isinstance(stop.__context__, BrokenPipeError):
-        return READER_LEFT
-    return OK if not stop.code and not isinstance(stop.__context__, OSError) else NOT_VERIFIED
-
-
 def of_output(code: int) -> int:
     """The exit code after all that was to be printed: what did not all reach its reader is no pass. A reader that left
-    (`| head`) is told nothing, and findings stay findings, as does what could not be verified; a disk that is full is
-    told, and what it holds is half of an answer."""
+    (`| head`) is told nothing, and findings stay findings; a disk that is full is told, and what it holds is half of an
+    answer."""
     if console.settings.cut is None:
         return code
     if not isinstance(console.settings.cut, BrokenPipeError):
@@ -108,7 +99,7 @@ def of_output(code: int) -> int:
             "kinform", f"not all of the output could be written: {console.settings.cut.strerror}", "make room for it"
         )
         return NOT_VERIFIED
-    return code or READER_LEFT
+    return FINDINGS if code == FINDINGS else NOT_VERIFIED
 
 
 def _traceback(error: BaseException) -> str:

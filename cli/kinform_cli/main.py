@@ -37,7 +37,7 @@ def main(arguments: Sequence[str]) -> int:
         console.flush()
         code = errors.from_typer(code) if arguments else errors.NOT_VERIFIED
     except SystemExit as stop:  # completion; and typer's help when its reader left
-        code = errors.of_stop(stop)
+        code = errors.OK if not stop.code and not isinstance(stop.__context__, OSError) else errors.NOT_VERIFIED
     except (Exception, KeyboardInterrupt) as error:
         return errors.report(error)
     return errors.of_output(code)
