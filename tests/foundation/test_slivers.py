@@ -155,6 +155,25 @@ def test_a_grid_finds_the_boxes_that_comparison_finds(seed):
     assert [found.tolist() for found in by_grid] == [found.tolist() for found in every]
 
 
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 10**6), st.sampled_from([1, 37, 400]), st.sampled_from([0.0, 1.5, 5.0]))
+def test_slabs_find_the_boxes_that_comparison_finds(seed, at_once, away):
+    rng = np.random.default_rng(seed)
+    kinds = []
+    for count, largest, shift in ((60, 0.3, 0.0), (80, 1.5, away)):
+        low = rng.uniform(-1, 1, (count, 3)) + shift
+        kinds.append((low, low + largest * rng.uniform(0, 1, (count, 3)) ** 3))
+    every = box_pairs.meeting_boxes(*kinds)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(box_pairs, "SLAB", at_once)
+        in_slabs = box_pairs.meeting_in_slabs(*kinds)
+    assert bool(len(every[0])) or away
+    assert [found.tolist() for found in in_slabs] == [found.tolist() for found in every]
+    none = kinds[0][0][:0], kinds[0][1][:0]
+    for pair in ((none, kinds[1]), (kinds[0], none)):
+        assert [len(found) for found in box_pairs.meeting_in_slabs(*pair)] == [0, 0]
+
+
 @settings(max_examples=30, deadline=None)
 @given(st.integers(0, 10**6), st.floats(0.5, 2.0), st.sampled_from([0, 20_000]), st.sampled_from([0, 600_000]))
 def test_of_more_boxes_than_are_wanted_it_is_told_that_they_are_too_many(seed, share, exact, matrix):

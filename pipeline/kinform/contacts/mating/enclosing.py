@@ -21,7 +21,7 @@ from kinform.contacts.search.pair_view import PairView, boxes_of
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.constants import SLIVER_WIDTH
-from kinform.foundation.meshes.box_pairs import meeting_boxes
+from kinform.foundation.meshes.box_pairs import meeting_in_slabs
 from kinform.foundation.meshes.boxes import meeting_box, middles
 from kinform.foundation.meshes.probes import Region
 from kinform.foundation.sorting import among, distinct, heads
@@ -146,25 +146,15 @@ def _can_hit(
     asked = of_column >= 0
     asked &= np.logical_or.reduce(unread[distinct(of_row)], axis=0).take(of_column)
     facets, of_column = facets[asked], of_column[asked]
-    every = np.arange(len(points)), b.region
-    if len(facets) > constants.MOST_ASKED:
-        return every
     half = reach * (np.abs(normals) + 2.0 * SLIVER_WIDTH)
-    low, high = points - half, points + half
-    low_b, high_b = boxes_of(b, facets)
-    near = np.flatnonzero(meeting_box(low_b, high_b, low.min(axis=0), high.max(axis=0)))
-    if not len(near):
-        return near, b.region
-    facets, of_column, low_b, high_b = facets[near], of_column[near], low_b[near], high_b[near]
-    probes = np.flatnonzero(meeting_box(low, high, low_b.min(axis=0), high_b.max(axis=0)))
-    met = meeting_boxes((low[probes], high[probes]), (low_b, high_b))
+    met = meeting_in_slabs((points - half, points + half), boxes_of(b, facets))
     if met is None:
-        return every
-    probe, facet = probes.take(met[0]), met[1]
-    facing = dot(normals.take(probe, axis=0), b.normals(facets).take(facet, axis=0))
-    kept = unread[of_row.take(probe), of_column.take(facet)]
+        return np.arange(len(points)), b.region
+    probes, hit = met
+    facing = dot(normals.take(probes, axis=0), b.normals(facets.take(hit)))
+    kept = unread[of_row.take(probes), of_column.take(hit)]
     kept &= facing < constants.FACING_ROUNDED - constants.FACING_LEAST
-    return distinct(probe[kept]), Region(b.index, facets[distinct(facet[kept])])
+    return distinct(probes[kept]), Region(b.index, facets[distinct(hit[kept])])
 
 
 def _evenly(areas: Array, count: int) -> tuple[Ints, Array]:

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.constants import BESIDE_MOST, BOXES_COMPARED, BOXES_EXACT, BOXES_MATRIX, BOXES_MOST
-from kinform.foundation.meshes.boxes import FlatBoxes
+from kinform.foundation.constants import BESIDE_MOST, BOXES_COMPARED, BOXES_EXACT, BOXES_MATRIX, BOXES_MOST, SLAB
+from kinform.foundation.joined import joined
+from kinform.foundation.meshes.boxes import FlatBoxes, meeting_box
 from kinform.model.arrays import Array, Ints
 
 Boxes = tuple[Array, Array]
@@ -40,6 +41,34 @@ def meeting_boxes(first: Boxes, second: Boxes, most: float = math.inf) -> tuple[
     if listed.listed_at(middles[:, axes]) > BESIDE_MOST:
         return None
     return _unless_more(most, _that_meet(first, second, *listed.around(middles[:, axes])))
+
+
+def meeting_in_slabs(first: Boxes, second: Boxes) -> tuple[Ints, Ints] | None:
+    """The same pairs (k,) of boxes (n, 3) and (m, 3), ordered by the first, then by the second, where either are too
+    many to be compared at once: what can meet at all is looked at in slabs across the direction along which the first
+    spread most. None where a slab has too many yet."""
+    (low, high), (low_other, high_other) = first, second
+    if not len(low) or not len(low_other):
+        return np.zeros(0, np.int64), np.zeros(0, np.int64)
+    near = np.flatnonzero(meeting_box(low_other, high_other, low.min(axis=0), high.max(axis=0)))
+    if not len(near):
+        return near, near
+    low_other, high_other = low_other[near], high_other[near]
+    asked = np.flatnonzero(meeting_box(low, high, low_other.min(axis=0), high_other.max(axis=0)))
+    if not len(asked):
+        return asked, asked
+    low, high = low[asked], high[asked]
+    slabs = min(-(-len(asked) * len(near) // SLAB), len(asked))
+    order = np.argsort(low[:, int(np.argmax(np.ptp(low, axis=0)))], kind="stable") if slabs > 1 else np.arange(len(low))
+    found = []
+    for own in np.array_split(order, slabs):
+        own_low, own_high = low[own], high[own]
+        beside = np.flatnonzero(meeting_box(low_other, high_other, own_low.min(axis=0), own_high.max(axis=0)))
+        met = meeting_boxes((own_low, own_high), (low_other[beside], high_other[beside]))
+        if met is None:
+            return None
+        found.append(asked[own[met[0]]] * np.int64(len(second[0])) + near[beside[met[1]]])
+    return _split(np.sort(joined(found)), len(second[0]))
 
 
 def _unless_more(most: float, met: tuple[Ints, Ints]) -> tuple[Ints, Ints] | None:
