@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from manifold3d import Manifold
 from support.assemblies import assembly
 from support.solids import box, part, rod
 
 from kinform import contacts, surfaces
 from kinform.kinematics import propose
+from kinform.kinematics.partition.sides import TouchingParts, substantial
 
 
 def proposed(ground=None, **solids):
@@ -82,3 +86,40 @@ def test_a_bolt_turns_nothing_that_only_touches_its_head():
     for bolt in bolts.values():
         low, high, block = low - bolt, high - bolt, block - bolt
     assert proposed(low=low, high=high, block=block, **bolts) == []
+
+
+def chained(bars, washer=None):
+    """Bars in a row, all parted from each other; beside each a washer of this share of a bar, parted from it too."""
+    names = [f"bar{k:05d}" for k in range(bars)]
+    pairs = list(pairwise(names))
+    volume = dict.fromkeys(names, 2e-6)
+    if washer is not None:
+        rings = {f"ring{name}": name for name in names}
+        volume |= dict.fromkeys(rings, washer * 2e-6)
+        pairs += [(name, ring) for ring, name in rings.items()]
+    cut = frozenset(pairs)
+    graph = TouchingParts(sorted(volume), sorted(pairs), volume, [])
+    return graph, cut
+
+
+@pytest.mark.parametrize("bars", [3, 300, 3000])
+def test_a_link_is_a_body_however_many_there_are_of_it(bars):
+    graph, cut = chained(bars)
+    first, second = "bar00001", "bar00002"
+    assert graph.sides(frozenset({(first, second)}), cut) == [((first,), (second,))]
+
+
+def test_a_washer_is_none_however_many_there_are_of_it():
+    graph, cut = chained(1500, washer=0.01)
+    for pair in (("bar00001", "ringbar00001"), ("bar00700", "ringbar00700")):
+        assert graph.sides(frozenset({pair}), cut) == []
+
+
+@given(st.integers(1, 3000), st.integers(0, 3000), st.sampled_from([1e-9, 1.0, 1e6]))
+def test_what_is_substantial_is_half_a_part_at_most_and_scales(large, small, unit):
+    volumes = unit * np.array([1.0] * large + [1e-3] * small)
+    least = substantial(volumes, 0.001)
+    assert least == pytest.approx(unit * substantial(volumes / unit, 0.001), rel=1e-9)
+    assert least <= min(0.5 * unit, 0.001 * volumes.sum()) * (1 + 1e-9)
+    if large + small <= 500:
+        assert least == pytest.approx(0.001 * volumes.sum())

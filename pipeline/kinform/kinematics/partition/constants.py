@@ -99,6 +99,9 @@ SUBSTANTIAL = 0.002
 """Share of the assembly's volume that either side of a joint has at least where it does not name its sides."""
 PROPOSED_SHARE = 0.001
 """The same of a joint that is proposed. On 17 robots 118 of 118 proposals are true with it, 106 of 106 with 0.002."""
+OF_A_PART = 0.5
+"""The same of both, of the part in which an m³ of the assembly lies on average: it is less where there are more than
+some 250 and 500 of one size."""
 BESIDE = 0.1
 """Of several pairs of bodies on one axis, those are proposed whose smaller side is at least this share of the largest
 such: legs on one hip axis, and not the rings of their bearings."""

@@ -18,6 +18,14 @@ Sides = tuple[tuple[PartName, ...], tuple[PartName, ...]]
 """The parts of two bodies."""
 
 
+def substantial(volumes: Array, share: float) -> float:
+    """m³ that a body has at least, of parts of these volumes (n,), that is no ring, ball or screw: a share of all, but
+    no more than `constants.OF_A_PART` of the part in which an m³ of the assembly lies on average. Without that, none of
+    a thousand equal links would be one."""
+    whole = float(volumes.sum())
+    return min(share * whole, constants.OF_A_PART * float((volumes * volumes).sum()) / max(whole, 1e-300))
+
+
 @dataclass(frozen=True, eq=False)
 class TouchingParts:
     """The parts and what touches."""
@@ -50,6 +58,10 @@ class TouchingParts:
         """(n,) m³ of the parts."""
         return np.array([self.volume[name] for name in self.parts], dtype=float)
 
+    @cached_property
+    def _least(self) -> float:
+        return substantial(self._volumes, constants.PROPOSED_SHARE)
+
     def sides(self, own: frozenset[PartPair], cut: frozenset[PartPair]) -> list[Sides]:
         """The pairs of bodies that pairs of a joint (`own`) lie between once all of `cut` is parted, the larger one
         first. What is small, or a ring, lies between the others."""
@@ -58,7 +70,7 @@ class TouchingParts:
         first, second = self._links[:, kept]
         body = roots(first, second, len(self.parts))
         size, count = np.bincount(body, self._volumes, len(body)), np.bincount(body, minlength=len(body))
-        least = constants.PROPOSED_SHARE * float(sum(size.tolist()))
+        least = self._least
         near: dict[int, set[int]] = {}
         for pair in own:
             one, two = (int(body[self._number[name]]) for name in pair)
@@ -91,7 +103,7 @@ class TouchingParts:
 
     def alike(self, ways: Sequence[Sides]) -> list[set[int]]:
         """Of ways to part the assembly, for each which of them part the same two bodies, but for what is small."""
-        least = constants.PROPOSED_SHARE * float(self._volumes.sum())
+        least = self._least
         firsts, seconds = (self._members([way[side] for way in ways]) for side in (0, 1))
         sizes = np.stack([members @ self._volumes for members in (firsts, seconds)], axis=1).reshape(-1, 2)
         out = []

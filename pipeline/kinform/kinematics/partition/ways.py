@@ -23,6 +23,7 @@ from kinform.kinematics.partition.contact import PartPair, contact_of_pairs
 from kinform.kinematics.partition.graph import graph_of, stated_merger
 from kinform.kinematics.partition.labelling import Labels, label_all
 from kinform.kinematics.partition.parting import Prices, hints_of, joint_twists, prices
+from kinform.kinematics.partition.sides import substantial
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.function import IntendedJoint
@@ -208,7 +209,7 @@ class Ways:
         named part on a side."""
         joint = self.joints[number]
         named = self.assembly.parts_of(joint.between[0])[0] if joint.between[0] else None
-        least = constants.SUBSTANTIAL * sum(self.volume.values())
+        least = substantial(np.array(list(self.volume.values())), constants.SUBSTANTIAL)
         out: list[Way] = []
         for way in sorted(ways, key=lambda one: (one.cost, one.names)):
             if named is not None and not any(named in side for side in way.bodies):
