@@ -110,6 +110,14 @@ def test_the_heaviest_body_is_ground_and_the_largest_where_a_density_is_missing(
     assert derive(assembly(*unknown), {}, patches).body_of("b").ground
 
 
+@pytest.mark.parametrize(("heavier", "ground"), [(0.0, "a"), (1e-15, "a"), (2e-4, "a"), (0.01, "b")])
+def test_of_equally_heavy_bodies_the_first_is_ground_whichever_was_rounded_up(heavier, ground):
+    patches = contacts(*hinge("a", "b", (0, 0, 0)))
+    for density in (None, 2700.0):
+        parts = (part("a", volume=1e-6, density=density), part("b", volume=1e-6 * (1.0 + heavier), density=density))
+        assert derive(assembly(*parts), {}, patches).body_of(ground).ground
+
+
 def test_a_pin_that_only_spins_is_idle_until_function_names_it():
     model = assembly(part("base"), part("door"), part("pin"), ground="base")
     touching = contacts(

@@ -105,7 +105,8 @@ GLOSSARY: dict[str, tuple[str, str]] = {
     "ground": (
         OTHER,
         "The body at rest. `ground = \"PART\"` in [assembly] chooses it; else the heaviest is taken (the largest "
-        "without densities), and said. Types of joints do not depend on it; names and signs of motions may.",
+        "without densities; of equal ones the first by name), and said. Types of joints do not depend on it; names and "
+        "signs of motions may.",
     ),
     "body": (OTHER, "Parts that move as one; named after its first group, else its first part, in the alphabet."),
     "group": (OTHER, "Parts that the manifest states to be fastened by what the meshes do not show: screws, glue."),

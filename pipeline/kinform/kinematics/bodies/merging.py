@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 
 from kinform.foundation.graphs.graph import UnionFind
+from kinform.kinematics import constants
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Body
 from kinform.model.names import BodyName, PartName
@@ -72,7 +73,8 @@ class Merger:
         return BodyName(groups[0] if groups else min(parts))
 
     def _ground(self, members: dict[int, list[PartName]]) -> int:
-        """The stated ground, else the heaviest body, or the largest where a density is missing."""
+        """The stated ground, else the heaviest body, or the largest where a density is missing; of those as heavy as
+        it but for the rounding of files the first by name."""
         if self._assembly.ground is not None:
             return self.root(self._assembly.parts_of(self._assembly.ground)[0])
         grouped = self._assembly.weighed
@@ -81,7 +83,7 @@ class Merger:
         )
         stated = {group.parts[0]: group.override.mass for group in self._assembly.groups if group.override is not None}
 
-        def size(root: int) -> tuple[float, str]:
+        def size(root: int) -> float:
             total = 0.0
             for name in members[root]:
                 part = self._parts[name]
@@ -94,6 +96,8 @@ class Merger:
                     total += part.override.mass
                 else:
                     total += volume * float(part.density or 0.0)
-            return (-total, min(members[root]))
+            return total
 
-        return min(members, key=size)
+        sizes = {root: size(root) for root in members}
+        least = (1.0 - constants.AS_HEAVY) * max(sizes.values())
+        return min((root for root in members if sizes[root] >= least), key=lambda root: min(members[root]))
