@@ -103,7 +103,16 @@ def rolling_cones(n, first, second):
     return {"a": frustum(first), "b": frustum(second).rotate((0, 0, 3)).rotate((0, first + second, 0))}
 
 
+def roller_in_a_ring(n, radius=8.0, wide=20.0, gap=0.0):
+    """A roller that lies along the wall of a bore, at +x."""
+    ring = rod(wide + 6, -12, 12, n) - rod(wide, -13, 13, n, 2.0)
+    return {"a": rod(radius, -10, 11, n, 1.0).translate((wide - radius - gap, 0, 0)), "b": ring}
+
+
 CASES = {
+    "a small roller in a ring": (4, "line", lambda n: roller_in_a_ring(n, 1.5)),
+    "a roller in a ring": (4, "line", roller_in_a_ring),
+    "a roller in a ring not much wider": (4, "line", lambda n: roller_in_a_ring(n, 18.5)),
     "cones at right angles": (4, "line", lambda n: rolling_cones(n, 45, 45)),
     "unequal cones at right angles": (4, "line", lambda n: rolling_cones(n, 30, 60)),
     "cones at an obtuse angle": (4, "line", lambda n: rolling_cones(n, 60, 70)),
@@ -243,6 +252,7 @@ def test_what_does_not_touch_is_no_pair(apart):
         (torus(48), rod(5, -30, 30, 48).translate((6 - apart, 0, 0))),
         (torus(48), torus(48).translate((38 + apart, 0, 0))),
         (roller_in_a_cup(48)["a"].translate((-apart, 0, 0)), roller_in_a_cup(48)["b"]),
+        tuple(roller_in_a_ring(48, gap=apart).values()),
     ):
         _, contacts = derived(np.eye(4), a=a, b=b)
         assert not contacts.patches
@@ -274,6 +284,25 @@ def test_the_line_of_two_tapers_is_the_generator_that_they_share(segments):
     cosine = np.cos(np.radians(3))
     assert 0.06 / cosine < along.min() < 0.061 / cosine
     assert 0.079 / cosine < along.max() < 0.08 / cosine
+
+
+@pytest.mark.parametrize("segments", [32, 57])
+@pytest.mark.parametrize(("radius", "gap"), [(3.0, 0.0), (15.0, 0.0), (8.0, 0.02)])
+def test_the_line_of_a_roller_in_a_ring_lies_where_both_are_nearest(segments, radius, gap):
+    X = random_pose(np.random.default_rng(segments))
+    (patch,) = derived(X, **roller_in_a_ring(segments, radius, gap=gap))[1].patches
+    local = (patch.points - X[:3, 3]) @ X[:3, :3] * 1e3
+    assert np.abs(local[:, :2] - [20 - gap / 2, 0]).max() < 1e-3
+    assert -10 < local[:, 2].min() < -9 < 10 < local[:, 2].max() < 11
+    assert np.allclose(patch.normals @ X[:3, :3], [1, 0, 0], atol=1e-4)
+    assert np.allclose(patch.gaps, 1e-3 * gap, atol=1e-6)
+    assert patch.radii[0] == pytest.approx(1e-3 * 20 * radius / (20 - radius), rel=1e-3)
+
+
+def test_what_is_little_smaller_than_its_bore_is_its_shaft():
+    kinematics, contacts = derived(np.eye(4), **roller_in_a_ring(64, 19.6))
+    assert [patch.kind for patch in contacts.patches] == ["cylinder"]
+    assert kinematics.joints[0].type == "cylindrical"
 
 
 def test_tapered_rollers_that_lie_askew_touch_at_a_point():

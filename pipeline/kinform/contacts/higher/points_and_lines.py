@@ -85,9 +85,13 @@ def _candidates(view: PairView, flags: Flags, first: bool) -> Flags:
         return out
     plane, rounded = _PLANAR[other.kinds], _ROUNDED[other.kinds]
     kinds, hollow = ball.kinds.take(rows)[:, None], other.sides < 0
-    apart = rounded & ~((kinds == _CYLINDER) & (other.kinds == _CYLINDER) & hollow)  # these mate, or keep apart
+    apart = np.broadcast_to(rounded, (len(rows), len(rounded))).copy()
     if not first:
         apart &= (other.kinds != kinds) | hollow  # what is hollow comes second
+    # a roller in a ring not much wider is a shaft in its bore: they mate, or keep apart
+    tube = (kinds == _CYLINDER) & (other.kinds == _CYLINDER) & hollow
+    play = constants.MATING_REACH * np.maximum(view.play, constants.CLEARANCE_SHARE * other.radii)
+    apart &= ~tube | (other.radii - ball.radii.take(rows)[:, None] > play)
     out[rows] = flags[rows] & (plane | apart)
     if out.any():
         out &= ~_off_planes(view)

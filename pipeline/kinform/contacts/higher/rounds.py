@@ -40,8 +40,8 @@ def meeting(surfaces: SurfacePair, parallel: float, limit: float) -> Meeting | N
         return _ball_on_ring(surfaces)
     if (first, second) == ("sphere", "cone"):
         return _ball_on_cone(surfaces)
-    if (first, second) == ("cylinder", "cylinder") and convex:
-        return _rollers(surfaces, parallel)
+    if (first, second) == ("cylinder", "cylinder"):
+        return _rollers(surfaces, parallel) if convex else _roller_in_ring(surfaces, parallel)
     if second == "cone" or ((first, second) == ("cone", "cylinder") and not convex):
         return tapers(surfaces, parallel) if first in ("cylinder", "cone") else None
     return None
@@ -178,15 +178,40 @@ def _rollers(surfaces: SurfacePair, parallel: float) -> Meeting | None:
         if not (extent[0] <= s <= extent[1] and other_extent[0] <= t <= other_extent[1]):
             return None
         return _single(p + s * d, q + t * e, *radii)
+    beside = _side_by_side(surfaces)
+    if beside is None:
+        return None
+    on, apart, distance, spacing = beside
+    normals, gaps = apart / distance[:, None], distance - sum(radii)
+    return Meeting(on - (radii[0] + 0.5 * gaps)[:, None] * normals, normals, gaps, True, spacing)
+
+
+def _roller_in_ring(surfaces: SurfacePair, parallel: float) -> Meeting | None:
+    """A roller that lies along the inside of a ring, much wider than it: of one not much wider it is the shaft. About
+    the normal it turns by no more than its play: its ends would go into the ring, which the line does not say."""
+    (roller, ring), beside = surfaces.radii, None
+    if float(np.linalg.norm(cross(*surfaces.axes))) <= math.sin(parallel):
+        beside = _side_by_side(surfaces)
+    if beside is None or ring <= roller:
+        return None
+    on, apart, distance, spacing = beside
+    normals, gaps = -apart / distance[:, None], ring - roller - distance
+    points, bend = on - (roller + 0.5 * gaps)[:, None] * normals, ring * roller / (ring - roller)
+    return Meeting(points, normals, gaps, True, spacing, clearance=ring - roller, radius=bend, bends=True)
+
+
+def _side_by_side(surfaces: SurfacePair) -> tuple[Array, Array, Array, float] | None:
+    """Points (n, 3) on the axis of the first cylinder beside the other, from the other's axis to these (n, 3), how far
+    that is (n,) m, and how far they are from each other (m). None where one lies on the other's axis, or neither is
+    beside the other."""
+    (p, q), (d, e), (extent, other_extent) = surfaces.points, surfaces.axes, surfaces.extents
     other = sorted(float((q - p) @ d) + math.copysign(1.0, float(d @ e)) * other_extent)
     low, high = max(extent[0], other[0]), min(extent[1], other[1])
     if high <= low:
         return None
     on = p + (low + (high - low) * (np.arange(ROLLER_SAMPLES) + 0.5) / ROLLER_SAMPLES)[:, None] * d
-    feet = q + ((on - q) @ e)[:, None] * e
-    apart = on - feet
+    apart = on - (q + ((on - q) @ e)[:, None] * e)
     distance = np.linalg.norm(apart, axis=1)
-    if distance.min() <= 1e-12 * sum(radii):
+    if distance.min() <= 1e-12 * sum(surfaces.radii):
         return None
-    normals, gaps = apart / distance[:, None], distance - sum(radii)
-    return Meeting(on - (radii[0] + 0.5 * gaps)[:, None] * normals, normals, gaps, True, (high - low) / ROLLER_SAMPLES)
+    return on, apart, distance, (high - low) / ROLLER_SAMPLES
