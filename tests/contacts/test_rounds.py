@@ -109,7 +109,17 @@ def roller_in_a_ring(n, radius=8.0, wide=20.0, gap=0.0):
     return {"a": rod(radius, -10, 11, n, 1.0).translate((wide - radius - gap, 0, 0)), "b": ring}
 
 
+def ball_in_a_bowl(n, radius=8.0, wide=20.0, gap=0.0):
+    """A ball that lies in a bowl which is a half ball deep, off its lowest place."""
+    bowl = rod(wide + 5, -wide - 5, 0, n) - ball(wide, n, 2.0)
+    where = (wide - radius - gap) * np.array([0.48, 0.64, -0.6])
+    return {"a": ball(radius, n, 1.0).translate(tuple(where)), "b": bowl}
+
+
 CASES = {
+    "a small ball in a bowl": (5, "point", lambda n: ball_in_a_bowl(n, 2.0)),
+    "a ball in a bowl": (5, "point", ball_in_a_bowl),
+    "a ball in a bowl not much wider": (5, "point", lambda n: ball_in_a_bowl(n, 18.0)),
     "a small roller in a ring": (4, "line", lambda n: roller_in_a_ring(n, 1.5)),
     "a roller in a ring": (4, "line", roller_in_a_ring),
     "a roller in a ring not much wider": (4, "line", lambda n: roller_in_a_ring(n, 18.5)),
@@ -253,6 +263,7 @@ def test_what_does_not_touch_is_no_pair(apart):
         (torus(48), torus(48).translate((38 + apart, 0, 0))),
         (roller_in_a_cup(48)["a"].translate((-apart, 0, 0)), roller_in_a_cup(48)["b"]),
         tuple(roller_in_a_ring(48, gap=apart).values()),
+        tuple(ball_in_a_bowl(48, gap=apart).values()),
     ):
         _, contacts = derived(np.eye(4), a=a, b=b)
         assert not contacts.patches
@@ -297,6 +308,16 @@ def test_the_line_of_a_roller_in_a_ring_lies_where_both_are_nearest(segments, ra
     assert np.allclose(patch.normals @ X[:3, :3], [1, 0, 0], atol=1e-4)
     assert np.allclose(patch.gaps, 1e-3 * gap, atol=1e-6)
     assert patch.radii[0] == pytest.approx(1e-3 * 20 * radius / (20 - radius), rel=1e-3)
+
+
+@pytest.mark.parametrize(("radius", "gap"), [(3.0, 0.0), (15.0, 0.0), (8.0, 0.02)])
+def test_the_point_of_a_ball_in_a_bowl_lies_where_both_are_nearest(radius, gap):
+    X = random_pose(np.random.default_rng(3))
+    (patch,) = derived(X, **ball_in_a_bowl(64, radius, gap=gap))[1].patches
+    outward = np.array([0.48, 0.64, -0.6])
+    assert np.abs((patch.points - X[:3, 3]) @ X[:3, :3] * 1e3 - (20 - gap / 2) * outward).max() < 1e-3
+    assert np.allclose(patch.normals @ X[:3, :3], outward, atol=1e-4)
+    assert np.allclose(patch.gaps, 1e-3 * gap, atol=1e-6)
 
 
 def test_what_is_little_smaller_than_its_bore_is_its_shaft():

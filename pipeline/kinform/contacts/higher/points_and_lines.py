@@ -29,6 +29,7 @@ from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances
 
 _CYLINDER = KINDS.index("cylinder")
+_SPHERE = KINDS.index("sphere")
 _PLANAR = np.array([kind == "plane" for kind in KINDS])
 _ROUNDED = np.array([kind in ("sphere", "cylinder", "torus", "cone") for kind in KINDS])
 """Which kinds of surfaces balls and rollers touch, by their numbers."""
@@ -88,8 +89,9 @@ def _candidates(view: PairView, flags: Flags, first: bool) -> Flags:
     apart = np.broadcast_to(rounded, (len(rows), len(rounded))).copy()
     if not first:
         apart &= (other.kinds != kinds) | hollow  # what is hollow comes second
-    # a roller in a ring not much wider is a shaft in its bore: they mate, or keep apart
-    tube = (kinds == _CYLINDER) & (other.kinds == _CYLINDER) & hollow
+    # a roller in a ring not much wider is a shaft in its bore, a ball in such a bowl that of a joint: they mate, or
+    # keep apart
+    tube = (kinds == other.kinds) & ((kinds == _CYLINDER) | (kinds == _SPHERE)) & hollow
     play = constants.MATING_REACH * np.maximum(view.play, constants.CLEARANCE_SHARE * other.radii)
     apart &= ~tube | (other.radii - ball.radii.take(rows)[:, None] > play)
     out[rows] = flags[rows] & (plane | apart)

@@ -32,8 +32,8 @@ def meeting(surfaces: SurfacePair, parallel: float, limit: float) -> Meeting | N
         return None if second == "sphere" and convex else ring(surfaces, parallel, limit)
     if second == "plane":
         return _taper_on_plane(surfaces, parallel) if first == "cone" else on_plane(surfaces, parallel)
-    if (first, second) == ("sphere", "sphere") and convex:
-        return _single(*surfaces.points, *surfaces.radii)
+    if (first, second) == ("sphere", "sphere"):
+        return _single(*surfaces.points, *surfaces.radii) if convex else _ball_in_bowl(surfaces)
     if (first, second) == ("sphere", "cylinder"):
         return _ball(surfaces)
     if (first, second) == ("sphere", "torus"):
@@ -120,6 +120,18 @@ def _single(first: Array, second: Array, radius: float, other: float) -> Meeting
     normal, gap = apart / distance, distance - radius - other
     point = first - (radius + 0.5 * gap) * normal
     return Meeting(point[None], normal[None], np.array([gap]), False, 0.0)
+
+
+def _ball_in_bowl(surfaces: SurfacePair) -> Meeting | None:
+    """A ball that lies in a bowl, much wider than it: of one not much wider it is the ball of the socket."""
+    (centre, middle), (radius, bowl) = surfaces.points, surfaces.radii
+    aside = centre - middle
+    distance = float(np.linalg.norm(aside))
+    if distance <= 1e-12 * bowl or bowl <= radius:
+        return None
+    normal, gap = -aside / distance, bowl - radius - distance
+    point, bend = centre - (radius + 0.5 * gap) * normal, bowl * radius / (bowl - radius)
+    return Meeting(point[None], normal[None], np.array([gap]), False, 0.0, clearance=bowl - radius, radius=bend)
 
 
 def _ball(surfaces: SurfacePair) -> Meeting | None:
