@@ -15,6 +15,7 @@ from support.solids import box, part, rod
 
 from kinform import contacts, surfaces
 from kinform.kinematics import propose
+from kinform.kinematics.part_volumes import levelled
 from kinform.kinematics.partition.sides import TouchingParts, substantial
 
 
@@ -123,3 +124,30 @@ def test_what_is_substantial_is_half_a_part_at_most_and_scales(large, small, uni
     assert least <= min(0.5 * unit, 0.001 * volumes.sum()) * (1 + 1e-9)
     if large + small <= 500:
         assert least == pytest.approx(0.001 * volumes.sum())
+
+
+@given(st.integers(0, 10**6), st.sampled_from([1e-12, 1.0, 1e9]))
+def test_sizes_that_differ_by_rounding_are_equal_and_so_are_their_sums(seed, unit):
+    rng = np.random.default_rng(seed)
+    kinds = rng.choice([1.0, 0.3, 0.3003 / 1.3, 7e-5, 0.0], 40)
+    names = [f"part{k}" for k in range(40)]
+    rounded = {n: unit * k * (1 + 2e-4 * rng.uniform(-1, 1)) for n, k in zip(names, kinds, strict=True)}
+    level = levelled(rounded)
+    assert list(level) == names
+    sizes = np.array(list(level.values()))
+    assert np.allclose(sizes, unit * kinds, rtol=3e-4, atol=0.0 if kinds.min() else 1e-300)
+    for kind in np.unique(kinds):
+        assert len(set(sizes[kinds == kind].tolist())) == 1
+    order = rng.permutation(40)
+    assert sum(sizes[order].tolist()) == sum(sizes.tolist()) == float(np.add.reduce(sizes[::-1]))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_which_of_equal_links_is_between_the_others_does_not_hang_on_rounding(seed):
+    """Three plates on one pin, and its head: nobody is a ring between the others."""
+    rng = np.random.default_rng(seed)
+    names = ["a", "b", "c"]
+    pairs = list(pairwise(names))
+    volume = levelled({name: 1e-6 * (1 + 1e-5 * rng.uniform(-1, 1)) for name in names})
+    graph = TouchingParts(names, pairs, volume, [])
+    assert graph.sides(frozenset(pairs), frozenset(pairs)) == [(("a",), ("b",)), (("b",), ("c",))]

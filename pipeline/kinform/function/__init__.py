@@ -27,7 +27,7 @@ __all__ = [
     "stated_ranges",
 ]
 
-CODE_VERSION: int = 5
+CODE_VERSION: int = 6
 
 __getattr__ = first_used(
     __name__,

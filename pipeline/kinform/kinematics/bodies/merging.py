@@ -99,5 +99,5 @@ class Merger:
             return total
 
         sizes = {root: size(root) for root in members}
-        least = (1.0 - constants.AS_HEAVY) * max(sizes.values())
+        least = (1.0 - constants.AS_LARGE) * max(sizes.values())
         return min((root for root in members if sizes[root] >= least), key=lambda root: min(members[root]))
