@@ -14,8 +14,8 @@ from support.assemblies import assembly
 from support.solids import box, part, rod
 
 from kinform import contacts, surfaces
+from kinform.foundation.levelled import levelled
 from kinform.kinematics import propose
-from kinform.kinematics.part_volumes import levelled
 from kinform.kinematics.partition.sides import TouchingParts, substantial
 
 

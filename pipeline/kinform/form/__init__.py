@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["CODE_VERSION", "from_meshes", "init_manifest", "load", "load_meshes", "schema"]
 
-CODE_VERSION: int = 28
+CODE_VERSION: int = 29
 """Bumped when results change."""
 
 __getattr__ = first_used(

@@ -649,8 +649,3 @@ NEAR_SETTLED = 1e-13
 """Change of a round after which nothing more is gained."""
 NEAR_CLOSED = 1e-12
 """rad, and shares of the size, by which loops may be open that close."""
-AS_LARGE = 1e-3
-"""Share by which bodies differ in mass or size that are equal but for the rounding of their files: a bar of 56 mm, as
-STL 40 m from the origin, is off by up to a ten thousandth. None of them is the ground because of that, nor named."""
-SIZE_BITS = 50
-"""Bits in the sizes of all parts together, of the 53 that a float has."""

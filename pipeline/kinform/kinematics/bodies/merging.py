@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 
 from kinform.foundation.graphs.graph import UnionFind
-from kinform.kinematics import constants
+from kinform.foundation.levelled import largest
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Body
 from kinform.model.names import BodyName, PartName
@@ -98,6 +98,5 @@ class Merger:
                     total += volume * float(part.density or 0.0)
             return total
 
-        sizes = {root: size(root) for root in members}
-        least = (1.0 - constants.AS_LARGE) * max(sizes.values())
-        return min((root for root in members if sizes[root] >= least), key=lambda root: min(members[root]))
+        roots = {min(names): root for root, names in members.items()}
+        return roots[largest({name: size(root) for name, root in roots.items()})]
