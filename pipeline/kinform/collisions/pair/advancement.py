@@ -37,7 +37,8 @@ class First:
     before: float = 0.0
     """m: how deep the parts overlapped at the start, before they parted."""
     deeper: float = math.inf
-    """Where they were seen to go deeper since, before they parted: this way they ought not to go."""
+    """Where they were seen to go deeper since, before they parted, or to lead on into each other: this way they ought
+    not to go."""
 
 
 NOTHING = First(None, None, None)
@@ -74,7 +75,7 @@ class Search:
         self.test, self.course, self._near = test, course, near
         self._piece: tuple[float, float, PairTest] | None = None
         """From where to where what meets is asked of some facets only."""
-        self._fine = fine
+        self._fine, self._end = fine, end
         self._resolution = max(
             constants.RESOLUTION * test.size, (course.travel(end) - course.travel(start)) / constants.WORK * 2.0
         )
@@ -183,9 +184,18 @@ class Search:
         self.since = dict.fromkeys(crossing.shared)
         self.overlaps = bool(crossing) and (self.test.overlapping or self.too_deep(start))
         if self.overlaps:
-            self.before = self._depth(start)
+            depth = self._depth(start)
+            self.before = depth if depth > constants.SPECK * self.test.size else 0.0
             middles = crossing.segments().mean(axis=1)
             self.place = self._world(middles[np.argmin(np.linalg.norm(middles - middles.mean(axis=0), axis=1))])
+            self._look_where_it_leads(start)
+
+    def _look_where_it_leads(self, start: float) -> None:
+        """Whether parts that overlap as they are drawn are seen to go on into each other: deep enough, they would come
+        out on the other side and seem to have parted."""
+        at = self.test.leads_in(self.course.displacement, start, self._end) if self._drawn else None
+        if at is not None:
+            self._deeper = min(self._deeper, at)
 
     def _step(self, left: float, stack: list[float]) -> tuple[float, bool]:
         """Where the step from `left` ends, which is put on the stack, and whether anything can meet in it."""
@@ -305,6 +315,7 @@ class Search:
                 self._inside.forget()
             elif self._inside.place is not None:
                 self.before, self.place = self._inside.sunk, self._world(self._inside.place)
+                self._look_where_it_leads(self._start)
         return self._inside
 
     def _came_in(self, point: Entry | None) -> _Hit | None:
