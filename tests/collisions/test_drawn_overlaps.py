@@ -206,4 +206,4 @@ def test_the_way_that_a_block_leads_on_into_another(into, seed):
     one, other = part("one", box(-9, 9, -9, 9, -5, 0), X), part("other", box(-5, 5, -5, 5, -into, 5 - into), X)
     overlap = DrawnOverlap(one.mesh, other.mesh, np.eye(4), 1e-5)
     leads = [overlap.leads_in(displacements_along(np.append(np.zeros(3), s * X[:3, 2])), 0.0, 0.1) for s in (-1, 1)]
-    assert leads == [pytest.approx(2e-3 * into * 10 / (10 + 2 * into), rel=2e-3), None]
+    assert leads == [pytest.approx(4e-3 * into * 10 / (10 + 2 * into), rel=2e-3), None]

@@ -89,6 +89,8 @@ class Search:
         """(3,) m, world: where."""
         self._deeper = math.inf
         """Where parts that have crossed since the start were seen to be deeper."""
+        self._leads_in = math.inf
+        """Where parts that overlap as they are drawn are seen to go on into each other."""
         self._states = States(course, self._asked)
         self._touched = 0
         """Steps that have been followed to the resolution, one after the other."""
@@ -119,6 +121,8 @@ class Search:
             way = self.course.travel(first.hit) - self.course.travel(self._start)
             if way <= inside.sunk + self.test.loose:
                 self._deeper = first.hit
+        if self.deeper == math.inf and (self._leads_in <= limit or first.hit is not None):
+            self._deeper = self._leads_in
         deeper = self.deeper < math.inf
         if deeper or (first.hit is None and first.exhausted is None and self.overlapping):
             return First(None, None, self.place, True, before=self.before, deeper=self.deeper)
@@ -133,7 +137,7 @@ class Search:
         fine, resolution, left, stack = self._fine, self._resolution, self._left, [limit]
         self._cover(left, limit)
         while stack:
-            if self.deeper < math.inf:
+            if self.deeper < math.inf or left >= self._leads_in:
                 break
             right, meets = self._step(left, stack)
             if not meets:
@@ -194,8 +198,7 @@ class Search:
         """Whether parts that overlap as they are drawn are seen to go on into each other: deep enough, they would come
         out on the other side and seem to have parted."""
         at = self.test.leads_in(self.course.displacement, start, self._end) if self._drawn else None
-        if at is not None:
-            self._deeper = min(self._deeper, at)
+        self._leads_in = math.inf if at is None else at
 
     def _step(self, left: float, stack: list[float]) -> tuple[float, bool]:
         """Where the step from `left` ends, which is put on the stack, and whether anything can meet in it."""

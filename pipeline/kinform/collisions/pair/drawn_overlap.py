@@ -90,38 +90,43 @@ class DrawnOverlap:
         largest = order[thickness[order] > self._least][:OVERLAP_PIECES].tolist()
         return [_piece(first, other, float(thickness[k]), *bounds(boxes[k])) for k in largest]
 
-    def leads_in(self, pose: Pose, start: float, end: float) -> float | None:
-        """How far a motion from `start`, where the parts are as here, up to `end` goes until it is seen to lead
-        on into the overlap, or to lead as well that way as apart; None where it does not."""
-        found = [at for piece in self._pieces if (at := self._piece_leads_in(piece, pose, start, end)) is not None]
+    def leads_in(self, pose: Pose, start: float, end: float, spare: float = 0.0) -> float | None:
+        """How far a motion from `start`, where the parts are as here, up to `end` goes until it is seen to lead on into
+        the overlap, or to lead as well that way as apart, and has gone on by more than `spare` (m); None where it does
+        not."""
+        found = [
+            self._reached(piece, pose, max(OVERLAP_STEPS[-1] * piece.thickness, spare), start, end)
+            for piece in self._pieces
+            if self._piece_leads_in(piece, pose, start, end)
+        ]
         return min(found, default=None)
 
-    def _piece_leads_in(self, piece: _Piece, pose: Pose, start: float, end: float) -> float | None:
-        steps = list(self._steps(piece, pose, start, end))
-        ways = [moved for _, moved in steps]
+    def _piece_leads_in(self, piece: _Piece, pose: Pose, start: float, end: float) -> bool:
+        ways = list(self._displaced(piece, pose, start, end))
         shares = [piece.share(moved) for moved in ways]
         if max(shares[:OVERLAP_SOON]) > OVERLAP_GROWS:
-            return steps[:OVERLAP_SOON][-1][0]
+            return True
         if min(shares) >= OVERLAP_SHRINKS:
-            return None
+            return False
         back = [piece.share(inverse(moved)) for moved in ways]
-        if max(back[:OVERLAP_SOON]) > OVERLAP_GROWS or min(back) >= OVERLAP_SHRINKS:
-            return None
-        return steps[-1][0]
+        return max(back[:OVERLAP_SOON]) <= OVERLAP_GROWS and min(back) < OVERLAP_SHRINKS
 
-    def _steps(self, piece: _Piece, pose: Pose, start: float, end: float) -> Iterator[tuple[float, Array]]:
-        """Parameters up to `end` at which the piece has travelled so many thicknesses, and how it is displaced there
-        (4, 4)."""
-        low = start
+    def _displaced(self, piece: _Piece, pose: Pose, start: float, end: float) -> Iterator[Array]:
+        """(4, 4) how the piece is displaced where it has travelled so many thicknesses, as far as it does up to
+        `end`."""
+        at = start
         for step in OVERLAP_STEPS:
-            beyond = partial(self._beyond, piece, pose, step * piece.thickness)
-            high = end
-            while high > low and beyond(0.5 * (low + high)):
-                high = 0.5 * (low + high)
-            low, high = narrowed(low, high, OVERLAP_FINE * high, beyond)
-            yield high, self._moved(pose, high)
-            if high >= end:
+            at = self._reached(piece, pose, step * piece.thickness, at, end)
+            yield self._moved(pose, at)
+            if at >= end:
                 return
+
+    def _reached(self, piece: _Piece, pose: Pose, way: float, start: float, end: float) -> float:
+        """The parameter after `start` at which a piece has travelled so far (m), or the end."""
+        beyond, low, high = partial(self._beyond, piece, pose, way), start, end
+        while high > low and beyond(0.5 * (low + high)):
+            high = 0.5 * (low + high)
+        return narrowed(low, high, OVERLAP_FINE * high, beyond)[1]
 
     def _beyond(self, piece: _Piece, pose: Pose, way: float, s: float) -> bool:
         return piece.travelled(self._moved(pose, s)) > way

@@ -115,17 +115,22 @@ class PairTest:
 
     def going_deeper(self, before: float) -> float:
         """m: deeper than that, parts that overlapped by `before` (m) do not just rub on, but go into each other."""
-        return constants.OVERLAP_SAME * before + max(self.loose, constants.DEEPER * self.size)
+        return constants.OVERLAP_SAME * before + self._rubs
+
+    @property
+    def _rubs(self) -> float:
+        """m: so far parts that overlap as they are drawn may go on."""
+        return max(self.loose, constants.DEEPER * self.size)
 
     def leads_in(self, displacement: Callable[[float], Array], start: float, end: float) -> float | None:
         """How far a motion from `start` up to `end` goes until it is seen to lead on into what the parts share at its
-        start (`DrawnOverlap`); None where it does not, or they share nothing that is thicker than what is thin beside
-        what mates may be deep."""
+        start (`DrawnOverlap`), by more than they may rub on; None where it does not, or they share nothing that is
+        thicker than what is thin beside what mates may be deep."""
         X = self.pose(displacement(start))
         with at_work_on(*self.names):
             if X.tobytes() not in self._drawn:
                 self._drawn[X.tobytes()] = DrawnOverlap(*self._meshes, X, constants.OVERLAP_THIN * self.loose)
-            return self._drawn[X.tobytes()].leads_in(lambda s: self.pose(displacement(s)), start, end)
+            return self._drawn[X.tobytes()].leads_in(lambda s: self.pose(displacement(s)), start, end, self._rubs)
 
     def pose(self, D: Array) -> Array:
         """(4, 4) of the second part in the first, by the displacement `D` of the second body relative to the first."""
