@@ -55,7 +55,7 @@ def assert_nothing_false(name, pin, poses):
     made, answers = KINDS[name](pin), set()
     for X, scale in poses:
         answer, twists, reason = joint_of(made, X, scale)
-        certain = answer[1] in ("determined", "inferred")
+        certain = answer[1] in ("determined", "inferred", "blocked")
         answers.add(answer if certain else answer[1])
         assert not certain or is_right(made, X, scale, twists), (answer, reason)
     assert len(answers) == 1, answers
@@ -72,6 +72,9 @@ def posed(seed, scale):
 @example("nose helix", Pin(play=0.05, segments=48), 1, 1e-3)
 @example("helical 25", Pin(play=0.005, segments=48), 1, 1e-3)
 @example("square corner", Pin(), 1, 1e-3)
+@example("key corner", Pin(), 1, 1e-3)
+@example("block corner", Pin(), 1, 1e-3)
+@example("pad corner", Pin(), 1, 1e-3)
 @example("plate arc 2", Pin(play=0.05), 1, 1e-3)
 def test_nothing_certain_is_false(name, pin, seed, scale):
     assert_nothing_false(name, pin, [(np.eye(4), 1e-3), posed(seed, scale)])
@@ -108,7 +111,7 @@ def test_the_rounded_end_of_a_slot_may_be_a_stop(name):
 
 
 @pytest.mark.parametrize("stated", ["cylindrical", "revolute", "prismatic", "fixed"])
-@pytest.mark.parametrize("name", ["bayonet corner", "square corner"])
+@pytest.mark.parametrize("name", ["bayonet corner", "square corner", "key corner", "block corner", "pad corner"])
 def test_nothing_may_be_stated_of_a_corner(name, stated):
     """The pin may go either way, one at a time, and is at two stops."""
     assert answer_to(KINDS[name](Pin(play=0.01)), stated) == "undecided"
@@ -133,6 +136,14 @@ def test_of_a_helical_slot_no_function_passes_and_none_is_an_error(stated):
     """Its flanks are of facets, whose direction is known to 11°: no pitch follows from them."""
     pitch = 0.06 if stated == "screw" else None
     assert answer_to(KINDS["helical 60"](Pin(play=0.01)), stated, pitch) == "undecided"
+
+
+@pytest.mark.parametrize(("stated", "answer"), [
+    ("revolute", "agrees"), ("cylindrical", "agrees"), ("prismatic", "undecided"), ("fixed", "undecided"),
+])  # fmt: skip
+def test_a_shaft_at_the_bottom_of_its_bore_whose_key_is_at_a_wall_may_turn_or_slide_as_well(stated, answer):
+    """It was a blocked hinge, whatever the bottom is: a shaft at it that has no key was doubtful all the time."""
+    assert answer_to(KINDS["key at bottom"](Pin()), stated) == answer
 
 
 @pytest.mark.parametrize(("name", "stated", "answer"), [

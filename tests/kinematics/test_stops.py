@@ -101,6 +101,30 @@ def test_a_lever_on_its_stop_turns_away_from_it():
     assert (found.form.type, found.status) == ("revolute", "blocked")
 
 
+LEVER_STOP = plane((0.03, -0.003, 0), -Y, (0.002, 0.002))
+
+
+def test_a_lever_on_its_stop_and_on_a_pad_beside_its_axis_may_leave_either():
+    found = decision([cylinder(), plane((0.009, 0, 0.01), Z, (0.004, 0.004)), LEVER_STOP])
+    assert types(found) == ("revolute", "ambiguous", None)
+
+
+def test_a_piston_at_the_bottom_of_its_bore_with_a_lever_on_its_stop_is_as_doubtful_as_without():
+    found = decision([cylinder(), disc(), LEVER_STOP])
+    assert types(found) == ("revolute", "ambiguous", "cylindrical")
+    assert [k for k, _ in found.left_out] == [2]
+    assert [k for k, _ in found.other.left_out] == [1, 2]
+
+
+@pytest.mark.parametrize(("length", "status"), [(0.01, "ambiguous"), (0.015, "ambiguous"), (0.025, "blocked")])
+def test_along_which_of_two_walls_a_block_slides_is_known_where_one_is_much_longer(length, status):
+    """Of walls in a corner, both 2 mm high, one is 10 mm long."""
+    floor = plane(size=(0.01, length))
+    walls = [plane((-length / 2, 0, 0.001), X, (0.01, 0.002)), plane((0, -0.005, 0.001), Y, (0.002, length))]
+    found = decision([floor, *walls])
+    assert (found.form.type, found.status) == ("prismatic", status)
+
+
 def test_a_lever_that_a_large_stop_holds_is_not_fused():
     stop = plane((0.03, -0.003, 0), -Y, (0.06, 0.06))
     found = decision([cylinder(length=0.004), ring((0, 0, 0.002)), ring((0, 0, -0.002), normal=-Z), stop])

@@ -148,6 +148,26 @@ def key_stop(pin: Pin) -> Grooved:
     )
 
 
+def key_at_bottom(pin: Pin) -> Grooved:
+    """A key at one wall, its shaft at the bottom of a bore: a piston, or a shaft on a step bearing."""
+    keyed = rod(SHAFT, -30, 30, 60, 3.0) + box(5, SHAFT + 2.5, -2, 2, -6, 6)
+    barrel = rod(15, -40, 15, 72) - rod(SHAFT, -30, 20, 64) - box(5, SHAFT + 4, -2, 6, -12, 20)
+    return Grooved("key at bottom", barrel, keyed, ())
+
+
+def pad_corner(pin: Pin) -> Grooved:
+    """A lever on a pad beside its axis, at a stop: free to go away from either."""
+    base = box(-30, 60, -40, 40, -5, 0) - rod(5, -6, 1, 64) + box(20, 40, -14, -4, -1, 12)
+    lever = rod(5, -5, 12, 56) + box(0, 50, -4, 4, 4, 12) + box(30, 36, -3, 3, 0, 5)
+    return Grooved("pad corner", base, lever, ())
+
+
+def block_corner(pin: Pin) -> Grooved:
+    """A block on a floor in the corner of two walls, along either of which it may slide."""
+    walls = box(-40, -30, -40, 40, -1, 12) + box(-40, 40, -40, -30, -1, 12)
+    return Grooved("block corner", box(-40, 40, -40, 40, -5, 0) + walls, box(-30, -5, -30, -5, 0, 10), ())
+
+
 def round_about(pin: Pin) -> Grooved:
     poses = [(angle, 0) for angle in arcs(-40, 40)]
     return in_sleeve("slot round about", pin, poses, (np.array([turn()]),))
@@ -385,6 +405,9 @@ KINDS: dict[str, Callable[[Pin], Grooved]] = {
     "open axial": open_axial,
     "axial end": axial_end,
     "key corner": key_corner,
+    "key at bottom": key_at_bottom,
+    "pad corner": pad_corner,
+    "block corner": block_corner,
     "key stop": key_stop,
     "square end": square_end,
     "square corner": square_corner,

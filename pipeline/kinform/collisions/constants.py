@@ -129,6 +129,29 @@ RISE = 0.02
 RISE_UNEVEN = 0.1
 """Share of the same by which a depth that grows may have been greater before: it is measured at some points."""
 
+# pair/drawn_overlap: whether parts that overlap as drawn go on into each other
+
+OVERLAP_THIN = 0.25
+"""Share of what mates may be deep to which pieces of an overlap are thin: twice their volume over their area, which is
+half as much as a wedge is deep, or a third as a ball."""
+OVERLAP_STEPS = (0.25, 0.5, 1.0, 2.0, 4.0)
+"""Thicknesses of a piece of the overlap that it travels until it is asked what the parts share there: two plates that
+are drawn in each other by all of one's thickness have parted after twice as much, two ridges crest in crest after
+more."""
+OVERLAP_SOON = 4
+"""So many of these, the first, tell whether parts go on into each other: on a longer way others of their features may
+meet."""
+OVERLAP_FINE = 1e-3
+"""Share of the way to which these places are found."""
+OVERLAP_GROWS = 1.15
+"""Parts that come to share so many times as much go into each other: those of robots that rub on each other, or are
+pressed together, share as much to within a few per cent over such a way."""
+OVERLAP_SHRINKS = 0.5
+"""Parts that come to share less than this part: a leaf that turns out of another has left it by half where its far end
+has travelled as far as it was in it."""
+OVERLAP_PIECES = 4
+"""Pieces that are asked about, the largest."""
+
 # pair/posed_pairs: pairs of bodies that move along given poses
 
 HIGHER_KINDS = ("point", "line")

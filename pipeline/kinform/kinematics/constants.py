@@ -134,6 +134,9 @@ MOST_LEFT_OUT = 0.25
 """Largest share of the contact area that consensus may leave out."""
 MOST_STOPPED = 0.6
 """Largest share that end stops of a turn may have: a closed gripper's jaws touch over more than its hinge."""
+RIVAL = 2.0
+"""Times as much area that others may have which could be left out instead of what is: of a block in a corner nobody
+knows along which of two walls it slides, unless one is much longer."""
 ALONG_AXIS = 0.01
 """Normals and axes this near (sine) to an axis are along it."""
 OPPOSING_SPEED = 0.05

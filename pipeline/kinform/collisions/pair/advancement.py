@@ -37,7 +37,8 @@ class First:
     before: float = 0.0
     """m: how deep the parts overlapped at the start, before they parted."""
     deeper: float = math.inf
-    """Where they were seen to go deeper since, before they parted: this way they ought not to go."""
+    """Where they were seen to go deeper since, before they parted, or to lead on into each other: this way they ought
+    not to go."""
 
 
 NOTHING = First(None, None, None)
@@ -74,7 +75,7 @@ class Search:
         self.test, self.course, self._near = test, course, near
         self._piece: tuple[float, float, PairTest] | None = None
         """From where to where what meets is asked of some facets only."""
-        self._fine = fine
+        self._fine, self._end = fine, end
         self._resolution = max(
             constants.RESOLUTION * test.size, (course.travel(end) - course.travel(start)) / constants.WORK * 2.0
         )
@@ -88,6 +89,8 @@ class Search:
         """(3,) m, world: where."""
         self._deeper = math.inf
         """Where parts that have crossed since the start were seen to be deeper."""
+        self._leads_in = math.inf
+        """Where parts that overlap as they are drawn are seen to go on into each other."""
         self._states = States(course, self._asked)
         self._touched = 0
         """Steps that have been followed to the resolution, one after the other."""
@@ -118,6 +121,8 @@ class Search:
             way = self.course.travel(first.hit) - self.course.travel(self._start)
             if way <= inside.sunk + self.test.loose:
                 self._deeper = first.hit
+        if self.deeper == math.inf and (self._leads_in <= limit or first.hit is not None):
+            self._deeper = self._leads_in
         deeper = self.deeper < math.inf
         if deeper or (first.hit is None and first.exhausted is None and self.overlapping):
             return First(None, None, self.place, True, before=self.before, deeper=self.deeper)
@@ -132,7 +137,7 @@ class Search:
         fine, resolution, left, stack = self._fine, self._resolution, self._left, [limit]
         self._cover(left, limit)
         while stack:
-            if self.deeper < math.inf:
+            if self.deeper < math.inf or left >= self._leads_in:
                 break
             right, meets = self._step(left, stack)
             if not meets:
@@ -183,9 +188,17 @@ class Search:
         self.since = dict.fromkeys(crossing.shared)
         self.overlaps = bool(crossing) and (self.test.overlapping or self.too_deep(start))
         if self.overlaps:
-            self.before = self._depth(start)
+            depth = self._depth(start)
+            self.before = depth if depth > constants.SPECK * self.test.size else 0.0
             middles = crossing.segments().mean(axis=1)
             self.place = self._world(middles[np.argmin(np.linalg.norm(middles - middles.mean(axis=0), axis=1))])
+            self._look_where_it_leads(start)
+
+    def _look_where_it_leads(self, start: float) -> None:
+        """Whether parts that overlap as they are drawn are seen to go on into each other: deep enough, they would come
+        out on the other side and seem to have parted."""
+        at = self.test.leads_in(self.course.displacement, start, self._end) if self._drawn else None
+        self._leads_in = math.inf if at is None else at
 
     def _step(self, left: float, stack: list[float]) -> tuple[float, bool]:
         """Where the step from `left` ends, which is put on the stack, and whether anything can meet in it."""
@@ -305,6 +318,7 @@ class Search:
                 self._inside.forget()
             elif self._inside.place is not None:
                 self.before, self.place = self._inside.sunk, self._world(self._inside.place)
+                self._look_where_it_leads(self._start)
         return self._inside
 
     def _came_in(self, point: Entry | None) -> _Hit | None:

@@ -7,7 +7,7 @@ points lie on a mating surface to within the errors of the pair, are no collisio
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import pairwise
 
@@ -15,6 +15,7 @@ import fcl
 import numpy as np
 
 from kinform.collisions import constants
+from kinform.collisions.pair.drawn_overlap import DrawnOverlap
 from kinform.collisions.pair.facet_crossings import crossings
 from kinform.collisions.pair.mate_surfaces import Mates, SurfacePair
 from kinform.collisions.pair.passages import Passages, Path, passages
@@ -77,11 +78,14 @@ class PairTest:
         self.loose = max([self.scrape, *self.mates.slacks])
         """m: less deep, points of one may be in the other though the parts only mate."""
         self._passages: Passages | None = None
+        self._drawn: dict[bytes, DrawnOverlap] = {}
         self.empty = not (len(facets[0]) and len(facets[1]))
 
     def some(self, facets: tuple[Ints, Ints]) -> PairTest:
         """The same with some of the facets."""
-        return PairTest(self._shapes, *self.names, facets, self.mates)
+        test = PairTest(self._shapes, *self.names, facets, self.mates)
+        test._drawn = self._drawn
+        return test
 
     @cached_property
     def _objects(self) -> tuple[fcl.CollisionObject, fcl.CollisionObject]:
@@ -111,7 +115,22 @@ class PairTest:
 
     def going_deeper(self, before: float) -> float:
         """m: deeper than that, parts that overlapped by `before` (m) do not just rub on, but go into each other."""
-        return constants.OVERLAP_SAME * before + max(self.loose, constants.DEEPER * self.size)
+        return constants.OVERLAP_SAME * before + self._rubs
+
+    @property
+    def _rubs(self) -> float:
+        """m: so far parts that overlap as they are drawn may go on."""
+        return max(self.loose, constants.DEEPER * self.size)
+
+    def leads_in(self, displacement: Callable[[float], Array], start: float, end: float) -> float | None:
+        """How far a motion from `start` up to `end` goes until it is seen to lead on into what the parts share at its
+        start (`DrawnOverlap`), by more than they may rub on; None where it does not, or they share nothing that is
+        thicker than what is thin beside what mates may be deep."""
+        X = self.pose(displacement(start))
+        with at_work_on(*self.names):
+            if X.tobytes() not in self._drawn:
+                self._drawn[X.tobytes()] = DrawnOverlap(*self._meshes, X, constants.OVERLAP_THIN * self.loose)
+            return self._drawn[X.tobytes()].leads_in(lambda s: self.pose(displacement(s)), start, end, self._rubs)
 
     def pose(self, D: Array) -> Array:
         """(4, 4) of the second part in the first, by the displacement `D` of the second body relative to the first."""

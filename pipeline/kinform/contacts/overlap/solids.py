@@ -84,6 +84,35 @@ class Overlap:
         return volumes * self.scale**3, areas * self.scale**2
 
 
+@dataclass(frozen=True, eq=False)
+class ScaledSolid:
+    """A mesh as a manifold, whose origin is at `middle` (3,) m and whose unit is `scale` m."""
+
+    solid: Manifold
+    middle: Array
+    scale: float
+
+    def of(self, other: ScaledSolid, X: Array) -> Manifold:
+        """Another solid at a pose (4, 4) in the frame of this one's mesh, in this one's unit, from its origin."""
+        place = np.concatenate(
+            [X[:3, :3] * other.scale, (X[:3, :3] @ other.middle + X[:3, 3] - self.middle)[:, None]], axis=1
+        )
+        return other.solid.transform(place / self.scale)
+
+
+def scaled_solid(mesh: Mesh, role: int = 0) -> ScaledSolid | None:
+    """A mesh that bounds a volume as a manifold whose facets remember their number; None where manifold3d does not take
+    it."""
+    solid = _solid(mesh, role)
+    return None if solid is None else ScaledSolid(solid, *_scaling(mesh))
+
+
+def overlap_of(first: ScaledSolid, second: Manifold, least: float) -> Overlap:
+    """The overlap of two solids, the second in the unit of the first and from its origin, in pieces of more than
+    `least` (m³)."""
+    return _overlap(first.solid ^ second, 0.5 * least / first.scale**3, first.middle, first.scale)
+
+
 def _scaling(mesh: Mesh) -> tuple[Array, float]:
     """Centre (3,) and scale (a power of two) that bring a mesh to the order of 1."""
     low, high = mesh.box
@@ -95,7 +124,7 @@ def _scaling(mesh: Mesh) -> tuple[Array, float]:
 class SolidStore:
     """Manifolds of meshes, by digest and by their role (0, 1) in a pair."""
 
-    solids: dict[tuple[str, int], Manifold | None] = field(default_factory=dict)
+    solids: dict[tuple[str, int], ScaledSolid | None] = field(default_factory=dict)
 
     def overlap(self, a: PartView, b: PartView, least: float) -> Overlap | None:
         """The overlap of two meshes that bound volumes, in pieces of more than `least` (m³); None where manifold3d does
@@ -104,23 +133,19 @@ class SolidStore:
         first, second = self._solid(home.index.mesh, roles[0]), self._solid(guest.index.mesh, roles[1])
         if first is None or second is None:
             return None
-        middle, scale = _scaling(home.index.mesh)
-        guest_middle, guest_scale = _scaling(guest.index.mesh)
-        R, p = guest.X_FP[:3, :3], guest.X_FP[:3, 3]
-        place = np.concatenate([R * guest_scale, (R @ guest_middle + p - middle)[:, None]], axis=1) / scale
-        return _overlap(first ^ second.transform(place), 0.5 * least / scale**3, middle, scale)
+        return overlap_of(first, first.of(second, guest.X_FP), least)
 
     def forget(self, digest: str) -> None:
         """What is known of a mesh that is asked no more."""
         for role in (0, 1):
             self.solids.pop((digest, role), None)
 
-    def _solid(self, mesh: Mesh, role: int) -> Manifold | None:
+    def _solid(self, mesh: Mesh, role: int) -> ScaledSolid | None:
         key = (mesh.digest, role)
         try:
             return self.solids[key]
         except KeyError:
-            return self.solids.setdefault(key, _solid(mesh, role))
+            return self.solids.setdefault(key, scaled_solid(mesh, role))
 
 
 def bounds_volume(mesh: Mesh) -> bool:

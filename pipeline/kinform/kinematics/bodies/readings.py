@@ -62,7 +62,7 @@ def _as_intended(
     chosen = next((j for j in open_to if _is(j, intended, patches)), None)
     if chosen is None:
         return answer, joint
-    left = reading_of(first, "") if chosen is second else joint.readings[0]
+    left = reading_of(first, "stop" if first.blockers else "") if chosen is second else joint.readings[0]
     reason = f"{joint.reason}; the function states {chosen.type}: {intended.name}"
     strict = joint.twists if chosen is second else answer.strict
     inferred = replace(

@@ -2,13 +2,17 @@
 
 The freedoms are the motions that every patch preserves. Where that leaves nothing, consensus: patches may be left out
 only if they interfere, or oppose the motion in one direction only, and only when they are a small part of the contact;
-the answer is then `blocked`. What opposes it both ways holds it, as two sides of a slot hold a pin, be it of known
-surfaces or of facets. The room's docstring has an example.
+the answer is then `blocked`, and in doubt where what is kept may be a stop as well (`stops`), or could have been left
+out instead: in a corner two walls oppose two motions, and which of them is meant is not known. What opposes a motion
+both ways holds it, as two sides of a slot hold a pin, be it of known surfaces or of facets. The room's docstring has an
+example.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -23,6 +27,7 @@ from kinform.kinematics.pair.hypotheses import Motion, candidate_motions
 from kinform.kinematics.pair.in_step import Steps, remains
 from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.kinematics.pair.preserved import preserved_by_each
+from kinform.kinematics.pair.stops import ROLES, ends_inside, faces_in_words, stop_reading
 from kinform.kinematics.pair.touches import TOUCHING
 from kinform.kinematics.pair.uncertainty import uncertainty_doubt
 from kinform.model.arrays import Array, Flags
@@ -75,7 +80,7 @@ def _decide(
     strict, values = yield from freedoms(evidence, twists, preserved, everything, tolerances)
     chosen = _consensus(evidence, candidates, preserved, strict)
     if chosen is not None:
-        keep, motion = chosen
+        keep = chosen.keep
         basis, loosened = yield from freedoms(evidence, twists, preserved, keep, tolerances)
     if chosen is None or basis.shape[1] <= strict.shape[1]:
         sure = yield from certainty(evidence, twists, preserved, strict, values, tolerances)
@@ -83,15 +88,30 @@ def _decide(
         form = JointForm("general") if momentary(evidence, strict) else evidence.form(strict)
         other = None if sure.other is None else _other(evidence, sure, candidates, preserved, values)
         return Decision(form, strict, strict, sure.status, sure.reason, kept, (), values, other)
-    out = tuple((int(k), motion) for k in np.flatnonzero(~keep))
+    out = tuple((int(k), chosen.motion) for k in np.flatnonzero(~keep))
     area = evidence.areas
     share = float(area[~keep].sum() / area.sum())
     reason = f"{len(out)} of {len(area)} patches ({100 * share:.1f} % of the area) left out: they block it"
     kept = tuple(int(k) for k in np.flatnonzero(keep))
     form = evidence.form(basis)
     doubt = uncertainty_doubt(evidence.chosen(keep), form, evidence.frame.length)
-    status, reason = ("ambiguous", f"{doubt}; {reason}") if doubt else ("blocked", reason)
-    return Decision(form, basis, strict, status, reason, kept, out, loosened)
+    if doubt:
+        return Decision(form, basis, strict, "ambiguous", f"{doubt}; {reason}", kept, out, loosened)
+    if chosen.rivals:
+        doubt = f"{form.type} if {faces_in_words(evidence, chosen.rivals)} holds, which may block it as well"
+        return Decision(form, basis, strict, "ambiguous", f"{doubt}; {reason}", kept, out, loosened)
+    stop = yield from stop_reading(evidence, twists, preserved, basis, tolerances, keep)
+    if stop is None:
+        return Decision(form, basis, strict, "blocked", reason, kept, out, loosened)
+    words = f"{form.type} if {faces_in_words(evidence, stop.out)} holds"
+    if not ends_inside(evidence, stop, keep):
+        # as in the corner of a slot: which of two walls is a stop, or whether both are, is not known
+        reason = f"{words}, which may be an end stop as well as what blocks it; {reason}"
+        return Decision(form, basis, strict, "ambiguous", reason, kept, out, loosened)
+    reason = f"{words}; {stop.form.type} if it is {ROLES[stop.role]}; {reason}"
+    both = replace(stop, out=tuple(sorted({*stop.out, *(k for k, _ in out)})))
+    other = _other(evidence, Certainty("ambiguous", reason, both), candidates, preserved, loosened)
+    return Decision(form, basis, strict, "ambiguous", reason, kept, out, loosened, other)
 
 
 def _other(
@@ -114,22 +134,34 @@ def _other(
     )
 
 
+@dataclass(frozen=True, eq=False)
+class _Consensus:
+    """Patches to keep, and the motion that they free."""
+
+    keep: Flags
+    motion: Motion
+    rivals: tuple[int, ...]
+    """Items of those that would have been left out as well, of another consensus."""
+
+
 def _consensus(
     evidence: Evidence, candidates: tuple[Motion, ...], preserved: Flags, strict: Array
-) -> tuple[Flags, Motion] | None:
+) -> _Consensus | None:
     """The patches to keep and the motion that they free, or None when all patches agree.
 
     Of the candidates the one that leaves out the smallest share of the area, the first of equals; `preserved` (items,
     candidates). Where contact already leaves a freedom (`strict`), only a turn about a curved surface may be added.
+    Rivals of it leave out others that it keeps, and little more of the area.
     """
     total = float(evidence.areas.sum())
-    best: tuple[float, Flags, Motion] | None = None
+    found: list[tuple[float, Flags, Motion]] = []
     for n in np.flatnonzero(preserved.any(axis=0) & ~preserved.all(axis=0)):
         keep, motion = preserved[:, n], candidates[n]
         share = sum(item.area for item in evidence.chosen(~keep)) / total
         small = share <= constants.MOST_LEFT_OUT
         stopped = share <= constants.MOST_STOPPED and _turns_on_journal(evidence, motion, keep)
-        if not (small or stopped) or (best is not None and share >= best[0]):
+        least = min((of for of, _, _ in found), default=math.inf)
+        if not (small or stopped) or share > constants.RIVAL * least:
             continue
         beyond = norm(motion.twist - strict @ (strict.T @ motion.twist))
         if strict.shape[1] and (not (motion.turn and motion.curved) or beyond < constants.NEW_FREEDOM):
@@ -137,8 +169,13 @@ def _consensus(
         if _frees_thrust(evidence, motion, keep):
             continue
         if _excusable(evidence, motion, ~keep, stops_only=not small):
-            best = share, keep, motion
-    return None if best is None else best[1:]
+            found.append((share, keep, motion))
+    if not found:
+        return None
+    share, keep, motion = min(found, key=lambda one: one[0])
+    beside = [other for of, other, _ in found if of <= constants.RIVAL * share and (keep | other).all()]
+    rivals = tuple(np.flatnonzero(~beside[0]).tolist()) if beside else ()
+    return _Consensus(keep, motion, rivals)
 
 
 def _frees_thrust(evidence: Evidence, motion: Motion, keep: Flags) -> bool:

@@ -56,19 +56,25 @@ class OtherReading:
 
 
 def stop_reading(
-    evidence: Evidence, twists: Array, preserved: Flags, strict: Array, tolerances: Tolerances
+    evidence: Evidence,
+    twists: Array,
+    preserved: Flags,
+    strict: Array,
+    tolerances: Tolerances,
+    counts: Flags | None = None,
 ) -> Steps[OtherReading | None]:
     """The other reading of a pair whose freedoms are `strict` (6, k), if some of its faces may be a stop; None if not.
 
     `twists` (6, n) are candidate motions, `preserved` (items, n) which patches slide on themselves under them.
-    Of several stops the one with the least area.
+    Of several stops the one with the least area. `counts` (items,): what is left of the contact; None: all of it.
     """
     best: tuple[float, OtherReading] | None = None
-    for out in _candidates(evidence):
-        keep = np.ones(len(evidence.items), dtype=bool)
+    every = np.ones(len(evidence.items), dtype=bool) if counts is None else counts
+    for out in _candidates(evidence, every):
+        keep = every.copy()
         keep[list(out)] = False
         free = preserved[keep].all(axis=0) if keep.any() else np.zeros(twists.shape[1], dtype=bool)
-        if not (free & ~preserved[~keep].all(axis=0)).any():
+        if not (free & ~preserved[list(out)].all(axis=0)).any():
             continue
         basis, freed = yield from freedoms_beyond(evidence, twists, preserved, keep, tolerances, strict)
         if basis.shape[1] <= strict.shape[1]:
@@ -95,10 +101,12 @@ def seat_reading(
     return OtherReading(evidence.form(basis), basis, out, "stop")
 
 
-def _candidates(evidence: Evidence) -> list[tuple[int, ...]]:
-    """Sets of items that could be stops: planes that face one way, and single cones and balls."""
+def _candidates(evidence: Evidence, counts: Flags) -> list[tuple[int, ...]]:
+    """Sets of items, of those that count (items,), that could be stops: planes that face one way, and single cones and
+    balls."""
     items = evidence.items
-    planes = sorted((k for k, i in enumerate(items) if i.patch.kind == "plane"), key=lambda k: (-items[k].area, k))
+    some = [(k, items[k]) for k in np.flatnonzero(counts).tolist()]
+    planes = sorted((k for k, i in some if i.patch.kind == "plane"), key=lambda k: (-items[k].area, k))
     sets: list[tuple[int, ...]] = []
     left = list(planes)
     while left:
@@ -106,14 +114,14 @@ def _candidates(evidence: Evidence) -> list[tuple[int, ...]]:
         facing = [k for k in left if float(items[k].normals[0] @ normal) > 1.0 - constants.FACING_ONE_WAY]
         sets.append(tuple(sorted(facing)))
         left = [k for k in left if k not in facing]
-    sets += [(k,) for k, i in enumerate(items) if i.patch.kind in ("cone", "sphere") and not i.patch.one_sided]
-    return [found for found in sets if len(found) < len(items)]
+    sets += [(k,) for k, i in some if i.patch.kind in ("cone", "sphere") and not i.patch.one_sided]
+    return [found for found in sets if len(found) < len(some)]
 
 
 def _may_be_stop(evidence: Evidence, strict: Array, motions: Array, reading: OtherReading, keep: Flags) -> bool:
     """Is there nothing that tells the faces left out to be guides? `motions` (6, n) is what they oppose."""
     guides = evidence.chosen(keep)
-    faces = evidence.chosen(~keep)
+    faces = [evidence.items[k] for k in reading.out]
     if motions.shape[1] == 2:
         return _short_flank(evidence, strict, reading, guides, faces)
     if motions.shape[1] != 1 or not one_sense(evidence, motions[:, 0], reading.out):
@@ -121,7 +129,7 @@ def _may_be_stop(evidence: Evidence, strict: Array, motions: Array, reading: Oth
     turned = {"fixed": ("revolute",), "prismatic": ("cylindrical",)}
     if reading.form.type in turned.get(evidence.form(strict).type, ()):
         return True
-    return reading.form.axis is not None and _ends_guide(reading.form, guides, faces)
+    return _ends_guide(reading.form, guides, faces)
 
 
 def one_sense(evidence: Evidence, motion: Array, out: tuple[int, ...]) -> bool:
@@ -132,13 +140,37 @@ def one_sense(evidence: Evidence, motion: Array, out: tuple[int, ...]) -> bool:
     return not (most > large and least < -large)
 
 
+def ends_inside(evidence: Evidence, reading: OtherReading, keep: Flags) -> bool:
+    """Is a stop at the end of what else is kept (items,), inside of its cross-section, as the bottom of a bore is?"""
+    guides = [item for k, item in enumerate(evidence.items) if keep[k] and k not in reading.out]
+    end = _end_of_guide(reading.form, guides, [evidence.items[k] for k in reading.out])
+    return end is not None and end.inside
+
+
+@dataclass(frozen=True, eq=False)
+class _End:
+    """Faces at the end of a guide that is long enough to slide in."""
+
+    inside: bool
+    """Of its cross-section."""
+    beside: bool
+    """Beside its axis."""
+
+
 def _ends_guide(form: JointForm, guides: list[Item], faces: list[Item]) -> bool:
     """Are the faces at the end of a guide along the joint's axis, inside of its cross-section or beside its axis?"""
+    end = _end_of_guide(form, guides, faces)
+    return end is not None and (end.inside or end.beside)
+
+
+def _end_of_guide(form: JointForm, guides: list[Item], faces: list[Item]) -> _End | None:
+    """Where faces are at the end of a guide along the joint's axis; None where there is none, or it is too short."""
     axis = form.axis
-    assert axis is not None
+    if axis is None:
+        return None
     running = [i for i in guides if i.patch.kind in (*COAXIAL, "extrusion", "plane") and _runs_along(i, axis)]
     if form.type not in ("cylindrical", "prismatic") or not running:
-        return False
+        return None
     centre = form.point if form.type == "cylindrical" else None
     if centre is None:
         centre = np.concatenate([i.points for i in running]).mean(axis=0)
@@ -147,14 +179,13 @@ def _ends_guide(form: JointForm, guides: list[Item], faces: list[Item]) -> bool:
         (_extent(section, axis), float(_distances((section - centre) @ across).max())) for section in _sections(running)
     ]
     if all(length < constants.SLIDES_FROM * 2.0 * half for length, half in lengths):
-        return False
+        return None
     ends = (np.concatenate([i.points for i in faces]) - centre) @ across
     away = _distances(ends)
     face_reach = float(away.max())
-    if face_reach <= constants.INSIDE_GUIDE * max(half for _, half in lengths):
-        return True
+    inside = face_reach <= constants.INSIDE_GUIDE * max(half for _, half in lengths)
     far = ends[away > constants.ROUND_FROM * face_reach]
-    return widest_turn(np.arctan2(far[:, 1], far[:, 0])) > constants.BESIDE_AXIS
+    return _End(inside, widest_turn(np.arctan2(far[:, 1], far[:, 0])) > constants.BESIDE_AXIS)
 
 
 def _extent(points: Array, axis: Array) -> float:
