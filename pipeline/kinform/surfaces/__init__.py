@@ -81,5 +81,5 @@ from kinform.surfaces.recovery import packs, recover, recover_all
 
 __all__ = ["CODE_VERSION", "packs", "recover", "recover_all", "rigid_copies", "surfaces_of_copy"]
 
-CODE_VERSION: int = 17
+CODE_VERSION: int = 18
 """Bumped when results change."""

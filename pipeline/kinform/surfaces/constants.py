@@ -165,6 +165,17 @@ processor's cache."""
 CONVERGED = 1e-13
 """Change of the parameters (rad, diagonals) at which a fit stands still."""
 
+KEPT_FITS = 3.0
+"""Tolerances within which the vertices of a surface lie, by their root mean square, that is kept where a step of its
+fit leads away: where they would be off by more than the tolerance, and KEPT_RISE times as much as before."""
+
+KEPT_RISE = 2.0
+"""Least squares that converge bring vertices nearer; rounding alone does not double what they are off."""
+
+LEAP = 1e-3
+"""Change of the parameters (rad, diagonals) by a last step after which the vertices are looked at again: a fit that
+closes in on its end moves by a thousandth of that."""
+
 DAMPING = 1e-11
 """Share of the scaled diagonal that is added to normal equations: nothing to a regular fit, a bound for a vague one."""
 
