@@ -43,10 +43,10 @@ def test_a_fit_does_not_leave_the_vertices_that_its_surface_lies_on(arc):
     for seed in range(20):
         start = _Start.of(strip(radius, sweep, width, count, advance, seed), Tolerances())
         work, tolerance = start.work, np.array([start.scale.fit])
-        polygons = np.flatnonzero(work.middles(np.arange(work.count))[:, 0] * start.diagonal + start.centre[0] < 0.4)
+        polygons = np.flatnonzero(work.middles(np.arange(work.count))[:, 0] * start.span + start.centre[0] < 0.4)
         batch = Batch(work, np.zeros(len(polygons), np.int64), polygons, 1)
         true = np.zeros((1, 8))
-        true[0, 2], true[0, 3:6], true[0, 6] = 1.0, -start.centre / start.diagonal, radius / start.diagonal
+        true[0, 2], true[0, 3:6], true[0, 6] = 1.0, -start.centre / start.span, radius / start.span
         _, vertex = cylinder.defining(batch, true, tolerance)
         if len(vertex) < 5:
             continue
