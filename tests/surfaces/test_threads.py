@@ -100,7 +100,7 @@ def test_no_line_that_suggests_an_advance_is_left_out(lead, segments):
     draw, about = np.random.default_rng(segments), []
     for far in np.repeat(np.geomspace(1e-6, 1.0, 13), 12):
         axis = pose[:3, 2] + far * draw.normal(size=3)
-        place = (pose[:3, 3] - start.centre) / start.diagonal + far * draw.normal(size=3)
+        place = (pose[:3, 3] - start.centre) / start.span + far * draw.normal(size=3)
         about.append((axis / np.linalg.norm(axis), place))
     work, scale, edges = start.work, start.scale, np.arange(len(start.work.a))
     kept = {id(line): level for line, level in _with_helices(work, edges, about, scale)}

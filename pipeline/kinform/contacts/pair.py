@@ -185,7 +185,7 @@ def _of_scattered(pair: PairView, patch: Patch, alone: bool) -> Patch:
     all that touches (`alone`), may be a facet of a curve."""
     scatter = [part.surfaces.noise for part in pair.parts]
     if not any(
-        noise > pair.tolerances.fit * part.index.mesh.diagonal for noise, part in zip(scatter, pair.parts, strict=True)
+        noise > pair.tolerances.fit * part.index.mesh.size.span for noise, part in zip(scatter, pair.parts, strict=True)
     ):
         return patch
     if patch.kind in ("point", "line"):

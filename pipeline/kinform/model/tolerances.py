@@ -41,7 +41,7 @@ class Tolerances:
     smooth_edge: Radians = 32.0 * DEGREE
     """Dihedral below which an edge is smooth: a 12-gon is a cylinder, an 8-gon stays a prism (rad)."""
     fit: Ratio = 2e-5
-    """Distance of vertices from their surface, relative to the part's diagonal."""
+    """Distance of vertices from their surface, relative to the span of the part, between its points farthest apart."""
     coplanar: Radians = 5e-4
     """Dihedral below which facets are one plane (rad)."""
 

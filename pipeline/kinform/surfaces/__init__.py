@@ -11,12 +11,12 @@ would slide and not turn.
 
 The steps, in the order of `recovery.recover`, which calls them:
 
-1. Unit coordinates: the mesh is centred and divided by its diagonal, its vertices and facets are sorted. Neither size,
-   place, nor the order in the file changes what comes out.
+1. Unit coordinates: the mesh is centred and divided by its span, the greatest distance of two of its points; its
+   vertices and facets are sorted. Neither size, place, nor the order in the file changes what comes out.
 2. Facets and edges (`polygons.facets`): normals, areas, altitudes, and which two facets meet where.
 3. Noise (`polygons.noise`): vertices stored in single precision, or scanned, are off their surface. Where edges that
    should be flat bend both ways around every vertex, vertices scatter, and their standard deviation σ is read. All
-   later tolerances come of it: `Scale.noise` (4 σ) and `Scale.fit` (5 σ); without scatter 2e-6 and 2e-5 diagonals.
+   later tolerances come of it: `Scale.noise` (4 σ) and `Scale.fit` (5 σ); without scatter 2e-6 and 2e-5 spans.
 4. Polygons (`polygons.coplanar`, `polygons.patchwork`): how a flat face is cut into triangles says nothing, so facets
    that are coplanar as far as the noise lets one tell become one polygon. Slivers, whose normals mean nothing, join the
    polygon across their longest edge. Edges between polygons are smooth below 32°, and convex, concave or flat.
@@ -60,9 +60,9 @@ Equal parts are recovered once: `copies` finds meshes that are one shape in seve
 An example
 ----------
 A plate of 60 × 40 × 10 mm with a bore of 32 strips and 8 mm radius, 10 mm off its middle, as a binary STL file has it:
-144 facets, 72 vertices, diagonal 72.80 mm.
+144 facets, 72 vertices, span 72.80 mm.
 
-- Noise: single precision rounds by 4.9e-8 diagonals (3.6 nm). No scatter: `noise` is 0.146 µm, `fit` 1.46 µm.
+- Noise: single precision rounds by 4.9e-8 spans (3.6 nm). No scatter: `noise` is 0.146 µm, `fit` 1.46 µm.
 - Polygons: 38, the six sides of the plate (top and bottom of 36 facets each) and 32 strips of two facets. 32 of the 108
   edges are smooth, all concave, at 11.25°.
 - Curvature of every strip: −125.2 and 0 per metre, the first across the generators; −1 / 8 mm is −125.0.
@@ -81,5 +81,5 @@ from kinform.surfaces.recovery import packs, recover, recover_all
 
 __all__ = ["CODE_VERSION", "packs", "recover", "recover_all", "rigid_copies", "surfaces_of_copy"]
 
-CODE_VERSION: int = 17
+CODE_VERSION: int = 19
 """Bumped when results change."""

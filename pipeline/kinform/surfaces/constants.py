@@ -1,6 +1,6 @@
 """The numbers that decide how surfaces are recovered, by the module that uses them.
 
-Lengths are shares of the mesh's diagonal, angles radians. What users may set is in `Tolerances`. Where no measurement
+Lengths are shares of the mesh's span, angles radians. What users may set is in `Tolerances`. Where no measurement
 is named, a number is a choice: the meshes of the fixtures and of real robots give the same surfaces well around it.
 """
 
@@ -23,7 +23,7 @@ LEAST_POINTS = 6
 """Vertices that suggest a circle, sphere or cone, at least: twice what determines a circle."""
 
 LARGEST = 10.0
-"""Radius, in diagonals, beyond which a cylinder or cone is none that a joint could use."""
+"""Radius, in spans, beyond which a cylinder or cone is none that a joint could use."""
 
 FACET_ROUNDING = 1e-3
 """Angle that is added to the greatest that a facet may subtend: what rounding makes of equal facets."""
@@ -163,7 +163,18 @@ RUN_OF_PAIRS = 1 << 13
 processor's cache."""
 
 CONVERGED = 1e-13
-"""Change of the parameters (rad, diagonals) at which a fit stands still."""
+"""Change of the parameters (rad, spans) at which a fit stands still."""
+
+KEPT_FITS = 3.0
+"""Tolerances within which the vertices of a surface lie, by their root mean square, that is kept where a step of its
+fit leads away: where they would be off by more than the tolerance, and KEPT_RISE times as much as before."""
+
+KEPT_RISE = 2.0
+"""Least squares that converge bring vertices nearer; rounding alone does not double what they are off."""
+
+LEAP = 1e-3
+"""Change of the parameters (rad, spans) by a last step after which the vertices are looked at again: a fit that
+closes in on its end moves by a thousandth of that."""
 
 DAMPING = 1e-11
 """Share of the scaled diagonal that is added to normal equations: nothing to a regular fit, a bound for a vague one."""
@@ -188,7 +199,7 @@ ALONG: float = float(np.cos(np.radians(10.0)))
 """Cosine of the angle between an edge and a generator, above which it is one."""
 
 BOW = 1e-5
-"""Depth (diagonals) to which a generator that leans may dip below the surface: the ends of slanted ridges lie on it,
+"""Depth (spans) to which a generator that leans may dip below the surface: the ends of slanted ridges lie on it,
 but a cut between them does not."""
 
 ROWS = 2**15
@@ -227,7 +238,7 @@ LEAST_TAPER = 2
 # ---- kinds.sphere, kinds.torus
 
 LARGEST_SPHERE = 5.0
-"""Radius, in diagonals, beyond which a face is no sphere that a joint could use."""
+"""Radius, in spans, beyond which a face is no sphere that a joint could use."""
 
 SECOND_QUADRIC = 0.5
 """Fits by which the vertices of a sphere are off every other quadric in the mean, at least: two rings lie on one to
@@ -306,7 +317,7 @@ PERIODS = (2, 3)
 """Rounds after which regions are what they were, where they gain and lose the same polygons without end."""
 
 STEADY = 1e-8
-"""Change of such a region's parameters over a period (rad, diagonals), at most: a two hundredth of the least noise."""
+"""Change of such a region's parameters over a period (rad, spans), at most: a two hundredth of the least noise."""
 
 UNSHARED = 0.4
 """Share of a region's polygons that belong to no larger one, above which it stays."""
@@ -382,10 +393,10 @@ ON_CHORD = 1.0
 # ---- regions.merge
 
 PARALLEL_PLANES = 5e-3
-"""Distance in normal (rad) and offset (diagonals) of planes that may be one."""
+"""Distance in normal (rad) and offset (spans) of planes that may be one."""
 
 MERGED_SHAPE = 2e-3
-"""Difference of radii (diagonals) and half-angles (rad) of surfaces that may be one."""
+"""Difference of radii (spans) and half-angles (rad) of surfaces that may be one."""
 
 MERGED_SHAPE_FITS = 10
 """The same in fits, where that is more."""
@@ -448,7 +459,7 @@ REWEIGHINGS = 6
 """Rounds of reweighing, until what is no thread counts little."""
 
 SAME_LINE = 1e-3
-"""Lines (rad, and of the mesh's diagonal) that are one axis."""
+"""Lines (rad, and of the mesh's span) that are one axis."""
 
 LEVEL = 2e-3
 """Share of its length by which an edge along a helix may change its distance from the axis."""

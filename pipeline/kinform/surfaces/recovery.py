@@ -1,6 +1,6 @@
 """The method, from a mesh to its surfaces; `kinform.surfaces` explains it.
 
-Works in unit coordinates (centred, diagonal 1) and in a canonical order of vertices and facets, so that
+Works in unit coordinates (centred, span 1) and in a canonical order of vertices and facets, so that
 neither the size of a part nor the order in its file changes what is found.
 """
 
@@ -90,7 +90,7 @@ class _Start:
     order: Ints
     """(F,) number in the file of each facet."""
     centre: Array
-    diagonal: float
+    span: float
 
     @classmethod
     def of(cls, mesh: Mesh, tolerances: Tolerances) -> _Start:
@@ -98,10 +98,11 @@ class _Start:
         rounding = max(EPS32 * float(np.abs(mesh.vertices).max()), mesh.resolution)
         low, high = box(mesh.vertices)
         centre = (low + high) / 2
-        vertices, faces, order = _canonical_order((mesh.vertices - centre) / mesh.diagonal, mesh.faces)
+        size = mesh.size.span
+        vertices, faces, order = _canonical_order((mesh.vertices - centre) / size, mesh.faces)
         facets = Facets.of(vertices, faces)
-        scale = Scale.of(facets, rounding / mesh.diagonal, tolerances)
-        return cls(Patchwork.of(facets, scale, tolerances), scale, order, centre, mesh.diagonal)
+        scale = Scale.of(facets, rounding / size, tolerances)
+        return cls(Patchwork.of(facets, scale, tolerances), scale, order, centre, size)
 
 
 def _canonical_order(vertices: Array, faces: Ints) -> tuple[Array, Ints, Ints]:
@@ -201,7 +202,7 @@ def _surfaces_of_kind(work: Patchwork, regions: list[Region], scales: Scales) ->
 def _assemble(mesh: Mesh, start: _Start, descriptions: list[Description], owner: Ints) -> MeshSurfaces:
     """Back to metres and to the mesh's own facets, in the promised order; `owner` says which surface each polygon is
     of."""
-    work, order, centre, diagonal = start.work, start.order, start.centre, start.diagonal
+    work, order, centre, span = start.work, start.order, start.centre, start.span
     facet_owner = np.empty(len(order), np.int64)
     facet_owner[order] = owner[work.polygon]
     area: Array = np.bincount(owner[work.polygon], work.facet_area, len(descriptions)).astype(float)
@@ -213,46 +214,44 @@ def _assemble(mesh: Mesh, start: _Start, descriptions: list[Description], owner:
     labels = position[facet_owner]
     squares = sum(item.squares for item in descriptions)
     samples = sum(item.samples for item in descriptions)
-    noise = diagonal * float(np.sqrt(squares / samples)) if samples else 0.0
-    surfaces = _surfaces(
-        [descriptions[k] for k in rank.tolist()], area[rank] * diagonal**2, members(labels), centre, diagonal
-    )
+    noise = span * float(np.sqrt(squares / samples)) if samples else 0.0
+    surfaces = _surfaces([descriptions[k] for k in rank.tolist()], area[rank] * span**2, members(labels), centre, span)
     freeze(labels)
     return MeshSurfaces(mesh.digest, surfaces, labels, noise)
 
 
 def _surfaces(
-    items: list[Description], areas: Array, faces: list[Ints], centre: Array, diagonal: float
+    items: list[Description], areas: Array, faces: list[Ints], centre: Array, span: float
 ) -> tuple[Surface, ...]:  # fmt: skip
     """The surfaces in metres, in this order; `areas` are in square metres."""
     axes = np.array([item.axis for item in items]) + 0.0
-    points = np.array([item.point for item in items]) * diagonal + centre
+    points = np.array([item.point for item in items]) * span + centre
     points[[item.kind == "freeform" for item in items]] = 0.0
     freeze(axes)
     freeze(points)
     return tuple(
-        _surface(item, axis, point, size, freeze(mine), diagonal)
+        _surface(item, axis, point, size, freeze(mine), span)
         for item, axis, point, size, mine in zip(items, axes, points, areas.tolist(), faces, strict=True)
     )
 
 
-def _surface(item: Description, axis: Array, point: Array, area: float, faces: Ints, diagonal: float) -> Surface:
+def _surface(item: Description, axis: Array, point: Array, area: float, faces: Ints, span: float) -> Surface:
     return made(
         Surface,
         kind=item.kind,
         axis=axis,
         point=point,
-        radius=item.radius * diagonal,
+        radius=item.radius * span,
         half_angle=item.half_angle,
         side=item.side,
         area=area,
-        extent=(item.extent[0] * diagonal, item.extent[1] * diagonal),
+        extent=(item.extent[0] * span, item.extent[1] * span),
         sweep=item.sweep,
-        residual=item.residual * diagonal,
+        residual=item.residual * span,
         axis_uncertainty=item.axis_uncertainty,
-        point_uncertainty=item.point_uncertainty * diagonal,
-        chord=item.chord * diagonal,
+        point_uncertainty=item.point_uncertainty * span,
+        chord=item.chord * span,
         faces=faces,
-        minor_radius=item.minor_radius * diagonal,
-        pitch=item.pitch * diagonal,
+        minor_radius=item.minor_radius * span,
+        pitch=item.pitch * span,
     )

@@ -137,7 +137,7 @@ class DoublyCurved(Kind, Protocol):
     most_steps: int
     """Steps of least squares after which nothing is gained."""
     still: float
-    """Change of the parameters (rad, diagonals) at which a fit stands still before that."""
+    """Change of the parameters (rad, spans) at which a fit stands still before that."""
 
     def step(self, params: Params, change: Array) -> Params:
         """The surfaces with their free parameters changed by (R, k), within bounds."""

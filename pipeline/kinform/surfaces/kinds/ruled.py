@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
-from kinform.foundation.sorting import distinct
+from kinform.foundation.sorting import among, distinct
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.groups import (
@@ -31,6 +31,39 @@ from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.kinds.kind import Kind, Moving, Probe, distinct_angles
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
+
+
+class _Kept:
+    """Surfaces that their vertices lay on before a step took them away from these."""
+
+    def __init__(self, tolerance: Array):
+        """To which the vertices of each region are held (R,)."""
+        self._square = tolerance * tolerance
+        self._lost = np.zeros(len(tolerance), bool)
+        self._best: Params | None = None
+        self._before: Params | None = None
+        self._squares = np.zeros(len(tolerance))
+
+    def forget(self) -> None:
+        """Other vertices are looked at from now on."""
+        self._before = None
+
+    def look(self, params: Params, squares: Array, sizes: Ints) -> None:
+        """At surfaces (R,), by the squares of the distances of so many vertices, summed."""
+        mean = squares / np.maximum(sizes, 1)
+        if self._before is not None:
+            worse = mean > np.maximum(constants.KEPT_RISE**2 * self._squares, self._square)
+            near = self._squares <= constants.KEPT_FITS**2 * self._square
+            lost = worse & near & (sizes > 0) & ~self._lost
+            if lost.any():
+                self._best = params.copy() if self._best is None else self._best
+                self._best[lost] = self._before[lost]
+                self._lost |= lost
+        self._before, self._squares = params, np.where(sizes > 0, mean, np.inf)
+
+    def of(self, params: Params) -> Params:
+        """These surfaces, but those that are kept as they were."""
+        return params if self._best is None else np.where(self._lost[:, None], self._best, params)
 
 
 class Ruled(Kind, Protocol):
@@ -52,13 +85,18 @@ class Ruled(Kind, Protocol):
         return -solve_normal(matrix, right, constants.DAMPING)
 
     def refine(self, batch: Batch, params: Params, tolerance: Array, steps: int) -> Params:
-        """Gauss–Newton over offset, tilt, radius and, for cones, half-angle."""
+        """Gauss–Newton over offset, tilt, radius and, for cones, half-angle. A surface that its vertices lie on is kept
+        where a step would take it away from them: on a short narrow arc almost any change fits to first order."""
         work, count = batch.patchwork, batch.count
-        moving = self.moving(batch)
-        known = None
+        moving, kept = self.moving(batch), _Kept(tolerance)
+        known, change = None, np.zeros((count, 1))
+        region = vertex = np.zeros(0, np.int64)
         for step in range(steps):
             if step in (0, 2):
+                if step:
+                    params = self._looked_at_again(batch, kept, params, change, region, vertex)
                 region, vertex = moving.only(*self.defining(batch, params, tolerance))
+                kept.forget()
             if not len(region):
                 break
             if known is not region:
@@ -68,6 +106,7 @@ class Ruled(Kind, Protocol):
             at.t[:] -= middle.take(region)
             frame = frames(params[:, :3])
             columns, residual = self._equations(at, params, frame, region, sizes)
+            kept.look(before, sums(residual * residual), sizes)
             of_group = sums
             if self.tapers:
                 tips = (at.rho < self.apices(params).take(region)).nonzero()[0]
@@ -77,9 +116,23 @@ class Ruled(Kind, Protocol):
                     of_group = sums_of(group, count)
             matrix, right = normal_equations(of_group, columns.T, residual)
             change = self.change(matrix, right)
-            params = moving.taken(self.step(params, change, frame), before)
+            params = kept.of(moving.taken(self.step(params, change, frame), before))
             region, vertex = moving.after(change, constants.CONVERGED, region, vertex)
-        return params
+        return self._looked_at_again(batch, kept, params, change, region, vertex) if steps else params
+
+    def _looked_at_again(
+        self, batch: Batch, kept: _Kept, params: Params, change: Array, region: Ints, vertex: Ints
+    ) -> Params:
+        """The surfaces after a last step by `change` (R, k) with these vertices."""
+        leapt = (np.abs(change).max(axis=1) > constants.LEAP).nonzero()[0]
+        if not len(leapt) or not len(region):
+            return params
+        rows = among(region, leapt).nonzero()[0]
+        mine = region[rows]
+        off = self._distances(params, mine, batch.patchwork.at(vertex[rows]))
+        squares: Array = np.bincount(mine, off * off, batch.count).astype(float)
+        kept.look(params, squares, np.bincount(mine, minlength=batch.count))
+        return kept.of(params)
 
     @staticmethod
     def _about(work: Patchwork, params: Params, region: Ints, sizes: Ints, vertex: Ints) -> Cylindrical:

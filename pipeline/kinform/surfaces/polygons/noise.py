@@ -25,7 +25,7 @@ from kinform.surfaces.polygons.facets import Facets
 
 @dataclass(frozen=True)
 class Scale:
-    """Lengths that decide, relative to the mesh's diagonal."""
+    """Lengths that decide, relative to the mesh's span."""
 
     rounding: float
     """What storing coordinates in single precision loses, or the scatter that the mesh shows, if larger."""

@@ -27,7 +27,7 @@ from kinform.surfaces.polygons.noise import Scale
 
 @dataclass(frozen=True, eq=False)
 class Patchwork:
-    """P polygons of a mesh in unit coordinates (diagonal 1), and the E edges between them; or of several meshes, one
+    """P polygons of a mesh in unit coordinates (span 1), and the E edges between them; or of several meshes, one
     after the other, each in its own unit coordinates: then what is done for all takes fewer and larger steps."""
 
     vertices: Array
@@ -120,7 +120,7 @@ class Patchwork:
 
     @classmethod
     def of(cls, mesh: Facets, scale: Scale, tolerances: Tolerances) -> Patchwork:
-        """Polygons and edges of a welded mesh with diagonal 1."""
+        """Polygons and edges of a welded mesh with span 1."""
         vertices = mesh.vertices
         polygon, (area, mean, centre) = coplanar_facets(mesh, scale, tolerances)
         count = len(area)
