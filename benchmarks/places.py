@@ -1,9 +1,10 @@
 """The same answer wherever, how large, in which unit and order a design is described: `python benchmarks/places.py`.
 
-Of each fixture, or of the random assemblies with the seeds after `--random`, or of manifests, copies are written below a
-temporary folder: moved and turned, at other sizes and in other units, mirrored, with other names and orders of parts and
-facets. Each is run from its manifest to its findings, and compared with a copy that changes nothing; physics scales with
-the copy (`tests/support/elsewhere.py`). One line a difference; those that begin with ~ are of less weight.
+Of each fixture, or of the random assemblies with the seeds after `--random`, or of manifests, copies are written
+below a temporary folder: moved and turned, at other sizes and in other units, mirrored, with other names and orders
+of parts and facets. Each is run from its manifest to its findings, and compared with a copy that changes nothing;
+physics scales with the copy (`tests/support/elsewhere.py`). One line a difference; those that begin with ~ are of
+less weight.
 """
 
 from __future__ import annotations
