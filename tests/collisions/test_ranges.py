@@ -349,3 +349,12 @@ def test_what_is_told_ahead_of_parts_in_touch_changes_nothing(seed, family, know
         assert bool(asked) == (steps < 10**9)
         told.append([(end.status, end.value, end.parts, end.reason) for end in (item.lower, item.upper)])
     assert told[0] == told[1]
+
+
+def test_what_spins_between_parts_that_do_not_move_spins_freely(derive_design):
+    """Bolts and dowels hold a flange: no joint of their loops moves but by their own spin."""
+    path = FIXTURES / "mechanisms" / "dowelled_flange" / "dowelled_flange.toml"
+    design = stages.simulate(derive_design(path), ranges=True)
+    found = {item.joint: item for item in design.simulation.ranges}
+    spinning = [f"base~dowel_{k}" for k in (1, 2)] + [f"bolt_{k}~flange" for k in (1, 2, 3, 4)]
+    assert [found[name].status for name in spinning] == ["unbounded"] * 6

@@ -32,16 +32,18 @@ from kinform.model.names import BodyName, PartName
 Edge = tuple[int, int]
 
 LEAVES = "leaves its guide"
+STILL = "the loops do not move"
 
 
 def drive_loops(
     shapes: Shapes, kinematics: Kinematics, edges: Sequence[Edge], block: Sequence[int]
 ) -> dict[int, JointRange] | str:
     """The ranges of the joints of one block; or why they are not known."""
-    linkage = _linkage(kinematics, edges, block, shapes.size)
+    linkage, idle = _linkage(kinematics, edges, block, shapes.size), _idle(kinematics, block)
+    if linkage == STILL and idle:
+        return _spinning_alone(shapes, kinematics, block, idle)
     if isinstance(linkage, str):
         return linkage
-    idle = _idle(kinematics, block)
     ends = [_travelled(shapes, kinematics, linkage, follow(linkage, -1.0))]
     # a motion that comes back to where it began, and meets nothing, is the same the other way round
     free = ends[0].why == RETURNED and not ends[0].left_out
@@ -73,7 +75,7 @@ def _linkage(kinematics: Kinematics, edges: Sequence[Edge], block: Sequence[int]
     linkage = Linkage(kinematics, edges, block, _idle(kinematics, block), size)
     first = linkage.tangent(np.zeros(linkage.system.coordinates))
     if first is None:
-        return "the loops do not move"
+        return STILL
     return linkage if first[1] else "its loops have more than one freedom, or a singular pose"
 
 
@@ -81,6 +83,20 @@ def _idle(kinematics: Kinematics, block: Sequence[int]) -> list[Freedom]:
     """The idle freedoms that move joints of a block."""
     names = {kinematics.joints[k].name for k in block}
     return [f for f in kinematics.mobility.named if f.idle and any(joint in names for joint, _, _ in f.drives)]
+
+
+def _spinning_alone(
+    shapes: Shapes, kinematics: Kinematics, block: Sequence[int], idle: Sequence[Freedom]
+) -> dict[int, JointRange]:
+    """The ranges of the joints of a block in which nothing moves but bodies that spin on themselves."""
+    out, end = {}, RangeEnd("unknown", reason=STILL)
+    for k in block:
+        joint = kinematics.joints[k]
+        spinning = [freedom.body for freedom in idle if freedom.body in joint.bodies]
+        if joint.freedoms == 1:
+            still = JointRange(joint.name, end, end)
+            out[k] = _spun(shapes, kinematics, joint, spinning[0]) if spinning else still
+    return out
 
 
 def _spun(shapes: Shapes, kinematics: Kinematics, joint: Joint, body: BodyName) -> JointRange:
