@@ -101,6 +101,9 @@ def certainty(
     doubt = doubt or uncertainty_doubt(evidence.items, form, evidence.frame.length)
     if doubt:
         return Certainty("ambiguous", doubt)
+    doubt = yield from _flat_of_ring_doubt(evidence, twists, count, tolerances)
+    if doubt:
+        return Certainty("ambiguous", doubt)
     prism = _prism_reading(evidence, basis)
     if prism is not None:
         return Certainty("ambiguous", _prism_words(evidence, form, prism), prism)
@@ -334,6 +337,20 @@ def _torn_doubt(evidence: Evidence, twists: Array, preserved: Flags, count: int,
         return ""
     sides = max(item.patch.sides for item in evidence.chosen(flats))
     return f"{sides} flats on flats hold it that may be those of a prism, or of a cylinder in a coarse mesh"
+
+
+def _flat_of_ring_doubt(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> Steps[str]:
+    """Do planes hold more than the rest does that lie where the flats of a coarse cylinder beside them do?"""
+    flats = np.zeros(len(evidence.items), dtype=bool)
+    for ring in (item.patch for item in evidence.items if item.patch.sides and item.patch.kind == "cylinder"):
+        radius, least = max(ring.radii), max(ring.radii) * np.cos(np.pi / ring.sides) - ring.chord
+        for k, patch in enumerate(item.patch for item in evidence.items):
+            if patch.kind == "plane" and abs(float(patch.axis @ ring.axis)) < constants.ALONG_AXIS:
+                flats[k] |= bool(least <= abs(float((patch.point - ring.point) @ patch.axis)) <= radius + ring.chord)
+    if not flats.any() or flats.all() or (yield from _count(evidence, twists, ~flats, tolerances)) <= count:
+        return ""
+    area = 1e6 * sum(item.area for item in evidence.chosen(flats))
+    return f"{area:.3g} mm² of flats hold it that may be those of the cylinder beside them, in a coarse mesh"
 
 
 def _prism_reading(evidence: Evidence, basis: Array) -> OtherReading | None:
