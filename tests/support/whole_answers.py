@@ -209,7 +209,8 @@ class _Answer:
             kinds.setdefault(name, []).append(p.kind)
             areas[name] = areas.get(name, 0.0) + p.area / self.scale**2 / self.size**2
         for name, found in kinds.items():
-            out[f"patches {name}"] = sorted(found)
+            out[f"patches {name}"] = sorted(set(found))
+            out[f"~pieces of patches {name}"] = sorted(found)
             out[f"~area {name}"] = areas[name]
         for one in self.values["contacts"]["interferences"]:
             name = "~".join(sorted(self.part(x) for x in one["parts"]))
