@@ -126,3 +126,18 @@ def test_an_axis_is_known_no_better_than_patches_that_disagree_say():
         form = JointForm("revolute", axis, np.zeros(3))
         assert joint_uncertainty(evidence.items, form)[0] == pytest.approx(1e-6)
         assert least <= disagreement(evidence.items, form) <= max(1.02 * least, 1.2e-6)
+
+
+@pytest.mark.parametrize(
+    ("sides", "share", "status"), [(8, 0.96, "ambiguous"), (8, 0.7, "determined"), (0, 0.96, "determined")]
+)
+def test_a_flat_where_those_of_a_coarse_cylinder_are_may_be_one_of_them(sides, share, status):
+    """A D-shaft's lies deeper."""
+    radius = 0.01
+    bore = replace(
+        cylinder(radius=radius, length=0.04), sides=sides, chord=radius * (1 - np.cos(np.pi / 8)) * bool(sides)
+    )
+    flat = plane((share * radius, 0, 0), normal=X, size=(0.006, 0.03))
+    found = decision([bore, flat])
+    assert (found.form.type, found.status) == ("prismatic", status)
+    assert ("may be those of the cylinder" in found.reason) is (status == "ambiguous")

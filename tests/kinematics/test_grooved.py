@@ -76,6 +76,7 @@ def posed(seed, scale):
 @example("block corner", Pin(), 1, 1e-3)
 @example("pad corner", Pin(), 1, 1e-3)
 @example("plate arc 2", Pin(play=0.05), 1, 1e-3)
+@example("helical -40", Pin(segments=12, phase=23.0), 3, 1e-3)
 def test_nothing_certain_is_false(name, pin, seed, scale):
     assert_nothing_false(name, pin, [(np.eye(4), 1e-3), posed(seed, scale)])
 

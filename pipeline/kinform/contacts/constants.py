@@ -118,6 +118,9 @@ they were 600 of 700, evenly by area, none need have been on a pin, and which we
 (so100, dog, sigmaban2019) take as long as then."""
 ENCLOSING_SAMPLES = 600
 """Of these that face the other part, as many as a patch is made of."""
+STRAY_SHARE = 0.02
+"""Share of the area of all patches below which facets that do not touch hold nothing on their own: what joints are
+derived from leaves as much out."""
 FACING_ROUNDED = 1e-9
 """By which the cosine of two facets may be off for rounding."""
 MOST_ASKED = 200_000

@@ -62,6 +62,7 @@ def enclosing_patches(pair: PairView, patches: list[Patch]) -> list[Patch]:
 
     Beside none there is nothing to doubt. Cams and teeth, which touch along lines, come near each other elsewhere too.
     """
+    patches = _without_strays(patches, pair.tolerance)
     kinds = {patch.kind for patch in patches}
     if not kinds or ("line" in kinds and kinds <= set(constants.TOUCHING)):
         return []
@@ -72,6 +73,17 @@ def enclosing_patches(pair: PairView, patches: list[Patch]) -> list[Patch]:
     if near is None or not _encloses(near, patches, pair.tolerance):
         return []
     return [_patch(pair, near.few(constants.ENCLOSING_SAMPLES))]
+
+
+def _without_strays(patches: list[Patch], tolerance: float) -> list[Patch]:
+    """The patches without the small ones of facets that pass near a surface without touching it: alone, such a patch
+    holds nothing, while with the facets beside it, or on the other side, it may be what encloses a part."""
+    little = constants.STRAY_SHARE * sum(patch.area for patch in patches)
+    return [
+        patch
+        for patch in patches
+        if not (patch.one_sided and patch.area < little and patch.gap > constants.TOUCH * tolerance)
+    ]
 
 
 def _near(pair: PairView, unread: Flags) -> _Near | None:
