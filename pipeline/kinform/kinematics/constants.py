@@ -544,6 +544,8 @@ RATIO_AGREES = 0.01
 """Relative: what the ratio at one pose, from the normals of the flanks, may differ from that of the teeth."""
 TIP_MARGIN = 1.02
 """Teeth up to this share of the other wheel's tip radius are within its reach."""
+ROUNDED_LEVEL = 1e-9
+"""Share of the greatest radius by which the end of an edge may be beyond a level that it meets, for rounding."""
 
 # --- separation/cone ------------------------------------------------------------------------------------------------
 

@@ -14,10 +14,18 @@ import math
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, norm, perpendicular
-from kinform.foundation.sorting import median
+from kinform.foundation.sorting import heads, median
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import EVEN_TEETH, FEWEST_TEETH, IN_PLANE, RATIO_AGREES, TIP_MARGIN, TOOTH_POSES
-from kinform.model.arrays import Array
+from kinform.kinematics.constants import (
+    EVEN_TEETH,
+    FEWEST_TEETH,
+    IN_PLANE,
+    RATIO_AGREES,
+    ROUNDED_LEVEL,
+    TIP_MARGIN,
+    TOOTH_POSES,
+)
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
 from kinform.model.kinematics import Meshing
 
@@ -67,29 +75,55 @@ class _Outline:
         """Distance along from one to the other; of turns within half a turn."""
         return np.asarray(np.remainder(two - one + math.pi, 2.0 * math.pi) - math.pi if self.turns else two - one)
 
-    def crossings(self, levels: Array, edges: Array) -> tuple[Array, Array]:
-        """(m, 2n) along where edges (n, 2, 2) cross each level (m,), nan where they do not; and whether the material
+    def crossings(self, levels: Array, edges: Array) -> tuple[Ints, Array, Flags]:
+        """Where edges (n, 2, 2) cross levels (m,): which level (k,), ascending, along (k,), and whether the material
         lies behind, so that a motion forwards brings this side of it against others."""
         first, step = edges[:, 0] - self.centre, edges[:, 1] - edges[:, 0]
+        level, edge = _within(levels, *self._spans(first, step))
+        start, way = first.take(edge, axis=0), step.take(edge, axis=0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            if self.turns:
+                a, b = np.einsum("ij,ij->i", way, way), np.einsum("ij,ij->i", start, way)
+                c = np.einsum("ij,ij->i", start, start) - levels.take(level) ** 2
+                root = np.sqrt(np.where(b * b - a * c > 0.0, b * b - a * c, np.nan))
+                t = np.stack([(-b - root) / a, (-b + root) / a], axis=1)
+            else:
+                across = np.array([-self.along[1], self.along[0]])
+                t = ((levels.take(level) - start @ across) / (way @ across))[:, None]
+            pair, which = ((t >= 0.0) & (t < 1.0)).nonzero()
+        way = way.take(pair, axis=0)
+        at = start.take(pair, axis=0) + t[pair, which][:, None] * way
+        outward = np.stack([way[:, 1], -way[:, 0]], axis=1)
         if self.turns:
-            a, b = np.einsum("ij,ij->i", step, step), np.einsum("ij,ij->i", first, step)
-            c = np.einsum("ij,ij->i", first, first) - levels[:, None] ** 2
-            root = np.sqrt(np.where(b * b - a * c > 0.0, b * b - a * c, np.nan))
-            t = np.concatenate([(-b - root) / a, (-b + root) / a], axis=1)
+            along = np.arctan2(at[:, 1], at[:, 0])
+            ahead = at[:, 0] * outward[:, 1] - at[:, 1] * outward[:, 0]
         else:
+            along, ahead = at @ self.along, outward @ self.along
+        return level.take(pair), along, ahead > 0.0
+
+    def _spans(self, first: Array, step: Array) -> tuple[Array, Array]:
+        """(n,) least and greatest level of edges that begin at `first` (n, 2), from the centre, and go by `step`."""
+        if not self.turns:
             across = np.array([-self.along[1], self.along[0]])
-            with np.errstate(divide="ignore", invalid="ignore"):
-                t = (levels[:, None] - first @ across) / (step @ across)
-        number = np.tile(np.arange(len(edges)), t.shape[1] // max(len(edges), 1))
-        t = np.where((t >= 0.0) & (t < 1.0), t, np.nan)
-        at = first[number] + t[..., None] * step[number]
-        outward = np.stack([step[number, 1], -step[number, 0]], axis=1)
-        if self.turns:
-            along = np.arctan2(at[..., 1], at[..., 0])
-            ahead = at[..., 0] * outward[:, 1] - at[..., 1] * outward[:, 0]
-        else:
-            along, ahead = at @ self.along, np.broadcast_to(outward @ self.along, t.shape)
-        return along, ahead > 0.0
+            ends = np.stack([first @ across, (first + step) @ across])
+            return ends.min(axis=0), ends.max(axis=0)
+        long = np.maximum(np.einsum("ij,ij->i", step, step), 1e-300)
+        foot = first - np.clip(np.einsum("ij,ij->i", first, step) / long, -1.0, 0.0)[:, None] * step
+        ends = np.stack([np.hypot(*first.T), np.hypot(*(first + step).T)])
+        return np.hypot(*foot.T), ends.max(axis=0)
+
+
+def _within(levels: Array, low: Array, high: Array) -> tuple[Ints, Ints]:
+    """(k,) levels (m,), ascending, and spans from `low` to `high` (n,) that they are in, but for rounding."""
+    order = np.argsort(levels, kind="stable")
+    spare = ROUNDED_LEVEL * np.abs(high).max(initial=0.0)
+    begin = levels[order].searchsorted(low - spare)
+    count = levels[order].searchsorted(high + spare, side="right") - begin
+    span = np.repeat(np.arange(len(low)), count)
+    place = np.arange(len(span)) - np.repeat(np.cumsum(count) - count, count) + np.repeat(begin, count)
+    level = order.take(place)
+    kept = np.lexsort((span, level))
+    return level.take(kept), span.take(kept)
 
 
 def meshing(sides: tuple[Side, Side], axis: Array, place: Array, normal: Array, ratio: float) -> Meshing | str:
@@ -193,9 +227,7 @@ def _teeth(outline: _Outline, touch: Array) -> _Row | str:
     sector count those beside the contact that come at the distance of the median of the nearest gaps.
     """
     levels, places = outline.coordinates(touch[None])
-    along, leading = outline.crossings(levels, outline.edges)
-    crossed = np.isfinite(along[0])
-    along, leading = along[0][crossed], leading[0][crossed]
+    _, along, leading = outline.crossings(levels, outline.edges)
     # the side that leads of each tooth: they come once a tooth
     starts = np.sort(outline.apart(places[0], along[leading]))
     if len(starts) < FEWEST_TEETH or 2 * len(starts) != len(along):
@@ -254,15 +286,12 @@ def _stops(motion: _Outline, still: Array, moving: Array) -> tuple[float, float]
     backwards: list[float] = []
     for corners, edges, sign in ((still, moving, 1.0), (moving, still, -1.0)):
         level, place = motion.coordinates(corners[:, 0])
-        along, leading = motion.crossings(level, edges)
+        corner, along, leading = motion.crossings(level, edges)
         # of the edges as seen from the corner
-        away = motion.apart(place[:, None], along)
-        behind = np.where(away <= 0.0, away, -np.inf)
-        ahead = np.where(away > 0.0, away, np.inf)
-        below, above = np.nanmax(behind, axis=1, initial=-np.inf), np.nanmin(ahead, axis=1, initial=np.inf)
-        index = np.arange(len(level))
-        ends_below = leading[index, np.nanargmax(np.where(np.isnan(behind), -np.inf, behind), axis=1)]
-        ends_above = ~leading[index, np.nanargmin(np.where(np.isnan(ahead), np.inf, ahead), axis=1)]
+        away = motion.apart(place.take(corner), along)
+        below, ends_below = _nearest(corner, away, leading, len(level), away <= 0.0, last=True)
+        above, begins_above = _nearest(corner, away, leading, len(level), away > 0.0, last=False)
+        ends_above = ~begins_above
         # outside: free from the end of material below to its beginning above; inside: the nearer side is passed
         inside = np.isfinite(below) & np.isfinite(above) & ~ends_below & ~ends_above
         nearer = above < -below
@@ -272,6 +301,21 @@ def _stops(motion: _Outline, still: Array, moving: Array) -> tuple[float, float]
         (backwards if sign > 0.0 else forwards).append(gap_above.min(initial=np.inf))
     forward, backward = (value if math.isfinite(value) else math.nan for value in (min(forwards), min(backwards)))
     return forward, backward
+
+
+def _nearest(
+    corner: Ints, away: Array, leading: Flags, corners: int, among: Flags, *, last: bool
+) -> tuple[Array, Flags]:
+    """(m,) the last or first of the crossings of each corner that count, infinite where there are none, and whether it
+    leads."""
+    rows = among.nonzero()[0]
+    place = -rows if last else rows  # of equal ones the first that was found
+    rows = rows[np.lexsort((place, away[rows], corner[rows]))]
+    ordered = corner[rows]
+    ends = heads(ordered[::-1])[::-1] if last else heads(ordered)
+    out, leads = np.full(corners, -np.inf if last else np.inf), np.zeros(corners, dtype=bool)
+    out[ordered[ends]], leads[ordered[ends]] = away[rows[ends]], leading[rows[ends]]
+    return out, leads
 
 
 def _reach(outline: _Outline, row: _Row, touch: Array) -> tuple[float, float]:
