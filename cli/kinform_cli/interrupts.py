@@ -8,6 +8,7 @@ the work. While a native module is imported it is heard a moment later.
 from __future__ import annotations
 
 import signal
+import sys
 from importlib.machinery import ExtensionFileLoader
 from types import FrameType
 
@@ -20,6 +21,7 @@ def listen() -> None:
     """Remember each Ctrl-C; where it is ignored, as in the background of a shell, it stays so."""
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, _interrupted)
+        sys.unraisablehook = _dropped
 
 
 def raise_unheard() -> None:
@@ -44,6 +46,12 @@ def _interrupted(number: int, frame: FrameType | None) -> None:
         return
     _asked = True
     raise KeyboardInterrupt
+
+
+def _dropped(dropped: sys.UnraisableHookArgs) -> None:
+    """What a callback raised and nobody hears: of Ctrl-C, which is raised again, nothing is said."""
+    if not (_asked and isinstance(dropped.exc_value, KeyboardInterrupt)):
+        sys.__unraisablehook__(dropped)
 
 
 def _in_native_import(frame: FrameType | None) -> bool:
