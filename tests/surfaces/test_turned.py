@@ -21,7 +21,8 @@ ATTITUDES = {
 
 
 def uneven(off, turn):
-    """A square plate with a bore, every second generator of which lies further out, by a share of the plate's span."""
+    """A square plate with a bore, every second generator of which lies further out, by a share of the plate's span. At
+    4e-5 half of that is the tolerance of the fit, and rounding decides."""
     mesh = (block(0.1, 0.1, 0.005) - centred_rod(0.02, 0.01, 24)).to_mesh64()
     vertices = np.array(mesh.vert_properties[:, :3])
     angle = np.arctan2(vertices[:, 1], vertices[:, 0])
@@ -32,7 +33,7 @@ def uneven(off, turn):
     return mesh_of(vertices @ turn.T, mesh.tri_verts)
 
 
-@pytest.mark.parametrize("off", [1e-5, 2e-5, 3e-5, 4e-5, 5e-5, 6e-5, 8e-5])
+@pytest.mark.parametrize("off", [1e-5, 2e-5, 3e-5, 3.8e-5, 4.2e-5, 5e-5, 6e-5, 8e-5])
 def test_a_bore_is_one_in_all_attitudes_or_in_none(off):
     found = [kinds(surfaces.recover(uneven(off, turn), Tolerances())) for turn in ATTITUDES.values()]
     whole = [one == {"plane": 6, "cylinder": 1} for one in found]
