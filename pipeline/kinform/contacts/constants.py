@@ -123,7 +123,7 @@ STRAY_SHARE = 0.02
 derived from leaves as much out."""
 FACING_ROUNDED = 1e-9
 """By which the cosine of two facets may be off for rounding."""
-MOST_ASKED = 200_000
+MOST_ASKED = 20_000
 """Facets beyond which finding out which probes can hit any of them takes longer than casting all."""
 ENCLOSED_HELD = 0.02
 """Singular value below which patches leave a motion that is to be looked at, turn of a unit twist below which it

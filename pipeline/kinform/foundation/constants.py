@@ -99,6 +99,8 @@ BOXES_MATRIX = 600_000
 """Boxes times boxes up to which all are compared, however many of either kind there are."""
 SLAB = 600_000
 """Boxes times boxes that are looked at in one slab, of those that can meet at all: as many as are all compared."""
+SLABS_MOST = 100
+"""Slabs in all: the horns of so101's motors have 30."""
 BOXES_COMPARED = 1_500_000
 """The same where there are not very many of either: 1 ms; a grid takes from 0.5 ms to 4."""
 BOXES_EXACT = 20_000

@@ -8,7 +8,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.constants import BESIDE_MOST, BOXES_COMPARED, BOXES_EXACT, BOXES_MATRIX, BOXES_MOST, SLAB
+from kinform.foundation.constants import (
+    BESIDE_MOST,
+    BOXES_COMPARED,
+    BOXES_EXACT,
+    BOXES_MATRIX,
+    BOXES_MOST,
+    SLAB,
+    SLABS_MOST,
+)
 from kinform.foundation.joined import joined
 from kinform.foundation.meshes.boxes import FlatBoxes, meeting_box
 from kinform.model.arrays import Array, Ints
@@ -46,7 +54,7 @@ def meeting_boxes(first: Boxes, second: Boxes, most: float = math.inf) -> tuple[
 def meeting_in_slabs(first: Boxes, second: Boxes) -> tuple[Ints, Ints] | None:
     """The same pairs (k,) of boxes (n, 3) and (m, 3), ordered by the first, then by the second, where either are too
     many to be compared at once: what can meet at all is looked at in slabs across the direction along which the first
-    spread most. None where a slab has too many yet."""
+    spread most. None where a slab has too many yet, or there would be many of them: each looks at all boxes."""
     (low, high), (low_other, high_other) = first, second
     if not len(low) or not len(low_other):
         return np.zeros(0, np.int64), np.zeros(0, np.int64)
@@ -59,6 +67,8 @@ def meeting_in_slabs(first: Boxes, second: Boxes) -> tuple[Ints, Ints] | None:
         return asked, asked
     low, high = low[asked], high[asked]
     slabs = min(-(-len(asked) * len(near) // SLAB), len(asked))
+    if slabs > SLABS_MOST:
+        return None
     order = np.argsort(low[:, int(np.argmax(np.ptp(low, axis=0)))], kind="stable") if slabs > 1 else np.arange(len(low))
     found = []
     for own in np.array_split(order, slabs):
