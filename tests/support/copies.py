@@ -6,7 +6,6 @@ findings. `answers` is what copies must have in common, by the names of the orig
 
 from __future__ import annotations
 
-import json
 import tomllib
 from collections import Counter
 from collections.abc import Mapping
@@ -23,6 +22,7 @@ from kinform.design import Design
 from kinform.foundation.units import metres_per
 from kinform.model.assembly import Part
 from kinform.model.kinematics import Joint
+from support.toml_text import toml
 
 __all__ = [
     "Change",
@@ -116,7 +116,7 @@ def copy_of(manifest: Path, folder: Path, change: Change) -> Copy:
     if change.shuffled:
         tables["part"].reverse()
     path = folder / manifest.name
-    path.write_text(_toml(tables), encoding="utf-8")
+    path.write_text(toml(tables), encoding="utf-8")
     return Copy(path, {new: old for old, new in names.items()})
 
 
@@ -260,23 +260,3 @@ def _stl(path: Path, vertices: Array, faces: NDArray[np.int64]) -> None:
     record = np.zeros(len(faces), dtype=[("n", "<f4", 3), ("v", "<f4", (3, 3)), ("a", "<u2")])
     record["v"] = vertices[faces]
     path.write_bytes(bytes(80) + len(faces).to_bytes(4, "little") + record.tobytes())
-
-
-def _toml(tables: Mapping[str, Any]) -> str:
-    """A TOML text: one line a value, one a table of an array."""
-    lines = [f"{key} = {_value(value)}" for key, value in tables.items() if not isinstance(value, (Mapping, list))]
-    for key, value in tables.items():
-        if isinstance(value, list):
-            lines += [f"{key} = [", *(f"    {_value(item)}," for item in value), "]"]
-    for key, value in tables.items():
-        if isinstance(value, Mapping):
-            lines += [f"[{key}]", *(f"{name} = {_value(item)}" for name, item in value.items())]
-    return "\n".join(lines) + "\n"
-
-
-def _value(value: Any) -> str:
-    if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{json.dumps(key)} = {_value(item)}" for key, item in value.items()) + "}"
-    if isinstance(value, list):
-        return "[" + ", ".join(_value(item) for item in value) + "]"
-    return repr(float(value)) if isinstance(value, float) else json.dumps(value)

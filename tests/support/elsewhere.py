@@ -8,9 +8,8 @@ motions are those of the original, s times as large.
 
 from __future__ import annotations
 
-import json
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -22,6 +21,7 @@ from scipy.spatial.transform import Rotation
 from kinform import form
 from kinform.foundation.units import metres_per
 from kinform.model.assembly import Part
+from support.toml_text import toml
 
 __all__ = ["Elsewhere", "described_elsewhere"]
 
@@ -389,23 +389,3 @@ def _obj(path: Path, vertices: Array, faces: NDArray[np.int64]) -> None:
     lines = ["v " + " ".join(repr(float(x)) for x in vertex) for vertex in vertices]
     lines += ["f " + " ".join(str(index + 1) for index in face) for face in faces]
     path.write_text("\n".join(lines) + "\n", encoding="ascii")
-
-
-def toml(tables: Mapping[str, Any]) -> str:
-    """A TOML text: one line a value, one a table of an array."""
-    lines = [f"{key} = {_value(value)}" for key, value in tables.items() if not isinstance(value, (Mapping, list))]
-    for key, value in tables.items():
-        if isinstance(value, list):
-            lines += [f"{key} = [", *(f"    {_value(item)}," for item in value), "]"]
-    for key, value in tables.items():
-        if isinstance(value, Mapping):
-            lines += [f"[{key}]", *(f"{name} = {_value(item)}" for name, item in value.items())]
-    return "\n".join(lines) + "\n"
-
-
-def _value(value: Any) -> str:
-    if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{json.dumps(key)} = {_value(item)}" for key, item in value.items()) + "}"
-    if isinstance(value, list):
-        return "[" + ", ".join(_value(item) for item in value) + "]"
-    return repr(float(value)) if isinstance(value, float) else json.dumps(value)
