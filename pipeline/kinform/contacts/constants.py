@@ -320,6 +320,9 @@ SLIGHT_SOME = 8
 SLIGHT_FEW = 16
 """Pieces up to which what is not sure to be slight is measured piece by piece at once: that takes 0.2 ms each beside
 what all take together."""
+SURELY_EXPLAINED = 0.9
+"""Share of the depth that surfaces which mate explain by which facets are moved to see whether all is explained: pieces
+of the overlap are then thinner, too, than what their surfaces explain, as no two sides of one are further apart."""
 EXACT_OVERLAP = 0.02
 """An overlap below this is none: rounding of coordinates."""
 CURVED_FIRST = 20_000

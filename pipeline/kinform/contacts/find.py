@@ -9,9 +9,11 @@ from dataclasses import replace
 from kinform.contacts import constants
 from kinform.contacts.fastening import suggest
 from kinform.contacts.overlap.boundaries import boundaries_cross
+from kinform.contacts.overlap.explained import explained
 from kinform.contacts.overlap.solids import SolidStore
 from kinform.contacts.pair import PairContacts, mated_pairs, pair_contacts, touching
 from kinform.contacts.search.candidates import Pair, candidate_pairs
+from kinform.contacts.search.pair_view import PairView
 from kinform.foundation.at_work import at_work_on
 from kinform.foundation.constants import LARGE_MESH
 from kinform.foundation.meshes.index import MeshStore
@@ -53,7 +55,7 @@ class _Work:
             if mates is not None:
                 with at_work_on(_name_of((pair,))):
                     begun.append((k, mates, touching(mates)))
-        told = boundaries_cross([(mates.pair, patches) for _, mates, patches in begun])
+        told = _crossing([(mates.pair, patches) for _, mates, patches in begun])
         for (k, mates, patches), crosses in zip(begun, told, strict=True):
             with at_work_on(_name_of((pairs[k],))):
                 out[k] = pair_contacts(mates, patches, crosses, self.solids)
@@ -130,6 +132,14 @@ def find(
     )
     earlier = {} if reuse is None else _earlier_suggestions(reuse, contacts, reused)
     return replace(contacts, suggestions=suggest(assembly, surfaces, contacts, earlier))
+
+
+def _crossing(asked: list[tuple[PairView, list[Patch]]]) -> list[bool | None]:
+    """Whether the boundaries of pairs cross, as `boundaries_cross` says; None of those, too, that share no more than is
+    `explained`."""
+    clear = explained(asked)
+    rest = iter(boundaries_cross([one for one, known in zip(asked, clear, strict=True) if not known]))
+    return [None if known else next(rest) for known in clear]
 
 
 def _name_of(pairs: tuple[Pair, ...]) -> str:

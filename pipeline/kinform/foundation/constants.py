@@ -233,7 +233,7 @@ MET_MOST = 10
 
 TOLD_AT_ONCE = 4096
 """Pairs of triangles that are looked at in one pass: 2 MB, which stay near the processor."""
-CROSSED_MOST = 20
+CROSSED_MOST = 60
 """The same where it is only asked whether any meet: two trees for it take longer than one of few slivers does."""
 
 # meshes/apart

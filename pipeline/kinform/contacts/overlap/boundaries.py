@@ -27,6 +27,7 @@ def boundaries_cross(asked: Sequence[tuple[PairView, list[Patch]]]) -> list[bool
     moves = {k: _moves(*asked[k]) for k, may in enumerate(out) if may is not None and not asked[k][0].apart}
     curved = {k: found for k in moves if (found := _curved(*asked[k])) is not None}
     clear = _clear({k: asked[k][0] for k, left in moves.items() if left.ends and k not in curved})
+    clear |= {k for k, left in moves.items() if not left.ends and _parted(asked[k][0], left.first)}
     moves = {k: left for k, left in moves.items() if k not in clear}
     while moves:
         questions = {k: _moved(*asked[k][0].parts, left.first) for k, left in moves.items()}
@@ -58,7 +59,7 @@ def _moves(pair: PairView, patches: list[Patch]) -> _Moves:
     """Those of a pair."""
     least = constants.EXACT_OVERLAP * pair.tolerance
     shift = least * _SHIFT
-    apart = _parting(patches)
+    apart = parting(patches)
     if apart is None:
         return _Moves(np.zeros(3), [shift, -shift], True)
     return _Moves(constants.PARTING_TRIED * least * apart, [np.zeros(3), shift, -shift], False)
@@ -74,6 +75,17 @@ def _clear(pairs: dict[int, PairView]) -> set[int]:
         )
         asked.append((first, second, constants.EXACT_OVERLAP * norm(_SHIFT) * pair.tolerance))
     return {k for k, far in zip(pairs, keep_apart(asked), strict=True) if far}
+
+
+def _parted(pair: PairView, move: Array) -> bool:
+    """Whether a plane across a move (3,) of the second part lies between the parts then, as it does between plates."""
+    first, second = (
+        part.vertices @ move
+        if part.region.facets is None
+        else part.vertices.take(part.faces[part.region.facets].ravel(), axis=0) @ move
+        for part in pair.parts
+    )
+    return bool(first.max(initial=-np.inf) < second.min(initial=np.inf) + move @ move)
 
 
 def _crossing(
@@ -122,12 +134,16 @@ def _moved(a: PartView, b: PartView, move: Array) -> tuple[Region, Region, Array
     return a.region, b.region, X_AF @ X_FB
 
 
-def _parting(patches: list[Patch]) -> Array | None:
-    """The direction (3,) in which the second part leaves all plane contacts fastest; None where none does.
+def parting(patches: list[Patch]) -> Array | None:
+    """The direction (3,) in which the second part leaves all planes, points and lines of contact fastest; None where
+    none does.
 
     The point of least norm in the hull of the normals, by Frank and Wolfe's method.
     """
-    normals = np.array([patch.axis for patch in patches if patch.kind == "plane"]).reshape(-1, 3)
+    touching = [patch.normals for patch in patches if patch.kind in constants.TOUCHING]
+    normals = np.concatenate(
+        [np.array([patch.axis for patch in patches if patch.kind == "plane"]).reshape(-1, 3), *touching]
+    )
     if not len(normals):
         return None
     nearest = np.add.reduce(normals, axis=0) / len(normals)

@@ -290,14 +290,20 @@ def _crossing(first: Array, second: Array) -> bool | None:
 
 
 def _mutual(first: Array, second: Array) -> tuple[Array, Array]:
-    """Those of triangles (n, 3, 3) and (m, 3, 3), in their order, that may meet some of the others by the box of all of
-    these; neither of none."""
+    """Those of triangles (n, 3, 3) and (m, 3, 3) that are `mutual`."""
+    one, two = mutual(first, second)
+    return first.take(one, axis=0), second.take(two, axis=0)
+
+
+def mutual(first: Array, second: Array) -> tuple[Ints, Ints]:
+    """Places, ascending, of those of triangles (n, 3, 3) and (m, 3, 3) that may meet some of the others by the box of
+    all of these; neither of none."""
     (low, high), (low_other, high_other) = triangle_boxes(first), triangle_boxes(second)
     near = meeting_box(low, high, low_other.min(axis=0), high_other.max(axis=0)).nonzero()[0]
     if not len(near):
-        return first[:0], second[:0]
+        return near, near
     least, most = low.take(near, axis=0).min(axis=0), high.take(near, axis=0).max(axis=0)
-    return first.take(near, axis=0), np.asarray(second[meeting_box(low_other, high_other, least, most)])
+    return near, meeting_box(low_other, high_other, least, most).nonzero()[0]
 
 
 def _edges(triangles: Array) -> Array:

@@ -1,0 +1,163 @@
+"""Pairs whose facets cross only as round surfaces that mate are tessellated, of many pairs at once: a pin in its bore
+shares a sliver with it for each facet, and none of them is an overlap. It is seen without a cut.
+
+Once the parts have left each other by less than what counts, facets that cross are those of mates, and planes that cut
+these off. Move the round ones of one part off the other's, no corner by more than what the mates explain: where nothing
+crosses any more, no point of either surface was deeper in the other solid (see `shrunk`), and all that the solids share
+lay between surfaces that mate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from kinform.contacts import constants
+from kinform.contacts.overlap.boundaries import parting
+from kinform.contacts.overlap.samples import Allowance
+from kinform.contacts.overlap.solids import bounds_volume
+from kinform.contacts.search.pair_view import PairView, PartView
+from kinform.foundation.constants import CROSSED_FEW, CROSSED_MOST
+from kinform.foundation.meshes.boxes import middles
+from kinform.foundation.meshes.slivers import crossings, meetings, mutual
+from kinform.foundation.sorting import distinct
+from kinform.frozen import dataclass
+from kinform.model.arrays import Array, Ints
+from kinform.model.contacts import Patch
+from kinform.model.surfaces import KINDS
+
+_PLANE = KINDS.index("plane")
+
+
+@dataclass(frozen=True, eq=False)
+class _Question:
+    """The near facets of both parts of a pair, the second a little off the first, and those of the second once the
+    round ones are moved, too."""
+
+    pair: PairView
+    facets: tuple[Ints, Ints]
+    corners: tuple[Array, Array]
+    """(n, 3, 3) and (m, 3, 3) m."""
+    moved: Array
+    """(m, 3, 3) m."""
+    shift: Array
+    """(3,) m, of the second part."""
+    mates: list[tuple[int, int]]
+    """Surfaces of both that mate."""
+
+    def holds_none(self) -> bool:
+        """Whether no shell of either part is inside the other, as they are where nothing crosses."""
+        a, b = self.pair.parts
+        first, second = (_tried(part) for part in self.pair.parts)
+        there = middles(b.vertices.take(b.faces[second], axis=0)) + self.shift
+        place = np.minimum(self.facets[1].searchsorted(second), len(self.facets[1]) - 1)
+        near = self.facets[1][place] == second
+        there[near] = middles(self.moved[place[near]])
+        # what the second part has become is within what it was
+        here = middles(a.vertices.take(a.faces[first], axis=0)) - self.shift
+        return _outside(b, here, a) and _outside(a, there, b)
+
+    def may_cross(self, surfaces: tuple[Ints, Ints]) -> bool:
+        """Whether surfaces (n,) of both parts may: those that mate, and planes, which cut them off or lie in one."""
+        return all(
+            bool((np.isin(own, [both[k] for both in self.mates]) | (part.table.kinds[own] == _PLANE)).all())
+            for k, (part, own) in enumerate(zip(self.pair.parts, surfaces, strict=True))
+        )
+
+
+def explained(asked: Sequence[tuple[PairView, list[Patch]]]) -> list[bool]:
+    """Of pairs with their patches whether it is sure that they share no more than the tessellation of surfaces that
+    mate explains; asked of those that may be expected to cross. What is said of one does not depend on the others."""
+    questions = {k: made for k, one in enumerate(asked) if (made := _question(*one)) is not None}
+    told = crossings([(one.corners[0], one.moved) for one in questions.values()])
+    free = {k: one for (k, one), crosses in zip(questions.items(), told, strict=True) if crosses is False}
+    met = _crossing_surfaces(list(free.values()))
+    out = [False] * len(asked)
+    for (k, one), surfaces in zip(free.items(), met, strict=True):
+        if surfaces is not None and one.may_cross(surfaces):
+            out[k] = one.holds_none()
+    return out
+
+
+def _question(pair: PairView, patches: list[Patch]) -> _Question | None:
+    """What is to be asked of a pair; None where it would not be sure, or there are too many facets."""
+    if pair.apart or not any(patch.kind != "plane" and 2.0 * patch.gap <= patch.chord for patch in patches):
+        return None
+    facets = [_near(part) for part in pair.parts]
+    if not all(bounds_volume(part.index.mesh) for part in pair.parts):
+        return None
+    if len(facets[0]) * len(facets[1]) > CROSSED_FEW:
+        return None
+    least = constants.EXACT_OVERLAP * pair.tolerance
+    allowance = Allowance.of(pair, patches, least)
+    round_ones = [patch for patch in allowance.mates.values() if patch.kind != "plane"]
+    if not round_ones:
+        return None
+    depth = constants.SURELY_EXPLAINED * min(
+        min(
+            patch.chord + patch.uncertainty[1] + least,
+            float(allowance.chords[0][patch.surfaces[0]] + allowance.chords[1][patch.surfaces[1]]) + least,
+        )
+        for patch in round_ones
+    )
+    apart = parting(patches)
+    shift = np.zeros(3) if apart is None else constants.PARTING_TRIED * least * apart
+    inwards = depth - float(np.linalg.norm(shift))
+    if inwards <= 0.0 or depth > min(part.clear for part in pair.parts):
+        return None
+    first, second = (part.vertices.take(part.faces[own], axis=0) for part, own in zip(pair.parts, facets, strict=True))
+    wall = np.flatnonzero(np.isin(pair.b.surfaces.labels[facets[1]], [patch.surfaces[1] for patch in round_ones]))
+    second += shift
+    moved = second - inwards * _outward(pair.b, facets[1], wall)
+    return _Question(pair, (facets[0], facets[1]), (first, second), moved, shift, list(allowance.mates))
+
+
+def _tried(part: PartView) -> Ints:
+    """Facets of which it is asked whether they are inside the other part: one of each shell, and some of one alone."""
+    shells = part.index.shells
+    return shells if len(shells) > 1 else np.arange(0, len(part.faces), -(-len(part.faces) // constants.SHELL_TRIED))
+
+
+def _outside(outer: PartView, points: Array, inner: PartView) -> bool:
+    """Whether points (n, 3) m, on facets `_tried` of the inner part, say that none of its shells is in the outer."""
+    one = len(inner.index.shells) == 1
+    if one and ((points < outer.low) | (points > outer.high)).any():
+        return True
+    held = outer.index.contains(outer.to_part(points))
+    return not (held.all() if one else held.any())
+
+
+def _near(part: PartView) -> Ints:
+    facets = part.region.facets
+    return np.arange(len(part.faces)) if facets is None else facets
+
+
+def _outward(part: PartView, facets: Ints, wall: Ints) -> Array:
+    """(n, 3, 3) at the corners of facets (n,) the mean direction of those of them, at the places `wall`, that meet in
+    their vertex: no longer than 1, and nothing where none does."""
+    faces, count = part.faces[facets], len(part.vertices)
+    normals, vertex = part.normals(facets[wall]), faces[wall].ravel()
+    sums = np.stack([np.bincount(vertex, np.repeat(column, 3), count) for column in normals.T], axis=1)
+    length = np.sqrt((sums * sums).sum(axis=1, keepdims=True))
+    return np.asarray((sums / np.where(length > 0.0, length, 1.0)).take(faces, axis=0))
+
+
+def _crossing_surfaces(questions: list[_Question]) -> list[tuple[Ints, Ints] | None]:
+    """Surfaces of both parts that cross, the second a little off; None of too many facets."""
+    near = [mutual(*one.corners) for one in questions]
+    triangles = [
+        (one.corners[0].take(i, axis=0), one.corners[1].take(j, axis=0))
+        for one, (i, j) in zip(questions, near, strict=True)
+    ]
+    out: list[tuple[Ints, Ints] | None] = []
+    for one, places, met in zip(questions, near, meetings(triangles, CROSSED_MOST), strict=True):
+        if met is None:
+            out.append(None)
+            continue
+        first, second = (
+            distinct(part.surfaces.labels[facets[place[found]]])
+            for part, facets, place, found in zip(one.pair.parts, one.facets, places, met, strict=True)
+        )
+        out.append((first, second))
+    return out
