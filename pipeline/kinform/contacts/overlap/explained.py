@@ -2,9 +2,10 @@
 shares a sliver with it for each facet, and none of them is an overlap. It is seen without a cut.
 
 Once the parts have left each other by less than what counts, facets that cross are those of mates, and planes that cut
-these off. Move the round ones of one part off the other's, no corner by more than what the mates explain: where nothing
-crosses any more, no point of either surface was deeper in the other solid (see `shrunk`), and all that the solids share
-lay between surfaces that mate.
+these off. Move the round ones of the coarser part off the other's, no corner by more than what the mates explain: where
+nothing crosses any more, no point of either surface was deeper in the other solid (see `shrunk`), and all that the
+solids share lay beside these. What is beside them and mates with none, as a boss on a shaft, may be as deep as they
+alone explain: it crosses nothing where they are moved by that.
 """
 
 from __future__ import annotations
@@ -35,34 +36,42 @@ class _Question:
     """The near facets of both parts of a pair, the second a little off the first, and those of the second once the
     round ones are moved, too."""
 
-    pair: PairView
+    parts: tuple[PartView, PartView]
+    """The one that stays as it is, and the one whose facets are moved."""
     facets: tuple[Ints, Ints]
+    """Near ones."""
     corners: tuple[Array, Array]
     """(n, 3, 3) and (m, 3, 3) m."""
     moved: Array
     """(m, 3, 3) m."""
+    beside: Ints
+    """(k,) facets of the first part, among its near ones, that mate with no round surface."""
+    moved_less: Array
+    """(m, 3, 3) m: as `moved`, by no more than the round surfaces that are moved explain alone."""
     shift: Array
     """(3,) m, of the second part."""
-    mates: list[tuple[int, int]]
-    """Surfaces of both that mate."""
+    mating: tuple[Ints, Ints]
+    """Surfaces of either that mate."""
+    cut_off: bool
+    """Whether planes may cut these off: not those that touch in points."""
 
     def holds_none(self) -> bool:
         """Whether no shell of either part is inside the other, as they are where nothing crosses."""
-        a, b = self.pair.parts
-        first, second = (_tried(part) for part in self.pair.parts)
-        there = middles(b.vertices.take(b.faces[second], axis=0)) + self.shift
+        still, other = self.parts
+        first, second = (_tried(part) for part in self.parts)
+        there = middles(other.vertices.take(other.faces[second], axis=0)) + self.shift
         place = np.minimum(self.facets[1].searchsorted(second), len(self.facets[1]) - 1)
         near = self.facets[1][place] == second
         there[near] = middles(self.moved[place[near]])
         # what the second part has become is within what it was
-        here = middles(a.vertices.take(a.faces[first], axis=0)) - self.shift
-        return _outside(b, here, a) and _outside(a, there, b)
+        here = middles(still.vertices.take(still.faces[first], axis=0)) - self.shift
+        return _outside(other, here, still) and _outside(still, there, other)
 
     def may_cross(self, surfaces: tuple[Ints, Ints]) -> bool:
         """Whether surfaces (n,) of both parts may: those that mate, and planes, which cut them off or lie in one."""
         return all(
-            bool((np.isin(own, [both[k] for both in self.mates]) | (part.table.kinds[own] == _PLANE)).all())
-            for k, (part, own) in enumerate(zip(self.pair.parts, surfaces, strict=True))
+            bool((np.isin(own, mating) | (self.cut_off & (part.table.kinds[own] == _PLANE))).all())
+            for part, own, mating in zip(self.parts, surfaces, self.mating, strict=True)
         )
 
 
@@ -72,6 +81,8 @@ def explained(asked: Sequence[tuple[PairView, list[Patch]]]) -> list[bool]:
     questions = {k: made for k, one in enumerate(asked) if (made := _question(*one)) is not None}
     told = crossings([(one.corners[0], one.moved) for one in questions.values()])
     free = {k: one for (k, one), crosses in zip(questions.items(), told, strict=True) if crosses is False}
+    told = crossings([(one.corners[0].take(one.beside, axis=0), one.moved_less) for one in free.values()])
+    free = {k: one for (k, one), crosses in zip(free.items(), told, strict=True) if crosses is False}
     met = _crossing_surfaces(list(free.values()))
     out = [False] * len(asked)
     for (k, one), surfaces in zip(free.items(), met, strict=True):
@@ -84,33 +95,57 @@ def _question(pair: PairView, patches: list[Patch]) -> _Question | None:
     """What is to be asked of a pair; None where it would not be sure, or there are too many facets."""
     if pair.apart or not any(patch.kind != "plane" and 2.0 * patch.gap <= patch.chord for patch in patches):
         return None
-    facets = [_near(part) for part in pair.parts]
     if not all(bounds_volume(part.index.mesh) for part in pair.parts):
-        return None
-    if len(facets[0]) * len(facets[1]) > CROSSED_FEW:
         return None
     least = constants.EXACT_OVERLAP * pair.tolerance
     allowance = Allowance.of(pair, patches, least)
-    round_ones = [patch for patch in allowance.mates.values() if patch.kind != "plane"]
-    if not round_ones:
+    rounds = [patch for patch in allowance.mates.values() if patch.kind != "plane"]
+    if not rounds or not all(_of_round_surfaces(pair, patch) for patch in rounds):
         return None
-    depth = constants.SURELY_EXPLAINED * min(
-        min(
-            patch.chord + patch.uncertainty[1] + least,
-            float(allowance.chords[0][patch.surfaces[0]] + allowance.chords[1][patch.surfaces[1]]) + least,
-        )
-        for patch in round_ones
-    )
+    alone = [min(float(allowance.chords[k][patch.surfaces[k]]) for patch in rounds) for k in (0, 1)]
+    sides = (0, 1) if alone[1] >= alone[0] else (1, 0)
+    parts = (pair.parts[sides[0]], pair.parts[sides[1]])
+    facets = (_near(parts[0]), _near(parts[1]))
+    if len(facets[0]) * len(facets[1]) > CROSSED_FEW:
+        return None
+    depth = constants.SURELY_EXPLAINED * min(_explained_by(patch, allowance) for patch in rounds)
     apart = parting(patches)
-    shift = np.zeros(3) if apart is None else constants.PARTING_TRIED * least * apart
-    inwards = depth - float(np.linalg.norm(shift))
-    if inwards <= 0.0 or depth > min(part.clear for part in pair.parts):
+    shift = np.zeros(3) if apart is None else (sides[1] - sides[0]) * constants.PARTING_TRIED * least * apart
+    inwards, less = (most - float(np.linalg.norm(shift)) for most in (depth, min(depth, alone[sides[1]] + least)))
+    if inwards <= 0.0 or less < 0.0 or depth > min(part.clear for part in parts):
         return None
-    first, second = (part.vertices.take(part.faces[own], axis=0) for part, own in zip(pair.parts, facets, strict=True))
-    wall = np.flatnonzero(np.isin(pair.b.surfaces.labels[facets[1]], [patch.surfaces[1] for patch in round_ones]))
+    first, second = (part.vertices.take(part.faces[own], axis=0) for part, own in zip(parts, facets, strict=True))
+    walls = [
+        np.isin(part.surfaces.labels[own], [patch.surfaces[k] for patch in rounds])
+        for part, own, k in zip(parts, facets, sides, strict=True)
+    ]
     second += shift
-    moved = second - inwards * _outward(pair.b, facets[1], wall)
-    return _Question(pair, (facets[0], facets[1]), (first, second), moved, shift, list(allowance.mates))
+    outward = _outward(parts[1], facets[1], np.flatnonzero(walls[1]))
+    mating = [np.array(sorted({both[k] for both in allowance.mates})) for k in sides]
+    return _Question(
+        parts=parts,
+        facets=facets,
+        corners=(first, second),
+        moved=second - inwards * outward,
+        beside=np.flatnonzero(~walls[0]),
+        moved_less=second - less * outward,
+        shift=shift,
+        mating=(mating[0], mating[1]),
+        cut_off=not any(patch.kind in constants.TOUCHING for patch in rounds),
+    )
+
+
+def _of_round_surfaces(pair: PairView, patch: Patch) -> bool:
+    """Whether both its surfaces are round, not flats that stand for one, and it is not of lines, along which others
+    that do not mate lie as near."""
+    kinds = [part.table.kinds[k] for part, k in zip(pair.parts, patch.surfaces, strict=True)]
+    return patch.kind != "line" and _PLANE not in kinds
+
+
+def _explained_by(patch: Patch, allowance: Allowance) -> float:
+    """m that round surfaces which mate may be in each other, whichever facets are the nearest."""
+    chords = sum(float(of_part[k]) for of_part, k in zip(allowance.chords, patch.surfaces, strict=True))
+    return min(patch.chord + patch.uncertainty[1], chords) + allowance.floor
 
 
 def _tried(part: PartView) -> Ints:
@@ -157,7 +192,7 @@ def _crossing_surfaces(questions: list[_Question]) -> list[tuple[Ints, Ints] | N
             continue
         first, second = (
             distinct(part.surfaces.labels[facets[place[found]]])
-            for part, facets, place, found in zip(one.pair.parts, one.facets, places, met, strict=True)
+            for part, facets, place, found in zip(one.parts, one.facets, places, met, strict=True)
         )
         out.append((first, second))
     return out
