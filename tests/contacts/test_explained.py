@@ -136,3 +136,11 @@ def test_a_boss_beside_mates_is_no_part_of_them(segments, others, names, monkeyp
             assert told == by_cut
             seen.append(bool(by_cut))
     assert any(seen)
+
+
+@pytest.mark.parametrize("names", [("a", "b"), ("b", "a")])
+def test_a_boss_is_not_explained_by_both_mates(names, monkeypatch):
+    """Its partner stands off its facets by 0.019 mm, both mates by 0.033 mm together."""
+    block, other = list(bossed(32, 28, 0.03))[4]
+    for seed in range(3):
+        assert not asked_of(random_pose(np.random.default_rng(seed)), block, other, monkeypatch, names)[0]
