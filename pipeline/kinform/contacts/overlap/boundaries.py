@@ -69,22 +69,14 @@ def _clear(pairs: dict[int, PairView]) -> set[int]:
     """Of which pairs no facets are as near as the second part is moved, so that none cross wherever that is."""
     asked = []
     for pair in pairs.values():
-        first, second = (
-            part.vertices.take(part.faces if part.region.facets is None else part.faces[part.region.facets], axis=0)
-            for part in pair.parts
-        )
+        first, second = (part.corners(part.probed) for part in pair.parts)
         asked.append((first, second, constants.EXACT_OVERLAP * norm(_SHIFT) * pair.tolerance))
     return {k for k, far in zip(pairs, keep_apart(asked), strict=True) if far}
 
 
 def _parted(pair: PairView, move: Array) -> bool:
     """Whether a plane across a move (3,) of the second part lies between the parts then, as it does between plates."""
-    first, second = (
-        part.vertices @ move
-        if part.region.facets is None
-        else part.vertices.take(part.faces[part.region.facets].ravel(), axis=0) @ move
-        for part in pair.parts
-    )
+    first, second = (part.corners(part.probed) @ move for part in pair.parts)
     return bool(first.max(initial=-np.inf) < second.min(initial=np.inf) + move @ move)
 
 

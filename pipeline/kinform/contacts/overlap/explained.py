@@ -17,6 +17,7 @@ import numpy as np
 from kinform.contacts import constants
 from kinform.contacts.overlap.boundaries import parting
 from kinform.contacts.overlap.samples import Allowance
+from kinform.contacts.overlap.shrunk import outward
 from kinform.contacts.overlap.solids import bounds_volume
 from kinform.contacts.search.pair_view import PairView, PartView
 from kinform.foundation.constants import CROSSED_FEW, CROSSED_MOST
@@ -59,12 +60,12 @@ class _Question:
         """Whether no shell of either part is inside the other, as they are where nothing crosses."""
         still, other = self.parts
         first, second = (_tried(part) for part in self.parts)
-        there = middles(other.vertices.take(other.faces[second], axis=0)) + self.shift
+        there = middles(other.corners(second)) + self.shift
         place = np.minimum(self.facets[1].searchsorted(second), len(self.facets[1]) - 1)
         near = self.facets[1][place] == second
         there[near] = middles(self.moved[place[near]])
         # what the second part has become is within what it was
-        here = middles(still.vertices.take(still.faces[first], axis=0)) - self.shift
+        here = middles(still.corners(first)) - self.shift
         return _outside(other, here, still) and _outside(still, there, other)
 
     def may_cross(self, surfaces: tuple[Ints, Ints]) -> bool:
@@ -105,7 +106,7 @@ def _question(pair: PairView, patches: list[Patch]) -> _Question | None:
     alone = [min(float(allowance.chords[k][patch.surfaces[k]]) for patch in rounds) for k in (0, 1)]
     sides = (0, 1) if alone[1] >= alone[0] else (1, 0)
     parts = (pair.parts[sides[0]], pair.parts[sides[1]])
-    facets = (_near(parts[0]), _near(parts[1]))
+    facets = (parts[0].probed, parts[1].probed)
     if len(facets[0]) * len(facets[1]) > CROSSED_FEW:
         return None
     depth = constants.SURELY_EXPLAINED * min(_explained_by(patch, allowance) for patch in rounds)
@@ -114,21 +115,21 @@ def _question(pair: PairView, patches: list[Patch]) -> _Question | None:
     inwards, less = (most - float(np.linalg.norm(shift)) for most in (depth, min(depth, alone[sides[1]] + least)))
     if inwards <= 0.0 or less < 0.0 or depth > min(part.clear for part in parts):
         return None
-    first, second = (part.vertices.take(part.faces[own], axis=0) for part, own in zip(parts, facets, strict=True))
+    first, second = (part.corners(own) for part, own in zip(parts, facets, strict=True))
     walls = [
         np.isin(part.surfaces.labels[own], [patch.surfaces[k] for patch in rounds])
         for part, own, k in zip(parts, facets, sides, strict=True)
     ]
     second += shift
-    outward = _outward(parts[1], facets[1], np.flatnonzero(walls[1]))
+    off = outward(parts[1], facets[1], np.flatnonzero(walls[1]))
     mating = [np.array(sorted({both[k] for both in allowance.mates})) for k in sides]
     return _Question(
         parts=parts,
         facets=facets,
         corners=(first, second),
-        moved=second - inwards * outward,
+        moved=second - inwards * off,
         beside=np.flatnonzero(~walls[0]),
-        moved_less=second - less * outward,
+        moved_less=second - less * off,
         shift=shift,
         mating=(mating[0], mating[1]),
         cut_off=not any(patch.kind in constants.TOUCHING for patch in rounds),
@@ -161,21 +162,6 @@ def _outside(outer: PartView, points: Array, inner: PartView) -> bool:
         return True
     held = outer.index.contains(outer.to_part(points))
     return not (held.all() if one else held.any())
-
-
-def _near(part: PartView) -> Ints:
-    facets = part.region.facets
-    return np.arange(len(part.faces)) if facets is None else facets
-
-
-def _outward(part: PartView, facets: Ints, wall: Ints) -> Array:
-    """(n, 3, 3) at the corners of facets (n,) the mean direction of those of them, at the places `wall`, that meet in
-    their vertex: no longer than 1, and nothing where none does."""
-    faces, count = part.faces[facets], len(part.vertices)
-    normals, vertex = part.normals(facets[wall]), faces[wall].ravel()
-    sums = np.stack([np.bincount(vertex, np.repeat(column, 3), count) for column in normals.T], axis=1)
-    length = np.sqrt((sums * sums).sum(axis=1, keepdims=True))
-    return np.asarray((sums / np.where(length > 0.0, length, 1.0)).take(faces, axis=0))
 
 
 def _crossing_surfaces(questions: list[_Question]) -> list[tuple[Ints, Ints] | None]:

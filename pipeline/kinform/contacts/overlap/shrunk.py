@@ -31,8 +31,8 @@ def are_within(a: PartView, b: PartView, least: float) -> bool:
         a, b, facets_a, facets_b = b, a, facets_b, facets_a
     told: bool | None = False
     if len(facets_a) and len(facets_b):
-        thinner = _corners(a, facets_a) - least * _outward(a, facets_a)
-        told = None if a.region.is_large or b.region.is_large else crossing(thinner, _corners(b, facets_b))
+        thinner = a.corners(facets_a) - least * outward(a, facets_a)
+        told = None if a.region.is_large or b.region.is_large else crossing(thinner, b.corners(facets_b))
     # mostly some cross, which is seen sooner than where shells are
     if told or not (_outside(first, second, least) and _outside(second, first, least)):
         return False
@@ -61,22 +61,19 @@ def _outside(inner: PartView, outer: PartView, least: float) -> bool:
 
 def _beside(part: PartView, low: Array, high: Array) -> Ints:
     """Facets near the other part that come into the box from `low` to `high` (3,)."""
-    facets = np.arange(len(part.faces)) if part.region.facets is None else part.region.facets
+    facets = part.probed
     return facets[meeting_box(*facet_boxes(part.vertices, part.faces[facets]), low, high)]
 
 
-def _corners(part: PartView, facets: Ints) -> Array:
-    """(n, 3, 3) m."""
-    return np.asarray(part.vertices.take(part.faces[facets], axis=0))
-
-
-def _outward(part: PartView, facets: Ints) -> Array:
-    """(n, 3, 3) unit, or zero: at each corner of facets the mean of the normals of those of them that meet in its
-    vertex, weighted by their angles there, so that it does not hang on how faces are cut into triangles."""
-    corners, faces = _corners(part, facets), part.faces[facets]
+def outward(part: PartView, facets: Ints, some: Ints | None = None) -> Array:
+    """(n, 3, 3) unit, or zero: at each corner of facets (n,) the mean of the normals of those of them, or of those at
+    the places `some` (k,), that meet in its vertex, weighted by their angles there, so that it does not hang on how
+    faces are cut into triangles."""
+    faces, chosen = part.faces[facets], facets if some is None else facets[some]
+    corners = part.corners(chosen)
     sides = [corners[:, (k + 1) % 3] - corners[:, k] for k in range(3)]
     weights = np.concatenate([_angle(sides[k], -sides[k - 1]) for k in range(3)])
-    vertex, normals = faces.T.ravel(), part.normals(facets)
+    vertex, normals = part.faces[chosen].T.ravel(), part.normals(chosen)
     sums = [np.bincount(vertex, weights * np.tile(column, 3), len(part.vertices)) for column in normals.T]
     mean = np.stack([column.take(faces) for column in sums], axis=2)
     length = np.sqrt((mean * mean).sum(axis=2, keepdims=True))

@@ -57,6 +57,16 @@ class PartView:
         """(F, 3)."""
         return self.index.mesh.faces
 
+    @property
+    def probed(self) -> Ints:
+        """(n,) facets of the region, ascending."""
+        facets = self.region.facets
+        return np.arange(len(self.faces)) if facets is None else facets
+
+    def corners(self, facets: Ints) -> Array:
+        """(n, 3, 3) m of facets (n,), in the frame of the pair."""
+        return np.asarray(self.vertices.take(self.faces.take(facets, axis=0), axis=0))
+
     def normals(self, facets: Ints) -> Array:
         """(n, 3) unit, outward, of facets (n,), in the frame of the pair."""
         normals = self.index.normals(facets)
