@@ -261,6 +261,29 @@ BENDS_MOST = 1.05
 BENDS_PLANES = 1000
 """Planes from which on it is not asked which of them do."""
 
+# meshes/standoffs
+
+EPS32 = 2.0**-23
+"""Relative rounding of single precision, in which STL files store coordinates."""
+
+STANDOFF_EDGES = 8.0
+"""Times width and turn across an edge, over 8, that facets stand off at most: 16/3 where equal triangles with equal
+sides are on a ball, 2 where they halve strips, and a little for what is coarse."""
+STANDOFF_LOOSE = 0.01
+"""Weight of no curvature among facets about one, whose middles are about one size of the facet from its own: what none
+of them tells is none."""
+STANDOFF_CUT = 3.0
+"""Times what it tells by itself that a facet where its surface ends stands off at most, if those beside it do: cuts
+that leave half of a facet leave about a third of that."""
+STANDOFF_FAN = 300
+"""Polygons that meet at a vertex up to which each speaks for all others there."""
+STANDOFF_ROUNDED = 4.0
+"""Roundings by which a sliver may be out of the plane of the facet beside it and be in it ..."""
+STANDOFF_SLIVER = 0.1
+"""... and how low it is for that, as a share of that facet."""
+STANDOFF_TURN = 2.0
+"""Angles of smooth edges by which facets that share a vertex may turn."""
+
 # meshes/closest
 AS_NEAR = 1e-9
 """Share of their distance by which facets may be farther than the nearest and still as near, ..."""

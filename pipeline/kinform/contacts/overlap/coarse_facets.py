@@ -1,0 +1,98 @@
+"""Whether points that two solids share are beyond what facets may stand off, facet by facet.
+
+Solids overlap for sure at a point that is deeper in each of them than its facets stand off: no facet nearer than that
+may lie off the surface that it stands for by as much. A point on the boundary of one, at the depth d in the other, can
+be moved inwards until that holds of the first, and then d has to be more than what both stand off. The facet that
+counts is not the nearest one where a coarse socket ends at a fine bore: it is the one that is nearest beside what it
+may stand off, so that for each solid the least distance less that is asked for.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinform.contacts import constants
+from kinform.contacts.search.pair_view import PartView, near_facets
+from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.constants import STANDOFF_EDGES
+from kinform.foundation.meshes.box_pairs import meeting_boxes
+from kinform.foundation.meshes.closest import distances_between
+from kinform.model.arrays import Array, Flags, Ints
+from kinform.model.surfaces import KINDS
+from kinform.model.tolerances import Tolerances
+
+_FREE = [KINDS.index(kind) for kind in ("helicoid", "revolution", "extrusion", "freeform")]
+"""Kinds whose chord errors are estimates."""
+
+
+class CoarseFacets:
+    """The facets of two parts about what they share."""
+
+    def __init__(self, a: PartView, b: PartView, floor: float, tolerances: Tolerances):
+        """`floor` m is no overlap."""
+        self.sides = (_Side(a, tolerances), _Side(b, tolerances))
+        self.floor = floor
+
+    def explain(self, points: Array, depth: Array) -> Flags:
+        """(n,) which points (n, 3) on the boundary of either part, at depths (n,) m in the other, may be in no
+        overlap."""
+        out = np.zeros(len(points), bool)
+        most = [side.most for side in self.sides]
+        asked = np.flatnonzero(depth <= sum(most) + self.floor)
+        if not len(asked):
+            return out
+        first, second = self.sides
+        one = first.clearances(points[asked], np.full(len(asked), most[1] + self.floor))
+        left = np.flatnonzero(one <= most[1] + self.floor)
+        other = second.clearances(points[asked[left]], self.floor - one[left])
+        out[asked[left]] = one[left] + other <= self.floor
+        return out
+
+
+class _Side:
+    """One of the parts."""
+
+    def __init__(self, part: PartView, tolerances: Tolerances):
+        self.part, self.tolerances = part, tolerances
+        self.free = np.isin(part.table.kinds, _FREE)
+        reach = part.table.slacks + np.where(self.free, (STANDOFF_EDGES - 1.0) * part.table.chords, 0.0)
+        self.reach, self.most = (1.0 + constants.BEYOND_FACETS) * reach, float(reach.max(initial=0.0))
+
+    def clearances(self, points: Array, beyond: Array) -> Array:
+        """(n,) m: least distance of each point (n, 3) from a facet less what that may stand off; inf where that is
+        more than `beyond` (n,)."""
+        out = np.full(len(points), np.inf)
+        if not len(points):
+            return out
+        part, furthest = self.part, float(beyond.max())
+        margin = (1.0 + constants.BEYOND_FACETS) * self.most + furthest
+        facets, low, high = near_facets(part, points.min(axis=0) - margin, points.max(axis=0) + margin)
+        labels = part.surfaces.labels[facets]
+        reach = (self.reach[labels] + furthest)[:, None]
+        for some in np.array_split(np.arange(len(points)), -(-len(points) * len(facets) // constants.COARSE_AT_ONCE) or 1):
+            place = points[some]
+            met = meeting_boxes((place, place), (low - reach, high + reach))
+            if met is None:
+                continue
+            at, facet = some[met[0]], met[1]
+            corners = part.vertices.take(part.faces[facets[facet]], axis=0)
+            away = distances_between(points[at], corners)
+            near = np.flatnonzero(away <= self.reach[labels[facet]] + beyond[at])
+            at, facet, away = at[near], facet[near], away[near]
+            height = np.abs(dot(points[at] - corners[near, 0], part.normals(facets[facet])))
+            standing = self._standing(facets[facet])
+            # the surface goes on beside its facets
+            beside = np.sqrt(np.maximum(away * away - height * height, 0.0)) - constants.BEYOND_FACETS * standing
+            np.minimum.at(out, at, np.hypot(height, np.maximum(beside, 0.0)) - standing)
+        return out
+
+    def _standing(self, facets: Ints) -> Array:
+        """(k,) m that facets (k,) may stand off."""
+        part = self.part
+        labels = part.surfaces.labels[facets]
+        out = part.table.slacks[labels]
+        for number in np.unique(labels[self.free[labels]]).tolist():
+            rows = np.flatnonzero(labels == number)
+            own = part.index.standoffs(part.surfaces, number, self.tolerances)
+            out[rows] = np.maximum(out[rows], own[np.searchsorted(part.surfaces.surfaces[number].faces, facets[rows])])
+        return out
