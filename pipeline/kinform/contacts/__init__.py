@@ -38,5 +38,5 @@ from kinform.contacts.find import find
 
 __all__ = ["CODE_VERSION", "find"]
 
-CODE_VERSION: int = 30
+CODE_VERSION: int = 31
 """Raised when the same input would give other contacts."""

@@ -267,14 +267,15 @@ EPS32 = 2.0**-23
 """Relative rounding of single precision, in which STL files store coordinates."""
 
 STANDOFF_EDGES = 8.0
-"""Times width and turn across an edge, over 8, that facets stand off at most: 16/3 where equal triangles with equal
-sides are on a ball, 2 where they halve strips, and a little for what is coarse."""
+"""Times width and turn across an edge, over 8, that facets stand off at most: 16/3 where triangles with equal sides are
+on a ball, up to 7 where they are less even, and 2 where they halve strips."""
 STANDOFF_LOOSE = 0.01
-"""Weight of no curvature among facets about one, whose middles are about one size of the facet from its own: what none
-of them tells is none."""
+"""Weight of no curvature among the polygons about one, each about one size of it away: what none of them tells of is
+none, and what they tell is less by a hundredth at most."""
 STANDOFF_CUT = 3.0
-"""Times what it tells by itself that a facet where its surface ends stands off at most, if those beside it do: cuts
-that leave half of a facet leave about a third of that."""
+"""Times what a polygon tells by itself that it stands off at most where its surface ends, if those beside it do: a cut
+that leaves half of a facet leaves about a third. Without, 4 of 300 random sockets overlap, of 41; without a limit, fans
+of long facets hide 0.6 mm of a motor in an arm."""
 STANDOFF_FAN = 300
 """Polygons that meet at a vertex up to which each speaks for all others there."""
 STANDOFF_ROUNDED = 4.0

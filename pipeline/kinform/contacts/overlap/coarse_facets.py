@@ -23,13 +23,14 @@ from kinform.model.tolerances import Tolerances
 
 _FREE = [KINDS.index(kind) for kind in ("helicoid", "revolution", "extrusion", "freeform")]
 """Kinds whose chord errors are estimates."""
+_PLANE = KINDS.index("plane")
 
 
 class CoarseFacets:
     """The facets of two parts about what they share."""
 
     def __init__(self, a: PartView, b: PartView, floor: float, tolerances: Tolerances):
-        """`floor` m is no overlap."""
+        """Of parts `a` and `b`; `floor` (m) is no overlap."""
         self.sides = (_Side(a, tolerances), _Side(b, tolerances))
         self.floor = floor
 
@@ -54,8 +55,10 @@ class _Side:
 
     def __init__(self, part: PartView, tolerances: Tolerances):
         self.part, self.tolerances = part, tolerances
-        self.free = np.isin(part.table.kinds, _FREE)
-        reach = part.table.slacks + np.where(self.free, (STANDOFF_EDGES - 1.0) * part.table.chords, 0.0)
+        table = part.table
+        self.free = np.isin(table.kinds, _FREE)
+        self.slacks = np.where(table.kinds == _PLANE, 0.0, table.slacks)
+        reach = self.slacks + np.where(self.free, (STANDOFF_EDGES - 1.0) * table.chords, 0.0)
         self.reach, self.most = (1.0 + constants.BEYOND_FACETS) * reach, float(reach.max(initial=0.0))
 
     def clearances(self, points: Array, beyond: Array) -> Array:
@@ -64,33 +67,37 @@ class _Side:
         out = np.full(len(points), np.inf)
         if not len(points):
             return out
-        part, furthest = self.part, float(beyond.max())
-        margin = (1.0 + constants.BEYOND_FACETS) * self.most + furthest
-        facets, low, high = near_facets(part, points.min(axis=0) - margin, points.max(axis=0) + margin)
-        labels = part.surfaces.labels[facets]
-        reach = (self.reach[labels] + furthest)[:, None]
-        for some in np.array_split(np.arange(len(points)), -(-len(points) * len(facets) // constants.COARSE_AT_ONCE) or 1):
-            place = points[some]
-            met = meeting_boxes((place, place), (low - reach, high + reach))
-            if met is None:
-                continue
-            at, facet = some[met[0]], met[1]
-            corners = part.vertices.take(part.faces[facets[facet]], axis=0)
-            away = distances_between(points[at], corners)
-            near = np.flatnonzero(away <= self.reach[labels[facet]] + beyond[at])
-            at, facet, away = at[near], facet[near], away[near]
-            height = np.abs(dot(points[at] - corners[near, 0], part.normals(facets[facet])))
-            standing = self._standing(facets[facet])
-            # the surface goes on beside its facets
-            beside = np.sqrt(np.maximum(away * away - height * height, 0.0)) - constants.BEYOND_FACETS * standing
-            np.minimum.at(out, at, np.hypot(height, np.maximum(beside, 0.0)) - standing)
+        margin = (1.0 + constants.BEYOND_FACETS) * self.most + float(beyond.max())
+        facets, low, high = near_facets(self.part, points.min(axis=0) - margin, points.max(axis=0) + margin)
+        reach = (self.reach[self.part.surfaces.labels[facets]] + float(beyond.max()))[:, None]
+        boxes = low - reach, high + reach
+        parts = max(1, -(-len(points) * len(facets) // constants.COARSE_AT_ONCE))
+        for some in np.array_split(np.arange(len(points)), parts):
+            met = meeting_boxes((points[some], points[some]), boxes)
+            if met is not None:
+                at = some[met[0]]
+                np.minimum.at(out, at, self._beyond(points[at], facets[met[1]], beyond[at]))
+        return out
+
+    def _beyond(self, points: Array, facets: Ints, beyond: Array) -> Array:
+        """(k,) m: distance of points (k, 3) from facets (k,) less what these may stand off; inf where that is more than
+        `beyond` (k,)."""
+        part, out = self.part, np.full(len(points), np.inf)
+        corners = part.vertices.take(part.faces[facets], axis=0)
+        away = distances_between(points, corners)
+        near = np.flatnonzero(away <= self.reach[part.surfaces.labels[facets]] + beyond)
+        away, standing = away[near], self._standing(facets[near])
+        height = np.abs(dot(points[near] - corners[near, 0], part.normals(facets[near])))
+        # the surface goes on beside its facets
+        beside = np.sqrt(np.maximum(away * away - height * height, 0.0)) - constants.BEYOND_FACETS * standing
+        out[near] = np.hypot(height, np.maximum(beside, 0.0)) - standing
         return out
 
     def _standing(self, facets: Ints) -> Array:
         """(k,) m that facets (k,) may stand off."""
         part = self.part
         labels = part.surfaces.labels[facets]
-        out = part.table.slacks[labels]
+        out = self.slacks[labels]
         for number in np.unique(labels[self.free[labels]]).tolist():
             rows = np.flatnonzero(labels == number)
             own = part.index.standoffs(part.surfaces, number, self.tolerances)

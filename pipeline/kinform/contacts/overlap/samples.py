@@ -37,7 +37,6 @@ class Allowance:
     mates: dict[tuple[int, int], Patch]
     floor: float
     tolerance: float
-
     facets: CoarseFacets
 
     @staticmethod
@@ -65,8 +64,9 @@ class Allowance:
         if not asked:
             return list(zip(deep, thin, strict=True))
         joined = joined_samples([every[k].where(deep[k]) for k in asked])
-        ends = np.cumsum([np.count_nonzero(deep[k]) for k in asked])
-        for k, explained in zip(asked, np.split(self.facets.explain(joined.points, joined.depth), ends[:-1]), strict=True):
+        ends = np.cumsum([np.count_nonzero(deep[k]) for k in asked])[:-1]
+        told = np.split(self.facets.explain(joined.points, joined.depth), ends)
+        for k, explained in zip(asked, told, strict=True):
             if explained.all():
                 thin[k] = max(thin[k], float(every[k].depth[deep[k]].max()))
                 deep[k][:] = False

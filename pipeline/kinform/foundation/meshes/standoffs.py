@@ -101,7 +101,7 @@ class _Polygons:
         count = int(polygon.max()) + 1
         doubled = lengths(spans)
         total = _sums(polygon, spans, count)
-        area: Array = 0.5 * np.bincount(polygon, doubled, count)
+        area: Array = np.bincount(polygon, 0.5 * doubled, count).astype(float)
         weight = np.where(area > 0.0, area, 1.0)
         corners = vertices[faces]
         middle = _sums(polygon, 0.5 * doubled[:, None] * corners.mean(axis=1), count) / weight[:, None]
@@ -144,11 +144,14 @@ class _Polygons:
     def bent(self, one: Ints, other: Ints) -> Array:
         """(p,) m by the curvature of least squares, of pairs of polygons (k,)."""
         count = len(self.area)
-        frame, size = self._frames()
-        u, v = np.einsum("ki,kci->ck", self.middle[other] - self.middle[one], frame[one]) / size[one]
-        p, q = np.einsum("ki,kci->ck", self.normal[other], frame[one])
-        # slivers know little of how a surface bends
-        weight = np.minimum(self.area[other] / np.maximum(self.area[one], 1e-300), 1.0)
+        frame, size, reach = self._frames()
+        apart = np.einsum("ki,kci->kc", self.middle[other] - self.middle[one], frame[one])
+        (u, v), (p, q) = apart.T / size[one], np.einsum("ki,kci->ck", self.normal[other], frame[one])
+        # slivers know little of how a surface bends, and what is much farther off than the polygon reaches less
+        square = np.einsum("kc,kc->k", apart, apart)
+        own = 4.0 * np.einsum("kc,kcd,kd->k", apart, reach[one], apart)
+        near = np.minimum(own / np.maximum(square * square, 1e-300), 1.0) ** 2
+        weight = near * np.minimum(self.area[other] / np.maximum(self.area[one], 1e-300), 1.0)
         products = (u * u, u * v, v * v, u * p, u * q + v * p, v * q)
         uu, uv, vv, up, mixed, vq = (np.bincount(one, weight * values, count) for values in products)
         matrix = np.zeros((count, 3, 3))
@@ -159,32 +162,35 @@ class _Polygons:
         H = np.stack([first, second, second, third], axis=1).reshape(count, 2, 2) / size[:, None, None]
         values, turned = np.linalg.eigh(H)
         principal = np.einsum("nci,ncj->nji", frame, turned)
-        out = self._round(np.abs(values), self._widths(principal))
         saddle = values[:, 0] * values[:, 1] < 0.0
-        out[saddle] = (np.abs(values) * self._widths(principal) ** 2)[saddle].max(axis=1) / 8.0
+        arcs = np.abs(values) * self._widths(principal) ** 2 / 8.0
+        # a saddle stands off most at an edge
+        out = np.where(saddle, arcs.max(axis=1), arcs.sum(axis=1))
         alone = np.flatnonzero(self.triangle[:, 0] >= 0)
         corners = self.vertices[self.triangle[alone]]
         along = np.einsum("nki,nji->nkj", np.roll(corners, -1, axis=1) - corners, principal[alone])
         squares = np.abs(np.einsum("nkj,nj->nk", along * along, values[alone]))
         out[alone] = np.where(saddle[alone], squares.max(axis=1) / 8.0, 0.5 * _circles(squares))
-        return out
+        return np.asarray(out)
 
-    @staticmethod
-    def _round(values: Array, widths: Array) -> Array:
-        """(p,) m that rectangles stand off."""
-        return np.asarray((values * widths**2).sum(axis=1) / 8.0)
-
-    def _frames(self) -> tuple[Array, Array]:
-        """(p, 2, 3) two directions in each polygon, and (p,) m about its narrowest width."""
-        frame = np.zeros((len(self.area), 2, 3))
-        row = np.arange(len(self.area))
-        axis = np.argmin(np.abs(self.normal), axis=1)
+    def _frames(self) -> tuple[Array, Array, Array]:
+        """(p, 2, 3) two directions in each polygon, (p,) m about its narrowest width, and (p, 2, 2) m² the squares of
+        how far its corners are from its middle, on average."""
+        count = len(self.area)
+        frame = np.zeros((count, 2, 3))
+        row, axis = np.arange(count), np.argmin(np.abs(self.normal), axis=1)
         frame[row, 0, axis] = 1.0
         frame[:, 0] -= self.normal[row, axis][:, None] * self.normal
         frame[:, 0] /= lengths(frame[:, 0])[:, None]
         frame[:, 1] = cross(self.normal, frame[:, 0])
-        longest = np.hypot(*self._widths(frame).T)
-        return frame, self.area / np.maximum(longest, 1e-300)
+        off = self.vertices[self.corner] - self.middle[self.owner]
+        furthest = np.zeros(count)
+        np.maximum.at(furthest, self.owner, lengths(off))
+        narrow = self.area / np.maximum(2.0 * furthest, 1e-300)
+        x, y = np.einsum("ki,kci->ck", off, frame[self.owner])
+        squares = (np.bincount(self.owner, product, count) for product in (x * x, x * y, x * y, y * y))
+        reach = np.stack(list(squares), axis=1).reshape(-1, 2, 2) / np.bincount(self.owner)[:, None, None]
+        return frame, np.where(narrow > 0.0, narrow, 1.0), reach
 
     def _widths(self, frame: Array) -> Array:
         """(p, 2) m along two directions (p, 2, 3)."""
@@ -202,8 +208,10 @@ def _circles(squares: Array) -> Array:
     """(n,) squares of the radii of the smallest circles about triangles, of the squares (n, 3) of their sides."""
     total, most = squares.sum(axis=1), squares.max(axis=1)
     sixteen = total * total - 2.0 * (squares * squares).sum(axis=1)
+    through = squares.prod(axis=1) / np.where(sixteen > 0.0, sixteen, 1.0)
+    # the largest angle of three is 60° at least, and beyond a right angle half of the longest side is enough
     acute: Flags = 2.0 * most < total
-    return np.where(acute, squares.prod(axis=1) / np.where(acute, sixteen, 1.0), 0.25 * most)
+    return np.asarray(np.where(acute, np.clip(through, most / 4.0, most / 3.0), most / 4.0))
 
 
 def _middles(corners: Array) -> Array:
