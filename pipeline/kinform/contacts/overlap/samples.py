@@ -63,11 +63,9 @@ class Allowance:
         asked = [k for k, rows in enumerate(deep) if rows.any()]
         if not asked:
             return list(zip(deep, thin, strict=True))
-        joined = joined_samples([every[k].where(deep[k]) for k in asked])
-        ends = np.cumsum([np.count_nonzero(deep[k]) for k in asked])[:-1]
-        told = np.split(self.facets.explain(joined.points, joined.depth), ends)
+        told = self.facets.explain([(every[k].points[deep[k]], every[k].depth[deep[k]]) for k in asked])
         for k, explained in zip(asked, told, strict=True):
-            if explained.all():
+            if explained:
                 thin[k] = max(thin[k], float(every[k].depth[deep[k]].max()))
                 deep[k][:] = False
         return list(zip(deep, thin, strict=True))
