@@ -2,7 +2,7 @@
 
 Facets of two tessellated surfaces that mate overlap without any overlap of the surfaces that they stand
 for: a 32-gon in a 24-gon of radius 10 mm by up to 0.09 mm at zero gap. So a piece of overlap counts only
-where it is deeper than the chord errors of the surfaces that bound it.
+where it is deeper than the chord errors of the surfaces that bound it, and than what the facets about it stand off.
 """
 
 from __future__ import annotations
