@@ -19,8 +19,8 @@ that stand all round in a seat, and points and lines that hold what these leave 
 slot (`beside_patches`). Where nothing of all this is there and the meshes come as near as parts that touch do,
 the place is a patch of a contact that is not known (`higher.unknown`). 6. `overlap` measures how solids go into each
 other, deeper than chord errors and mates explain: `boundaries` says whether they cross, `shrunk` that they share
-nothing all the same, `solids` cuts, `interference` measures. `fastening` reads the patches for hints that parts are
-one body, which nobody has to believe.
+nothing all the same, `solids` cuts, `interference` measures, `coarse_facets` says whether the facets about a piece
+explain it. `fastening` reads the patches for hints that parts are one body, which nobody has to believe.
 
 Of parts whose boxes meet, most do not touch: `search.apart` says so of many pairs at once before 5 is begun, of those
 that have no mates.
@@ -38,5 +38,5 @@ from kinform.contacts.find import find
 
 __all__ = ["CODE_VERSION", "find"]
 
-CODE_VERSION: int = 32
+CODE_VERSION: int = 33
 """Raised when the same input would give other contacts."""

@@ -334,6 +334,10 @@ THINNER = 0.25
 """Share of what counts as an overlap by which a solid is made thinner to see that it shares nothing with another. No
 depth is more than that then, and no ball that both share is larger, so that pieces of the overlap are no thicker than
 half of what counts: their volume is no more than their area by the radius of that ball."""
+BEYOND_FACETS = 2.5
+"""Times what a facet stands off by which its surface may go on beside it, as where it ends at another at 22°."""
+COARSE_AT_ONCE = 4_000_000
+"""Points times facets near all of them of which it is asked at once which are near each other: 0.1 s, 0.1 GB."""
 SHELL_TRIED = 16
 """Facets of a shell of which one that is not at the surface of another solid tells whether the shell is in it."""
 SHELL_INSET = 0.98

@@ -261,6 +261,30 @@ BENDS_MOST = 1.05
 BENDS_PLANES = 1000
 """Planes from which on it is not asked which of them do."""
 
+# meshes/standoffs
+
+EPS32 = 2.0**-23
+"""Relative rounding of single precision, in which STL files store coordinates."""
+
+STANDOFF_EDGES = 8.0
+"""Times width and turn across an edge, over 8, that facets stand off at most: 16/3 where triangles with equal sides are
+on a ball, up to 7 where they are less even, and 2 where they halve strips."""
+STANDOFF_LOOSE = 0.01
+"""Weight of no curvature among the polygons about one, each about one size of it away: what none of them tells of is
+none, and what they tell is less by a hundredth at most."""
+STANDOFF_CUT = 3.0
+"""Times what a polygon tells by itself that it stands off at most where its surface ends, if those beside it do: a cut
+that leaves half of a facet leaves about a third. Without, 4 of 300 random sockets overlap, of 41; without a limit, fans
+of long facets hide 0.6 mm of a motor in an arm."""
+STANDOFF_FAN = 300
+"""Polygons that meet at a vertex up to which each speaks for all others there."""
+STANDOFF_ROUNDED = 4.0
+"""Roundings by which a sliver may be out of the plane of the facet beside it and be in it ..."""
+STANDOFF_SLIVER = 0.1
+"""... and how low it is for that, as a share of that facet."""
+STANDOFF_TURN = 2.0
+"""Angles of smooth edges by which facets that share a vertex may turn."""
+
 # meshes/closest
 AS_NEAR = 1e-9
 """Share of their distance by which facets may be farther than the nearest and still as near, ..."""

@@ -2,7 +2,7 @@
 
 Facets of two tessellated surfaces that mate overlap without any overlap of the surfaces that they stand
 for: a 32-gon in a 24-gon of radius 10 mm by up to 0.09 mm at zero gap. So a piece of overlap counts only
-where it is deeper than the chord errors of the surfaces that bound it.
+where it is deeper than the chord errors of the surfaces that bound it, and than what the facets about it stand off.
 """
 
 from __future__ import annotations
@@ -113,12 +113,12 @@ def _by_volume(a: PartView, b: PartView, pieces: list[Piece], allowance: Allowan
     thick_ones = [piece for piece in pieces if piece.volume > allowance.floor**3]
     facets = sum(len(piece.corners) for piece in pieces)
     counts = counts_of([len(piece.corners) for piece in thick_ones], facets)
-    for piece, samples in zip(thick_ones, _sampled(a, b, thick_ones, counts), strict=True):
-        deep, at_mates = allowance.unexplained(samples)
+    every = _sampled(a, b, thick_ones, counts)
+    for piece, samples, (deep, thin) in zip(thick_ones, every, allowance.unexplained(every), strict=True):
         thick = 2.0 * piece.volume / piece.area
         if deep.any():
-            here = _deepest(a, b, piece, samples, deep)
-        elif thick > allowance.chords_of(samples).max(initial=0.0):
+            here, at_mates = _deepest(a, b, piece, samples, deep), allowance.at_mates(samples, deep)
+        elif thick > thin:
             # Two boundaries that coincide have no depth below each other: a part placed twice.
             here, at_mates = thick, False
         else:
@@ -148,12 +148,12 @@ def _by_facets(a: PartView, b: PartView, allowance: Allowance) -> Interference |
         for (_, other, _), samples, some, sure in zip(sides, every, counts, inside, strict=True)
     ]
     joined = joined_samples([samples.where(sure) for samples, sure in zip(every, inside, strict=True)])
-    deep, mated = allowance.unexplained(joined)
+    deep, _ = allowance.unexplained([joined])[0]
     if not deep.any():
         return None
     depth, weights = float(joined.depth[deep].max()), joined.depth[deep]
     place = weights @ joined.points[deep] / weights.sum()
-    return _interference(a, b, math.nan, depth, place, mated, "facets")
+    return _interference(a, b, math.nan, depth, place, allowance.at_mates(joined, deep), "facets")
 
 
 def _crossed(owner: PartView, other: PartView) -> tuple[Array, Ints]:

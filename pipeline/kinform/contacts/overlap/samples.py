@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.contacts import constants
+from kinform.contacts.overlap.coarse_facets import CoarseFacets
 from kinform.contacts.presses import beyond_press
 from kinform.contacts.search.pair_view import PairView, PartView
 from kinform.frozen import dataclass
@@ -36,6 +37,7 @@ class Allowance:
     mates: dict[tuple[int, int], Patch]
     floor: float
     tolerance: float
+    facets: CoarseFacets
 
     @staticmethod
     def of(pair: PairView, patches: list[Patch], floor: float) -> Allowance:
@@ -45,6 +47,7 @@ class Allowance:
             mates={p.surfaces: p for p in patches if not p.one_sided},
             floor=floor,
             tolerance=pair.tolerance,
+            facets=CoarseFacets(pair.a, pair.b, floor, pair.tolerances),
         )
 
     def chords_of(self, samples: Samples) -> Array:
@@ -52,16 +55,38 @@ class Allowance:
         i, j = samples.surfaces.T
         return np.asarray(self.chords[0][i] + self.chords[1][j] + self.floor)
 
-    def unexplained(self, samples: Samples) -> tuple[Flags, bool]:
-        """Samples deeper than what tessellation explains, and whether they all lie at mates that can be pressed."""
+    def unexplained(self, every: list[Samples]) -> list[tuple[Flags, float]]:
+        """Of each piece, the samples deeper than what tessellation explains, none where coarse facets explain them all;
+        and how thick (m) it may be then."""
+        deep = [samples.depth > self._allowed(samples) for samples in every]
+        thin = [float(self.chords_of(samples).max(initial=0.0)) for samples in every]
+        asked = [k for k, rows in enumerate(deep) if rows.any()]
+        if not asked:
+            return list(zip(deep, thin, strict=True))
+        told = self.facets.explain([(every[k].points[deep[k]], every[k].depth[deep[k]]) for k in asked])
+        for k, explained in zip(asked, told, strict=True):
+            if explained:
+                thin[k] = max(thin[k], float(every[k].depth[deep[k]].max()))
+                deep[k][:] = False
+        return list(zip(deep, thin, strict=True))
+
+    def _mates_of(self, samples: Samples) -> list[Patch]:
+        """Those between surfaces of the samples."""
         i, j = samples.surfaces.T
         present = (set(i.tolist()), set(j.tolist()))
-        mates = [p for (s, t), p in self.mates.items() if s in present[0] and t in present[1]]
+        return [p for (s, t), p in self.mates.items() if s in present[0] and t in present[1]]
+
+    def _allowed(self, samples: Samples) -> Array:
+        """(n,) m: depth that the surfaces nearest to samples of one piece explain, and mates among them."""
         allowed = self.chords_of(samples)
-        for patch in mates:
+        for patch in self._mates_of(samples):
             allowed = np.maximum(allowed, patch.chord + patch.uncertainty[1] + self.floor)
-        deep = samples.depth > allowed
-        at_mate = np.array([pair in self.mates for pair in zip(i.tolist(), j.tolist(), strict=True)], bool)
+        return allowed
+
+    def at_mates(self, samples: Samples, deep: Flags) -> bool:
+        """Whether the deep samples of a piece all lie at mates that can be pressed."""
+        mates = self._mates_of(samples)
+        at_mate = np.array([pair in self.mates for pair in map(tuple, samples.surfaces.tolist())], bool)
         pressed = max((p.chord - min(p.gap, 0.0) + p.offset for p in mates), default=-1.0) + self.floor
         mated = bool(mates) and not any(beyond_press(patch) for patch in mates)
         mated &= bool(
@@ -70,7 +95,7 @@ class Allowance:
                 & (at_mate[deep] | (samples.depth[deep] <= pressed))
             ).all()
         )
-        return deep, mated
+        return mated
 
 
 def _part_chords(part: PartView) -> Array:

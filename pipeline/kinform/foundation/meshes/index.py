@@ -10,6 +10,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross_columns, dot
 from kinform.foundation.constants import (
     ABOUT,
+    EPS32,
     KEPT_EDGES,
     KEPT_SPANS,
     KEPT_TRIANGLES,
@@ -28,11 +29,13 @@ from kinform.foundation.meshes.parity import Inside
 from kinform.foundation.meshes.probes import Region
 from kinform.foundation.meshes.proximity import near_boxes
 from kinform.foundation.meshes.rings import Ring, RingRow, ring_rows
+from kinform.foundation.meshes.standoffs import standoffs
 from kinform.foundation.meshes.surface_table import SurfaceTable
 from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
+from kinform.model.tolerances import Tolerances
 
 
 class MeshIndex:
@@ -59,6 +62,7 @@ class MeshIndex:
         self._table: SurfaceTable | None = None
         self._rows: tuple[RingRow, ...] | None = None
         self._bulge: float | None = None
+        self._standoffs: dict[int, Array] = {}
         self.low, self.high = mesh.box
         """(3,) m, in the part frame."""
 
@@ -243,6 +247,15 @@ class MeshIndex:
         if self._bulge is None:
             self._bulge = bulge_of(self.triangles.corners, surfaces.labels, self.table(surfaces), exact, smooth)
         return self._bulge
+
+    def standoffs(self, surfaces: MeshSurfaces, number: int, tolerances: Tolerances) -> Array:
+        """(m,) m by which each facet of a surface may stand off it, estimated by how the facets bend."""
+        if number not in self._standoffs:
+            mesh, facets = self.mesh, surfaces.surfaces[number].faces
+            rounding = max(EPS32 * float(np.abs(mesh.vertices).max()), mesh.resolution)
+            edges = tolerances.smooth_edge, tolerances.coplanar
+            self._standoffs[number] = standoffs(mesh.vertices, mesh.faces[facets], *edges, rounding)
+        return self._standoffs[number]
 
     @property
     def shells(self) -> Ints:

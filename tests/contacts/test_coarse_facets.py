@@ -1,0 +1,78 @@
+"""Round sockets of coarse facets: what their facets alone overlap is none, and what is deeper is told."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from manifold3d import Manifold
+from random_assemblies import case
+from support.solids import box, derived, random_pose, rod
+
+from kinform import contacts, form, surfaces
+
+INSIDE = np.array([(i, j, 12 - i - j) for i in range(13) for j in range(13 - i)]) / 12.0
+"""Weights of the corners at points all over a triangle."""
+
+
+def overlaps(seed, **solids):
+    return derived(random_pose(np.random.default_rng(seed)), **solids)[1].interferences
+
+
+def chord(segments):
+    """mm that the facets of a ball of 10 mm stand off it."""
+    mesh = Manifold.sphere(10.0, segments).to_mesh64()
+    corners = np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts, dtype=np.int64)]
+    return 10.0 - np.linalg.norm(np.einsum("wk,nkc->nwc", INSIDE, corners), axis=2).min()
+
+
+def socket_and_ball(phase, push):
+    """A ball of 64 segments in a shallow socket of 12, pushed (mm) into it."""
+    socket = box(-14, 14, -14, 14, -30, -7) - Manifold.sphere(10.0, 12).rotate((0, 0, phase))
+    ball = Manifold.sphere(10.0, 64).rotate((30, 0, 0)) + rod(3, 0, 30)
+    return {"socket": socket, "ball": ball.translate((0, 0, -push))}
+
+
+@pytest.mark.parametrize("phase", [0.0, 10.0, 33.0])
+def test_a_ball_in_a_shallow_socket_of_coarse_triangles_does_not_overlap(phase):
+    assert overlaps(1, **socket_and_ball(phase, 0.0)) == ()
+
+
+@pytest.mark.parametrize("phase", [0.0, 10.0, 33.0])
+def test_a_ball_pushed_into_it_by_more_than_facets_stand_off_overlaps(phase):
+    off = chord(12) + chord(64)
+    (found,) = overlaps(1, **socket_and_ball(phase, 1.3 * off))
+    # the facets of the socket stand further in than the ball that they stand for
+    assert 1.3 * off < 1e3 * found.depth < 2.6 * off
+    assert not found.mated
+
+
+def countersink(segments, turn, push):
+    """A plug of 64 segments in a countersink at 45° that ends at a fine bore, pushed (mm) into it."""
+    bore = box(-20, 20, -20, 20, -15, 0) - rod(8, -16, 1, 180)
+    seat = bore - Manifold.cylinder(7.0, 6.0, 13.0, segments).rotate((0, 0, turn)).translate((0, 0, -6.0))
+    plug = Manifold.cylinder(4.4, 7.1, 11.5, 64).translate((0, 0, -4.9)) + rod(3, -4, 20)
+    return {"seat": seat, "plug": plug.translate((0, 0, -push))}
+
+
+@pytest.mark.parametrize("turn", [0.0, 7.0])
+@pytest.mark.parametrize("segments", [12, 16, 24])
+def test_a_plug_in_a_coarse_countersink_that_ends_at_a_fine_bore_does_not_overlap(segments, turn):
+    assert all(found.mated for found in overlaps(2, **countersink(segments, turn, 0.0)))
+    off = 11.5 * (1 - np.cos(np.pi / segments)) + 11.5 * (1 - np.cos(np.pi / 64))
+    (found,) = overlaps(2, **countersink(segments, turn, 2.0 * off))
+    assert 1e3 * found.depth > 2.0 * off * np.sqrt(0.5)
+
+
+@pytest.mark.parametrize("seed", [970531, 970553])
+def test_coarse_sockets_of_random_assemblies_do_not_overlap(seed, tmp_path):
+    assembly = form.load(case(seed).write(tmp_path))
+    found = {part.mesh.digest: surfaces.recover(part.mesh, assembly.tolerances) for part in assembly.parts}
+    assert contacts.find(assembly, found).interferences == ()
+
+
+@pytest.mark.parametrize("away", [0.0, 7.0])
+def test_coarse_facets_explain_no_overlap_of_flats_beside_them(away):
+    dimple = Manifold.sphere(6.0, 12).rotate((10, 20, 30)).translate((-3, 0, 2))
+    first = box(-10, 10, -10, 10, -5, 0) - dimple
+    (found,) = overlaps(3, dimpled=first, slab=box(away - 10, away + 10, -9, 9, -0.2, 4))
+    assert found.depth == pytest.approx(0.2e-3, rel=0.05)
