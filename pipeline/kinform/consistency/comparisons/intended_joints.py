@@ -213,8 +213,8 @@ def _rolling_certainty(intended: IntendedJoint, motion: HelperMotion, through: R
     if not leaves_free(motion.twists, wanted, middle, size) or not leaves_free(wanted, through.sure, middle, size):
         return "found", ""
     return "undecided", (
-        f"{quoted(motion.helpers)} roll, and leave {counted(motion.freedoms, 'freedom')} at this instant; over a "
-        "distance that may be the intended one alone"
+        f"points and lines of contact with {quoted(motion.helpers)} leave {counted(motion.freedoms, 'freedom')} at "
+        "this instant; over a distance that may be the intended one alone"
     )
 
 

@@ -9,6 +9,7 @@ and teeth are beside planes across them.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from kinform.model.surfaces import KINDS
 
 _ROUND = tuple(KINDS.index(kind) for kind in constants.ROUND_KINDS)
 _RACES = (KINDS.index("cylinder"), KINDS.index("cone"))
+_SPHERE = KINDS.index("sphere")
 _PLANE = KINDS.index("plane")
 
 
@@ -42,8 +44,26 @@ def lines_beside_flanges(pair: PairView, patches: Sequence[Patch]) -> list[Patch
                 flags[(row, races[1]) if k == 0 else (races[0], row)] = True
     if not flags.any():
         return []
-    touches = touches_between(pair, flags & pair.overlap(pair.tolerance))
-    return [patch for patch in touches if patch.kind == "line"]
+    touches = touches_between(pair, flags & pair.overlap(pair.tolerance), play=True)
+    touch = constants.TOUCH * pair.tolerance
+    # with so much play it is not known where they touch
+    return [
+        replace(patch, one_sided=True, bends=False) if float(np.abs(patch.gaps).max()) > touch else patch
+        for patch in touches
+        if patch.kind == "line"
+    ]
+
+
+def may_roll(pair: PairView) -> bool:
+    """Whether the smaller of the parts is round all over where it is near the other: a ball, or a roller, that may have
+    play between two races."""
+    spans = [part.index.mesh.size.span for part in pair.parts]
+    smaller = int(spans[1] < spans[0])
+    part, side = pair.parts[smaller], pair.near[smaller]
+    return any(
+        bool(side.sides[row] > 0) and _round_all_over(part, int(side.ids[row]))
+        for row in side.of_kind("sphere", "cylinder", "cone").tolist()
+    )
 
 
 def _ends(patch: Patch, axis: Array, place: Array, span: float) -> bool:
@@ -55,14 +75,22 @@ def _ends(patch: Patch, axis: Array, place: Array, span: float) -> bool:
 
 
 def _round_all_over(part: PartView, surface: int) -> bool:
-    """Whether the part has hardly any surface that does not turn onto itself about the axis of this one."""
+    """Whether the part has hardly any surface that does not turn onto itself about the axis of this one, and none that
+    stands out beyond it, as the flange of a disc beyond its boss; or it is a ball."""
     table, span = part.table, part.index.mesh.size.span
     axis, point = table.axes[surface], table.points[surface]
+    if table.kinds[surface] == _SPHERE:
+        return _area(table, np.arange(len(table.kinds)) != surface) < constants.ROUND_REST * float(table.areas.sum())
     aside = np.linalg.norm(cross(table.points - point, axis), axis=1) < constants.ROUND_PLACE * span
     along = np.linalg.norm(cross(table.axes, axis), axis=1) < constants.ACROSS_SINE
-    turns: Flags = np.isin(table.kinds, _ROUND) & aside & (along | (table.kinds == KINDS.index("sphere")))
+    turns: Flags = np.isin(table.kinds, _ROUND) & aside & (along | (table.kinds == _SPHERE))
     turns |= (table.kinds == _PLANE) & along
-    return _area(table, ~turns) < constants.ROUND_REST * _area(table, np.ones_like(turns))
+    if _area(table, ~turns) >= constants.ROUND_REST * float(table.areas.sum()):
+        return False
+    mesh = part.index.mesh
+    away = np.linalg.norm(cross(mesh.vertices - point, axis), axis=1)
+    widest = float(away[mesh.faces[part.surfaces.labels == surface]].max())
+    return float(away.max()) <= widest + constants.ROUND_PLACE * span
 
 
 def _area(table: SurfaceTable, flags: Flags) -> float:
