@@ -101,3 +101,12 @@ def test_a_pose_far_away_does_not_matter(monkeypatch):
     monkeypatch.setattr(bearings, "random_pose", far)
     found = answers_of(KINDS["needles, flanges and collars"](SIZES[1]), np.random.default_rng(5))
     assert found.outcome()[0] == "agrees"
+
+
+def test_a_function_that_states_all_joints_of_a_bearing_is_not_denied():
+    """Balls go with the shaft then, and bear it in the bowl of the ring together."""
+    codes = {}
+    for kind, bearing in ((kind, KINDS[kind](SIZES[1])) for kind in KINDS if kind != "tapers"):
+        found = answers_of(bearing, np.random.default_rng(3), complete=True)
+        codes[kind] = found.right.answer
+    assert set(codes.values()) <= {"agrees", "undecided"}, codes

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 
 import numpy as np
 from manifold3d import Manifold
@@ -57,8 +57,6 @@ class Bearing:
 
     solids: dict[str, Manifold]
     truth: str
-    others: tuple[str, ...] = field(default=())
-    """Joints that may as well be stated, of contact that holds both ways only where it is kept."""
 
 
 def around(size: Size, solid: Manifold, name: str) -> dict[str, Manifold]:
@@ -268,8 +266,9 @@ class Answers:
         return "FALSE", f"{self.right.type}: {self.right.answer} {self.right.free or self.right.blocked_by}"
 
 
-def answers_of(bearing: Bearing, rng: np.random.Generator, scale: float = 1e-3) -> Answers:
-    """The answers for a bearing at a random pose; `scale` metres are a mm."""
+def answers_of(bearing: Bearing, rng: np.random.Generator, scale: float = 1e-3, *, complete: bool = False) -> Answers:
+    """The answers for a bearing at a random pose; `scale` metres are a mm. `complete`: the function states
+    all joints."""
     X = random_pose(rng, 100.0 * scale)
     parts = [part(name, solid, X, scale) for name, solid in bearing.solids.items()]
     axis, point = X[:3, 2], X[:3, 3]
@@ -278,6 +277,8 @@ def answers_of(bearing: Bearing, rng: np.random.Generator, scale: float = 1e-3) 
         return intended("spin", "ring", "shaft", kind, None if kind == "spherical" else axis, point)
 
     made = assembly(*parts, ground="ring", joints=(stated(bearing.truth),))
+    if complete:
+        made = replace(made, function=replace(made.function, complete=("",)))
     found = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
     touching = contacts.find(made, found)
     derived = kinematics.derive(made, found, touching)
