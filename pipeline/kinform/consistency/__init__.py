@@ -41,7 +41,7 @@ __all__ = [
     "with_baseline",
 ]
 
-CODE_VERSION: int = 50
+CODE_VERSION: int = 51
 
 __getattr__ = first_used(
     __name__,

@@ -15,12 +15,13 @@ normals out of the first part, gaps and areas. 5. Surfaces without a chart are c
 (`mating.freeform`), threads by their profiles (`mating.threads`). Where parts share no surface, `higher` looks for
 points and lines: balls, rollers and rings (`rounds`, `tapers`, `rings`), edges on planes (`edges`), sharp rims on
 balls, cones, bores and rings (`rims`), cams and teeth by their outlines (`profiles`); beside shared surfaces, only rims
-that stand all round in a seat, and points and lines that hold what these leave in both senses, as a cross pin in its
-slot (`beside_patches`). Where nothing of all this is there and the meshes come as near as parts that touch do,
-the place is a patch of a contact that is not known (`higher.unknown`). 6. `overlap` measures how solids go into each
-other, deeper than chord errors and mates explain: `boundaries` says whether they cross, `shrunk` that they share
-nothing all the same, `solids` cuts, `interference` measures, `coarse_facets` says whether the facets about a piece
-explain it. `fastening` reads the patches for hints that parts are one body, which nobody has to believe.
+that stand all round in a seat, points and lines that hold what these leave in both senses, as a cross pin in its slot
+(`beside_patches`), and lines of rollers on their races beside the flanges at their ends (`rollers`). Where nothing of
+all this is there and the meshes come as near as parts that touch do, the place is a patch of a contact that is not
+known (`higher.unknown`). 6. `overlap` measures how solids go into each other, deeper than chord errors and mates
+explain: `boundaries` says whether they cross, `shrunk` that they share nothing all the same, `solids` cuts,
+`interference` measures, `coarse_facets` says whether the facets about a piece explain it. `fastening` reads the patches
+for hints that parts are one body, which nobody has to believe.
 
 Of parts whose boxes meet, most do not touch: `search.apart` says so of many pairs at once before 5 is begun, of those
 that have no mates.
@@ -38,5 +39,5 @@ from kinform.contacts.find import find
 
 __all__ = ["CODE_VERSION", "find"]
 
-CODE_VERSION: int = 33
+CODE_VERSION: int = 34
 """Raised when the same input would give other contacts."""

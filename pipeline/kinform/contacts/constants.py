@@ -210,10 +210,16 @@ ZONE = 0.01
 """Bounds the zone of a point or a line whose area is stated."""
 OPPOSITE_COSINE = -0.999
 """Two sides of a slot hold a pin where their normals have at most this cosine."""
+STRAIGHT_COSINE = 0.999
+"""Normals with at least this cosine are those of one straight line."""
 CORNER_COSINE = 0.5
 """Two walls are at a corner for a pin where what they hold has at most this cosine, either way."""
 ACROSS_SINE = 1e-3
 """Directions with at most this sine between them are parallel: planes across a line leave it free."""
+ROUND_PLACE = 1e-3
+"""Share of a part's span by which the axes of its surfaces may lie beside one, all of which it turns about."""
+ROUND_REST = 0.02
+"""Share of the area of a part that is round all over that may be anything: a mark, a centre, a scrap of a chamfer."""
 STRIP_AREA = 0.02
 """Share of the area of a part below which a plane may be a facet of a curve."""
 BALL_BORE_SAMPLES = 16

@@ -13,6 +13,7 @@ from kinform.contacts.higher.edges import edge_contacts
 from kinform.contacts.higher.points_and_lines import higher_pairs, pins_in_slots, tubes_for_facets
 from kinform.contacts.higher.profiles import profile_contacts
 from kinform.contacts.higher.rims import rim_contacts, seats
+from kinform.contacts.higher.rollers import lines_beside_flanges
 from kinform.contacts.higher.sharp import convex_edges
 from kinform.contacts.higher.unknown import unknown_touches
 from kinform.contacts.mating.analytic import analytic_mates
@@ -100,6 +101,8 @@ def touching(mates: Mated) -> list[Patch]:
     patches = without_continuations(pair, patches)
     patches = tubes_for_facets(pair, patches)
     patches = _with_higher(pair, patches)
+    if not any(patch.kind in ("line", "point") for patch in patches):
+        patches += lines_beside_flanges(pair, patches)
     if not any(patch.kind in ("line", "point") for patch in patches):
         patches += pins_in_slots(pair, patches)
     if any(_firm(pair, patch) for patch in patches):
@@ -189,7 +192,7 @@ def _of_scattered(pair: PairView, patch: Patch, alone: bool) -> Patch:
     ):
         return patch
     if patch.kind in ("point", "line"):
-        return replace(patch, one_sided=True)
+        return replace(patch, one_sided=True, bends=False)
     if alone and patch.kind == "plane" and _strip(pair, patch):
         return replace(patch, kind="freeform")
     if patch.kind == "plane" or (patch.one_sided and patch.kind in ("cylinder", "cone", "sphere")):

@@ -154,6 +154,9 @@ ON_RADIUS = 0.02
 """Relative: points this near to the radius of a surface from an axis are on a surface about that axis."""
 ACROSS_LINE = 1e-3
 """Planes whose normals are this near (sine) to a line of contact lie across it."""
+WEDGED = 8.0
+"""Times as fast as a body moves what touches it, above which that is wedged: lines that lean against each other by
+0.12 rad, the angle of friction of steel that is hardly oiled."""
 STRAY_AREA = 5e-4
 """Share of the squared size of the smaller body below which a one-directional contact that touches may be a stray."""
 STRAY_AREA_APART = 2e-2

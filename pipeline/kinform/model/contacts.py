@@ -70,6 +70,10 @@ class Patch:
     known whether these faces touch. Found beside other patches only."""
     flat: bool = False
     """True: a point or a line on a plane, that of one of the two surfaces."""
+    bends: bool = False
+    """True: a line along which the surfaces bend into each other, and which holds more than its normals say: a roller
+    in its ring does not turn about the normal of their line, a ring on its shaft does not tilt, by more than its
+    play. Or a ball in a bowl, several of which do."""
     unknown: bool = False
     """True: the parts come this near, and no kind of contact that is known says how they touch: a point where they are
     nearest. Found where nothing else is. It holds nothing for sure, and says that nothing is free for sure."""

@@ -105,7 +105,8 @@ class Reading:
     pitch: Lead | None
     freedoms: int
     cause: str
-    """What the faces are that it leaves out: stop, sliver, flank; prism where flats are those of one. Of a joint that
+    """What the faces are that it leaves out: stop, sliver, flank; prism where flats are those of one; bend where a
+    roller in its ring turns less over a distance than at the first instant. Of a joint that
     is taken as stated, how contact leaves it: contact (free), end (free in one sense) or doubt. Else empty."""
     words: str
     """When it holds: "cylindrical, if 314 mm² between base and rod are an end stop"."""

@@ -27,7 +27,8 @@ The steps, in the order of `recovery.recover`, which calls them:
    surface at once, because most of them are. Kinds are tried from the simplest to the most complex, only those that
    bend as the piece does: cylinder, cone, sphere, torus (`kinds`, one file each). A kind proposes parameters in closed
    form, refines them by least squares over the vertices that define it, and has to be credible: a few flats lie on
-   some cylinder too. What conforms beside a piece is absorbed.
+   some cylinder too. What conforms beside a piece is absorbed. Tori that bend little along their tube, as races do, are
+   tried first: each row of their facets is a cylinder or a cone as well.
 7. Seeds (`regions.growth.pursue`): where tangent surfaces run together no piece is one surface. Single edges then
    suggest surfaces, whose regions grow layer by layer over smooth edges (`regions.territory`). Fits alternate with
    growth, so that a fit over few polygons only has to predict twice as many. Cylinders and cones grow in the same
@@ -81,5 +82,5 @@ from kinform.surfaces.recovery import packs, recover, recover_all
 
 __all__ = ["CODE_VERSION", "packs", "recover", "recover_all", "rigid_copies", "surfaces_of_copy"]
 
-CODE_VERSION: int = 19
+CODE_VERSION: int = 20
 """Bumped when results change."""

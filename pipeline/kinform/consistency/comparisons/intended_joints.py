@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 
 import numpy as np
 
 from kinform.consistency.constants import SHARED_MOTION
 from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.words import counted, quoted
 from kinform.frozen import dataclass
+from kinform.kinematics.bodies.as_stated import leaves_free
 from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.partition.parting import joint_twists
-from kinform.kinematics.questions.through_helpers import motion_through_helpers
+from kinform.kinematics.questions.rolling import Rolling
+from kinform.kinematics.questions.through_helpers import HelperMotion, motion_through_helpers
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
@@ -150,7 +153,8 @@ def _compared(
     if direct is not None and direct.evidence == ("function",):
         return Comparison(intended, bodies, "stated", "the joint is taken from the function", joint=direct)
     size = _smaller(known.extents, bodies)
-    motion = motion_through_helpers(kinematics, first.name, second.name, known.named, size)
+    every = contacts.patches if contacts is not None else ()
+    motion = motion_through_helpers(kinematics, every, first.name, second.name, known.named, size)
     used: tuple[Joint, ...] = (direct,) if direct is not None else ()
     if motion is not None:
         used = motion.joints
@@ -162,8 +166,11 @@ def _compared(
         angle_slack, position_slack = direct.axis_uncertainty, direct.point_uncertainty
     form = direct if motion is None else motion.form
     assert form is not None
-    state, reason = _certainty(intended, form.type, used)
+    through = motion.rolling if motion is not None else None
+    state, reason = _certainty(intended, form.type, [j for j in used if through is None or j.name not in through.bent])
     found = direct.twists if motion is None and direct is not None else motion.twists if motion else None
+    if state == "found" and through is not None and motion is not None:
+        state, reason = _rolling_certainty(intended, motion, through, size)
     if state == "found" and intended.closure and found is not None and _shares(intended, form.type, found):
         state, reason = "undecided", f"it only closes a loop, and by contact that joint is {form.type}"
     return Comparison(
@@ -195,7 +202,23 @@ def loose_joint(assembly: Assembly, kinematics: Kinematics, intended: IntendedJo
     return next((one for one in kinematics.left_out or () if one.parts(first, second)), None)
 
 
-def _certainty(intended: IntendedJoint, found: str, used: tuple[Joint, ...]) -> tuple[str, str]:
+def _rolling_certainty(intended: IntendedJoint, motion: HelperMotion, through: Rolling, size: float) -> tuple[str, str]:
+    """Whether what rolling elements leave is known: what they leave beside the intended joint for this instant alone
+    may be held by them all the same."""
+    if through.doubt:
+        return "undecided", through.doubt
+    wanted, middle = joint_twists(intended), intended.point if intended.point is not None else motion.form.point
+    if motion.form.type == intended.type or wanted is None or middle is None:
+        return "found", ""
+    if not leaves_free(motion.twists, wanted, middle, size) or not leaves_free(wanted, through.sure, middle, size):
+        return "found", ""
+    return "undecided", (
+        f"points and lines of contact with {quoted(motion.helpers)} leave {counted(motion.freedoms, 'freedom')} at "
+        "this instant; over a distance that may be the intended one alone"
+    )
+
+
+def _certainty(intended: IntendedJoint, found: str, used: Sequence[Joint]) -> tuple[str, str]:
     doubtful = [joint for joint in used if joint.status == "ambiguous"]
     if doubtful:
         return "undecided", f"joint '{doubtful[0].name}' is ambiguous: {doubtful[0].reason}"

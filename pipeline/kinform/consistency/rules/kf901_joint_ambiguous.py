@@ -20,7 +20,7 @@ from __future__ import annotations
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled
 from kinform.consistency.rule import Rule
-from kinform.foundation.words import quoted
+from kinform.foundation.words import counted, quoted
 from kinform.model.findings import Finding
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
@@ -53,6 +53,9 @@ def _finding(context: Context, joint: Joint, intended: IntendedJoint | None) -> 
     remedy = "Export a finer mesh, lengthen the locating surface, part what overlaps, or state the joint by [[assume]]."
     if joint.readings:
         remedy = "State the joint that is meant as [[function.joint]]: it chooses among these. Else by [[assume]]."
+    if any(reading.cause == "bend" for reading in joint.readings):
+        others = f"{others} with {counted(joint.readings[0].freedoms, 'freedom')}"
+        remedy = "Joints that go through the roller are known all the same; else state this one by [[assume]]."
     return RULE.at("warning" if intended is None else RULE.severity).finding(
         [joint.name if intended is None else intended.name],
         f"the joint of {quoted(joint.bodies)} is ambiguous: {joint.reason}",

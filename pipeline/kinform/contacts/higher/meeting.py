@@ -25,8 +25,8 @@ class Meeting:
     """m: by which the first surface bends across it."""
 
     bends: bool = False
-    """Whether the surfaces bend into each other along the line: a ring on a shaft tilts by no more than its play, while
-    the normals all round leave that free."""
+    """Whether the surfaces bend into each other there: a ring on a shaft tilts by no more than its play, while the
+    normals all round leave that free."""
 
     def chosen(self, keep: Flags) -> Meeting:
         """Some of the points."""

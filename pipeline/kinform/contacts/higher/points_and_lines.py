@@ -126,19 +126,20 @@ def _of_tube(pair: PairView, patch: Patch) -> bool:
 
 
 def touches_between(
-    pair: PairView, overlap: Flags, wanted: Callable[[Array, Array], Flags] | None = None
+    pair: PairView, overlap: Flags, wanted: Callable[[Array, Array], Flags] | None = None, *, play: bool = False
 ) -> list[Patch]:
     """Points and lines in which surfaces flagged in `overlap` (s, t) touch, in the frame of the pair. None where
-    `wanted`, of points (n, 3) m and normals (n, 3), flags none, which may say less of some of them than of all."""
+    `wanted`, of points (n, 3) m and normals (n, 3), flags none, which may say less of some of them than of all. With
+    `play` also those that keep apart by no more than the tolerance, on whatever side."""
     touches: list[_Touch] = []
     for view, flags, first in ((pair, overlap, True), (pair.swapped, overlap.T, False)):
         candidates, plane = _candidates(view, flags, first), _PLANAR[view.near[1].kinds]
         for row in np.flatnonzero(candidates.any(axis=1)):
             for column in [*np.flatnonzero(candidates[row] & plane), *np.flatnonzero(candidates[row] & ~plane)]:
-                touch = _touch(view, view.surfaces(int(row), int(column)), first)
+                touch = _touch(view, view.surfaces(int(row), int(column)), first, 1.0 if play else constants.CAPTIVE)
                 if touch is not None:
                     touches.append(touch)
-    touches = _held(touches, pair.tolerance)
+    touches = touches if play else _held(touches, pair.tolerance)
     if not touches:
         return []
     if wanted is not None:
@@ -182,9 +183,10 @@ def parallel_within(surfaces: SurfacePair, tolerances: Tolerances) -> float:
     return min(tolerances.alignment + sum(surfaces.turns), 0.5 * math.pi)
 
 
-def _touch(view: PairView, surfaces: SurfacePair, first: bool) -> _Touch | None:
-    """The touch of a convex ball or roller with a plane or another round surface, if they come close enough."""
-    limit = constants.CAPTIVE * view.tolerance
+def _touch(view: PairView, surfaces: SurfacePair, first: bool, share: float) -> _Touch | None:
+    """The touch of a convex ball or roller with a plane or another round surface, if they come as close as this share
+    of the tolerance."""
+    limit = share * view.tolerance
     met = meeting(surfaces, parallel_within(surfaces, view.tolerances), limit)
     if met is None:
         return None

@@ -131,7 +131,9 @@ def _ball_in_bowl(surfaces: SurfacePair) -> Meeting | None:
         return None
     normal, gap = -aside / distance, bowl - radius - distance
     point, bend = centre - (radius + 0.5 * gap) * normal, bowl * radius / (bowl - radius)
-    return Meeting(point[None], normal[None], np.array([gap]), False, 0.0, clearance=bowl - radius, radius=bend)
+    return Meeting(
+        point[None], normal[None], np.array([gap]), False, 0.0, clearance=bowl - radius, radius=bend, bends=True
+    )
 
 
 def _ball(surfaces: SurfacePair) -> Meeting | None:

@@ -93,7 +93,8 @@ def _along(surfaces: SurfacePair, line: _Generator, parallel: float) -> Meeting 
     points = on - 0.5 * met.gaps[:, None] * met.normals
     middle = float(on.mean(axis=0) @ surfaces.axes[0])
     spacing, radius = (high - low) / ROLLER_SAMPLES, _radius(surfaces, 0, middle)
-    return Meeting(points, met.normals, met.gaps, True, spacing, along=line.along, radius=radius)
+    hollow = surfaces.sides[1] < 0
+    return Meeting(points, met.normals, met.gaps, True, spacing, along=line.along, radius=radius, bends=hollow)
 
 
 def _crossed(surfaces: SurfacePair, parallel: float) -> Meeting | None:

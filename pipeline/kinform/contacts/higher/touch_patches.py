@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.contacts.constants import STRAIGHT_COSINE
 from kinform.contacts.mating.patches import classify_fit
 from kinform.contacts.search.pair_view import PairView
 from kinform.frozen import dataclass
@@ -40,11 +41,12 @@ class TouchSamples:
 def touch_patch(pair: PairView, surfaces: tuple[int, int], touch: TouchSamples, exact: float) -> Patch:
     """The patch of a surface of a and one of b that touch so; `exact` (m) is how well the gap is known."""
     points, gaps = touch.points, touch.gaps
+    straight = bool((touch.normals @ touch.normals[0] > STRAIGHT_COSINE).all())
     return Patch(
         parts=pair.names,
         surfaces=surfaces,
         kind="point" if touch.axis is None else "line",
-        one_sided=touch.bends,
+        one_sided=touch.bends and not straight,
         points=points,
         normals=touch.normals,
         gaps=gaps,
@@ -60,4 +62,5 @@ def touch_patch(pair: PairView, surfaces: tuple[int, int], touch: TouchSamples, 
         chord=touch.chord,
         fit=classify_fit(gaps, touch.chord, exact, pair.tolerance),
         flat=touch.flat,
+        bends=touch.bends,
     )

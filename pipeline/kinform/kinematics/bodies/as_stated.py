@@ -148,6 +148,11 @@ def _in_force(
         cause, why = "doubt", "contact leaves it undecided"
     elif joint.type != "general" and joint.freedoms == len(taken.twists):
         return joint  # as many freedoms, and others, however little a fine thread advances
+    elif leaves_free(joint.twists, taken.twists, place, reach) and _in_bowls(joint, patches):
+        cause, why = (
+            "doubt",
+            "points in bowls hold more over a distance than at this instant, and how much is not known",
+        )
     elif leaves_free(joint.twists, taken.twists, place, reach):
         cause, why = "contact", "contact leaves it free and does not hold it"
     elif (len(taken.twists) == 1 or joint.freedoms == 5) and opens(
@@ -186,6 +191,11 @@ def _held_otherwise(taken: Joint, joint: Joint, name: str) -> Joint:
         patches=joint.patches,
         singular_values=joint.singular_values,
     )
+
+
+def _in_bowls(joint: Joint, patches: Sequence[Patch]) -> bool:
+    """Whether it is held by several balls in bowls, as those of a self-aligning bearing are in its ring."""
+    return sum(patches[k].kind == "point" and patches[k].bends for k in joint.patches) > 1
 
 
 def _reach(corners: Array, place: Array) -> float:

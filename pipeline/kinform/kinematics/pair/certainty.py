@@ -35,7 +35,7 @@ from kinform.kinematics.pair.stops import (
     seat_reading,
     stop_reading,
 )
-from kinform.kinematics.pair.touches import TOUCHING, apart_doubt, stray_doubt
+from kinform.kinematics.pair.touches import TOUCHING, apart_doubt, beside_flange, held_by_bends, stray_doubt
 from kinform.kinematics.pair.uncertainty import uncertainty_doubt
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
@@ -108,6 +108,10 @@ def certainty(
     if prism is not None:
         return Certainty("ambiguous", _prism_words(evidence, form, prism), prism)
     reading = _teeth_reading if touching else _scrap_reading
+    held = held_by_bends([item.patch for item in evidence.items], basis)
+    if held is not basis:
+        bent = OtherReading(evidence.form(held), held, (), "bend")
+        return Certainty("ambiguous", _bend_words(evidence, basis, held), bent)
     other = seat or pin or (yield from reading(evidence, twists, preserved, basis, tolerances))
     other = other or (yield from stop_reading(evidence, twists, preserved, basis, tolerances))
     hollow = None if other else (yield from hollow_reading(evidence, twists, preserved, basis, tolerances))
@@ -136,13 +140,13 @@ def _spread(evidence: Evidence) -> float:
 
 
 def meets(patches: Sequence[Patch]) -> bool:
-    """Whether all contact is along points and lines, beside nothing but planes across the lines: a cam that rubs."""
-    lines = [patch.axis for patch in patches if patch.kind == "line"]
+    """Whether all contact is along points and lines, beside nothing but planes across the lines, or balls about a place
+    on them: a cam that rubs, a roller between flanges."""
+    lines = [patch for patch in patches if patch.kind == "line"]
     if any(patch.kind in TOUCHING and patch.one_sided for patch in patches):
         return False  # nobody knows where facets touch next
     return any(patch.kind in TOUCHING for patch in patches) and all(
-        patch.kind in TOUCHING
-        or (patch.kind == "plane" and lines and all(sine(patch.axis, d) < constants.ACROSS_LINE for d in lines))
+        patch.kind in TOUCHING or (bool(lines) and all(beside_flange(line, patch) for line in lines))
         for patch in patches
     )
 
@@ -351,6 +355,16 @@ def _flat_of_ring_doubt(evidence: Evidence, twists: Array, count: int, tolerance
         return ""
     area = 1e6 * sum(item.area for item in evidence.chosen(flats))
     return f"{area:.3g} mm² of flats hold it that may be those of the cylinder beside them, in a coarse mesh"
+
+
+def _bend_words(evidence: Evidence, basis: Array, held: Array) -> str:
+    """That a roller in its ring has the freedoms `basis` (6, k) at the first instant, and `held` (6, m) over a
+    distance."""
+    parts = quoted(next(item.patch for item in evidence.items if item.patch.bends).parts)
+    return (
+        f"{basis.shape[1]} of 6 freedoms are left at the first instant, and {held.shape[1]} over a distance: about the "
+        f"normal of the line in which {parts} touch, the ends of the one go into the other"
+    )
 
 
 def _prism_reading(evidence: Evidence, basis: Array) -> OtherReading | None:

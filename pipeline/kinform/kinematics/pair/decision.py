@@ -28,7 +28,7 @@ from kinform.kinematics.pair.in_step import Steps, remains
 from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.kinematics.pair.preserved import preserved_by_each
 from kinform.kinematics.pair.stops import ROLES, ends_inside, faces_in_words, stop_reading
-from kinform.kinematics.pair.touches import TOUCHING
+from kinform.kinematics.pair.touches import TOUCHING, beside_flange
 from kinform.kinematics.pair.uncertainty import uncertainty_doubt
 from kinform.model.arrays import Array, Flags
 from kinform.model.tolerances import Tolerances
@@ -203,7 +203,7 @@ def _excusable(evidence: Evidence, motion: Motion, out: Flags, *, stops_only: bo
     one patch or two that face each other. An overlap excuses a patch where it is a mistake, not a press: well
     beyond what the patches that are kept overlap by.
     """
-    if _in_corner(evidence, out):
+    if _in_corner(evidence, out) or _rolls(evidence, out):
         return False
     guides = [item for item in evidence.chosen(~out) if _guides(item, motion)]
     press = max([0.0, *(-item.patch.gap for item in guides)])
@@ -238,6 +238,13 @@ def _in_corner(evidence: Evidence, out: Flags) -> bool:
         for of in ([i for i in evidence.chosen(flags) if i.patch.kind in TOUCHING] for flags in (~out, out))
     )
     return not held.isdisjoint(left)
+
+
+def _rolls(evidence: Evidence, out: Flags) -> bool:
+    """Would a roller be taken off the line along which it rolls, that stays at the ball on which its end slides?"""
+    lines = [item.patch for item in evidence.chosen(out) if item.patch.kind == "line"]
+    balls = [item.patch for item in evidence.chosen(~out) if item.patch.kind == "sphere"]
+    return any(beside_flange(line, ball) for line in lines for ball in balls)
 
 
 def _guides(item: Item, motion: Motion) -> bool:

@@ -237,11 +237,17 @@ def _refine(direction: Array, planes: list[tuple[Array, float]], alignment: floa
 
 
 def _middle(evidence: Evidence, normal: Array, alignment: float) -> Array:
-    """Area centroid of the plane patches with this normal."""
+    """Area centroid of the plane patches with this normal, or beside it on the normal of a line of contact across them,
+    about any point of which the bodies turn exactly: where facets have the centroid is known to their size alone."""
     near = math.sin(alignment)
     members = [i for i in evidence.items if i.patch.kind == "plane" and sine(i.patch.axis, normal) <= near]
     points = np.concatenate([i.points for i in members])
-    return weighted_mean(points, np.concatenate([i.weights for i in members]))
+    middle = weighted_mean(points, np.concatenate([i.weights for i in members]))
+    lines = [i for i in evidence.items if i.patch.kind == "line" and sine(i.patch.axis, normal) < constants.ACROSS_LINE]
+    if not lines:
+        return middle
+    line = max(lines, key=lambda i: (i.area, -i.index))
+    return foot(line.middle, line.normals[0], middle)
 
 
 def motion_words(motion: Motion) -> str:

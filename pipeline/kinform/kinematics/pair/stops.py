@@ -37,6 +37,7 @@ ROLES = {
     "flank": "the flank of a tooth or cam, which bears nothing",
     "prism": "those of a prism",
     "pin": "of a pin that has play in its slot",
+    "bend": "a line along which a roller lies in its ring",
 }
 """What faces are that may not be meant to hold."""
 
@@ -52,7 +53,7 @@ class OtherReading:
     """Items that are left out."""
     role: str
     """What those are then: stop, sliver, flank or pin. prism: nothing is left out; flats do not let the bodies
-    turn."""
+    turn. bend: nor here; a roller turns less in its ring than its line says."""
 
 
 def stop_reading(

@@ -1,9 +1,22 @@
-"""Touches that may be none: contact on one side only, so small or so far from zero gap that it may not be meant."""
+"""Touches that may be none: contact on one side only, so small or so far from zero gap that it may not be meant; and
+lines that hold more than their normals say.
+
+A roller that lies in a ring turns about the normal of the line in which they touch, by the rows of that line. It does
+not: its ends would go into the ring. To second order it is held, so that it has one freedom less over a distance than
+at the first instant.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+import numpy as np
+
+from kinform.foundation.algebra.vectors import cross, norm, sine
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import Evidence
+from kinform.model.arrays import Array
+from kinform.model.contacts import Patch
 
 TOUCHING = ("point", "line")
 """Kinds of higher pairs: alone they are no joint, and leave what they leave at this instant."""
@@ -46,3 +59,24 @@ def _on_one_side(evidence: Evidence) -> bool:
     """Do all normals lean the way of their weighted mean?"""
     normals = evidence.rows[:, 3:]
     return bool((normals @ (evidence.share @ normals) > 0.0).all())
+
+
+def beside_flange(line: Patch, other: Patch) -> bool:
+    """Whether a patch beside a line of contact is of a flange, which leaves the line what it is: a plane across it, or
+    a ball about a place on it, as at the ends of rollers."""
+    if other.kind == "plane":
+        return sine(other.axis, line.axis) < constants.ACROSS_LINE
+    arm = other.point - line.point
+    aside = norm(cross(arm, line.axis))
+    return other.kind == "sphere" and not other.one_sided and aside < constants.ACROSS_LINE * norm(arm)
+
+
+def held_by_bends(patches: Sequence[Patch], basis: Array) -> Array:
+    """(6, m) those of the freedoms (6, k), turns first, that do not turn a roller about the normal of a straight line
+    in which it lies in its ring; `basis` itself where none does."""
+    lines = [patch for patch in patches if patch.kind == "line" and patch.bends and not patch.one_sided]
+    if not lines or not basis.shape[1]:
+        return basis
+    _, values, right = np.linalg.svd(np.array([patch.normals[0] for patch in lines]) @ basis[:3])
+    rank = int(np.count_nonzero(values > constants.EXACT_PAIR))
+    return np.asarray(basis @ right[rank:].T) if rank else basis

@@ -3,20 +3,26 @@
 A pin, a bearing or a screw that the function does not name carries a joint between two bodies that
 it does name. The relative motion is then decided by all of them: the closure of the two bodies, their
 direct contact and the helpers that connect them, everything else left out.
+
+Rolling elements touch by points and lines, whose normals turn as they move, so that what the closure leaves is known
+for this instant alone. `rolling` says which of it is there over a distance, and where it is in doubt.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import Frame, scaled, span
+from kinform.foundation.algebra.screws import Frame, scaled, span, twist_at_origin
 from kinform.foundation.algebra.vectors import box, norm
 from kinform.frozen import dataclass
 from kinform.kinematics.loops.assembly_closure import body_twists, close
 from kinform.kinematics.pair.lower_pairs import JointForm, name_space
+from kinform.kinematics.questions.rolling import Rolling, rolling
 from kinform.model.arrays import Array
+from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint, Kinematics
 
 
@@ -31,13 +37,20 @@ class HelperMotion:
     """All that take part, in the order of the kinematics."""
     twists: Array
     """(k, 6) of the second relative to the first (ω; v at the world's origin)."""
+    rolling: Rolling | None
+    """What is known of it where bodies touch by points and lines; None where none do."""
 
 
 def motion_through_helpers(
-    kinematics: Kinematics, first: str, second: str, named: AbstractSet[str], size: float
+    kinematics: Kinematics,
+    patches: Sequence[Patch],
+    first: str,
+    second: str,
+    named: AbstractSet[str],
+    size: float,
 ) -> HelperMotion | None:
     """The motion of `second` relative to `first` through bodies outside `named` and ground; None when
-    no such body connects the two. `size` (m): of the smaller of the two."""
+    no such body connects the two. `patches` are all those of the joints, `size` (m): of the smaller of the two."""
     helpers = _connecting(kinematics, first, second, named)
     if not helpers:
         return None
@@ -46,12 +59,17 @@ def motion_through_helpers(
     joints = kinematics.joints_among(index.keys())
     edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in joints]
     spaces = [j.twists for j in joints]
-    twists = body_twists(close(len(nodes), edges, spaces, 0), edges, spaces)[:, 1, :]
+    motions = body_twists(close(len(nodes), edges, spaces, 0), edges, spaces)
     points = np.array([j.point for j in joints if j.point is not None])
+    if not len(points):
+        points = np.array([patches[k].point for j in joints for k in j.patches if k < len(patches)]).reshape(-1, 3)
     frame = _frame(points, size)
-    basis = span(scaled(twists.T, frame))
+    basis = span(scaled(motions[:, 1].T, frame))
     names = tuple(sorted(helpers))
-    return HelperMotion(name_space(basis, frame), basis.shape[1], names, tuple(joints), twists)
+    known = rolling(joints, edges, nodes, patches, motions, frame)
+    return HelperMotion(
+        name_space(basis, frame), basis.shape[1], names, tuple(joints), twist_at_origin(basis, frame).T, known
+    )
 
 
 def _frame(points: Array, size: float) -> Frame:

@@ -122,14 +122,18 @@ def principal(tensor: Sequence[Array]) -> tuple[Array, Array, Array]:
     return strong, weak, along.T
 
 
-def continues(work: Patchwork, bent: Curvature, link: Links) -> Flags:
-    """Whether the two polygons of each link seem to lie on one surface: like curvatures, and directions
-    that turn no more than the normals do when going across, and not at all when going along."""
-    a, b = link.a, link.b
-    strong_a, strong_b = bent.strong[a], bent.strong[b]
+def bends_like(bent: Curvature, link: Links) -> Flags:
+    """Whether the two polygons of each link have like curvatures."""
+    strong_a, strong_b = bent.strong[link.a], bent.strong[link.b]
     larger = np.maximum(np.abs(strong_a), np.abs(strong_b))
     like = np.abs(strong_a - strong_b) <= constants.ALIKE_STRONG * larger
-    like &= np.abs(bent.weak[a] - bent.weak[b]) <= constants.ALIKE_WEAK * larger
+    return np.asarray(like & (np.abs(bent.weak[link.a] - bent.weak[link.b]) <= constants.ALIKE_WEAK * larger))
+
+
+def continues(work: Patchwork, bent: Curvature, link: Links) -> Flags:
+    """Whether the two polygons of each link, if they bend one way and alike, seem to lie on one surface: directions
+    that turn no more than the normals do when going across, and not at all when going along."""
+    a, b = link.a, link.b
     simple = np.maximum(bent.ratio[a], bent.ratio[b]) < constants.SIMPLE_RATIO
     along_a, along_b = columns_of(bent.along, a), columns_of(bent.along, b)
     cosine = dot(along_a, along_b)
@@ -141,4 +145,4 @@ def continues(work: Patchwork, bent: Curvature, link: Links) -> Flags:
     allowed = np.where(
         going > constants.GOING_ALONG, constants.TURNED_ALONG, constants.TURNED_ALONG + work.angle[link.edge]
     )
-    return np.asarray(like & (~simple | (turn <= allowed)))
+    return np.asarray(~simple | (turn <= allowed))

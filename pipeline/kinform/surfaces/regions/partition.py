@@ -25,7 +25,7 @@ from kinform.surfaces.kinds.kind import Kind
 from kinform.surfaces.kinds.mixed import Mixed
 from kinform.surfaces.kinds.sphere import Sphere
 from kinform.surfaces.kinds.torus import Torus
-from kinform.surfaces.polygons.curvature import Curvature, Links, continues, curvature, links
+from kinform.surfaces.polygons.curvature import Curvature, Links, bends_like, continues, curvature, links
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.across import along
@@ -33,9 +33,9 @@ from kinform.surfaces.regions.chords import Rounds, decimated
 from kinform.surfaces.regions.growth import Growth, absorb, pursue, whole
 from kinform.surfaces.regions.territory import Territory
 
-CYLINDER, CONE = Cylinder(), Cone()
+CYLINDER, CONE, TORUS = Cylinder(), Cone(), Torus()
 
-CURVED: tuple[Kind, ...] = (CYLINDER, CONE, Sphere(), Torus())
+CURVED: tuple[Kind, ...] = (CYLINDER, CONE, Sphere(), TORUS)
 """The curved kinds, simplest first. A new kind is one more entry."""
 
 SIMPLE = tuple(kind for kind in CURVED if not kind.saddle)
@@ -71,7 +71,9 @@ def partition(work: Patchwork, scales: Scales) -> Partition:
     territory = Territory.of(work, scales)
     link = links(work, territory.free)
     bent = curvature(work, link)
-    like = link.alike & continues(work, bent, link)
+    like = link.alike & bends_like(bent, link)
+    regions += _choose(_slender_tori(territory, link, like, bent), territory)
+    like &= continues(work, bent, link)
     for kinds, both_ways in ((CURVED, True), (SIMPLE, False)):
         batch, side = _blends(territory, link, like, bent) if both_ways else _pieces(territory, link, link.alike)
         growths = [absorb(territory, growth) for growth in _whole_pieces(territory, batch, side, bent, kinds)]
@@ -148,6 +150,19 @@ def _blends(territory: Territory, link: Links, joined: Flags, bent: Curvature) -
     return Batch.of_keys(work, keys, names), np.where(lean >= 0, 1, -1).astype(np.int64)
 
 
+def _slender_tori(territory: Territory, link: Links, joined: Flags, bent: Curvature) -> list[Growth]:
+    """Tori that bend along their tube so little that each row of their facets, round it or along it, is a cylinder or a
+    cone as well: the pieces that bend both ways alike, whatever their directions."""
+    batch, side = _blends(territory, link, joined, bent)
+    middle = quantile(batch.region, bent.ratio.take(batch.polygon), batch.count, 0.5)
+    suits = (middle >= TORUS.bends[0]) & (middle < constants.SIMPLE_RATIO) & (batch.size >= TORUS.least)
+    pieces, number = batch.where(suits).compact()
+    if not len(number):
+        return []
+    pieces.find_shared()
+    return [absorb(territory, whole(territory, TORUS, pieces, side[number]))]
+
+
 def _whole_pieces(
     territory: Territory, batch: Batch, side: Ints, bent: Curvature, kinds: tuple[Kind, ...]
 ) -> list[Growth]:  # fmt: skip
@@ -161,7 +176,8 @@ def _whole_pieces(
         low, high = kind.bends
         suits = (middle >= low) & (middle <= high) & (batch.size >= kind.least)
         pieces, number = batch.where(suits).compact()
-        growths.append(whole(territory, kind, pieces, side[number]))
+        growth = whole(territory, kind, pieces, side[number])
+        growths.append(along(territory, CYLINDER, growth)[0] if kind is CYLINDER else growth)
         size = np.zeros(batch.count)
         size[number[growths[-1].origin]] = growths[-1].batch.size
         batch = batch.where(size < constants.EXPLAINED * batch.size)

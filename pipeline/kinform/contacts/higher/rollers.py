@@ -1,0 +1,97 @@
+"""Lines along which rollers run on their races, beside the flanges that their flat ends touch.
+
+A flange is a plane across the roller, or a bowl about a place on its axis, which leaves it free there, and the race
+opposes it in one sense: alone that would be a stop. But what is round all over, as needles, rollers and wheels are, is
+there to roll, and the other race presses it on this one. So these lines are kept beside such flanges, as those of cams
+and teeth are beside planes across them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from kinform.contacts import constants
+from kinform.contacts.higher.points_and_lines import touches_between
+from kinform.contacts.search.pair_view import PairView, PartView
+from kinform.foundation.algebra.vectors import cross, norm
+from kinform.foundation.meshes.surface_table import SurfaceTable
+from kinform.model.arrays import Array, Flags
+from kinform.model.contacts import Patch
+from kinform.model.surfaces import KINDS
+
+_ROUND = tuple(KINDS.index(kind) for kind in constants.ROUND_KINDS)
+_RACES = (KINDS.index("cylinder"), KINDS.index("cone"))
+_SPHERE = KINDS.index("sphere")
+_PLANE = KINDS.index("plane")
+
+
+def lines_beside_flanges(pair: PairView, patches: Sequence[Patch]) -> list[Patch]:
+    """Lines in which a part that is round all over touches a round surface of the other, in the frame of the pair,
+    where all `patches` are planes across its axis or balls about a place on it; none beside others."""
+    if not patches or any(patch.kind not in ("plane", "sphere") or patch.one_sided for patch in patches):
+        return []
+    # beside a flat wall a pin that stands on its collar may as well come to rest on it
+    races = [np.isin(side.kinds, _RACES) for side in pair.near]
+    flags = np.zeros((len(races[0]), len(races[1])), dtype=bool)
+    for k, side in enumerate(pair.near):
+        for row in side.of_kind("cylinder", "cone").tolist():
+            axis, place = side.axes[row], side.points[row]
+            ends = all(_ends(patch, axis, place, pair.parts[k].index.mesh.size.span) for patch in patches)
+            if side.sides[row] > 0 and ends and _round_all_over(pair.parts[k], int(side.ids[row])):
+                flags[(row, races[1]) if k == 0 else (races[0], row)] = True
+    if not flags.any():
+        return []
+    touches = touches_between(pair, flags & pair.overlap(pair.tolerance), play=True)
+    touch = constants.TOUCH * pair.tolerance
+    # with so much play it is not known where they touch
+    return [
+        replace(patch, one_sided=True, bends=False) if float(np.abs(patch.gaps).max()) > touch else patch
+        for patch in touches
+        if patch.kind == "line"
+    ]
+
+
+def may_roll(pair: PairView) -> bool:
+    """Whether the smaller of the parts is round all over where it is near the other: a ball, or a roller, that may have
+    play between two races."""
+    spans = [part.index.mesh.size.span for part in pair.parts]
+    smaller = int(spans[1] < spans[0])
+    part, side = pair.parts[smaller], pair.near[smaller]
+    return any(
+        bool(side.sides[row] > 0) and _round_all_over(part, int(side.ids[row]))
+        for row in side.of_kind("sphere", "cylinder", "cone").tolist()
+    )
+
+
+def _ends(patch: Patch, axis: Array, place: Array, span: float) -> bool:
+    """Whether a plane lies across an axis through a place, or a ball is about a place on it, as well as the roller, of
+    this span (m), is known to be round."""
+    if patch.kind == "plane":
+        return norm(cross(patch.axis, axis)) < constants.ACROSS_SINE
+    return norm(cross(patch.point - place, axis)) < constants.ROUND_PLACE * span
+
+
+def _round_all_over(part: PartView, surface: int) -> bool:
+    """Whether the part has hardly any surface that does not turn onto itself about the axis of this one, and none that
+    stands out beyond it, as the flange of a disc beyond its boss; or it is a ball."""
+    table, span = part.table, part.index.mesh.size.span
+    axis, point = table.axes[surface], table.points[surface]
+    if table.kinds[surface] == _SPHERE:
+        return _area(table, np.arange(len(table.kinds)) != surface) < constants.ROUND_REST * float(table.areas.sum())
+    aside = np.linalg.norm(cross(table.points - point, axis), axis=1) < constants.ROUND_PLACE * span
+    along = np.linalg.norm(cross(table.axes, axis), axis=1) < constants.ACROSS_SINE
+    turns: Flags = np.isin(table.kinds, _ROUND) & aside & (along | (table.kinds == _SPHERE))
+    turns |= (table.kinds == _PLANE) & along
+    if _area(table, ~turns) >= constants.ROUND_REST * float(table.areas.sum()):
+        return False
+    mesh = part.index.mesh
+    away = np.linalg.norm(cross(mesh.vertices - point, axis), axis=1)
+    widest = float(away[mesh.faces[part.surfaces.labels == surface]].max())
+    return float(away.max()) <= widest + constants.ROUND_PLACE * span
+
+
+def _area(table: SurfaceTable, flags: Flags) -> float:
+    return float(table.areas[flags].sum())

@@ -1,0 +1,112 @@
+"""Bearings whose rolling elements are parts of their own: the joint of ring and shaft is told, or that it is not known;
+never an error of a function that is right, nor one agreed with that is wrong."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from support import bearings
+from support.bearings import KINDS, Bearing, Size, answers_of
+from support.solids import random_pose
+
+SIZES = [
+    Size(3, 9.0, 1.6, 10.0, 0.0, 72, 36, 11.0),
+    Size(5, 8.0, 2.2, 12.0, 0.0, 96, 40, 70.0),
+    Size(9, 11.0, 1.8, 8.0, 0.0, 54, 29, 3.0),
+]
+SCALES = (0.1, 1e-4, 1e-3)
+UNDECIDED = ("tapers", "self-aligning balls")
+"""Without a rib tapered rollers are wedged out; a ball in a bowl is held to second order, which nobody works out."""
+CAGED = ("needles, cage", "needles, flanges and cage")
+"""What a thin cage touches is in doubt in some tessellations."""
+
+
+@pytest.mark.parametrize("k", range(3))
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_joint_of_a_bearing_is_told(kind, k):
+    found = answers_of(KINDS[kind](SIZES[k]), np.random.default_rng(k), SCALES[k])
+    outcome, why = found.outcome()
+    allowed = ("undecided",) if kind in UNDECIDED else ("agrees", "undecided") if kind in CAGED else ("agrees",)
+    assert outcome in allowed, why
+
+
+@pytest.mark.parametrize("play", [0.002, 0.02, 0.035])
+@pytest.mark.parametrize("kind", KINDS)
+def test_play_denies_no_bearing(kind, play):
+    """Whether rolling elements with much play between their races touch these is not known."""
+    size = replace(SIZES[1], play=play * SIZES[1].element)
+    outcome, why = answers_of(KINDS[kind](size), np.random.default_rng(7)).outcome()
+    assert outcome in ("agrees", "undecided"), why
+
+
+def shifted(bearing: Bearing, by: float) -> Bearing:
+    """The bearing with all its elements moved at random by so much (mm)."""
+    rng = np.random.default_rng(1)
+    moved = {
+        name: solid.translate(tuple(by * rng.normal(size=3))) if name[:4] in ("roll", "ball") else solid
+        for name, solid in bearing.solids.items()
+    }
+    return replace(bearing, solids=moved)
+
+
+@pytest.mark.parametrize("by", [1e-4, 2e-3, 2e-2])
+@pytest.mark.parametrize("kind", KINDS)
+def test_elements_that_are_not_quite_in_their_place_make_nothing_certain_that_is_wrong(kind, by):
+    outcome, why = answers_of(shifted(KINDS[kind](SIZES[1]), by), np.random.default_rng(2)).outcome()
+    assert outcome in ("agrees", "undecided"), why
+
+
+@pytest.mark.parametrize("kind", ["needles", "needles, flanges and collars", "balls", "tapers, rib", "thrust rollers"])
+def test_one_or_two_elements_bear_no_shaft(kind):
+    for count in (1, 2):
+        found = answers_of(KINDS[kind](replace(SIZES[0], count=count)), np.random.default_rng(count))
+        assert found.right.answer != "agrees"
+        assert not [one.type for one in found.others if one.answer == "agrees"]
+
+
+def test_a_shaft_that_slides_out_of_its_needles_is_no_revolute_joint():
+    """Slides along lines of contact are certain: this is an error of the function, and is told as one."""
+    found = answers_of(KINDS["needles, flanges"](SIZES[1]), np.random.default_rng(0))
+    revolute = next(one for one in found.others if one.type == "revolute")
+    assert (revolute.answer, revolute.free) == ("not held", "cylindrical, 2 freedoms by contact")
+
+
+def test_wedged_elements_are_told():
+    found = answers_of(KINDS["tapers"](SIZES[1]), np.random.default_rng(0))
+    assert "wedged between contacts that lean against each other by little" in found.reason
+
+
+def test_what_a_bowl_holds_to_second_order_is_not_said_to_be_free():
+    found = answers_of(KINDS["self-aligning balls"](SIZES[1]), np.random.default_rng(0))
+    assert "leave 4 freedoms at this instant" in found.reason
+
+
+@pytest.mark.parametrize("kind", ["needles, flanges and collars", "balls"])
+def test_the_order_of_the_parts_does_not_matter(kind):
+    bearing = KINDS[kind](SIZES[0])
+    names = {name: f"{'zyx'[int(name[-1]) % 3]}{name}" for name in bearing.solids if name[-1].isdigit()}
+    renamed = replace(bearing, solids={names.get(name, name): solid for name, solid in bearing.solids.items()})
+    for one in (bearing, renamed):
+        assert answers_of(one, np.random.default_rng(4)).outcome()[0] == "agrees"
+
+
+def test_a_pose_far_away_does_not_matter(monkeypatch):
+    def far(rng, reach):
+        X = random_pose(rng, reach)
+        X[:3, 3] += 20.0 * rng.normal(size=3)
+        return X
+
+    monkeypatch.setattr(bearings, "random_pose", far)
+    found = answers_of(KINDS["needles, flanges and collars"](SIZES[1]), np.random.default_rng(5))
+    assert found.outcome()[0] == "agrees"
+
+
+def test_a_function_that_states_all_joints_of_a_bearing_is_not_denied():
+    """Balls go with the shaft then, and bear it in the bowl of the ring together."""
+    codes = {}
+    for kind, bearing in ((kind, KINDS[kind](SIZES[1])) for kind in KINDS if kind != "tapers"):
+        found = answers_of(bearing, np.random.default_rng(3), complete=True)
+        codes[kind] = found.right.answer
+    assert set(codes.values()) <= {"agrees", "undecided"}, codes
