@@ -54,18 +54,6 @@ def lines_beside_flanges(pair: PairView, patches: Sequence[Patch]) -> list[Patch
     ]
 
 
-def may_roll(pair: PairView) -> bool:
-    """Whether the smaller of the parts is round all over where it is near the other: a ball, or a roller, that may have
-    play between two races."""
-    spans = [part.index.mesh.size.span for part in pair.parts]
-    smaller = int(spans[1] < spans[0])
-    part, side = pair.parts[smaller], pair.near[smaller]
-    return any(
-        bool(side.sides[row] > 0) and _round_all_over(part, int(side.ids[row]))
-        for row in side.of_kind("sphere", "cylinder", "cone").tolist()
-    )
-
-
 def _ends(patch: Patch, axis: Array, place: Array, span: float) -> bool:
     """Whether a plane lies across an axis through a place, or a ball is about a place on it, as well as the roller, of
     this span (m), is known to be round."""

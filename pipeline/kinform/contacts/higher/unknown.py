@@ -1,8 +1,8 @@
 """Where two parts come as near each other as parts that touch do, and no contact that is known says how.
 
 Contact is known by pairings of surfaces: an elliptical rim in a bore, a straight edge on a barrel, or two freeform
-faces are none of them, nor rolling elements with play between their races. The meshes still tell how near they come.
-What such a contact holds is not known, so its patch is a point that leaves everything in doubt, and denies nothing.
+faces are none of them. The meshes still tell how near they come. What such a contact holds is not known, so its patch
+is a point that leaves everything in doubt, and denies nothing.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ import fcl
 import numpy as np
 
 from kinform.contacts import constants
-from kinform.contacts.higher.rollers import may_roll
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.pair_view import PairView, PartView, boxes_of
 from kinform.foundation.meshes.closest import distances_from
@@ -25,10 +24,8 @@ from kinform.model.contacts import Patch
 
 def unknown_touches(pair: PairView) -> list[Patch]:
     """The place where the parts, of which no contact is known, are nearest, in the frame of the pair: a patch where
-    they touch there, within what their facets stand off their surfaces; balls and rollers may have play between
-    their races."""
-    share = constants.TOUCHING_WITHIN if may_roll(pair) else constants.TOUCH
-    most = min(_touches_within(pair, share, pair.a.table.slack + pair.b.table.slack), pair.tolerance)
+    they touch there, within what their facets stand off their surfaces."""
+    most = min(_touches_within(pair, pair.a.table.slack + pair.b.table.slack), pair.tolerance)
     near = [np.concatenate([np.zeros(0, np.int64), *side.facets]) for side in pair.near]
     if not len(near[0]) or not len(near[1]):
         return []
@@ -42,7 +39,7 @@ def unknown_touches(pair: PairView) -> list[Patch]:
     sides = [_at(part, mine, place, gap) for part, mine in zip(pair.parts, facets, strict=True)]
     (i, out_of_a), (j, out_of_b) = sides
     chords = [float(part.table.chords[k]) for part, k in zip(pair.parts, (i, j), strict=True)]
-    if gap > min(_touches_within(pair, share, sum(chords)), pair.tolerance):
+    if gap > min(_touches_within(pair, sum(chords)), pair.tolerance):
         return []
     normal = out_of_a - out_of_b
     normal = normal / max(float(np.linalg.norm(normal)), 1e-300)
@@ -59,9 +56,9 @@ def unknown_touches(pair: PairView) -> list[Patch]:
     return [replace(touch_patch(pair, (i, j), touch, 0.0), one_sided=True, unknown=True)]
 
 
-def _touches_within(pair: PairView, share: float, chords: float) -> float:
-    """m up to which surfaces may touch whose facets stand off them by `chords` together: a share of the tolerance."""
-    return share * pair.tolerance + chords
+def _touches_within(pair: PairView, chords: float) -> float:
+    """m up to which surfaces may touch whose facets stand off them by `chords` together."""
+    return constants.TOUCH * pair.tolerance + chords
 
 
 def _nearest(pair: PairView, facets: tuple[Ints, Ints]) -> tuple[float, Array]:
