@@ -13,6 +13,7 @@ from kinform.collisions.driving.candidates import Approach, Candidate
 from kinform.collisions.driving.overlaps import Overlap, Pair, overlap_words
 from kinform.collisions.driving.swept_profiles import Profile
 from kinform.collisions.driving.swept_spheres import first_touch
+from kinform.collisions.pair.course import Deep
 from kinform.collisions.parts.shapes import Shapes
 from kinform.kinematics.mobility.guides import guide, joint_twist
 from kinform.model.arrays import Array
@@ -126,9 +127,11 @@ def _candidates(
 
 def _end(candidates: Sequence[Candidate], sign: int, limit: float, start: float) -> tuple[RangeEnd, list[Pair]]:
     """How far one side goes, up to `limit`; and the pairs of which something was left out. The pair that is known to be
-    free for the shortest way goes on first: none goes much further than where another is stopped. Where parts that
-    overlap as they are drawn go deeper before that, nothing is known of this side."""
+    free for the shortest way goes on first: none goes much further than where another is too deep, and the end is where
+    the first that is so came to be stopped, whichever was asked first. Where parts that overlap as they are drawn go
+    deeper before that, nothing is known of this side."""
     reach = limit
+    deep: Deep | None = None
     overlaps: list[Overlap] = []
     deeper: list[tuple[float, Overlap]] = []
     best: tuple[float, Pair, Array] | None = None
@@ -137,7 +140,7 @@ def _end(candidates: Sequence[Candidate], sign: int, limit: float, start: float)
     heapq.heapify(waiting)
     while waiting and waiting[0][0] < reach:
         s, n, known = heapq.heappop(waiting)
-        approach = known or Approach(candidates[n], sign, s)
+        approach = known or Approach(candidates[n], sign, s, limit)
         first = approach.advance(reach)
         if approach.s < reach:
             heapq.heappush(waiting, (approach.s, n, approach))
@@ -150,18 +153,20 @@ def _end(candidates: Sequence[Candidate], sign: int, limit: float, start: float)
             deeper.append((first.deeper, overlaps[-1]))
         if first.exhausted is not None and (exhausted is None or first.exhausted < exhausted[0]):
             exhausted = (first.exhausted, names)
-        if first.at is not None and first.place is not None:
-            reach, best = first.at, (first.at, names, first.place)
+        if first.at is not None and first.place is not None and first.deep is not None and first.deep.before(deep):
+            deep, best = first.deep, (first.at, names, first.place)
+            reach = min(reach, deep.high)
     overlaps += [overlap for _, _, known in waiting if known is not None and (overlap := known.overlap) is not None]
     left_out = [overlap.pair for overlap in overlaps]
-    into = [overlap for s, overlap in deeper if s < reach]
+    at = limit if best is None else best[0]
+    into = [overlap for s, overlap in deeper if s < at]
     unknown = into if into or best is not None else overlaps
     if unknown:
         return RangeEnd("unknown", reason=overlap_words(unknown, candidates[0].units)), left_out
-    if exhausted is not None and exhausted[0] < reach:
+    if exhausted is not None and exhausted[0] < at:
         return RangeEnd("unknown", reason=f"{' and '.join(exhausted[1])} stay too close to be followed"), left_out
     if best is not None:
-        return RangeEnd("found", sign * best[0], best[1], best[2]), left_out
+        return RangeEnd("found", sign * at + 0.0, best[1], best[2]), left_out
     return RangeEnd("unbounded"), left_out
 
 

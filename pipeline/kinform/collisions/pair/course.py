@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
+from functools import cached_property
 
 import numpy as np
 
@@ -40,10 +42,11 @@ class Course:
         return not meets and until >= high
 
     def middle(self, low: float, high: float) -> float:
-        """A parameter about half way between two: a node where there is one."""
+        """A parameter about half way between two: a node where there is one; without nodes one of a grid, the same
+        from wherever it is come near to."""
         middle = 0.5 * (low + high)
         if self.nodes is None:
-            return middle
+            return _on_grid(low, middle, high)
         n = int(np.searchsorted(self.nodes, middle))
         near = [float(s) for s in self.nodes[max(n - 1, 0) : n + 1] if low < s < high]
         return min(near, key=lambda s: abs(s - middle), default=middle)
@@ -72,6 +75,35 @@ class Course:
             return node
         share = (travel - ways[n]) / max(ways[n + 1] - ways[n], 1e-300)
         return min(max(node + share * (following - node), low), high)
+
+
+class Deep:
+    """From where on two parts are too deep in each other: between `low` and `high`, and, where that is asked, to within
+    `fine`, as `met` tells of a parameter."""
+
+    def __init__(self, low: float, high: float, fine: float, met: Callable[[float], bool]):
+        self.low, self.high, self._fine, self._met = low, high, fine, met
+
+    def before(self, other: Deep | None) -> bool:
+        """Whether sooner than others are; None: they are not."""
+        if other is None or self.high <= other.low:
+            return True
+        return self.low < other.high and self._at < other._at
+
+    @cached_property
+    def _at(self) -> float:
+        return narrowed(self.low, self.high, self._fine, self._met)[1]
+
+
+def _on_grid(low: float, middle: float, high: float) -> float:
+    """A multiple of a power of two between two parameters, of the largest power, the nearest to their middle."""
+    step = 2.0 ** math.floor(math.log2(high - low))
+    for _ in range(2):
+        place = step * round(middle / step)
+        if low < place < high:
+            return place
+        step *= 0.5
+    return middle
 
 
 def narrowed(left: float, right: float, fine: float, met: Callable[[float], bool]) -> tuple[float, float]:

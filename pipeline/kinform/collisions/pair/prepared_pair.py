@@ -71,7 +71,7 @@ class PairTest:
         self._surfaces = (shapes.surfaces_of(first), shapes.surfaces_of(second))
         if not isinstance(mates, Mates):
             near = (shapes.borders(first), shapes.borders(second)) if mates else ([], [])
-            mates = Mates(first, mates, self._surfaces[0], near, self.size)
+            mates = Mates(first, mates, self._surfaces, self._X_AW @ self.X_WB, near, self.size)
         self.mates = mates
         self.scrape = shapes.allowed(first, second).length
         """m: less deep, parts scrape, as mates may."""
