@@ -29,12 +29,10 @@ class Mates:
         first: str,
         patches: Sequence[Patch],
         surfaces: tuple[MeshSurfaces, MeshSurfaces],
-        X_AB: Array,
         near: tuple[list[set[int]], list[set[int]]],
         size: float,
     ):
-        """`X_AB`: pose (4, 4) of the second part in the first as they mate."""
-        self._surfaces, self._near, self._X_AB = surfaces, near, X_AB
+        self._surfaces, self._near = surfaces, near
         self._pairs = [_of(patch, first) for patch in patches]
         self.slacks = [
             patch.chord + 2.0 * abs(patch.gap) + sum(patch.uncertainty[1:]) + MATE_ROUNDING * size for patch in patches
@@ -47,18 +45,19 @@ class Mates:
     def __bool__(self) -> bool:
         return bool(self._pairs)
 
-    def along(self, pairs: tuple[Ints, Ints], segments: Array) -> Flags:
-        """(n,) which segments (n, 2, 3) m, in the frame of the first part, each of facets of surfaces `pairs` (n,) of
+    def along(self, pairs: tuple[Ints, Ints], segments: tuple[Array, Array]) -> Flags:
+        """(n,) which segments (n, 2, 3) m, in the frame of either part, each of facets of surfaces `pairs` (n,) of
         either part, lie on a mate that both surfaces belong to or border."""
-        out = np.zeros(len(segments), dtype=bool)
+        out = np.zeros(len(pairs[0]), dtype=bool)
         for mate, slack, border in zip(self._pairs, self.slacks, self._borders, strict=True):
             if mate in self._bare:
                 out |= (pairs[0] == mate[0]) & (pairs[1] == mate[1])
             rows = np.flatnonzero(border[0][pairs[0]] & border[1][pairs[1]] & ~out)
             if len(rows):
-                points = segments[rows].reshape(-1, 3)
-                seen = points, (points - self._X_AB[:3, 3]) @ self._X_AB[:3, :3]
-                away = _greater(_distance(surface, p) for surface, p in zip(self._of(mate), seen, strict=True))
+                away = _greater(
+                    _distance(surface, seen[rows].reshape(-1, 3))
+                    for surface, seen in zip(self._of(mate), segments, strict=True)
+                )
                 out[rows] = (away.reshape(-1, 2) <= slack).all(axis=1) if away is not None else False
         return out
 
