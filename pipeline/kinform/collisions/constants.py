@@ -105,6 +105,8 @@ TOGETHER = 8.0
 comes in."""
 OVERLAPPING = 5.0
 """Steps are so much longer while parts overlap: all that is asked is whether they part."""
+DEEP_FINE = 1.0 / 16.0
+"""Share of a step to which it is found where parts begin to be too deep, where that has to be known of two pairs."""
 BEHIND_FACE = (1.0, 0.2, 0.04)
 """Shares of the resolution behind a face at which it is asked what is inside: parts may be thinner."""
 BEHIND_LEAST = 4.0

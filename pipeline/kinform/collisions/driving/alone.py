@@ -5,6 +5,7 @@ from __future__ import annotations
 import heapq
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from kinform.collisions.driving.swept_profiles import Profile
 from kinform.collisions.driving.swept_spheres import first_touch
 from kinform.collisions.pair.course import Deep
 from kinform.collisions.parts.shapes import Shapes
+from kinform.frozen import dataclass
 from kinform.kinematics.mobility.guides import guide, joint_twist
 from kinform.model.arrays import Array
 from kinform.model.collisions import JointRange, RangeEnd
@@ -125,16 +127,33 @@ def _candidates(
     ]
 
 
+@dataclass(frozen=True, eq=False)
+class _Stop:
+    """Where parts stop a joint that are too deep in each other a little later."""
+
+    at: float
+    parts: Pair
+    place: Array
+    deep: Deep
+
+    def or_sooner(self, other: _Stop, fine: float) -> _Stop:
+        """Of two the one that is too deep sooner: up to there the other just scrapes. Where both stop it at one place,
+        to within `fine`, that need not be known."""
+        if abs(other.at - self.at) > fine:
+            return other if other.deep.before(self.deep) else self
+        first = self if self.at <= other.at else other
+        return replace(first, deep=min(self.deep, other.deep, key=lambda deep: deep.high))
+
+
 def _end(candidates: Sequence[Candidate], sign: int, limit: float, start: float) -> tuple[RangeEnd, list[Pair]]:
     """How far one side goes, up to `limit`; and the pairs of which something was left out. The pair that is known to be
     free for the shortest way goes on first: none goes much further than where another is too deep, and the end is where
     the first that is so came to be stopped, whichever was asked first. Where parts that overlap as they are drawn go
     deeper before that, nothing is known of this side."""
     reach = limit
-    deep: Deep | None = None
     overlaps: list[Overlap] = []
     deeper: list[tuple[float, Overlap]] = []
-    best: tuple[float, Pair, Array] | None = None
+    best: _Stop | None = None
     exhausted: tuple[float, Pair] | None = None
     waiting: list[tuple[float, int, Approach | None]] = list(_apart(candidates, sign, start, limit))
     heapq.heapify(waiting)
@@ -153,12 +172,13 @@ def _end(candidates: Sequence[Candidate], sign: int, limit: float, start: float)
             deeper.append((first.deeper, overlaps[-1]))
         if first.exhausted is not None and (exhausted is None or first.exhausted < exhausted[0]):
             exhausted = (first.exhausted, names)
-        if first.at is not None and first.place is not None and first.deep is not None and first.deep.before(deep):
-            deep, best = first.deep, (first.at, names, first.place)
-            reach = min(reach, deep.high)
+        if first.at is not None and first.place is not None and first.deep is not None:
+            found = _Stop(first.at, names, first.place, first.deep)
+            best = found if best is None else best.or_sooner(found, candidates[n].fine)
+            reach = min(reach, found.deep.high)
     overlaps += [overlap for _, _, known in waiting if known is not None and (overlap := known.overlap) is not None]
     left_out = [overlap.pair for overlap in overlaps]
-    at = limit if best is None else best[0]
+    at = limit if best is None else best.at
     into = [overlap for s, overlap in deeper if s < at]
     unknown = into if into or best is not None else overlaps
     if unknown:
@@ -166,7 +186,7 @@ def _end(candidates: Sequence[Candidate], sign: int, limit: float, start: float)
     if exhausted is not None and exhausted[0] < at:
         return RangeEnd("unknown", reason=f"{' and '.join(exhausted[1])} stay too close to be followed"), left_out
     if best is not None:
-        return RangeEnd("found", sign * at + 0.0, best[1], best[2]), left_out
+        return RangeEnd("found", sign * at + 0.0, best.parts, best.place), left_out
     return RangeEnd("unbounded"), left_out
 
 

@@ -291,7 +291,7 @@ class Search:
         crossed = self._onsets.crossed(left, right)
         point = None if self.overlaps else self._points.met(right, right, self._fine, every=True)
         if point is None or point.hit >= crossed.hit:
-            return self._met(crossed, Deep(left, right, self._fine, self.too_deep))
+            return self._met(crossed, Deep(left, right, self.too_deep))
         return self._met(self._onsets.entered(point), point.deep)
 
     def entered(self, right: float, end: float) -> First | None:
@@ -318,7 +318,7 @@ class Search:
 
     def _met(self, onset: Entry, deep: Deep | None = None) -> _Hit:
         """What began there, and is too deep from somewhere on, or at once."""
-        deep = deep or onset.deep or Deep(onset.at, onset.hit, math.inf, lambda _: True)
+        deep = deep or onset.deep or Deep(onset.at, onset.hit, lambda _: True)
         return _Hit(onset.at, onset.hit, self._world(onset.place), before=self.before, deep=deep)
 
     def _world(self, place: Array) -> Array:

@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from kinform.collisions.constants import DEEP_FINE
 from kinform.collisions.pair.passages import Path
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
@@ -78,21 +79,21 @@ class Course:
 
 
 class Deep:
-    """From where on two parts are too deep in each other: between `low` and `high`, and, where that is asked, to within
-    `fine`, as `met` tells of a parameter."""
+    """From where on two parts are too deep in each other: between `low` and `high`, as `met` tells of a parameter where
+    that is asked."""
 
-    def __init__(self, low: float, high: float, fine: float, met: Callable[[float], bool]):
-        self.low, self.high, self._fine, self._met = low, high, fine, met
+    def __init__(self, low: float, high: float, met: Callable[[float], bool]):
+        self.low, self.high, self._met = low, high, met
 
-    def before(self, other: Deep | None) -> bool:
-        """Whether sooner than others are; None: they are not."""
-        if other is None or self.high <= other.low:
-            return True
-        return self.low < other.high and self._at < other._at
+    def before(self, other: Deep) -> bool:
+        """Whether sooner than others are."""
+        if self.high <= other.low or other.high <= self.low:
+            return self.high <= other.low
+        return self._at < other._at
 
     @cached_property
     def _at(self) -> float:
-        return narrowed(self.low, self.high, self._fine, self._met)[1]
+        return narrowed(self.low, self.high, DEEP_FINE * (self.high - self.low), self._met)[1]
 
 
 def _on_grid(low: float, middle: float, high: float) -> float:

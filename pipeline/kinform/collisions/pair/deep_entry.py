@@ -185,7 +185,7 @@ class Inside:
         if first is None:
             return None
         left, hit = narrowed(*first, REFINED * fine, partial(self._is_in, last, []))
-        deep = Deep(hit, further, fine, lambda s: bool(self._heights(s, sunk).max() > self._test.loose))
+        deep = Deep(hit, further, lambda s: bool(self._heights(s, sunk).max() > self._test.loose))
         return Entry(left, hit, self._middle(first[1], further), deep)
 
     def _entry(self, point: Ints, height: float, right: float, fine: float) -> tuple[float, float, float]:
