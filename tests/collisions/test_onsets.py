@@ -4,13 +4,17 @@ and whether facets that cross show it, or points that come in."""
 from __future__ import annotations
 
 from math import asin, atan2, hypot, radians
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from support.solids import assembly, box, extrusion, part, random_pose, rod
+from support.solids import assembly, box, part, random_pose, rod
 
 from kinform import collisions, contacts, kinematics, surfaces
 from kinform.collisions import constants
+from kinform.collisions.driving import alone
+from kinform.collisions.pair.advancement import First
+from kinform.collisions.pair.mate_surfaces import Mates
 
 SCALES = [1e-5, 1e-3, 1.0]
 WITHIN = constants.STOP_ANGLE
@@ -99,22 +103,44 @@ def test_what_is_drawn_in_its_stop_by_less_than_parts_may_scrape_is_at_its_stop(
     everywhere({"base": rail() + wall, "mover": box(-10, 25, -10, 10, 0, 8)}, x, 0.0, constants.STOP_LENGTH * 41.1)
 
 
-def test_dogs_beside_a_loose_bore_stop_it_in_either_order():
-    """They meet further from the shaft than it may be off its mate, and no further from the bore."""
-    hub = rod(20, 0, 10, 64) - rod(10.3, -1, 11, 64)
-    hub += (box(10.5, 14, 0, 4, 9, 14) ^ rod(14, 9, 14, 64)) - rod(10.3, 8, 15, 64)
-    shaft = rod(10, -3, 16, 64) + rod(15, -3, 0, 64) + rod(15, 14, 16, 64)
-    dog = (box(-14, 14, -8, 0, 10, 15) ^ (rod(10.85, 10, 15, 64) - rod(9, 9, 16, 64))) - box(-20, 20, -20, -1, 9, 16)
-    found = [ends({"base": hub, "mover": shaft + dog}, z, None, 1e-3, names) for names in ({}, {"base": "zz"})]
-    assert None not in found[0]
-    assert found[1] == pytest.approx(found[0], abs=WITHIN)
+@pytest.mark.parametrize("away", [-0.5, 0.2, 0.5, 0.8])
+def test_what_is_on_a_mate_with_a_gap_is_so_in_either_order(away):
+    """A bore is 0.3 wider than its shaft: the one surface is no more the mate than the other is."""
+    radii = {"bore": 10.3, "shaft": 10.0}
+    surface = lambda radius: SimpleNamespace(kind="cylinder", axis=z, point=np.zeros(3), radius=radius)
+    segment = np.array([[[10.0 + away, 0.0, 0.0], [10.0 + away, 0.0, 1.0]]])
+    told = []
+    for names in (("bore", "shaft"), ("shaft", "bore")):
+        patch = SimpleNamespace(
+            parts=("bore", "shaft"), surfaces=(0, 0), kind="cylinder", chord=0.0, gap=0.3, uncertainty=(0.0, 0.0)
+        )
+        own = [SimpleNamespace(surfaces=[surface(radii[name])]) for name in names]
+        mates = Mates(names[0], [patch], (own[0], own[1]), ([{0}], [{0}]), 1.0)
+        none = np.zeros(1, dtype=np.int64)
+        told.append(bool(mates.along((none, none), (segment, segment))[0]))
+    assert told == [0.3 - 0.6 <= away <= 0.6] * 2
 
 
-@pytest.mark.parametrize("names", [{}, {"ramp": "zz"}, {"ramp": "aa"}])
-@pytest.mark.parametrize("clear", [3.0, 4.2, 5.1, 6.3])
-def test_a_ramp_that_is_only_scraped_until_a_wall_stops_is_no_stop(clear, names):
-    """It would be one 1.5 mm behind the wall, whichever is asked first."""
-    ramp = extrusion([[0, -1], [20, -1], [20, 0.4], [0, 0.0]], -5, 5).rotate((90, 0, 0)).translate((24.5 + clear, 0, 0))
-    solids = {"base": rail(), "wall": box(25 + clear, 30 + clear, -9, 9, 1, 8), "ramp": ramp}
-    solids |= {"mover": box(-10, 25, -10, 10, 0, 8)}
-    assert ends(solids, x, None, 1e-3, names)[1] == pytest.approx(clear, abs=constants.STOP_LENGTH * 41.1)
+class Known:
+    """On the way to one side, of which it is known where the pair meets, and where that is seen."""
+
+    def __init__(self, candidate, sign, s, whole):
+        self.candidate, self.s, self.overlap = candidate, s, None
+
+    def advance(self, reach):
+        self.s = np.inf
+        at, deep = self.candidate.at, self.candidate.deep
+        return First(at, at, np.zeros(3), deep=deep) if deep <= reach else First(None, None, None)
+
+
+@pytest.mark.parametrize(("deep", "expected"), [(1.052, 1.0), (1.06, 1.0), (1.5, 1.05)])
+@pytest.mark.parametrize("turned", [False, True])
+def test_the_end_is_where_the_first_met_of_those_that_are_too_deep_there(deep, expected, turned, monkeypatch):
+    """Whichever is asked first; what would be too deep much further on is only scraped up to there."""
+    pair = lambda name, at, deep: SimpleNamespace(
+        part_names=(name, "z"), at=at, deep=deep, beyond=0.02, turns=None, units="m"
+    )
+    candidates = [pair("x", 1.0, deep), pair("y", 1.05, 1.055)]
+    monkeypatch.setattr(alone, "Approach", Known)
+    end, _ = alone._end(candidates[::-1] if turned else candidates, -1, 3.0, 0.0)
+    assert (end.status, end.value) == ("found", -expected)

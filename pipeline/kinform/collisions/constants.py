@@ -105,8 +105,6 @@ TOGETHER = 8.0
 comes in."""
 OVERLAPPING = 5.0
 """Steps are so much longer while parts overlap: all that is asked is whether they part."""
-DEEP_FINE = 1.0 / 16.0
-"""Share of a step to which it is found where parts begin to be too deep, where that has to be known of two pairs."""
 BEHIND_FACE = (1.0, 0.2, 0.04)
 """Shares of the resolution behind a face at which it is asked what is inside: parts may be thinner."""
 BEHIND_LEAST = 4.0
@@ -171,6 +169,9 @@ CHORD_SLACK = 1.05
 
 # driving/alone: a joint outside of loops
 
+SEEN_BEYOND = 0.016
+"""So much further than where the first pair is too deep others are followed, which may have met before it did: four
+steps of parts in touch."""
 STOP_ANGLE = math.radians(2e-5)
 """rad: to which a stop of a turn is found."""
 STOP_LENGTH = 1e-5

@@ -5,7 +5,6 @@ from __future__ import annotations
 import heapq
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -14,7 +13,6 @@ from kinform.collisions.driving.candidates import Approach, Candidate
 from kinform.collisions.driving.overlaps import Overlap, Pair, overlap_words
 from kinform.collisions.driving.swept_profiles import Profile
 from kinform.collisions.driving.swept_spheres import first_touch
-from kinform.collisions.pair.course import Deep
 from kinform.collisions.parts.shapes import Shapes
 from kinform.frozen import dataclass
 from kinform.kinematics.mobility.guides import guide, joint_twist
@@ -129,39 +127,37 @@ def _candidates(
 
 @dataclass(frozen=True, eq=False)
 class _Stop:
-    """Where parts stop a joint that are too deep in each other a little later."""
+    """Where parts stop a joint that are seen to be too deep in each other at `deep`: not too far `beyond` the first."""
 
     at: float
     parts: Pair
     place: Array
-    deep: Deep
-
-    def or_sooner(self, other: _Stop, fine: float) -> _Stop:
-        """Of two the one that is too deep sooner: up to there the other just scrapes. Where both stop it at one place,
-        to within `fine`, that need not be known."""
-        if abs(other.at - self.at) > fine:
-            return other if other.deep.before(self.deep) else self
-        first = self if self.at <= other.at else other
-        return replace(first, deep=min(self.deep, other.deep, key=lambda deep: deep.high))
+    deep: float
+    beyond: float
 
 
 def _end(candidates: Sequence[Candidate], sign: int, limit: float, start: float) -> tuple[RangeEnd, list[Pair]]:
     """How far one side goes, up to `limit`; and the pairs of which something was left out. The pair that is known to be
     free for the shortest way goes on first: none goes much further than where another is too deep, and the end is where
-    the first that is so came to be stopped, whichever was asked first. Where parts that overlap as they are drawn go
-    deeper before that, nothing is known of this side."""
-    reach = limit
+    the first of those met that are so about there, whichever was asked first. Where parts that overlap as they are
+    drawn go deeper before that, nothing is known of this side."""
+    deep = math.inf
     overlaps: list[Overlap] = []
     deeper: list[tuple[float, Overlap]] = []
-    best: _Stop | None = None
+    stops: list[_Stop] = []
+    left: list[Approach | None] = []
     exhausted: tuple[float, Pair] | None = None
     waiting: list[tuple[float, int, Approach | None]] = list(_apart(candidates, sign, start, limit))
     heapq.heapify(waiting)
-    while waiting and waiting[0][0] < reach:
+    while waiting:
         s, n, known = heapq.heappop(waiting)
+        reach = min(limit, deep + candidates[n].beyond)
+        if s >= reach:
+            left.append(known)
+            continue
         approach = known or Approach(candidates[n], sign, s, limit)
         first = approach.advance(reach)
-        if approach.s < reach:
+        if approach.s < limit:
             heapq.heappush(waiting, (approach.s, n, approach))
         if first is None:
             continue
@@ -172,11 +168,12 @@ def _end(candidates: Sequence[Candidate], sign: int, limit: float, start: float)
             deeper.append((first.deeper, overlaps[-1]))
         if first.exhausted is not None and (exhausted is None or first.exhausted < exhausted[0]):
             exhausted = (first.exhausted, names)
-        if first.at is not None and first.place is not None and first.deep is not None:
-            found = _Stop(first.at, names, first.place, first.deep)
-            best = found if best is None else best.or_sooner(found, candidates[n].fine)
-            reach = min(reach, found.deep.high)
-    overlaps += [overlap for _, _, known in waiting if known is not None and (overlap := known.overlap) is not None]
+        if first.at is not None and first.place is not None:
+            stops.append(_Stop(first.at, names, first.place, first.deep, candidates[n].beyond))
+            deep = min(deep, first.deep)
+    counted = [stop for stop in stops if stop.deep <= deep + stop.beyond]
+    best = min(counted, key=lambda stop: stop.at, default=None)
+    overlaps += [overlap for known in left if known is not None and (overlap := known.overlap) is not None]
     left_out = [overlap.pair for overlap in overlaps]
     at = limit if best is None else best.at
     into = [overlap for s, overlap in deeper if s < at]

@@ -13,6 +13,7 @@ from kinform.collisions.constants import (
     MEETING_MARGIN,
     MODEL_MOST,
     MODEL_SHARED,
+    SEEN_BEYOND,
     STOP_ANGLE,
     STOP_LENGTH,
     WINDOW_LEAST,
@@ -74,6 +75,11 @@ class Candidate:
         speed = math.hypot(min(radii), along) if self._turning else 1.0
         path = None if self.turns is None else Path(self.profiles[0].frame, self.turns, sign)
         return Course(self._moved[sign], lambda s: speed * s, path=path)
+
+    @property
+    def beyond(self) -> float:
+        """rad or m behind where another pair is too deep that it is followed to see whether it met before."""
+        return SEEN_BEYOND * self._size / max(self.course(1).travel(1.0), 1e-300)
 
     def wholes(self) -> Wholes:
         """The parts with all their facets."""

@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from kinform.collisions import constants
-from kinform.collisions.pair.course import Course, Deep
+from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.deep_entry import Entry, Inside
 from kinform.collisions.pair.onsets import Onsets
 from kinform.collisions.pair.prepared_pair import PairTest
@@ -39,8 +39,8 @@ class First:
     deeper: float = math.inf
     """Where they were seen to go deeper since, before they parted, or to lead on into each other: this way they ought
     not to go."""
-    deep: Deep | None = None
-    """From where on they are too deep in each other, where something is met: up to there they may just scrape."""
+    deep: float = math.inf
+    """Where they were seen to be too deep in each other: up to there they may just scrape."""
 
 
 NOTHING = First(None, None, None)
@@ -291,8 +291,8 @@ class Search:
         crossed = self._onsets.crossed(left, right)
         point = None if self.overlaps else self._points.met(right, right, self._fine, every=True)
         if point is None or point.hit >= crossed.hit:
-            return self._met(crossed, Deep(left, right, self.too_deep))
-        return self._met(self._onsets.entered(point), point.deep)
+            return self._met(crossed, right)
+        return self._met(self._onsets.entered(point), right)
 
     def entered(self, right: float, end: float) -> First | None:
         """Where points came to be deep inside the other part up to `right`, or a little further."""
@@ -316,9 +316,9 @@ class Search:
                 self._look_where_it_leads(self._start)
         return self._inside
 
-    def _met(self, onset: Entry, deep: Deep | None = None) -> _Hit:
-        """What began there, and is too deep from somewhere on, or at once."""
-        deep = deep or onset.deep or Deep(onset.at, onset.hit, lambda _: True)
+    def _met(self, onset: Entry, deep: float = -math.inf) -> _Hit:
+        """What began there, and is too deep where the onset says, or further on."""
+        deep = max(deep, onset.deep)
         return _Hit(onset.at, onset.hit, self._world(onset.place), before=self.before, deep=deep)
 
     def _world(self, place: Array) -> Array:

@@ -5,11 +5,9 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
-from functools import cached_property
 
 import numpy as np
 
-from kinform.collisions.constants import DEEP_FINE
 from kinform.collisions.pair.passages import Path
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
@@ -76,24 +74,6 @@ class Course:
             return node
         share = (travel - ways[n]) / max(ways[n + 1] - ways[n], 1e-300)
         return min(max(node + share * (following - node), low), high)
-
-
-class Deep:
-    """From where on two parts are too deep in each other: between `low` and `high`, as `met` tells of a parameter where
-    that is asked."""
-
-    def __init__(self, low: float, high: float, met: Callable[[float], bool]):
-        self.low, self.high, self._met = low, high, met
-
-    def before(self, other: Deep) -> bool:
-        """Whether sooner than others are."""
-        if self.high <= other.low or other.high <= self.low:
-            return self.high <= other.low
-        return self._at < other._at
-
-    @cached_property
-    def _at(self) -> float:
-        return narrowed(self.low, self.high, DEEP_FINE * (self.high - self.low), self._met)[1]
 
 
 def _on_grid(low: float, middle: float, high: float) -> float:

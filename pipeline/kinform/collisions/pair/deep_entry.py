@@ -12,7 +12,7 @@ from functools import partial
 import numpy as np
 
 from kinform.collisions.constants import CERTAIN, REFINED, SPARSE, SPECK, UNSEEN
-from kinform.collisions.pair.course import Course, Deep, narrowed
+from kinform.collisions.pair.course import Course, narrowed
 from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
@@ -26,8 +26,8 @@ class Entry:
     hit: float
     place: Array
     """(3,) m, in the frame of the first part."""
-    deep: Deep | None = None
-    """From where on it is deeper than mates may be, if not at once."""
+    deep: float
+    """Where it was seen to be deeper than mates may be."""
 
 
 class Inside:
@@ -166,7 +166,7 @@ class Inside:
 
     def _first(self, points: Ints, heights: Array, right: float, fine: float) -> Entry | None:
         """Where the first of points came in that are inside at `right`."""
-        first, last, further, sunk = None, points, right, points
+        first, last, further = None, points, right
         while len(points):
             deepest = int(np.argmax(heights))
             point = points[deepest : deepest + 1]
@@ -185,8 +185,7 @@ class Inside:
         if first is None:
             return None
         left, hit = narrowed(*first, REFINED * fine, partial(self._is_in, last, []))
-        deep = Deep(hit, further, lambda s: bool(self._heights(s, sunk).max() > self._test.loose))
-        return Entry(left, hit, self._middle(first[1], further), deep)
+        return Entry(left, hit, self._middle(first[1], further), further)
 
     def _entry(self, point: Ints, height: float, right: float, fine: float) -> tuple[float, float, float]:
         """Where a point (1,) that is inside at `right` came in: outside and inside, and how deep it is there (m)."""

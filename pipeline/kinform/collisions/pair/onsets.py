@@ -89,7 +89,7 @@ class Onsets:
         """Where faces meet flat: one passes through the other between `left` and `right`."""
         state = self._state(left)
         left, right = narrowed(left, right, constants.REFINED * self._fine, partial(self._behind, state))
-        return Entry(left, right, state.test.middle(self._course.displacement(right), *state.nearest))
+        return Entry(left, right, state.test.middle(self._course.displacement(right), *state.nearest), right)
 
     def depth(self, s: float) -> float:
         """m: how deep the parts go into each other where they cross."""
@@ -160,4 +160,4 @@ class Onsets:
         return bool(test.crossing(self._course.displacement(s), hits))
 
     def _hit(self, left: float, right: float) -> Entry:
-        return Entry(left, right, self._state(right).crossing.segments().mean(axis=(0, 1)))
+        return Entry(left, right, self._state(right).crossing.segments().mean(axis=(0, 1)), right)
