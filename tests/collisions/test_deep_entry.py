@@ -28,9 +28,9 @@ def inside(depth):
 
 @pytest.mark.parametrize("entry", [0.2, 0.5, 0.77])
 def test_a_point_comes_in_where_it_is_on_the_surface(entry):
-    at, hit, _ = inside(lambda s: s - entry).met(1.0, 1.0, 1e-6, every=True)
-    assert at - 1.01 * SPECK <= entry <= hit
-    assert hit - at <= 1e-8
+    found = inside(lambda s: s - entry).met(1.0, 1.0, 1e-6, every=True)
+    assert found.at - 1.01 * SPECK <= entry <= found.hit
+    assert found.hit - found.at <= 1e-8
 
 
 @pytest.mark.parametrize("deep", [0.002, 0.1])
@@ -44,5 +44,5 @@ def test_what_only_seemed_to_be_inside_counts_once_it_has_been_out():
     known = inside(lambda s: 0.1 if 0.3 < s < 0.5 else s - 0.9)
     assert known.met(0.4, 1.0, 1e-6, every=True) is None
     assert known.met(0.6, 1.0, 1e-6, every=True) is None
-    at, hit, _ = known.met(1.0, 1.0, 1e-6, every=True)
-    assert at - 1.01 * SPECK <= 0.9 <= hit
+    found = known.met(1.0, 1.0, 1e-6, every=True)
+    assert found.at - 1.01 * SPECK <= 0.9 <= found.hit

@@ -228,4 +228,4 @@ def test_a_lever_is_followed_only_where_it_comes_to_its_pegs(monkeypatch):
     tried, ranges = searched(monkeypatch, lever_between_pegs())
     assert [item.status for item in ranges] == ["found"]
     assert sorted(len(times) for times in tried.values()) == [2]
-    assert max(len(asked) for times in tried.values() for asked in times) < 60
+    assert max(len(asked) for times in tried.values() for asked in times) < 80

@@ -13,8 +13,8 @@ relative to another does a part first meet it (`pair`)? The rooms are read in th
    parts are apart. `advancement` then halves what is left of it with the facets that count (`prepared_pair`) until it
    has the first crossing that no mate explains (`facet_crossings`, `mate_surfaces`) and that is too deep
    (`penetration`), or a point that came to be deep inside (`deep_entry`): of a turn or a slide it is told once where
-   points pass through facets (`passages`). What crosses is told of several places at once where parts go on touching
-   (`states`). `posed_pairs` makes courses of poses of bodies.
+   points pass through facets (`passages`). Either is followed back to where it began (`onsets`). What crosses is told
+   of several places at once where parts go on touching (`states`). `posed_pairs` makes courses of poses of bodies.
 3. `driving`: `alone` drives a joint that no loop closes over. Of pairs that come near each other (`candidates`), the
    one free for the shortest way goes on first. What points keep as they turn or slide tells which of its facets
    can meet (`swept_profiles`), and where (`meeting_spans`, `swept_spheres`): only there the course is followed, and of
@@ -32,5 +32,5 @@ from kinform.collisions.run_collisions import along
 
 __all__ = ["CODE_VERSION", "along", "ranges", "too_large"]
 
-CODE_VERSION: int = 24
+CODE_VERSION: int = 25
 """Raised when the same input would give other ranges or collisions."""

@@ -101,12 +101,10 @@ STEPS_AHEAD = 48
 RESOLUTION = 4e-3
 """So far a part may travel unseen where others are in touch."""
 TOGETHER = 8.0
-"""Surfaces that come to cross within so many chord errors of travel belong to one collision."""
+"""Surfaces that come to cross within so many chord errors of travel belong to one collision, and so does a point that
+comes in."""
 OVERLAPPING = 5.0
 """Steps are so much longer while parts overlap: all that is asked is whether they part."""
-AHEAD = (0.0, 1.0, 2.0, 4.0)
-"""Where points of a part are deep inside the other, facets are looked for that cross too deeply up to so much further,
-as multiples of what mates may be deep: facets may have met before."""
 BEHIND_FACE = (1.0, 0.2, 0.04)
 """Shares of the resolution behind a face at which it is asked what is inside: parts may be thinner."""
 BEHIND_LEAST = 4.0
@@ -171,6 +169,9 @@ CHORD_SLACK = 1.05
 
 # driving/alone: a joint outside of loops
 
+SEEN_BEYOND = 0.016
+"""So much further than where the first pair is too deep others are followed, which may have met before it did: four
+steps of parts in touch."""
 STOP_ANGLE = math.radians(2e-5)
 """rad: to which a stop of a turn is found."""
 STOP_LENGTH = 1e-5
@@ -183,7 +184,9 @@ WINDOW_TURN = 2.0 * math.pi / 32
 """rad of a turn, ..."""
 WINDOW_SLIDE = 0.05
 """... and share of the smaller part's diagonal of a slide, that parts which come near each other are followed with the
-facets that can meet there."""
+facets that can meet there, ..."""
+WINDOW_LEAST = 0.1
+"""... of which no less than this share is left where it begins."""
 FACETS_STEP = 2000
 """Facets of a pair of which it is asked which can meet at all, in the time of one step as wholes: nested parts of 1,000
 facets took 0.5 ms and 1 to 3 ms, those of an arm with 20,000 took 5 ms and 0.5 to 2 ms."""

@@ -14,6 +14,7 @@ from kinform.collisions.driving.overlaps import Overlap, Pair, overlap_words
 from kinform.collisions.driving.swept_profiles import Profile
 from kinform.collisions.driving.swept_spheres import first_touch
 from kinform.collisions.parts.shapes import Shapes
+from kinform.frozen import dataclass
 from kinform.kinematics.mobility.guides import guide, joint_twist
 from kinform.model.arrays import Array
 from kinform.model.collisions import JointRange, RangeEnd
@@ -124,22 +125,39 @@ def _candidates(
     ]
 
 
+@dataclass(frozen=True, eq=False)
+class _Stop:
+    """Where parts stop a joint that are seen to be too deep in each other at `deep`: not too far `beyond` the first."""
+
+    at: float
+    parts: Pair
+    place: Array
+    deep: float
+    beyond: float
+
+
 def _end(candidates: Sequence[Candidate], sign: int, limit: float, start: float) -> tuple[RangeEnd, list[Pair]]:
     """How far one side goes, up to `limit`; and the pairs of which something was left out. The pair that is known to be
-    free for the shortest way goes on first: none goes much further than where another is stopped. Where parts that
-    overlap as they are drawn go deeper before that, nothing is known of this side."""
-    reach = limit
+    free for the shortest way goes on first: none goes much further than where another is too deep, and the end is where
+    the first of those met that are so about there, whichever was asked first. Where parts that overlap as they are
+    drawn go deeper before that, nothing is known of this side."""
+    deep = math.inf
     overlaps: list[Overlap] = []
     deeper: list[tuple[float, Overlap]] = []
-    best: tuple[float, Pair, Array] | None = None
+    stops: list[_Stop] = []
+    left: list[Approach | None] = []
     exhausted: tuple[float, Pair] | None = None
     waiting: list[tuple[float, int, Approach | None]] = list(_apart(candidates, sign, start, limit))
     heapq.heapify(waiting)
-    while waiting and waiting[0][0] < reach:
+    while waiting:
         s, n, known = heapq.heappop(waiting)
-        approach = known or Approach(candidates[n], sign, s)
+        reach = min(limit, deep + candidates[n].beyond)
+        if s >= reach:
+            left.append(known)
+            continue
+        approach = known or Approach(candidates[n], sign, s, limit)
         first = approach.advance(reach)
-        if approach.s < reach:
+        if approach.s < limit:
             heapq.heappush(waiting, (approach.s, n, approach))
         if first is None:
             continue
@@ -151,17 +169,21 @@ def _end(candidates: Sequence[Candidate], sign: int, limit: float, start: float)
         if first.exhausted is not None and (exhausted is None or first.exhausted < exhausted[0]):
             exhausted = (first.exhausted, names)
         if first.at is not None and first.place is not None:
-            reach, best = first.at, (first.at, names, first.place)
-    overlaps += [overlap for _, _, known in waiting if known is not None and (overlap := known.overlap) is not None]
+            stops.append(_Stop(first.at, names, first.place, first.deep, candidates[n].beyond))
+            deep = min(deep, first.deep)
+    counted = [stop for stop in stops if stop.deep <= deep + stop.beyond]
+    best = min(counted, key=lambda stop: stop.at, default=None)
+    overlaps += [overlap for known in left if known is not None and (overlap := known.overlap) is not None]
     left_out = [overlap.pair for overlap in overlaps]
-    into = [overlap for s, overlap in deeper if s < reach]
+    at = limit if best is None else best.at
+    into = [overlap for s, overlap in deeper if s < at]
     unknown = into if into or best is not None else overlaps
     if unknown:
         return RangeEnd("unknown", reason=overlap_words(unknown, candidates[0].units)), left_out
-    if exhausted is not None and exhausted[0] < reach:
+    if exhausted is not None and exhausted[0] < at:
         return RangeEnd("unknown", reason=f"{' and '.join(exhausted[1])} stay too close to be followed"), left_out
     if best is not None:
-        return RangeEnd("found", sign * best[0], best[1], best[2]), left_out
+        return RangeEnd("found", sign * at + 0.0, best.parts, best.place), left_out
     return RangeEnd("unbounded"), left_out
 
 

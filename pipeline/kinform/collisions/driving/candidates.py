@@ -13,8 +13,10 @@ from kinform.collisions.constants import (
     MEETING_MARGIN,
     MODEL_MOST,
     MODEL_SHARED,
+    SEEN_BEYOND,
     STOP_ANGLE,
     STOP_LENGTH,
+    WINDOW_LEAST,
     WINDOW_SLIDE,
     WINDOW_TURN,
 )
@@ -73,6 +75,11 @@ class Candidate:
         speed = math.hypot(min(radii), along) if self._turning else 1.0
         path = None if self.turns is None else Path(self.profiles[0].frame, self.turns, sign)
         return Course(self._moved[sign], lambda s: speed * s, path=path)
+
+    @property
+    def beyond(self) -> float:
+        """rad or m behind where another pair is too deep that it is followed to see whether it met before."""
+        return SEEN_BEYOND * self._size / max(self.course(1).travel(1.0), 1e-300)
 
     def wholes(self) -> Wholes:
         """The parts with all their facets."""
@@ -143,20 +150,20 @@ class Candidate:
         """The patches by which the two mate as they move."""
         return [patch for patch in self._shapes.patches(*self.names) if preserved(patch, self._twist[None])]
 
-    def search(self, sign: int, start: float, end: float) -> Search | None:
+    def search(self, sign: int, start: float, end: float, whole: float) -> Search | None:
         """Of the first crossing up to `end`, with all facets that can meet, and where they do as far as that is known;
-        None where they do not."""
+        None where they do not. Its steps are those of the `whole` motion, however far it is followed."""
         test = self.anywhere
         if test is None:
             return None
         course = self.course(sign, test.facets)
         if self._spans is None:
-            return Search(test, course, start, end, self.fine)
+            return Search(test, course, start, whole, self.fine)
         course = replace(course, meets=self._spans.towards(sign))
         if course.apart(start, end):
             return None
         near = Near(lambda begin, end: self._met(sign, begin, end), self.window)
-        return Search(test, course, start, end, self.fine, near)
+        return Search(test, course, start, whole, self.fine, near)
 
     @property
     def told(self) -> bool:
@@ -166,12 +173,16 @@ class Candidate:
     @cached_property
     def _spans(self) -> Spans | None:
         """Where facets of a turn or slide can meet that count, other than along mates; None where that is not known."""
-        turns, test, first = self.turns, self.anywhere, self.profiles[0]
+        turns, test = self.turns, self.anywhere
         if test is None or turns is None or not test.mates:
             return None
 
         def along(i: Ints, j: Ints, low: Array, high: Array) -> Flags:
-            return test.mates.surely_along((i, j), Kept(low, high, turns, first.frame @ test.X_WA, first.span))
+            kept = [
+                Kept(low, high, turns, profile.frame @ X, profile.span)
+                for profile, X in zip(self.profiles, (test.X_WA, test.X_WB), strict=True)
+            ]
+            return test.mates.surely_along((i, j), (kept[0], kept[1]))
 
         parts = [
             (profile.corners(facets), test.counted(k))
@@ -205,8 +216,9 @@ class Approach:
     in touch there, or that mate, are followed all the way.
     """
 
-    def __init__(self, candidate: Candidate, sign: int, s: float):
-        self._candidate, self._sign, self._start, self.s = candidate, sign, s, s
+    def __init__(self, candidate: Candidate, sign: int, s: float, whole: float):
+        """From `s` on, of a motion that goes up to `whole`."""
+        self._candidate, self._sign, self._start, self.s, self._whole = candidate, sign, s, s, whole
         self._wholes = candidate.wholes()
         self._window: _Window | None = None
         self._search: Search | None = None
@@ -237,7 +249,7 @@ class Approach:
 
     def _open(self, reach: float) -> None:
         """The window that begins where it is; where nothing can meet in it, it goes on behind."""
-        until = self.s + self._candidate.window
+        until = self._behind(self.s)
         mating = self.s <= self._start and self._candidate.mates
         if mating and self._candidate.told:
             self._follow(self.s, reach)
@@ -248,6 +260,11 @@ class Approach:
         else:
             course = self._candidate.course(self._sign, test.facets)
             self._window = _Window(test, course, Counted(test), until)
+
+    def _behind(self, s: float) -> float:
+        """Where the window ends that begins at s: wherever that is, they meet at the same places."""
+        window = self._candidate.window
+        return window if math.isinf(window) else window * (math.floor(s / window + WINDOW_LEAST) + 1.0)
 
     def _through(self, window: _Window, reach: float) -> First | None:
         """A step in a window, or all of the rest of it."""
@@ -274,12 +291,12 @@ class Approach:
 
     def _follow(self, start: float, reach: float) -> None:
         """From here on with all facets that can meet."""
-        self._window, self._search = None, self._candidate.search(self._sign, start, reach)
+        self._window, self._search = None, self._candidate.search(self._sign, start, reach, self._whole)
         self.s = math.inf if self._search is None else start
 
     def _followed(self, search: Search, reach: float) -> First | None:
         """A piece of the way, followed."""
-        limit = min(self.s + self._candidate.window, reach)
+        limit = min(self._behind(self.s), reach)
         first = search.until(limit, reach)
         over = limit >= reach or first.at is not None or first.exhausted is not None or first.deeper < math.inf
         self.s = math.inf if over else limit

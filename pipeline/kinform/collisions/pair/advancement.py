@@ -2,25 +2,25 @@
 
 Of an interval of the motion whose ends are free by d₀ and d₁, and along which no point of one part travels more
 than ℓ relative to the other, nothing is to be feared while d₀ + d₁ > ℓ (Mirtich 1996); else it is halved, as far as
-a resolution. What happens within the resolution, free at both ends, is a graze and not seen.
+a resolution. What happens within the resolution, free at both ends, is a graze and not seen. What is too deep began
+before that (`onsets`).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Sequence
-from functools import partial
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from kinform.collisions import constants
-from kinform.collisions.pair.course import Course, narrowed
+from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.deep_entry import Entry, Inside
-from kinform.collisions.pair.mate_surfaces import SurfacePair
+from kinform.collisions.pair.onsets import Onsets
 from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.pair.states import State, States
 from kinform.frozen import dataclass
-from kinform.model.arrays import Array, Ints
+from kinform.model.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +39,8 @@ class First:
     deeper: float = math.inf
     """Where they were seen to go deeper since, before they parted, or to lead on into each other: this way they ought
     not to go."""
+    deep: float = math.inf
+    """Where they were seen to be too deep in each other: up to there they may just scrape."""
 
 
 NOTHING = First(None, None, None)
@@ -81,8 +83,6 @@ class Search:
         )
         self.overlaps = False
         """Crossing since the start, by more than chord errors."""
-        self.since: dict[SurfacePair, tuple[float, float] | None] = {}
-        """Surfaces that cross, and the step in which they began to; None: at the start."""
         self.before = 0.0
         """m: overlap at the start."""
         self.place: Array | None = None
@@ -92,6 +92,7 @@ class Search:
         self._leads_in = math.inf
         """Where parts that overlap as they are drawn are seen to go on into each other."""
         self._states = States(course, self._asked)
+        self._onsets = Onsets(test, course, self.state, start, fine, self._resolution)
         self._touched = 0
         """Steps that have been followed to the resolution, one after the other."""
         self._inside: Inside | None = None
@@ -134,14 +135,14 @@ class Search:
         return min(self._deeper, math.inf if self._inside is None else self._inside.deeper)
 
     def _until(self, limit: float, end: float) -> First:
-        fine, resolution, left, stack = self._fine, self._resolution, self._left, [limit]
+        left, stack = self._left, [limit]
         self._cover(left, limit)
         while stack:
             if self.deeper < math.inf or left >= self._leads_in:
                 break
             right, meets = self._step(left, stack)
             if not meets:
-                entered = self.entered(left, right, end, fine, resolution) if right >= end else None
+                entered = self.entered(right, end) if right >= end else None
                 if entered is not None:
                     return entered
                 left = self.skip(stack.pop())
@@ -153,7 +154,7 @@ class Search:
                 > (1.0 + 1e-6) * way + constants.CROSSING_LEAST * self.test.size
             ):
                 # nothing comes to be inside where no facets that count meet: the end is asked all the same
-                entered = self.entered(left, right, end, fine, resolution) if right >= end else None
+                entered = self.entered(right, end) if right >= end else None
                 if entered is not None:
                     return entered
                 self._touched = 0
@@ -166,14 +167,14 @@ class Search:
                 continue
             self._touched += 1
             if self.too_deep(right):
-                return self.sooner(right, fine, self.located(left, right, fine, resolution))
+                return self.crossed(left, right)
             if self.through(left, right):
-                if right - left > fine:
+                if right - left > self._fine:
                     stack.append(self.course.middle(left, right))
                     continue
-                if self.goes_in(left, end, resolution, fine):
-                    return self.flat(left, right, fine)
-            entered = self.entered(left, right, end, fine, resolution)
+                if self.goes_in(left, end):
+                    return self._met(self._onsets.flat(left, right))
+            entered = self.entered(right, end)
             if entered is not None:
                 return entered
             left = self.pass_(left, stack.pop())
@@ -185,10 +186,10 @@ class Search:
         if self.course.meets is not None and not self.course.meets(start)[0]:
             return
         crossing = self.state(start).crossing
-        self.since = dict.fromkeys(crossing.shared)
+        self._onsets.begin(crossing.shared)
         self.overlaps = bool(crossing) and (self.test.overlapping or self.too_deep(start))
         if self.overlaps:
-            depth = self._depth(start)
+            depth = self._onsets.depth(start)
             self.before = depth if depth > constants.SPECK * self.test.size else 0.0
             middles = crossing.segments().mean(axis=1)
             self.place = self._world(middles[np.argmin(np.linalg.norm(middles - middles.mean(axis=0), axis=1))])
@@ -269,45 +270,39 @@ class Search:
         low, high = (state.test.height(self.course.displacement(s), state.nearest) for s in (left, right))
         return low, high
 
-    def goes_in(self, s: float, end: float, step: float, fine: float) -> bool:
+    def goes_in(self, s: float, end: float) -> bool:
         """Whether the faces that pass each other at s are inside the parts a step later; where parts are thin,
         sooner."""
         test, nearest = self.state(s).test, self.state(s).nearest
         begun = self.course.travel(s)
         for share in constants.BEHIND_FACE:
-            further = self.course.when(begun + share * step, s, end)
+            further = self.course.when(begun + share * self._resolution, s, end)
             way = self.course.travel(further) - begun
-            if further - s < constants.BEHIND_LEAST * fine:
+            if further - s < constants.BEHIND_LEAST * self._fine:
                 return False
             D = self.course.displacement(further)
             if test.faces(D, *nearest) if share < 1.0 else test.inside(D, *nearest, constants.BEHIND_DEPTH * way):
                 return True
         return False
 
-    def entered(self, left: float, right: float, end: float, fine: float, resolution: float) -> First | None:
-        """Where points came to be deep inside the other part up to `right`, or a little further; or facets came to
-        cross that are too deep together with them."""
-        point = self._entered(right, end, fine, every=right >= end)
-        if point is None or not self.state(right).crossing:
-            return point
-        for more in constants.AHEAD:
-            further = self.course.when(self.course.travel(right) + more * self.test.loose, right, end)
-            if self.too_deep(further):
-                crossed = self.located(left, further, fine, resolution)
-                return point if crossed.hit is None or point.hit <= crossed.hit else crossed
-        return point
+    def crossed(self, left: float, right: float) -> First:
+        """What is met where facets are too deep in each other at `right`, and were not at `left`; or points that came
+        to be inside before."""
+        crossed = self._onsets.crossed(left, right)
+        point = None if self.overlaps else self._points.met(right, right, self._fine, every=True)
+        if point is None or point.hit >= crossed.hit:
+            return self._met(crossed, right)
+        return self._met(self._onsets.entered(point), right)
 
-    def sooner(self, right: float, fine: float, crossed: First) -> First:
-        """What was found, or points that came to be inside before."""
-        entered = self._entered(right, right, fine, every=True)
-        return crossed if entered is None or crossed.hit is None or entered.hit >= crossed.hit else entered
-
-    def _entered(self, right: float, end: float, fine: float, *, every: bool) -> _Hit | None:
-        return None if self.overlaps else self._came_in(self._points.met(right, end, fine, every=every))
+    def entered(self, right: float, end: float) -> First | None:
+        """Where points came to be deep inside the other part up to `right`, or a little further."""
+        point = None if self.overlaps else self._points.met(right, end, self._fine, every=right >= end)
+        return None if point is None else self._met(self._onsets.entered(point), point.deep)
 
     def _soon(self, end: float) -> _Hit | None:
         """Points that go in from the start."""
-        return self._came_in(self._points.soon(end, self._fine))
+        point = self._points.soon(end, self._fine)
+        return None if point is None else self._met(point)
 
     @property
     def _points(self) -> Inside:
@@ -321,31 +316,19 @@ class Search:
                 self._look_where_it_leads(self._start)
         return self._inside
 
-    def _came_in(self, point: Entry | None) -> _Hit | None:
-        if point is None:
-            return None
-        at, hit, place = point
-        return _Hit(at, hit, self._world(place), before=self.before)
+    def _met(self, onset: Entry, deep: float = -math.inf) -> _Hit:
+        """What began there, and is too deep where the onset says, or further on."""
+        deep = max(deep, onset.deep)
+        return _Hit(onset.at, onset.hit, self._world(onset.place), before=self.before, deep=deep)
 
     def _world(self, place: Array) -> Array:
         """(3,) m, world: a place in the frame of the first part."""
         return np.asarray((self.test.X_WA @ np.append(place, 1.0))[:3])
 
-    def flat(self, left: float, right: float, fine: float) -> First:
-        """Where faces meet flat: one passes through the other between `left` and `right`."""
-        state = self.state(left)
-        left, right = narrowed(left, right, constants.REFINED * fine, partial(self._behind, state))
-        place = state.test.middle(self.course.displacement(right), *state.nearest)
-        return First(left, right, self._world(place), before=self.before)
-
-    def _behind(self, state: State, s: float) -> bool:
-        height = state.test.height(self.course.displacement(s), state.nearest)
-        return height <= constants.CROSSING_LEAST * self.test.size
-
     def pass_(self, left: float, right: float) -> float:
         """Go on from `right`: parts that overlapped from the start and have parted count from there."""
         crossing = self.state(right).crossing
-        self.since = {pair: self.since.get(pair, (left, right)) for pair in crossing.shared}
+        self._onsets.go_on(left, right, crossing.shared)
         if self.overlaps:
             self.overlaps, self._apart = bool(crossing), right
             if self.state(right).deeper(self.test.going_deeper(self.before)):
@@ -355,7 +338,7 @@ class Search:
 
     def skip(self, right: float) -> float:
         """Go on from `right`, where nothing can cross, nor on the way there."""
-        self.since = {}
+        self._onsets.begin(())
         self._touched = 0
         if self.overlaps:
             self.overlaps, self._apart = False, right
@@ -365,75 +348,3 @@ class Search:
     def too_deep(self, s: float) -> bool:
         """Whether the parts go deeper into each other at s than chord errors explain, and did not from the start."""
         return not self.overlaps and self.state(s).deeper(self.state(s).crossing.slack)
-
-    def _deep(self, s: float, pairs: Collection[SurfacePair]) -> bool:
-        crossing = self.state(s).crossing
-        segments = crossing.segments(pairs)
-        return self.test.depth(self.course.displacement(s), segments, crossing.slack) > crossing.slack
-
-    def located(self, left: float, right: float, fine: float, resolution: float) -> First:
-        """Where what all together is too deep at `right` began: with the surfaces that came to cross last, as far as
-        these alone are too deep. Facets of mates may have crossed by chord errors long before."""
-        crossing = self.state(right).crossing
-        for pair in crossing.shared:
-            self.since.setdefault(pair, (left, right))
-        since = {pair: self.since[pair] for pair in crossing.shared}
-        began = sorted({step for step in since.values() if step is not None}, reverse=True)
-        near = constants.TOGETHER * crossing.slack + 2.0 * resolution
-        for earliest, before in zip(began, [*began[1:], None][: len(began)], strict=True):
-            if before is not None and self.course.travel(earliest[0]) - self.course.travel(before[1]) <= near:
-                continue
-            newest = frozenset(pair for pair, step in since.items() if step is not None and step >= earliest)
-            if newest == since.keys() or self._deep(right, newest):
-                return self._begun(*earliest, fine, newest)
-        return self._rise(right, fine, resolution)
-
-    def _rise(self, right: float, fine: float, step: float) -> First:
-        """Where surfaces that have crossed since the start began to go deeper into each other, up to `right`."""
-        low, least = right, self._depth(right)
-        place, slack = right, self.state(right).crossing.slack
-        while place > self._start:
-            place = self.course.when(self.course.travel(place) - step, self._start, place)
-            depth = self._depth(place)
-            if depth >= least + constants.RISE_UNEVEN * slack:
-                break
-            if depth < least:
-                low, least = place, depth
-        least += constants.RISE * slack
-        return self._hit(*narrowed(low, right, fine, lambda s: self._depth(s) > least))
-
-    def _depth(self, s: float) -> float:
-        crossing = self.state(s).crossing
-        return self.test.depth(self.course.displacement(s), crossing.segments()) if crossing else 0.0
-
-    def _crosses(self, pairs: Collection[SurfacePair], s: float) -> bool:
-        return not self.state(s).crossing.shared.keys().isdisjoint(pairs)
-
-    def _begun(self, left: float, right: float, fine: float, pairs: Collection[SurfacePair]) -> First:
-        """Where pairs of surfaces begin to cross between `left` and `right`.
-
-        Of the facets that cross at `right` the first is found; where others cross before that, they take their place,
-        also those of surfaces that have parted again at `right`. What is found does not hang on the steps in which it
-        was come near to.
-        """
-        before = self.state(left).crossing.shared.keys()
-        for to in (fine, constants.REFINED * fine):
-            for _ in range(constants.FIRST_TRIED):
-                state = self.state(right)
-                hits = state.test.of_surfaces(state.hits, pairs)
-                low, high = narrowed(left, right, to, partial(self._cross, state.test, hits))
-                pairs = frozenset(pairs) | (self.state(low).crossing.shared.keys() - before)
-                if low <= left or not self._crosses(pairs, low):
-                    left, right = low, high
-                    break
-                right = low
-            else:
-                left, right = narrowed(left, right, to, partial(self._crosses, pairs))
-        return self._hit(left, right)
-
-    def _cross(self, test: PairTest, hits: Ints, s: float) -> bool:
-        return bool(test.crossing(self.course.displacement(s), hits))
-
-    def _hit(self, left: float, right: float) -> First:
-        place = self.state(right).crossing.segments().mean(axis=(0, 1))
-        return First(left, right, self._world(place), before=self.before)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
 
@@ -40,10 +41,11 @@ class Course:
         return not meets and until >= high
 
     def middle(self, low: float, high: float) -> float:
-        """A parameter about half way between two: a node where there is one."""
+        """A parameter about half way between two: a node where there is one; without nodes one of a grid, the same
+        from wherever it is come near to."""
         middle = 0.5 * (low + high)
         if self.nodes is None:
-            return middle
+            return _on_grid(low, middle, high)
         n = int(np.searchsorted(self.nodes, middle))
         near = [float(s) for s in self.nodes[max(n - 1, 0) : n + 1] if low < s < high]
         return min(near, key=lambda s: abs(s - middle), default=middle)
@@ -72,6 +74,17 @@ class Course:
             return node
         share = (travel - ways[n]) / max(ways[n + 1] - ways[n], 1e-300)
         return min(max(node + share * (following - node), low), high)
+
+
+def _on_grid(low: float, middle: float, high: float) -> float:
+    """A multiple of a power of two between two parameters, of the largest power, the nearest to their middle."""
+    step = 2.0 ** math.floor(math.log2(high - low))
+    for _ in range(2):
+        place = step * round(middle / step)
+        if low < place < high:
+            return place
+        step *= 0.5
+    return middle
 
 
 def narrowed(left: float, right: float, fine: float, met: Callable[[float], bool]) -> tuple[float, float]:

@@ -14,10 +14,20 @@ import numpy as np
 from kinform.collisions.constants import CERTAIN, REFINED, SPARSE, SPECK, UNSEEN
 from kinform.collisions.pair.course import Course, narrowed
 from kinform.collisions.pair.prepared_pair import PairTest
+from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
-Entry = tuple[float, float, Array]
-"""Parameters where a point is outside and where it is inside, and its place (3,) m in the frame of the first part."""
+
+@dataclass(frozen=True, eq=False)
+class Entry:
+    """Where one part comes into another: at `at` it is free, and at `hit` it is not."""
+
+    at: float
+    hit: float
+    place: Array
+    """(3,) m, in the frame of the first part."""
+    deep: float
+    """Where it was seen to be deeper than mates may be."""
 
 
 class Inside:
@@ -115,15 +125,16 @@ class Inside:
 
     def soon(self, end: float, fine: float) -> Entry | None:
         """Whether points that are a little inside at the start are deep soon after, as where faces are flush and go
-        into each other: no facets meet on the way that could tell."""
+        into each other: no facets meet on the way that could tell. They are stopped where they are."""
         start = self._last
         shallow = np.flatnonzero(~np.isnan(self._entered) & ~self._ignored)
         for way in (2.0 * self._test.loose, self._stride) if len(shallow) else ():
             further = self._course.when(self._course.travel(start) + way, start, end)
             heights = self._heights(further, shallow)
             deep = heights > self._test.loose
-            if deep.any():
-                return self._first(shallow[deep], heights[deep], further, fine)
+            first = self._first(shallow[deep], heights[deep], further, fine) if deep.any() else None
+            if first is not None:
+                return Entry(start, min(start + fine, first.hit), first.place, first.deep)
         return None
 
     def forget(self) -> None:
@@ -173,7 +184,8 @@ class Inside:
             points, heights, right = others[met], heights[met], left
         if first is None:
             return None
-        return (*narrowed(*first, REFINED * fine, partial(self._is_in, last, [])), self._middle(first[1], further))
+        left, hit = narrowed(*first, REFINED * fine, partial(self._is_in, last, []))
+        return Entry(left, hit, self._middle(first[1], further), further)
 
     def _entry(self, point: Ints, height: float, right: float, fine: float) -> tuple[float, float, float]:
         """Where a point (1,) that is inside at `right` came in: outside and inside, and how deep it is there (m)."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Set
+from collections.abc import Iterable, Sequence, Set
 from functools import cached_property
 from typing import Any
 
@@ -21,14 +21,14 @@ _SHAPELESS = ("freeform", "other", "extrusion", "revolution", "torus", "helicoid
 
 
 class Mates:
-    """The mates of two parts, all in the frame of the first; `near`: for each surface those that share an edge with
-    it."""
+    """The mates of two parts; `near`: for each surface those that share an edge with it. A point is on a mate that is
+    on both of its surfaces: of two that keep a gap, neither stands for the other."""
 
     def __init__(
         self,
         first: str,
         patches: Sequence[Patch],
-        surfaces: MeshSurfaces,
+        surfaces: tuple[MeshSurfaces, MeshSurfaces],
         near: tuple[list[set[int]], list[set[int]]],
         size: float,
     ):
@@ -37,7 +37,7 @@ class Mates:
         self.slacks = [
             patch.chord + 2.0 * abs(patch.gap) + sum(patch.uncertainty[1:]) + MATE_ROUNDING * size for patch in patches
         ]
-        """m, of each: how far its points may be off the surface."""
+        """m, of each: how far its points may be off either surface."""
         self._bare: Set[SurfacePair] = {
             pair for pair, patch in zip(self._pairs, patches, strict=True) if patch.kind in _SHAPELESS
         }
@@ -45,18 +45,25 @@ class Mates:
     def __bool__(self) -> bool:
         return bool(self._pairs)
 
-    def along(self, pairs: tuple[Ints, Ints], segments: Array) -> Flags:
-        """(n,) which segments (n, 2, 3) m, each of facets of surfaces `pairs` (n,) of either part, lie on a mate that
-        both surfaces belong to or border."""
-        out = np.zeros(len(segments), dtype=bool)
+    def along(self, pairs: tuple[Ints, Ints], segments: tuple[Array, Array]) -> Flags:
+        """(n,) which segments (n, 2, 3) m, in the frame of either part, each of facets of surfaces `pairs` (n,) of
+        either part, lie on a mate that both surfaces belong to or border."""
+        out = np.zeros(len(pairs[0]), dtype=bool)
         for mate, slack, border in zip(self._pairs, self.slacks, self._borders, strict=True):
             if mate in self._bare:
                 out |= (pairs[0] == mate[0]) & (pairs[1] == mate[1])
             rows = np.flatnonzero(border[0][pairs[0]] & border[1][pairs[1]] & ~out)
             if len(rows):
-                away = _distance(self._surfaces.surfaces[mate[0]], segments[rows].reshape(-1, 3))
+                away = _greater(
+                    _distance(surface, seen[rows].reshape(-1, 3))
+                    for surface, seen in zip(self._of(mate), segments, strict=True)
+                )
                 out[rows] = (away.reshape(-1, 2) <= slack).all(axis=1) if away is not None else False
         return out
+
+    def _of(self, mate: SurfacePair) -> tuple[Surface, Surface]:
+        first, second = (own.surfaces[n] for own, n in zip(self._surfaces, mate, strict=True))
+        return first, second
 
     @cached_property
     def _borders(self) -> list[tuple[Flags, Flags]]:
@@ -69,35 +76,35 @@ class Mates:
             out.append((flags[0], flags[1]))
         return out
 
-    def surely_along(self, pairs: tuple[Ints, Ints], kept: Kept) -> Flags:
+    def surely_along(self, pairs: tuple[Ints, Ints], kept: tuple[Kept, Kept]) -> Flags:
         """(n,) which facets of surfaces `pairs` (n,) each lie along a mate wherever they cross as they turn or slide
-        by what their points keep."""
+        by what their points keep, as either part sees it."""
         out = np.zeros(len(pairs[0]), dtype=bool)
         for mate, slack, border in zip(self._pairs, self.slacks, self._borders, strict=True):
             if mate in self._bare:
                 out |= (pairs[0] == mate[0]) & (pairs[1] == mate[1])
             rows = np.flatnonzero(border[0][pairs[0]] & border[1][pairs[1]] & ~out)
             if len(rows):
-                away = kept.furthest(self._surfaces.surfaces[mate[0]], rows)
+                away = _greater(k.furthest(surface, rows) for surface, k in zip(self._of(mate), kept, strict=True))
                 out[rows] = away <= slack if away is not None else False
         return out
 
 
 @dataclass(frozen=True, eq=False)
 class Kept:
-    """Boxes (n, 2), from `low` to `high`, of what points keep: distance from an axis and height, or the shadow along
-    it."""
+    """Boxes (n, 2), from `low` to `high`, of what points of a part keep: distance from an axis and height, or the
+    shadow along it."""
 
     low: Array
     high: Array
     turning: bool
     X_KA: Array
-    """(4, 4) pose of the first part where z is the axis."""
+    """(4, 4) pose of the part where z is the axis."""
     span: tuple[float, float]
-    """m: of the first part along the axis."""
+    """m: of the part along the axis."""
 
     def furthest(self, surface: Surface, rows: Ints) -> Array | None:
-        """(k,) m that no point of some of the boxes is further from a surface of the first part; None where it is not
+        """(k,) m that no point of some of the boxes is further from a surface of the part; None where it is not
         told."""
         low, high = self.low[rows], self.high[rows]
         point, axis = self.X_KA[:3, :3] @ surface.point + self.X_KA[:3, 3], self.X_KA[:3, :3] @ surface.axis
@@ -117,6 +124,12 @@ class Kept:
         shift = np.maximum(*(np.hypot(*shift.T) for shift in shifts))
         outer, inner = high[:, 0] + shift, (low[:, 0] - shift) * abs(axis[2])
         return np.asarray(np.maximum(outer - surface.radius, surface.radius - inner))
+
+
+def _greater(both: Iterable[Array | None]) -> Array | None:
+    """(n,) the greater of what is told of two; None where nothing is told of either."""
+    told = [values for values in both if values is not None]
+    return np.asarray(np.max(told, axis=0)) if told else None
 
 
 def _middle(low: Any, high: Any) -> Any:

@@ -71,7 +71,7 @@ class PairTest:
         self._surfaces = (shapes.surfaces_of(first), shapes.surfaces_of(second))
         if not isinstance(mates, Mates):
             near = (shapes.borders(first), shapes.borders(second)) if mates else ([], [])
-            mates = Mates(first, mates, self._surfaces[0], near, self.size)
+            mates = Mates(first, mates, self._surfaces, near, self.size)
         self.mates = mates
         self.scrape = shapes.allowed(first, second).length
         """m: less deep, parts scrape, as mates may."""
@@ -305,7 +305,9 @@ class PairTest:
         every, segments = np.concatenate(hits)[rows], segments[rows]
         labels = self.counted(0)[every[:, 0]], self.counted(1)[every[:, 1]]
         if self.mates and len(rows):
-            apart = np.flatnonzero(~self.mates.along(labels, segments))
+            at = np.repeat(np.array(poses), [len(some) for some in hits], axis=0)[rows]
+            seen = np.einsum("nki,nij->nkj", segments - at[:, None, :3, 3], at[:, :3, :3])
+            apart = np.flatnonzero(~self.mates.along(labels, (segments, seen)))
             rows, segments, labels = rows[apart], segments[apart], (labels[0][apart], labels[1][apart])
         ends = np.searchsorted(rows, np.cumsum([0, *map(len, hits)])).tolist()
         return [
