@@ -32,7 +32,7 @@ def test_the_joint_of_a_bearing_is_told(kind, k):
     assert outcome in allowed, why
 
 
-@pytest.mark.parametrize("play", [0.002, 0.01, 0.035])
+@pytest.mark.parametrize("play", [0.002, 0.035])
 @pytest.mark.parametrize("kind", KINDS)
 def test_play_makes_nothing_certain_that_is_wrong(kind, play):
     """Elements that keep farther apart from their races than parts that touch do are not in contact with these."""
