@@ -14,8 +14,12 @@ INSIDE = np.array([(i, j, 12 - i - j) for i in range(13) for j in range(13 - i)]
 """Weights of the corners at points all over a triangle."""
 
 
+def contacts_of(seed, **solids):
+    return derived(random_pose(np.random.default_rng(seed)), **solids)[1]
+
+
 def overlaps(seed, **solids):
-    return derived(random_pose(np.random.default_rng(seed)), **solids)[1].interferences
+    return contacts_of(seed, **solids).interferences
 
 
 def chord(segments):
@@ -35,6 +39,18 @@ def socket_and_ball(phase, push):
 @pytest.mark.parametrize("phase", [0.0, 10.0, 33.0])
 def test_a_ball_in_a_shallow_socket_of_coarse_triangles_does_not_overlap(phase):
     assert overlaps(1, **socket_and_ball(phase, 0.0)) == ()
+
+
+@pytest.mark.parametrize("phase", [0.0, 10.0, 33.0])
+def test_that_it_is_not_known_whether_it_does_is_said(phase):
+    found = contacts_of(1, **socket_and_ball(phase, 0.1))
+    assert found.interferences == ()
+    (possible,) = found.possible_overlaps
+    assert 0.1 < 1e3 * possible.depth < 0.1 + chord(12) + chord(64)
+    assert not possible.mated
+    # deeper, it is known
+    deep = contacts_of(1, **socket_and_ball(phase, 1.3 * (chord(12) + chord(64))))
+    assert deep.possible_overlaps == ()
 
 
 @pytest.mark.parametrize("phase", [0.0, 10.0, 33.0])

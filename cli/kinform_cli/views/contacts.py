@@ -36,20 +36,16 @@ def render(design: Design) -> RenderableType:
         kind = f"{patch.kind}, one side" if patch.one_sided else patch.kind
         rows.add(str(index), *patch.parts, kind, lengths.area(patch.area), lengths.length(patch.gap), patch.fit)
     items: list[RenderableType] = [rows]
-    if contacts.interferences:
+    if contacts.interferences or contacts.possible_overlaps:
         sizes = (f"volume {unit}³", f"depth {unit}")
         title = "\nOverlapping solids"
         overlaps = Rows(
             "part", "part", *sizes, f"at {lengths.unit}", "kind", title=title, right=sizes, keys=2, names=["part"]
         )
-        for overlap in contacts.interferences:
-            overlaps.add(
-                *overlap.parts,
-                lengths.volume(overlap.volume),
-                lengths.length(overlap.depth),
-                lengths.point(overlap.place),
-                "press fit" if overlap.mated else "collision",
-            )
+        sure = [(overlap, "press fit" if overlap.mated else "collision") for overlap in contacts.interferences]
+        for overlap, kind in [*sure, *((some, "not known: coarse facets") for some in contacts.possible_overlaps)]:
+            volume, depth = lengths.volume(overlap.volume), lengths.length(overlap.depth)
+            overlaps.add(*overlap.parts, volume, depth, lengths.point(overlap.place), kind)
         items.append(overlaps)
     if contacts.suggestions:
         applied = "not applied; [fasteners] infer = true does"

@@ -25,6 +25,7 @@ DESCRIPTION: Mapping[str, str] = {
     "KF205": "note",
     "KF206": "note",
     "KF209": "note",
+    "KF210": "note",
     "KF303": "note",
     "KF401": "note",
     "KF406": "note",

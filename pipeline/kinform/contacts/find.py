@@ -50,7 +50,7 @@ class _Work:
             self.solids.forget(digest)
         asked = [((self.parts[a], self.parts[b]), self.tolerance[a, b]) for a, b in pairs]
         mated = mated_pairs(asked, self.surfaces, self.store, self.assembly.tolerances)
-        out, begun = [PairContacts((), None)] * len(pairs), []
+        out, begun = [PairContacts((), None, None)] * len(pairs), []
         for k, (pair, mates) in enumerate(zip(pairs, mated, strict=True)):
             if mates is not None:
                 with at_work_on(_name_of((pair,))):
@@ -129,6 +129,7 @@ def find(
         interferences=tuple(overlap for pair in tolerance if (overlap := done[pair].interference) is not None),
         candidates=tuple(tolerance),
         tolerance=tolerance,
+        possible_overlaps=tuple(some for pair in tolerance if (some := done[pair].possible_overlap) is not None),
     )
     earlier = {} if reuse is None else _earlier_suggestions(reuse, contacts, reused)
     return replace(contacts, suggestions=suggest(assembly, surfaces, contacts, earlier))
@@ -212,8 +213,11 @@ def _neighbours(pairs: Iterable[Pair]) -> dict[PartName, set[Pair]]:
 def _earlier_contacts(reuse: Contacts, pairs: set[Pair]) -> dict[Pair, PairContacts]:
     """What earlier contacts say of these pairs."""
     overlaps = {overlap.parts: overlap for overlap in reuse.interferences}
+    possible = {overlap.parts: overlap for overlap in reuse.possible_overlaps}
     patches: dict[Pair, list[Patch]] = {pair: [] for pair in pairs}
     for patch in reuse.patches:
         if patch.parts in patches:
             patches[patch.parts].append(patch)
-    return {pair: PairContacts(tuple(of_pair), overlaps.get(pair)) for pair, of_pair in patches.items()}
+    return {
+        pair: PairContacts(tuple(of_pair), overlaps.get(pair), possible.get(pair)) for pair, of_pair in patches.items()
+    }

@@ -43,6 +43,7 @@ class PairContacts:
 
     patches: tuple[Patch, ...]
     interference: Interference | None
+    possible_overlap: Interference | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,17 +120,22 @@ def pair_contacts(mates: Mated, patches: list[Patch], crosses: bool | None, soli
     """Contacts of a pair, of its mates and all patches that are `touching`, in the world; `crosses` is whether
     their boundaries cross."""
     pair, X_WF, mated = mates.pair, mates.X_WF, mates.patches
-    interference = find_interference(pair, patches, solids, crosses)
+    interference, possible = find_interference(pair, patches, solids, crosses)
     if not patches and interference is None and not pair.apart:
         patches = unknown_touches(pair)
     least = NARROW_SHARE * sum(patch.area for patch in patches)
     if patches:
         narrow = [patch for patch in mated if patch.narrow and patch.area >= least]
         patches = sorted([*patches, *narrow], key=_place_in_list)
-    if interference is not None:
-        place = X_WF[:3, :3] @ interference.place + X_WF[:3, 3]
-        interference = replace(interference, place=np.asarray(freeze(place)))
-    return PairContacts(tuple(in_world(patch, X_WF) for patch in patches), interference)
+    placed = tuple(in_world(patch, X_WF) for patch in patches)
+    return PairContacts(placed, _placed(interference, X_WF), _placed(possible, X_WF))
+
+
+def _placed(overlap: Interference | None, X_WF: Array) -> Interference | None:
+    """An overlap in the world."""
+    if overlap is None:
+        return None
+    return replace(overlap, place=np.asarray(freeze(X_WF[:3, :3] @ overlap.place + X_WF[:3, 3])))
 
 
 def _place_in_list(patch: Patch) -> tuple[tuple[int, int], bool, str]:

@@ -128,9 +128,13 @@ class Contacts:
     patches: tuple[Patch, ...]
     """Sorted by part names, then surface indices."""
     interferences: tuple[Interference, ...]
+    """Of pairs that overlap for sure."""
     candidates: tuple[tuple[PartName, PartName], ...]
     """Pairs that the broad phase kept, sorted."""
     tolerance: dict[tuple[PartName, PartName], float]
     """Contact tolerance used for each candidate pair (m)."""
     suggestions: tuple[Suggestion, ...] = ()
     """Sorted by part names, then kind. Nothing follows from them unless `[fasteners] infer` is set."""
+    possible_overlaps: tuple[Interference, ...] = ()
+    """Of pairs that overlap no deeper than the coarse facets about it may stand off the surfaces that they stand for:
+    it is not known whether these overlap. None of a pair that does for sure."""

@@ -130,7 +130,7 @@ _PARTS, _BODIES, _JOINTS = "assembly/parts.name", "joints/bodies.name", "joints/
 NAMES: dict[str, tuple[str, ...]] = {
     "assembly/groups.parts": (_PARTS,),
     **{f"contacts/{table}.part_{side}": (_PARTS,)
-       for table in ("pairs", "patches", "interferences", "suggestions") for side in "ab"},
+       for table in ("pairs", "patches", "interferences", "possible_overlaps", "suggestions") for side in "ab"},
     "joints/bodies.parts": (_PARTS,),
     "joints/joints.body_a": (_BODIES,),
     "joints/joints.body_b": (_BODIES,),
@@ -175,6 +175,7 @@ _MASS = ("centre_of_mass_", "inertia_", "principal_", "mass_bound")
 UNKNOWN: tuple[str, ...] = (
     *(f"{table}.{column}" for table in ("mass/parts", "mass/bodies", "behaviour/rigid_body") for column in _MASS),
     "contacts/interferences.volume",
+    "contacts/possible_overlaps.volume",
     "joints/singular_values",
     "joints/couplings.uncertainty",
     "simulation/energy",

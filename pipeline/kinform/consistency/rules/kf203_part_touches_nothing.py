@@ -3,7 +3,8 @@
 The connection is followed from the ground (without a known ground: from the largest cluster). Where the
 function intends a joint between the cluster and the rest, KF401 reports it as missing and this rule
 does not repeat it. Parts that overlap (KF201) touch. Where parts come as near each other as parts that touch do, and no
-contact that is known says how (KF209), the rule is inconclusive: it denies nothing that it does not know.
+contact that is known says how (KF209), or it is not known whether they overlap (KF210), the rule is inconclusive: it
+denies nothing that it does not know.
 
 Why it matters: a part that nothing holds has six freedoms. Usually its pose is wrong, a part between is
 missing, or the clearance is wider than the contact tolerance.
@@ -34,14 +35,13 @@ def check(context: Context) -> Outcome:
     apart = _apart(context, unknown=True)
     sure = {name for cluster in apart for name in cluster}
     doubtful = [cluster for cluster in _apart(context, unknown=False) if not sure.issuperset(cluster)]
-    doubt = (
-        f"{quoted([cluster[0] for cluster in doubtful])}: no contact that is known, but see KF209" if doubtful else ""
-    )
+    names = quoted([cluster[0] for cluster in doubtful])
+    doubt = f"{names}: no contact that is known, but see KF209 and KF210" if doubtful else ""
     return settled([_finding(context, cluster) for cluster in apart], doubt)
 
 
 def _apart(context: Context, *, unknown: bool) -> list[tuple[str, ...]]:
-    """The clusters that are not connected, contact of no known kind taken for one or not."""
+    """The clusters that are not connected; contact of no known kind, and overlaps that are not sure, count or not."""
     clusters = _clusters(context.assembly, context.contacts, unknown=unknown)
     home = _home(context, clusters)
     return [cluster for cluster in clusters if cluster != home and not _intended(context.assembly, cluster)]
@@ -75,7 +75,7 @@ def _clusters(assembly: Assembly, contacts: Contacts, *, unknown: bool) -> list[
     for patch in contacts.patches:
         if unknown or not patch.unknown:
             join(patch.parts)
-    for overlap in contacts.interferences:
+    for overlap in (*contacts.interferences, *(contacts.possible_overlaps if unknown else ())):
         join(overlap.parts)
     for group in assembly.groups:
         join(group.parts)

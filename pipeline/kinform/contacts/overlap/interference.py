@@ -2,7 +2,8 @@
 
 Facets of two tessellated surfaces that mate overlap without any overlap of the surfaces that they stand
 for: a 32-gon in a 24-gon of radius 10 mm by up to 0.09 mm at zero gap. So a piece of overlap counts only
-where it is deeper than the chord errors of the surfaces that bound it, and than what the facets about it stand off.
+where it is deeper than the chord errors of the surfaces that bound it. Where only what the facets about it may stand
+off their surfaces explains it, an overlap is possible, and not known.
 """
 
 from __future__ import annotations
@@ -22,27 +23,30 @@ from kinform.foundation.meshes.parity import winding
 from kinform.model.arrays import Array, Flags, Ints, freeze
 from kinform.model.contacts import Interference, Patch
 
+Overlaps = tuple[Interference | None, Interference | None]
+"""The overlap of a pair that is sure, and, where there is none, one that is possible."""
 
-def find_interference(
-    pair: PairView, patches: list[Patch], solids: SolidStore, crosses: bool | None
-) -> Interference | None:
+
+def find_interference(pair: PairView, patches: list[Patch], solids: SolidStore, crosses: bool | None) -> Overlaps:
     """Overlap of two solids beyond the chord errors of their surfaces, in the frame of the pair; `crosses` as
     `boundaries_cross` says."""
     a, b = pair.parts
     least = constants.EXACT_OVERLAP * pair.tolerance
     if crosses is None or not (crosses or _holds(a, b) or _holds(b, a)):
-        return None
+        return None, None
     closed = bounds_volume(a.index.mesh) and bounds_volume(b.index.mesh)
     # facets of round surfaces cross by their chord errors as a rule
     cross = any(patch.kind != "plane" for patch in patches)
     few = cross and max(len(part.faces) for part in pair.parts) <= constants.CUT_FEW
     if closed and not few and are_within(a, b, constants.THINNER * least):
-        return None
+        return None, None
     allowance = Allowance.of(pair, patches, least)
     overlap = solids.overlap(a, b, allowance.floor**3) if closed else None
     if overlap is None:
         return _by_facets(a, b, allowance)
-    return None if is_slight(a, b, overlap, allowance) else _by_volume(a, b, overlap.pieces, allowance)
+    if is_slight(a, b, overlap, allowance):
+        return None, None
+    return _by_volume(a, b, overlap.pieces, allowance)
 
 
 def _holds(outer: PartView, inner: PartView) -> bool:
@@ -106,33 +110,47 @@ def _points_of(piece: Piece) -> tuple[Array, Ints, Ints]:
     return inset(piece.corners, middle), part, facet
 
 
-def _by_volume(a: PartView, b: PartView, pieces: list[Piece], allowance: Allowance) -> Interference | None:
+def _by_volume(a: PartView, b: PartView, pieces: list[Piece], allowance: Allowance) -> Overlaps:
     """The pieces of the overlap that are deeper than the surfaces explain, as one interference."""
-    volume, depth, moment, mated = 0.0, 0.0, np.zeros(3), True
+    sure, possible = _Sum(), _Sum()
     # Faces that coincide leave sheets of no thickness: they need no measuring.
     thick_ones = [piece for piece in pieces if piece.volume > allowance.floor**3]
     facets = sum(len(piece.corners) for piece in pieces)
     counts = counts_of([len(piece.corners) for piece in thick_ones], facets)
     every = _sampled(a, b, thick_ones, counts)
-    for piece, samples, (deep, thin) in zip(thick_ones, every, allowance.unexplained(every), strict=True):
+    for piece, samples, (deep, thin, facets_explain) in zip(thick_ones, every, allowance.judged(every), strict=True):
         thick = 2.0 * piece.volume / piece.area
-        if deep.any():
-            here, at_mates = _deepest(a, b, piece, samples, deep), allowance.at_mates(samples, deep)
+        if deep.any() and not facets_explain:
+            sure.add(piece, _deepest(a, b, piece, samples, deep), mated=allowance.at_mates(samples, deep))
         elif thick > thin:
             # Two boundaries that coincide have no depth below each other: a part placed twice.
-            here, at_mates = thick, False
-        else:
-            continue
-        volume += piece.volume
-        moment += piece.volume * piece.centroid
-        depth = max(depth, here)
-        mated &= at_mates
-    if volume <= 0.0:
-        return None
-    return _interference(a, b, volume, depth, moment / volume, mated, "manifold")
+            sure.add(piece, thick, mated=False)
+        elif facets_explain:
+            possible.add(piece, float(samples.depth[deep].max()), mated=False)
+    return (sure.overlap(a, b), None) if sure.volume > 0.0 else (None, possible.overlap(a, b))
 
 
-def _by_facets(a: PartView, b: PartView, allowance: Allowance) -> Interference | None:
+class _Sum:
+    """Pieces as one overlap."""
+
+    def __init__(self) -> None:
+        self.volume, self.depth, self.moment, self.mated = 0.0, 0.0, np.zeros(3), True
+
+    def add(self, piece: Piece, depth: float, *, mated: bool) -> None:
+        """One more of them, of this depth (m)."""
+        self.volume += piece.volume
+        self.moment += piece.volume * piece.centroid
+        self.depth = max(self.depth, depth)
+        self.mated &= mated
+
+    def overlap(self, a: PartView, b: PartView) -> Interference | None:
+        """All of them; None if there are none."""
+        if self.volume <= 0.0:
+            return None
+        return _interference(a, b, self.volume, self.depth, self.moment / self.volume, self.mated, "manifold")
+
+
+def _by_facets(a: PartView, b: PartView, allowance: Allowance) -> Overlaps:
     """Overlap of meshes that bound no volume: points of either inside the other, by counting crossings."""
     sides = ((a, b, True), (b, a, False))
     every = [measured(owner, other, *_crossed(owner, other), first) for owner, other, first in sides]
@@ -142,18 +160,20 @@ def _by_facets(a: PartView, b: PartView, allowance: Allowance) -> Interference |
         _surely(other, samples.points, some) for (_, other, _), samples, some in zip(sides, every, counts, strict=True)
     ]
     if not any(some.any() for some in inside):
-        return None
+        return None, None
     inside = [
         sure | _surely(other, samples.points, ~some)
         for (_, other, _), samples, some, sure in zip(sides, every, counts, inside, strict=True)
     ]
     joined = joined_samples([samples.where(sure) for samples, sure in zip(every, inside, strict=True)])
-    deep, _ = allowance.unexplained([joined])[0]
+    deep, _, facets_explain = allowance.judged([joined])[0]
     if not deep.any():
-        return None
+        return None, None
     depth, weights = float(joined.depth[deep].max()), joined.depth[deep]
     place = weights @ joined.points[deep] / weights.sum()
-    return _interference(a, b, math.nan, depth, place, allowance.at_mates(joined, deep), "facets")
+    mated = not facets_explain and allowance.at_mates(joined, deep)
+    found = _interference(a, b, math.nan, depth, place, mated, "facets")
+    return (None, found) if facets_explain else (found, None)
 
 
 def _crossed(owner: PartView, other: PartView) -> tuple[Array, Ints]:

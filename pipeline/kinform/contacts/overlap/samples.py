@@ -55,20 +55,20 @@ class Allowance:
         i, j = samples.surfaces.T
         return np.asarray(self.chords[0][i] + self.chords[1][j] + self.floor)
 
-    def unexplained(self, every: list[Samples]) -> list[tuple[Flags, float]]:
-        """Of each piece, the samples deeper than what tessellation explains, none where coarse facets explain them all;
-        and how thick (m) it may be then."""
+    def judged(self, every: list[Samples]) -> list[tuple[Flags, float, bool]]:
+        """Of each piece, the samples deeper than what chord errors of their surfaces explain, how thick (m) it may be,
+        and whether there are such samples and coarse facets explain them all."""
         deep = [samples.depth > self._allowed(samples) for samples in every]
         thin = [float(self.chords_of(samples).max(initial=0.0)) for samples in every]
         asked = [k for k, rows in enumerate(deep) if rows.any()]
-        if not asked:
-            return list(zip(deep, thin, strict=True))
-        told = self.facets.explain([(every[k].points[deep[k]], every[k].depth[deep[k]]) for k in asked])
-        for k, explained in zip(asked, told, strict=True):
-            if explained:
-                thin[k] = max(thin[k], float(every[k].depth[deep[k]].max()))
-                deep[k][:] = False
-        return list(zip(deep, thin, strict=True))
+        by_facets = [False] * len(every)
+        if asked:
+            told = self.facets.explain([(every[k].points[deep[k]], every[k].depth[deep[k]]) for k in asked])
+            for k, explained in zip(asked, told, strict=True):
+                by_facets[k] = explained
+                if explained:
+                    thin[k] = max(thin[k], float(every[k].depth[deep[k]].max()))
+        return list(zip(deep, thin, by_facets, strict=True))
 
     def _mates_of(self, samples: Samples) -> list[Patch]:
         """Those between surfaces of the samples."""

@@ -63,6 +63,7 @@ def contact_values(design: Design) -> dict[str, Any]:
     return {
         "patches": [{"index": i} | fields(patch, *of_patch) for i, patch in enumerate(contacts.patches)],
         "interferences": [fields(overlap, *of_overlap) for overlap in contacts.interferences],
+        "possible_overlaps": [fields(overlap, *of_overlap) for overlap in contacts.possible_overlaps],
         "suggestions": [
             fields(hint, "parts", "kind", "fastens", "confidence", "evidence", "axis", "point")
             for hint in contacts.suggestions

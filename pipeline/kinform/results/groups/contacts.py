@@ -39,6 +39,7 @@ class _Contacts:
     patches: tuple[Patch, ...]
     interferences: tuple[Interference, ...]
     suggestions: tuple[Suggestion, ...]
+    possible_overlaps: tuple[Interference, ...] = ()
 
 
 class _Samples:
@@ -70,7 +71,8 @@ class _Samples:
 
 
 LAYOUT = Layout(
-    _Contacts, Table("pairs"), Table("patches", _Samples()), Table("interferences"), Table("suggestions")
+    _Contacts, Table("pairs"), Table("patches", _Samples()), Table("interferences"), Table("suggestions"),
+    Table("possible_overlaps"),
 )  # fmt: skip
 
 
@@ -83,7 +85,8 @@ def write(group: h5py.Group, design: Design) -> None:
         _Pair(parts, parts in candidates, contacts.tolerance.get(parts), marks.get(parts))
         for parts in sorted(candidates | set(contacts.tolerance))
     )
-    LAYOUT.write(group, _Contacts(pairs, contacts.patches, contacts.interferences, contacts.suggestions))
+    found = contacts.patches, contacts.interferences, contacts.suggestions, contacts.possible_overlaps
+    LAYOUT.write(group, _Contacts(pairs, *found))
 
 
 def read(group: HeldGroup) -> tuple[Contacts, dict[tuple[PartName, PartName], str]]:
@@ -95,5 +98,6 @@ def read(group: HeldGroup) -> tuple[Contacts, dict[tuple[PartName, PartName], st
         candidates=tuple(pair.parts for pair in stored.pairs if pair.candidate),
         tolerance={pair.parts: pair.tolerance for pair in stored.pairs if pair.tolerance is not None},
         suggestions=stored.suggestions,
+        possible_overlaps=stored.possible_overlaps,
     )
     return contacts, {pair.parts: pair.fingerprint for pair in stored.pairs if pair.fingerprint is not None}
