@@ -43,10 +43,10 @@ def test_a_ball_in_a_shallow_socket_of_coarse_triangles_does_not_overlap(phase):
 
 @pytest.mark.parametrize("phase", [0.0, 10.0, 33.0])
 def test_that_it_is_not_known_whether_it_does_is_said(phase):
-    found = contacts_of(1, **socket_and_ball(phase, 0.1))
+    found = contacts_of(1, **socket_and_ball(phase, 0.0))
     assert found.interferences == ()
     (possible,) = found.possible_overlaps
-    assert 0.1 < 1e3 * possible.depth < 0.1 + chord(12) + chord(64)
+    assert 0.5 * chord(12) < 1e3 * possible.depth < chord(12) + chord(64)
     assert not possible.mated
     # deeper, it is known
     deep = contacts_of(1, **socket_and_ball(phase, 1.3 * (chord(12) + chord(64))))
