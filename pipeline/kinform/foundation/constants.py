@@ -44,6 +44,8 @@ UNLISTED = 32
 """Comparisons of points with boxes, a facet, that cost less than a grid."""
 FOLLOWED = 2
 """Such comparisons that a point beside a box along one axis takes to be compared along the other."""
+COMPARED_MOST = 8000
+"""So many comparisons of points with boxes take no longer than to find out which need not be compared."""
 FOLLOWED_AT_ONCE = 500_000
 """Of which so many, and those of one box, are compared at once: 30 MB."""
 SIZE_OCTAVES = 20

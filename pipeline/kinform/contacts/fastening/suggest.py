@@ -39,6 +39,7 @@ class _Scene:
         self.parts: dict[PartName, Part] = {part.name: part for part in assembly.parts}
         self.surfaces = surfaces
         self._cylinders: dict[PartName, Cylinders] = {}
+        self._rims: dict[tuple[PartName, int], list[tuple[Array, float]]] = {}
         self._near: dict[PartName, set[PartName]] = defaultdict(set)
         for first, second in contacts.candidates:
             self._near[first].add(second)
@@ -57,9 +58,11 @@ class _Scene:
 
     def rims(self, name: PartName, plane: int) -> list[tuple[Array, float]]:
         """Rims of a plane surface of a part."""
-        part = self.parts[name]
-        assert part.mesh is not None
-        return rims_of(part, self.surfaces[part.mesh.digest], plane)
+        if (name, plane) not in self._rims:
+            part = self.parts[name]
+            assert part.mesh is not None
+            self._rims[name, plane] = rims_of(part, self.surfaces[part.mesh.digest], plane)
+        return self._rims[name, plane]
 
 
 def suggest(

@@ -65,7 +65,8 @@ def higher_pairs(
     `pieces`: surfaces of a and of b that are pieces of other curves, and are left out against each other.
     """
     overlap = pair.overlap(pair.tolerance)
-    overlap &= ~np.outer(*(np.isin(side.ids, sorted(ids)) for side, ids in zip(pair.near, pieces, strict=True)))
+    if all(pieces):
+        overlap &= ~np.outer(*(np.isin(side.ids, sorted(ids)) for side, ids in zip(pair.near, pieces, strict=True)))
     return touches_between(pair, overlap)
 
 

@@ -62,8 +62,10 @@ def seats(pair: PairView, patches: list[Patch]) -> list[Patch]:
     what guides it, as countersunk screws and valves do."""
     if not any(_SEATED[side.kinds].any() for side in pair.near):
         return []
-    mated = tuple(np.array(sorted({patch.surfaces[k] for patch in patches}), dtype=np.int64) for k in (0, 1))
-    free = [_SEATED[side.kinds] & ~np.isin(side.ids, ids) for side, ids in zip(pair.near, mated, strict=True)]
+    free = [_SEATED[side.kinds] for side in pair.near]
+    for k, side in enumerate(pair.near):
+        mated = {patch.surfaces[k] for patch in patches}
+        free[k][[row for row in np.flatnonzero(free[k]).tolist() if int(side.ids[row]) in mated]] = False
     out = []
     for view, first, seated in ((pair, True, free[1]), (pair.swapped, False, free[0])):
         rows = np.flatnonzero(seated)

@@ -22,8 +22,9 @@ from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 
-_ROUND = tuple(KINDS.index(kind) for kind in constants.ROUND_KINDS)
-_RACES = (KINDS.index("cylinder"), KINDS.index("cone"))
+_ROUND = np.array([kind in constants.ROUND_KINDS for kind in KINDS])
+_RACE = np.array([kind in ("cylinder", "cone") for kind in KINDS])
+"""Which kinds are round, and which are races of rollers, by their numbers."""
 _SPHERE = KINDS.index("sphere")
 _PLANE = KINDS.index("plane")
 
@@ -34,7 +35,7 @@ def lines_beside_flanges(pair: PairView, patches: Sequence[Patch]) -> list[Patch
     if not patches or any(patch.kind not in ("plane", "sphere") or patch.one_sided for patch in patches):
         return []
     # beside a flat wall a pin that stands on its collar may as well come to rest on it
-    races = [np.isin(side.kinds, _RACES) for side in pair.near]
+    races = [_RACE[side.kinds] for side in pair.near]
     flags = np.zeros((len(races[0]), len(races[1])), dtype=bool)
     for k, side in enumerate(pair.near):
         for row in side.of_kind("cylinder", "cone").tolist():
@@ -71,7 +72,7 @@ def _round_all_over(part: PartView, surface: int) -> bool:
         return _area(table, np.arange(len(table.kinds)) != surface) < constants.ROUND_REST * float(table.areas.sum())
     aside = np.linalg.norm(cross(table.points - point, axis), axis=1) < constants.ROUND_PLACE * span
     along = np.linalg.norm(cross(table.axes, axis), axis=1) < constants.ACROSS_SINE
-    turns: Flags = np.isin(table.kinds, _ROUND) & aside & (along | (table.kinds == _SPHERE))
+    turns: Flags = _ROUND[table.kinds] & aside & (along | (table.kinds == _SPHERE))
     turns |= (table.kinds == _PLANE) & along
     if _area(table, ~turns) >= constants.ROUND_REST * float(table.areas.sum()):
         return False

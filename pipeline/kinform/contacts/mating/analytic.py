@@ -23,8 +23,8 @@ from kinform.model.arrays import Array, Flags
 def analytic_mates(pair: PairView, reach: float) -> list[Mate]:
     """Mates of planes, then of cylinders, cones and spheres, of surfaces whose boxes come within `reach` (m)."""
     overlap = pair.overlap(reach)
-    mates = (_plane_mates, _cylinder_mates, _cone_mates, _sphere_mates)
-    return [mate for kind in mates for mate in kind(pair, overlap)]
+    both = pair.near[0].present & pair.near[1].present
+    return [mate for kind, mates in _MATES.items() if kind in both for mate in mates(pair, overlap)]
 
 
 def _plane_mates(pair: PairView, overlap: Flags) -> Iterator[Mate]:
@@ -218,3 +218,7 @@ def _base(surfaces: SurfacePair, axes: Axes, radius: float) -> Array:
     arm = surfaces.box()[0] - axes.point
     arm = arm - (arm @ axes.axis) * axes.axis
     return perpendicular(axes.axis, arm if norm(arm) > constants.SEEN_FROM_AXIS * radius else None)
+
+
+_MATES = {"plane": _plane_mates, "cylinder": _cylinder_mates, "cone": _cone_mates, "sphere": _sphere_mates}
+"""Of surfaces of one kind, in this order."""

@@ -57,9 +57,9 @@ def _beside(view: PairView, wanted: Flags) -> Iterator[tuple[int, int, Ints]]:
     giver's box, and face it where it is plane, with these, where any of them may rest on it: all at once, for most of
     them have none there."""
     giver, taker = view.near
-    rows, columns = np.flatnonzero(wanted.any(axis=1)), np.flatnonzero(wanted.any(axis=0))
-    if not len(rows):
+    if not wanted.any():
         return
+    rows, columns = np.flatnonzero(wanted.any(axis=1)), np.flatnonzero(wanted.any(axis=0))
     every = np.concatenate([taker.facets[column] for column in columns.tolist()])
     of_column = np.repeat(columns, [len(taker.facets[column]) for column in columns.tolist()])
     reach = view.tolerance
@@ -151,18 +151,23 @@ def _givers_and_takers(view: PairView, overlap: Flags, first: bool) -> Flags:
     the other that rests on it, and planes with larger planes that they lie on askew; of planes of one size that of the
     `first` part gives."""
     giver, taker = view.near
-    rows, columns = np.nonzero(overlap & (giver.areas >= GIVER_AREA * view.tolerance**2)[:, None])
+    large = giver.areas >= GIVER_AREA * view.tolerance**2
+    resting = _ANALYTIC[giver.kinds][:, None] & ~_ANALYTIC[taker.kinds]
+    flat = (giver.kinds == _PLANE)[:, None] & (taker.kinds == _PLANE)
+    rows, columns = np.nonzero(overlap & large[:, None] & (resting | flat))
+    flags = np.zeros(overlap.shape, bool)
+    if not len(rows):
+        return flags
     kinds = giver.kinds[rows], taker.kinds[columns]
-    resting = _ANALYTIC[kinds[0]] & ~_ANALYTIC[kinds[1]]
+    resting = resting[rows, columns]
     # a ball touches the groove of a ring along a circle or at a point, as `rounds` knows, and does not rest in it
     resting &= (kinds[0] != _SPHERE) | (kinds[1] != KINDS.index("torus"))
     angle = np.arccos(np.clip(-dot(giver.axes[rows], taker.axes[columns]), -1.0, 1.0))
     spread = giver.axis_uncertainty[rows] + taker.axis_uncertainty[columns]
     areas = giver.areas[rows], taker.areas[columns]
     larger = areas[0] >= areas[1] if first else areas[0] > areas[1]
-    askew = (kinds[0] == _PLANE) & (kinds[1] == _PLANE) & larger
+    askew = flat[rows, columns] & larger
     askew &= (angle > view.tolerances.alignment + spread) & (angle < PLANES_TILTED)
-    flags = np.zeros(overlap.shape, bool)
     flags[rows, columns] = resting | askew
     return flags
 

@@ -22,10 +22,9 @@ from kinform.contacts.overlap.solids import bounds_volume
 from kinform.contacts.search.pair_view import PairView, PartView
 from kinform.foundation.constants import CROSSED_FEW, CROSSED_MOST
 from kinform.foundation.meshes.boxes import middles
-from kinform.foundation.meshes.slivers import crossings, meetings, mutual
-from kinform.foundation.sorting import distinct
+from kinform.foundation.meshes.slivers import Met, met_among, near_swept
 from kinform.frozen import dataclass
-from kinform.model.arrays import Array, Ints
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 
@@ -45,14 +44,14 @@ class _Question:
     """(n, 3, 3) and (m, 3, 3) m."""
     moved: Array
     """(m, 3, 3) m."""
-    beside: Ints
-    """(k,) facets of the first part, among its near ones, that mate with no round surface."""
+    beside: Flags
+    """(n,) which near facets of the first part mate with no round surface."""
     moved_less: Array
     """(m, 3, 3) m: as `moved`, by no more than the round surfaces that are moved explain alone."""
     shift: Array
     """(3,) m, of the second part."""
-    mating: tuple[Ints, Ints]
-    """Surfaces of either that mate."""
+    mating: tuple[Flags, Flags]
+    """(s,) which surfaces of either mate."""
     cut_off: bool
     """Whether planes may cut these off: not those that touch in points."""
 
@@ -68,28 +67,43 @@ class _Question:
         here = middles(still.corners(first)) - self.shift
         return _outside(other, here, still) and _outside(still, there, other)
 
-    def may_cross(self, surfaces: tuple[Ints, Ints]) -> bool:
-        """Whether surfaces (n,) of both parts may: those that mate, and planes, which cut them off or lie in one."""
-        return all(
-            bool((np.isin(own, mating) | (self.cut_off & (part.table.kinds[own] == _PLANE))).all())
-            for part, own, mating in zip(self.parts, surfaces, self.mating, strict=True)
-        )
+    def may_cross(self, met: Met) -> bool:
+        """Whether facets that meet, by their places among the near ones, may: those of surfaces that mate, and planes,
+        which cut these off or lie in one."""
+        for part, facets, places, may in zip(self.parts, self.facets, met, self.mating, strict=True):
+            if self.cut_off:
+                may = may | _flags(part, (part.table.kinds == _PLANE).nonzero()[0])
+            if not may[part.surfaces.labels[facets[places]]].all():
+                return False
+        return True
 
 
 def explained(asked: Sequence[tuple[PairView, list[Patch]]]) -> list[bool]:
     """Of pairs with their patches whether it is sure that they share no more than the tessellation of surfaces that
     mate explains; asked of those that may be expected to cross. What is said of one does not depend on the others."""
     questions = {k: made for k, one in enumerate(asked) if (made := _question(*one)) is not None}
-    told = crossings([(one.corners[0], one.moved) for one in questions.values()])
-    free = {k: one for (k, one), crosses in zip(questions.items(), told, strict=True) if crosses is False}
-    told = crossings([(one.corners[0].take(one.beside, axis=0), one.moved_less) for one in free.values()])
-    free = {k: one for (k, one), crosses in zip(free.items(), told, strict=True) if crosses is False}
-    met = _crossing_surfaces(list(free.values()))
+    near = {k: near_swept(one.corners[0], one.corners[1], one.moved, CROSSED_MOST) for k, one in questions.items()}
+    left = {k: (questions[k], pairs) for k, pairs in near.items() if pairs is not None}
+    met = met_among([(one.corners[0], one.moved) for one, _ in left.values()], [pairs for _, pairs in left.values()])
+    left = _of_none(left, met)
+    pairs_beside = [(pairs[0][some], pairs[1][some]) for one, pairs in left.values() for some in [one.beside[pairs[0]]]]
+    met = met_among([(one.corners[0], one.moved_less) for one, _ in left.values()], pairs_beside)
+    left = _of_none(left, met)
+    met = met_among([one.corners for one, _ in left.values()], [pairs for _, pairs in left.values()])
     out = [False] * len(asked)
-    for (k, one), surfaces in zip(free.items(), met, strict=True):
-        if surfaces is not None and one.may_cross(surfaces):
+    for (k, (one, _)), crossing in zip(left.items(), met, strict=True):
+        if crossing is not None and one.may_cross(crossing):
             out[k] = one.holds_none()
     return out
+
+
+_Asked = dict[int, tuple[_Question, Met]]
+
+
+def _of_none(asked: _Asked, met: list[Met | None]) -> _Asked:
+    """Those of which none meet."""
+    told = zip(asked.items(), met, strict=True)
+    return {k: one for (k, one), pairs in told if pairs is not None and not len(pairs[0])}
 
 
 def _question(pair: PairView, patches: list[Patch]) -> _Question | None:
@@ -117,23 +131,30 @@ def _question(pair: PairView, patches: list[Patch]) -> _Question | None:
         return None
     first, second = (part.corners(own) for part, own in zip(parts, facets, strict=True))
     walls = [
-        np.isin(part.surfaces.labels[own], [patch.surfaces[k] for patch in rounds])
+        _flags(part, [patch.surfaces[k] for patch in rounds])[part.surfaces.labels[own]]
         for part, own, k in zip(parts, facets, sides, strict=True)
     ]
     second += shift
     off = outward(parts[1], facets[1], np.flatnonzero(walls[1]))
-    mating = [np.array(sorted({both[k] for both in allowance.mates})) for k in sides]
+    mating = [_flags(part, [both[k] for both in allowance.mates]) for part, k in zip(parts, sides, strict=True)]
     return _Question(
         parts=parts,
         facets=facets,
         corners=(first, second),
         moved=second - inwards * off,
-        beside=np.flatnonzero(~walls[0]),
+        beside=~walls[0],
         moved_less=second - less * off,
         shift=shift,
         mating=(mating[0], mating[1]),
         cut_off=not any(patch.kind in constants.TOUCHING for patch in rounds),
     )
+
+
+def _flags(part: PartView, surfaces: list[int] | Ints) -> Flags:
+    """(s,) which surfaces of a part are among some; as the last, that facets of none are not."""
+    out = np.zeros(len(part.table.kinds) + 1, dtype=bool)
+    out[surfaces] = True
+    return out
 
 
 def _of_round_surfaces(pair: PairView, patch: Patch) -> bool:
@@ -162,23 +183,3 @@ def _outside(outer: PartView, points: Array, inner: PartView) -> bool:
         return True
     held = outer.index.contains(outer.to_part(points))
     return not (held.all() if one else held.any())
-
-
-def _crossing_surfaces(questions: list[_Question]) -> list[tuple[Ints, Ints] | None]:
-    """Surfaces of both parts that cross, the second a little off; None of too many facets."""
-    near = [mutual(*one.corners) for one in questions]
-    triangles = [
-        (one.corners[0].take(i, axis=0), one.corners[1].take(j, axis=0))
-        for one, (i, j) in zip(questions, near, strict=True)
-    ]
-    out: list[tuple[Ints, Ints] | None] = []
-    for one, places, met in zip(questions, near, meetings(triangles, CROSSED_MOST), strict=True):
-        if met is None:
-            out.append(None)
-            continue
-        first, second = (
-            distinct(part.surfaces.labels[facets[place[found]]])
-            for part, facets, place, found in zip(one.parts, one.facets, places, met, strict=True)
-        )
-        out.append((first, second))
-    return out

@@ -8,7 +8,6 @@ take; `SurfacePair` one surface of either part that may touch.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -122,12 +121,17 @@ def _facing(a: PartView, b: PartView, beside: tuple[_Boxed, _Boxed], margin: flo
     if len(facets_a) + len(facets_b) > FEW_BESIDE or not len(facets_a) or not len(facets_b):
         keep_a, keep_b = near_boxes(low_a, high_a, low_b, high_b, margin)
         facets_a, facets_b = facets_a[keep_a], facets_b[keep_b]
-    a = replace(a, region=a.index.region(facets_a), clear=margin)
-    b = replace(b, region=b.index.region(facets_b), clear=margin)
+    a, b = _probed(a, facets_a, margin), _probed(b, facets_b, margin)
     for one, other, facets in ((a, b, facets_b), (b, a, facets_a)):
         if one.index.is_large and one.region.facets is None:
             one.index.expect(*facet_boxes(one.to_part(other.vertices), other.faces[facets]))
     return a, b
+
+
+def _probed(part: PartView, facets: Ints, margin: float) -> PartView:
+    """The part with these of its facets (n,) as those that probes can meet."""
+    placed = part.X_FP, part.at_home, part.vertices, part.low, part.high
+    return PartView(part.part, part.index, part.surfaces, part.table, *placed, part.index.region(facets), margin)
 
 
 _Boxed = tuple[Ints, Array, Array]
@@ -343,10 +347,10 @@ class PairView:
         """Of a and b."""
         return self.a.part.name, self.b.part.name
 
-    @property
+    @cached_property
     def swapped(self) -> PairView:
         """With b first."""
-        return replace(self, a=self.b, b=self.a, near=self.near[::-1])
+        return PairView(self.b, self.a, self.near[::-1], self.tolerance, self.play, self.tolerances, self.apart)
 
     def surfaces(self, row: int, column: int) -> SurfacePair:
         """One near surface of either part, by their positions."""

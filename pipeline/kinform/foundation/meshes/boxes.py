@@ -189,6 +189,9 @@ class FlatBoxes:
     def _among(self, points: Array, heights: Array | None) -> tuple[Ints, Ints] | None:
         """As above by comparison with all boxes about the points; None where that has come to cost more than a list."""
         left, lower, right, upper = self._sides
+        if len(points) * len(left) <= constants.COMPARED_MOST:
+            self._left -= len(points) * len(left)
+            return self._compared(points, heights) if self._left > 0 else None
         (least_x, least_y), (most_x, most_y) = points.min(axis=0, initial=np.inf), points.max(axis=0, initial=-np.inf)
         beside = (left <= most_x) & (right >= least_x) & (lower <= most_y) & (upper >= least_y)
         if heights is not None and self._tops is not None:
@@ -209,6 +212,18 @@ class FlatBoxes:
         which, box = self._along(points, axis, orders[axis], near, *ranges[axis])
         in_turn = ascending(which * np.int64(max(len(near), 1)) + box, len(points) * max(len(near), 1))
         return which.take(in_turn), near.take(box.take(in_turn))
+
+    def _compared(self, points: Array, heights: Array | None) -> tuple[Ints, Ints]:
+        """As above, of few: each with all."""
+        left, lower, right, upper = self._sides
+        x, y = points.T[:, :, None]
+        held = left <= x
+        for beyond in (right >= x, lower <= y, upper >= y):
+            held &= beyond
+        if heights is not None and self._tops is not None:
+            held &= self._tops >= heights[:, None]
+        which, facets = held.nonzero()
+        return which, facets
 
     def _along(self, points: Array, axis: int, order: Ints, near: Ints, begin: Ints, number: Ints) -> tuple[Ints, Ints]:
         """Points and, by their places among those `near`, boxes, of which the points are beside a box along an axis

@@ -26,7 +26,7 @@ from kinform.foundation.constants import (
     MET_MOST,
     TOLD_AT_ONCE,
 )
-from kinform.foundation.meshes.box_pairs import meeting_boxes
+from kinform.foundation.meshes.box_pairs import Boxes, meeting_boxes
 from kinform.foundation.meshes.boxes import meeting_box, triangle_boxes
 from kinform.model.arrays import Array, Flags, Ints
 
@@ -51,8 +51,14 @@ def meetings(asked: Sequence[tuple[Array, Array]], most: float | None = None) ->
     """The same of several sets of slivers with their facets, each in a frame of its own: all at once where they are
     few, for numpy takes as long to begin as it takes to go through a few hundred of them. `most`: pairs near each
     other, in all triangles, that are too many."""
-    out = [_beside_boxes(*one, MET_MOST if most is None else most) for one in asked]
-    left = [k for k, near in enumerate(out) if near is not None and len(near[0])]
+    return met_among(asked, [_beside_boxes(*one, MET_MOST if most is None else most) for one in asked])
+
+
+def met_among(asked: Sequence[tuple[Array, Array]], near: Sequence[Met | None]) -> list[Met | None]:
+    """The same of those pairs of each set that are `near` each other by their boxes, None where these are too many."""
+    told = zip(asked, near, strict=True)
+    out: list[Met | None] = [None if pairs is None else _culled(*one, pairs) for one, pairs in told]
+    left = [k for k, pairs in enumerate(out) if pairs is not None and len(pairs[0])]
     if not left:
         return out
     firsts, seconds, ones, twos = [], [], [], []
@@ -71,9 +77,9 @@ def meetings(asked: Sequence[tuple[Array, Array]], most: float | None = None) ->
     one, two = np.concatenate(ones), np.concatenate(twos)
     met = _decided(firsts, seconds, one, two)
     for k, start, end in zip(left, *_spans([len(one) for one in ones]), strict=True):
-        near, kept = out[k], met[start:end].nonzero()[0]
-        assert near is not None
-        out[k] = near[0].take(kept), near[1].take(kept)
+        mine, kept = out[k], met[start:end].nonzero()[0]
+        assert mine is not None
+        out[k] = mine[0].take(kept), mine[1].take(kept)
     return out
 
 
@@ -102,9 +108,13 @@ def _decided(firsts: list[Array], seconds: list[Array], one: Ints, two: Ints) ->
 
 
 def _beside_boxes(slivers: Array, corners: Array, most: float) -> Met | None:
-    """Those that may meet, by their boxes, and of many also by their planes and edges; None as above."""
-    near = meeting_boxes(triangle_boxes(slivers), triangle_boxes(corners), most * (len(slivers) + len(corners)))
-    if near is None or len(near[0]) <= CULLED_LEAST:
+    """Those that may meet, by their boxes; None as above."""
+    return meeting_boxes(triangle_boxes(slivers), triangle_boxes(corners), most * (len(slivers) + len(corners)))
+
+
+def _culled(slivers: Array, corners: Array, near: Met) -> Met:
+    """Those of pairs that may meet, of many by their planes and edges."""
+    if len(near[0]) <= CULLED_LEAST:
         return near
     first, second = (np.ascontiguousarray(triangles.transpose(1, 2, 0)) for triangles in (slivers, corners))
     return _not_clearly_apart(first, second, *near)
@@ -298,7 +308,23 @@ def _mutual(first: Array, second: Array) -> tuple[Array, Array]:
 def mutual(first: Array, second: Array) -> tuple[Ints, Ints]:
     """Places, ascending, of those of triangles (n, 3, 3) and (m, 3, 3) that may meet some of the others by the box of
     all of these; neither of none."""
-    (low, high), (low_other, high_other) = triangle_boxes(first), triangle_boxes(second)
+    return _mutual_boxes(triangle_boxes(first), triangle_boxes(second))
+
+
+def near_swept(first: Array, begin: Array, end: Array, most: float) -> Met | None:
+    """Those of triangles (n, 3, 3) that may, by their boxes, meet triangles whose corners go straight from `begin`
+    (m, 3, 3) to `end`, anywhere on their way; None of more than `most` times as many as there are triangles."""
+    (low, high), (low_end, high_end), own = triangle_boxes(begin), triangle_boxes(end), triangle_boxes(first)
+    swept = np.minimum(low, low_end), np.maximum(high, high_end)
+    one, two = _mutual_boxes(own, swept)
+    boxes = [(low.take(rows, axis=0), high.take(rows, axis=0)) for (low, high), rows in ((own, one), (swept, two))]
+    met = meeting_boxes(boxes[0], boxes[1], most * (len(one) + len(two)))
+    return None if met is None else (one.take(met[0]), two.take(met[1]))
+
+
+def _mutual_boxes(first: Boxes, second: Boxes) -> tuple[Ints, Ints]:
+    """`mutual` of triangles with these boxes."""
+    (low, high), (low_other, high_other) = first, second
     near = meeting_box(low, high, low_other.min(axis=0), high_other.max(axis=0)).nonzero()[0]
     if not len(near):
         return near, near

@@ -78,10 +78,16 @@ class SurfaceTable:
 
     def placed(self, ids: Ints, X_FP: Array) -> dict[str, Array]:
         """The columns of some surfaces, by name, at the pose `X_FP` (4, 4)."""
-        columns = {name: getattr(self, name).take(ids, axis=0) for name in _COLUMNS}
-        columns["axes"] = columns["axes"] @ X_FP[:3, :3].T
-        columns["points"] = columns["points"] @ X_FP[:3, :3].T + X_FP[:3, 3]
+        columns = dict(zip(_NUMBERS, self._numbers.take(ids, axis=1), strict=True))
+        columns["kinds"], columns["extents"] = self.kinds.take(ids), self.extents.take(ids, axis=0)
+        columns["axes"] = self.axes.take(ids, axis=0) @ X_FP[:3, :3].T
+        columns["points"] = self.points.take(ids, axis=0) @ X_FP[:3, :3].T + X_FP[:3, 3]
         return columns
+
+    @cached_property
+    def _numbers(self) -> Array:
+        """(k, s) the columns `_NUMBERS`, so that some surfaces of all are taken at once."""
+        return np.stack([getattr(self, name) for name in _NUMBERS])
 
     @cached_property
     def slack(self) -> float:
@@ -99,4 +105,7 @@ def _rows(vectors: list[Array]) -> Array:
     return np.concatenate(vectors).reshape(-1, 3) if vectors else np.zeros((0, 3))
 
 
-_COLUMNS = tuple(field.name for field in fields(SurfaceTable))
+_NUMBERS = tuple(
+    field.name for field in fields(SurfaceTable) if field.name not in ("kinds", "axes", "points", "extents")
+)
+"""Columns of one number a surface."""
