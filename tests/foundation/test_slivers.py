@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from kinform.foundation.meshes import box_pairs, slivers
 from kinform.foundation.meshes.boxes import facet_boxes
 from kinform.foundation.meshes.fcl_adapter import fcl_model
-from kinform.foundation.meshes.slivers import beside, crossing, meeting
+from kinform.foundation.meshes.slivers import beside, crossing, meeting, met_among, near_swept
 
 
 def told_by_fcl(first, second):
@@ -213,3 +213,15 @@ def test_what_a_grid_does_not_part_is_all_compared_while_it_is_little(monkeypatc
 def test_triangles_most_of_which_are_beside_each_other_are_left_to_trees(monkeypatch):
     monkeypatch.setattr(slivers, "MET_MOST", 1)
     assert meeting(*scene(7)) is None
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 10**6), st.sampled_from([1e-3, 1.0, 1e4]), st.floats(0.0, 1.0))
+def test_what_meets_triangles_on_their_way_is_among_those_near_it(seed, size, share):
+    first, second = scene(seed, size=size)
+    end = second + size * np.random.default_rng(seed).normal(scale=0.1, size=second.shape)
+    there = second + share * (end - second)
+    near = near_swept(first, second, end, 1e9)
+    (met,) = met_among([(first, there)], [near])
+    assert list(zip(*(found.tolist() for found in met), strict=True)) == pairs(first, there)
+    assert near_swept(first, second, end, 1e-6) is None
