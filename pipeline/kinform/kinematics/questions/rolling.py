@@ -67,7 +67,7 @@ def rolling(
         )
     bent = frozenset(str(j.name) for j in joints if j.readings and j.readings[0].cause == "bend")
     least = [_over_a_distance(joint, found) for joint, found in zip(joints, touching, strict=True)]
-    if bent and _between(least, edges, nodes, frame).shape[1] < span(scaled(motions[:, 1].T, frame)).shape[1]:
+    if bent and _between(least, edges, nodes, frame).shape[1] < span(second_moves(motions, frame)).shape[1]:
         bent = frozenset()
     sure = [_certain(joint, found, frame) for joint, found in zip(joints, touching, strict=True)]
     return Rolling(twist_at_origin(_between(sure, edges, nodes, frame), frame).T, doubt, bent)
@@ -75,7 +75,17 @@ def rolling(
 
 def _between(spaces: Sequence[Array], edges: Sequence[tuple[int, int]], nodes: Sequence[str], frame: Frame) -> Array:
     """(6, k) orthonormal: motions of the second node relative to the first that joints of these spaces leave."""
-    return span(scaled(body_twists(close(len(nodes), edges, spaces, 0, frame.length), edges, spaces)[:, 1].T, frame))
+    return span(second_moves(body_twists(close(len(nodes), edges, spaces, 0, frame.length), edges, spaces), frame))
+
+
+def second_moves(motions: Array, frame: Frame) -> Array:
+    """(6, k) scaled twists in `frame` of the second body in motions (k, nodes, 6), zero where it stands still beside
+    others and only rounding moves it."""
+    twists = scaled(motions.reshape(-1, 6).T, frame)
+    sizes = np.linalg.norm(twists, axis=0).reshape(motions.shape[:2])
+    still = sizes[:, 1] <= constants.EXACT_PAIR * sizes.max(axis=1)
+    own = twists.reshape(6, *motions.shape[:2])[:, :, 1]
+    return np.asarray(np.where(still, 0.0, own))
 
 
 def _over_a_distance(joint: Joint, touching: Sequence[Patch]) -> Array:
@@ -116,7 +126,7 @@ def _wedged(
     of = np.array([node for node, at in places.items() for _ in at])
     at = np.concatenate(list(places.values())).reshape(-1, 3)
     moved = motions[:, of, 3:] + cross(motions[:, of, :3], at)
-    own = scaled(motions[:, 1].T, frame).T
+    own = second_moves(motions, frame).T
     left, values, _ = np.linalg.svd(own, full_matrices=True)
     rank = int(np.count_nonzero(values > constants.EXACT_PAIR * values.max(initial=0.0)))
     if not rank:
