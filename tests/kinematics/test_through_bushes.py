@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from generators.involute import Gear, mesh_angle
 from support.assemblies import HERE, assembly
 from support.solids import ball, block, box, extrusion, part, random_pose, rod
 
@@ -80,6 +81,32 @@ def test_what_only_idle_pins_move_is_fixed(count, type_, expected, placed):
         solids[f"rivet{k}"] = pin
     _, comparison, answer = answered(type_, solids, **placed)
     assert (comparison.type, answer) == ("fixed", expected)
+
+
+def train(stages, wide=7):
+    """A wheel on a base, and gears that nobody names, each 50/12 times as fast as the one before."""
+    large, small = Gear(50), Gear(12)
+    gears, turn, apart = [extrusion(large.outline(0.1), 0, wide - 1)], 0.1, large.pitch_radius + small.pitch_radius
+    for k in range(stages):
+        low = k * wide
+        pinion = extrusion(small.outline(mesh_angle(large, small, turn)), low, low + wide)
+        turn = 0.37 * k
+        gears.append(pinion + extrusion(large.outline(turn), low + wide, low + 2 * wide - 1))
+    base, solids = box(-30, apart * stages + 30, -30, 30, -12, -6), {}
+    for k, gear in enumerate(gears):
+        low, high = (gear.bounding_box()[at] for at in (2, 5))
+        base += (rod(2, -7, high + 2, 48) + rod(4, -7, low, 48) + rod(4, high, high + 2, 48)).translate(
+            (apart * k, 0, 0)
+        )
+        solids[f"gear{k}" if k else "shaft"] = (gear - rod(2, -9, high + 9, 48)).translate((apart * k, 0, 0))
+    return {"base": base, **solids}
+
+
+@pytest.mark.parametrize("stages", [1, 5])
+def test_gears_that_are_fast_are_not_wedged(stages):
+    _, comparison, answer = answered("revolute", train(stages), random_pose(np.random.default_rng(0)))
+    assert comparison.through == tuple(f"gear{k + 1}" for k in range(stages))
+    assert answer == "agrees", comparison.reason
 
 
 def test_balls_in_grooves_that_meet_hold(placed):

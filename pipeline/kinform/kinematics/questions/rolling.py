@@ -8,7 +8,8 @@ this instant. Three things are asked of it:
   free may end at once, as where a ball in a bowl is pressed from the other side.
 - Whether anything is wedged: a roller between two races that lean against each other by little lets them come nearer
   by going out fast. Below the angle of friction it does not, and where races were meant to be parallel, or lines of
-  action to be one, it is an error of their place that frees them (Amontons; any text on clamping rollers).
+  action to be one, it is an error of their place that frees them (Amontons; any text on clamping rollers). What
+  turns or slides on its own joint is not: the gears of a train are fast.
 - Whether a roller that turns about the normal of the line in which it lies in a ring, which it does at the first
   instant alone (`pair.touches`), has a part in it.
 """
@@ -22,12 +23,13 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, scaled, span, twist_at_origin
 from kinform.foundation.algebra.vectors import cross, sine
+from kinform.foundation.graphs.components import components
 from kinform.foundation.words import quoted
 from kinform.frozen import dataclass
 from kinform.kinematics import constants
 from kinform.kinematics.loops.assembly_closure import body_twists, close
 from kinform.kinematics.pair.touches import TOUCHING, held_by_bends
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint
 
@@ -57,7 +59,7 @@ def rolling(
     touching = [[patches[k] for k in joint.patches if patches[k].kind in TOUCHING] for joint in joints]
     if not any(touching):
         return None
-    fast = _wedged(motions, edges, touching, frame)
+    fast = _wedged(motions, edges, touching, _guided(joints, edges, touching, len(nodes)), frame)
     doubt = ""
     if fast is not None:
         node, ratio = fast
@@ -110,15 +112,30 @@ def _certain(joint: Joint, touching: Sequence[Patch], frame: Frame) -> Array:
     return np.asarray(twist_at_origin((space @ (space.T @ slide))[:, None], frame).T)
 
 
+def _guided(
+    joints: Sequence[Joint], edges: Sequence[tuple[int, int]], touching: Sequence[Sequence[Patch]], count: int
+) -> Flags:
+    """(nodes,) which bodies turn or slide on the two, or on bodies that do: gears are fast, and not wedged."""
+    every = zip(joints, edges, touching, strict=True)
+    alone = [edge for joint, edge, found in every if not found and len(joint.twists) == 1]
+    first, second = np.array([(0, 1), *alone]).T
+    group = components(first, second, count)
+    return np.asarray(group == group[0])
+
+
 def _wedged(
-    motions: Array, edges: Sequence[tuple[int, int]], touching: Sequence[Sequence[Patch]], frame: Frame
+    motions: Array,
+    edges: Sequence[tuple[int, int]],
+    touching: Sequence[Sequence[Patch]],
+    guided: Flags,
+    frame: Frame,
 ) -> tuple[int, float] | None:
     """The body (its number) that moves the fastest beside the second one, and how many times as fast, in the motion in
-    which it does so the most; None where that is not much."""
+    which it does so the most; None where that is not much. None that are `guided` (nodes,) count."""
     places: dict[int, list[Array]] = {}
     for edge, found in zip(edges, touching, strict=True):
         for patch, node in product(found, edge):
-            if node > 1:
+            if not guided[node]:
                 places.setdefault(node, []).append(patch.points.mean(axis=0))
     if not places:
         return None
