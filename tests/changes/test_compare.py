@@ -100,6 +100,10 @@ CASES = {
         replace(DESK, interferences=((("door", "drawer"), 2e-3), *DESK.interferences)),
         [("interference-new", "door", "overlap by 2 mm")],
     ),
+    "perhaps no collision": (
+        replace(DESK, interferences=(), possible_overlaps=(("door", "frame"),)),
+        [("interference-gone", "door", "may still overlap")],
+    ),
     "no collision": (replace(DESK, interferences=()), [("interference-gone", "door", "no longer overlap")]),
     "deeper": (replace(DESK, interferences=((("door", "frame"), 3e-4),)),
                [("interference", "door", "overlap +0.2 mm")]),

@@ -13,6 +13,7 @@ from support.places import FIXTURES
 from support.requirements import ORIGIN, bar, state, thin_wall, wall
 
 from kinform.model.assembly import Group
+from kinform.model.contacts import Interference
 from kinform.model.function import Function
 from kinform.simulation import simulate
 
@@ -44,6 +45,16 @@ def test_the_clearance_along_a_motion_and_where_it_is_lost():
     assert finding.found == "collision"
     assert 0.02 < finding.place[0] < 0.045
     assert state(swing(60.0), "clear")[0] == "violated"
+
+
+def test_parts_that_may_overlap_as_they_are_drawn_are_not_known_to_be_clear():
+    """What may overlap is near, and counts no more than what touches does; what collides elsewhere is told."""
+    asked = {"between": ["bar", "base"], "over": "ranges"}
+    for reach, expected in ((40, "undecided"), (60, "violated")):
+        made = bar(wall(), reach=reach)
+        perhaps = (Interference(("bar", "base"), 1e-12, 1e-4, np.zeros(3), False, "manifold"),)
+        made = replace(made, contacts=replace(made.contacts, possible_overlaps=perhaps))
+        assert state(made, "clear", **asked)[0] == expected
 
 
 def test_no_thin_wall_is_jumped_over():

@@ -29,10 +29,10 @@ def chord(segments):
     return 10.0 - np.linalg.norm(np.einsum("wk,nkc->nwc", INSIDE, corners), axis=2).min()
 
 
-def socket_and_ball(phase, push):
-    """A ball of 64 segments in a shallow socket of 12, pushed (mm) into it."""
+def socket_and_ball(phase, push, segments=64):
+    """A ball of so many segments in a shallow socket of 12, pushed (mm) into it."""
     socket = box(-14, 14, -14, 14, -30, -7) - Manifold.sphere(10.0, 12).rotate((0, 0, phase))
-    ball = Manifold.sphere(10.0, 64).rotate((30, 0, 0)) + rod(3, 0, 30)
+    ball = Manifold.sphere(10.0, segments).rotate((30, 0, 0)) + rod(3, 0, 30)
     return {"socket": socket, "ball": ball.translate((0, 0, -push))}
 
 
@@ -51,6 +51,15 @@ def test_that_it_is_not_known_whether_it_does_is_said(phase):
     # deeper, it is known
     deep = contacts_of(1, **socket_and_ball(phase, 1.3 * (chord(12) + chord(64))))
     assert deep.possible_overlaps == ()
+
+
+@pytest.mark.parametrize("segments", [32, 128, 384])
+def test_it_does_not_hang_on_how_fine_the_ball_is(segments):
+    """Of a ball of 70,000 facets too many are near to be looked at at once."""
+    found = contacts_of(1, **socket_and_ball(10.0, 0.0, segments))
+    assert (len(found.interferences), len(found.possible_overlaps)) == (0, 1)
+    (deep,) = overlaps(1, **socket_and_ball(10.0, 1.3 * (chord(12) + chord(segments)), segments))
+    assert not deep.mated
 
 
 @pytest.mark.parametrize("phase", [0.0, 10.0, 33.0])

@@ -89,6 +89,8 @@ class Snapshot:
     """(part, what its mesh is known by), where it has one."""
     units: str = "mm"
     """Of the assembly, for people; all values are SI."""
+    possible_overlaps: tuple[tuple[str, str], ...] = ()
+    """Parts of which it is not known whether they overlap."""
 
 
 def snapshot(design: Design) -> Snapshot:
@@ -120,6 +122,9 @@ def snapshot(design: Design) -> Snapshot:
         ranges=None if found is None else tuple(sorted(map(str, known))),
         shapes=tuple(sorted((str(p.name), p.mesh.digest) for p in design.assembly.parts if p.mesh is not None)),
         units=design.assembly.units,
+        possible_overlaps=()
+        if design.contacts is None
+        else tuple((str(one.parts[0]), str(one.parts[1])) for one in design.contacts.possible_overlaps),
     )
 
 

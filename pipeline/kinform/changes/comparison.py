@@ -152,7 +152,8 @@ def _interferences(before: Snapshot, after: Snapshot, measure: Measure) -> Itera
         one, two = old.get(pair), new.get(pair)
         was, now = (None if depth is None else measure.length(depth) for depth in (one, two))
         if one is not None and two is None:
-            yield Change("interference-gone", pair, "no longer overlap", was, None, -one, "m")
+            message = "may still overlap" if pair in after.possible_overlaps else "no longer overlap"
+            yield Change("interference-gone", pair, message, was, None, -one, "m")
         elif one is None and two is not None:
             yield Change("interference-new", pair, f"overlap by {now}", None, now, two, "m")
         elif one is not None and two is not None and not measure.within.lengths_agree(one, two):

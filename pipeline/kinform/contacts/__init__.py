@@ -39,5 +39,5 @@ from kinform.contacts.find import find
 
 __all__ = ["CODE_VERSION", "find"]
 
-CODE_VERSION: int = 34
+CODE_VERSION: int = 35
 """Raised when the same input would give other contacts."""

@@ -61,7 +61,7 @@ __all__ = [
     "stated_proposals",
 ]
 
-CODE_VERSION = 53
+CODE_VERSION = 54
 """Bumped when the results of this stage change for the same input."""
 
 __getattr__ = first_used(

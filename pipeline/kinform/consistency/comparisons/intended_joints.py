@@ -12,7 +12,7 @@ from kinform.consistency.constants import SHARED_MOTION
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.words import counted, quoted
 from kinform.frozen import dataclass
-from kinform.kinematics.bodies.as_stated import leaves_free
+from kinform.kinematics.bodies.as_stated import leaves_free, may_end
 from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.partition.parting import joint_twists
 from kinform.kinematics.questions.rolling import Rolling
@@ -171,6 +171,8 @@ def _compared(
     found = direct.twists if motion is None and direct is not None else motion.twists if motion else None
     if state == "found" and through is not None and motion is not None:
         state, reason = _rolling_certainty(intended, motion, through, size)
+    if state == "found" and motion is None and direct is not None:
+        state, reason = _end_certainty(intended, direct, patches, first, size)
     if state == "found" and intended.closure and found is not None and _shares(intended, form.type, found):
         state, reason = "undecided", f"it only closes a loop, and by contact that joint is {form.type}"
     return Comparison(
@@ -215,6 +217,21 @@ def _rolling_certainty(intended: IntendedJoint, motion: HelperMotion, through: R
     return "undecided", (
         f"points and lines of contact with {quoted(motion.helpers)} leave {counted(motion.freedoms, 'freedom')} at "
         "this instant; over a distance that may be the intended one alone"
+    )
+
+
+def _end_certainty(
+    intended: IntendedJoint, found: Joint, patches: Sequence[Patch], first: Body, size: float
+) -> tuple[str, str]:
+    """Whether it is known that a line of contact holds, which may only end what is intended, in one sense."""
+    wanted, lines = joint_twists(intended), [patch for patch in patches if patch.kind == "line"]
+    if found.type == intended.type or wanted is None or not lines:
+        return "found", ""
+    if not may_end(patches, found.twists, wanted, lines[0].point, size, first.parts):
+        return "found", ""
+    return (
+        "undecided",
+        f"the line in which {quoted(lines[0].parts)} touch holds it in one sense alone, and may be a stop",
     )
 
 

@@ -5,8 +5,8 @@ what borders on their mates or touches beside them; they count against all the r
 motion steps are as long as the distance allows, so that nothing is passed over; between output times poses are
 interpolated. Over the ranges every combination of joint values between the two is covered, cell by cell.
 Distances are certain up to 1e-4 of the size of the smaller part, 1e-3 where several joints move at once. A simulation
-that did not run, a range that is not known, a loop between the two (over ranges), or too many cells make the
-requirement inconclusive (KF902).
+that did not run, a range that is not known, a loop between the two (over ranges), too many cells, or parts of which it
+is not known whether they overlap as drawn (KF210) make the requirement inconclusive (KF902).
 
 Why it matters: what collides does not move there, and breaks.
 
@@ -155,6 +155,14 @@ def _answer(context: Context, groups: Apart, swept: Swept, required: float, name
             f"{what}{where}", found="collision" if near.distance <= 0.0 else shown,
             intended=f"at least {in_words(required)}" if required > 0.0 else "no collision",
             place=near.place, remedy=REMEDY,
+        )  # fmt: skip
+    perhaps = {overlap.parts for overlap in context.contacts.possible_overlaps}
+    unknown = sorted(
+        perhaps & {(min(pair), max(pair)) for p in groups.pairs for pair in [(p.first.name, p.second.name)]}
+    )
+    if unknown:
+        return undecided(
+            f"whether {quoted(unknown[0])} overlap as they are drawn is not known", "See KF210.",
         )  # fmt: skip
     if not swept.complete:
         return undecided(

@@ -9,6 +9,7 @@ may stand off, so that for each solid the least distance less that is asked for.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cached_property
 
 import numpy as np
@@ -17,7 +18,8 @@ from kinform.contacts import constants
 from kinform.contacts.search.pair_view import PartView, near_facets
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.constants import STANDOFF_EDGES
-from kinform.foundation.meshes.box_pairs import meeting_boxes
+from kinform.foundation.meshes.box_pairs import Boxes, meeting_boxes
+from kinform.foundation.meshes.boxes import meeting_box
 from kinform.foundation.meshes.closest import distances_between
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.surfaces import KINDS
@@ -38,7 +40,7 @@ class CoarseFacets:
     @cached_property
     def sides(self) -> tuple[_Side, _Side]:
         """Both parts, the coarser one first: what its facets stand off says how far to look for those of the other."""
-        a, b = (_Side(part, self.tolerances) for part in self.parts)
+        a, b = (_Side(part, self.floor, self.tolerances) for part in self.parts)
         return (a, b) if a.most >= b.most else (b, a)
 
     def explain(self, pieces: list[tuple[Array, Array]]) -> list[bool]:
@@ -71,8 +73,8 @@ class CoarseFacets:
 class _Side:
     """One of the parts."""
 
-    def __init__(self, part: PartView, tolerances: Tolerances):
-        self.part, self.tolerances = part, tolerances
+    def __init__(self, part: PartView, floor: float, tolerances: Tolerances):
+        self.part, self.floor, self.tolerances = part, floor, tolerances
         table = part.table
         self.free = np.isin(table.kinds, _FREE)
         self.slacks = np.where(table.kinds == _PLANE, 0.0, table.slacks)
@@ -85,17 +87,15 @@ class _Side:
         out = np.full(len(points), np.inf)
         if not len(points):
             return out
-        margin = (1.0 + constants.BEYOND_FACETS) * self.most + float(beyond.max())
-        facets, low, high = near_facets(self.part, points.min(axis=0) - margin, points.max(axis=0) + margin)
-        bounds = self.bounds[self.part.surfaces.labels[facets]]
-        reach = ((1.0 + constants.BEYOND_FACETS) * bounds + float(beyond.max()))[:, None]
-        boxes = low - reach, high + reach
-        parts = max(1, -(-len(points) * len(facets) // constants.COARSE_AT_ONCE))
-        for some in np.array_split(np.arange(len(points)), parts):
-            met = meeting_boxes((points[some], points[some]), boxes)
-            if met is not None:
-                at = some[met[0]]
-                np.minimum.at(out, at, self._beyond(points[at], facets[met[1]], beyond[at]))
+        # the nearest facet is no farther beside what it may stand off, and so none counts that is
+        beyond = np.minimum(beyond, self.part.depths(points)[0] + self.floor)
+        low, high = points - np.abs(beyond)[:, None], points + np.abs(beyond)[:, None]
+        margin = (1.0 + constants.BEYOND_FACETS) * self.most
+        facets, least, most = near_facets(self.part, low.min(axis=0) - margin, high.max(axis=0) + margin)
+        reach = (1.0 + constants.BEYOND_FACETS) * self.bounds[self.part.surfaces.labels[facets]][:, None]
+        boxes = least - reach, most + reach
+        for at, beside in _meeting((low, high), boxes, np.arange(len(points)), np.arange(len(facets))):
+            np.minimum.at(out, at, self._beyond(points[at], facets[beside], beyond[at]))
         return out
 
     def _beyond(self, points: Array, facets: Ints, beyond: Array) -> Array:
@@ -123,6 +123,25 @@ class _Side:
             own = part.index.standoffs(part.surfaces, number, self.tolerances)
             out[rows] = np.maximum(out[rows], own[np.searchsorted(part.surfaces.surfaces[number].faces, facets[rows])])
         return out
+
+
+def _meeting(first: Boxes, second: Boxes, one: Ints, two: Ints) -> Iterator[tuple[Ints, Ints]]:
+    """All pairs of boxes `one` (n,) of the first and `two` (m,) of the second that meet, not many at once."""
+    low, high = first[0].take(one, axis=0), first[1].take(one, axis=0)
+    two = two[meeting_box(second[0].take(two, axis=0), second[1].take(two, axis=0), low.min(axis=0), high.max(axis=0))]
+    if not len(two):
+        return
+    if len(one) == 1:
+        yield np.repeat(one, len(two)), two
+        return
+    if len(one) * len(two) <= constants.COARSE_AT_ONCE:
+        met = meeting_boxes((low, high), (second[0].take(two, axis=0), second[1].take(two, axis=0)))
+        if met is not None:
+            yield one[met[0]], two[met[1]]
+            return
+    order = np.argsort(low[:, int(np.argmax(np.ptp(low, axis=0)))], kind="stable")
+    for half in np.array_split(one[order], 2):
+        yield from _meeting(first, second, half, two)
 
 
 def _less(away: Array, height: Array, standing: Array) -> Array:

@@ -25,6 +25,7 @@ from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.bodies.stated_joints import Pair, joint_form, pair_between
 from kinform.kinematics.constants import ADMITTED, EXACT_MOTION, POINT_REACH
 from kinform.kinematics.pair.joint import reading_of, stated_joint
+from kinform.kinematics.pair.touches import ends_at_line
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Patch
@@ -122,6 +123,19 @@ def opens(patches: Sequence[Patch], motions: Array, first: Collection[PartName])
     return len(found) == 0 or len(set(np.sign(found @ found[0]))) == 1
 
 
+def may_end(
+    patches: Sequence[Patch],
+    twists: Array,
+    motions: Array,
+    place: Array,
+    length: float,
+    first: Collection[PartName],
+) -> bool:
+    """Whether a body that allows `twists` (n, 6) by these patches may as well do all of these motions (k, 6), and only
+    ends one of them at a line, in one sense; `place`, `length` and `first` as above."""
+    return ends_at_line(patches) and leaves_free(motions, twists, place, length) and opens(patches, motions, first)
+
+
 def _in_force(
     wanted: Sequence[IntendedJoint],
     stated: Sequence[Joint],
@@ -159,6 +173,8 @@ def _in_force(
         [patches[k] for k in joint.patches], taken.twists, first
     ):
         cause, why = "end", "contact leaves it free in one sense, as an end stop does, and does not hold it"
+    elif may_end([patches[k] for k in joint.patches], joint.twists, taken.twists, place, reach, first):
+        cause, why = "doubt", "a line of contact holds it in one sense alone, and may be a stop"
     else:
         return joint
     return replace(

@@ -71,6 +71,16 @@ def beside_flange(line: Patch, other: Patch) -> bool:
     return other.kind == "sphere" and not other.one_sided and aside < constants.ACROSS_LINE * norm(arm)
 
 
+def ends_at_line(patches: Sequence[Patch]) -> bool:
+    """Whether all contact is of planes and of lines across which these lie, as of a roller between flanges; or of a
+    disc on a plate that lies against a post, which only ends its way there."""
+    lines = [patch for patch in patches if patch.kind == "line" and not patch.one_sided]
+    planes = [patch for patch in patches if patch.kind == "plane"]
+    if not lines or not planes or len(lines) + len(planes) < len(patches):
+        return False
+    return all(beside_flange(line, plane) for line in lines for plane in planes)
+
+
 def held_by_bends(patches: Sequence[Patch], basis: Array) -> Array:
     """(6, m) those of the freedoms (6, k), turns first, that do not turn a roller about the normal of a straight line
     in which it lies in its ring; `basis` itself where none does."""

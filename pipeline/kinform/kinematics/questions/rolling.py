@@ -8,7 +8,8 @@ this instant. Three things are asked of it:
   free may end at once, as where a ball in a bowl is pressed from the other side.
 - Whether anything is wedged: a roller between two races that lean against each other by little lets them come nearer
   by going out fast. Below the angle of friction it does not, and where races were meant to be parallel, or lines of
-  action to be one, it is an error of their place that frees them (Amontons; any text on clamping rollers).
+  action to be one, it is an error of their place that frees them (Amontons; any text on clamping rollers). What
+  turns or slides on its own joint is not: the gears of a train are fast.
 - Whether a roller that turns about the normal of the line in which it lies in a ring, which it does at the first
   instant alone (`pair.touches`), has a part in it.
 """
@@ -22,12 +23,13 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, scaled, span, twist_at_origin
 from kinform.foundation.algebra.vectors import cross, sine
+from kinform.foundation.graphs.components import components
 from kinform.foundation.words import quoted
 from kinform.frozen import dataclass
 from kinform.kinematics import constants
 from kinform.kinematics.loops.assembly_closure import body_twists, close
 from kinform.kinematics.pair.touches import TOUCHING, held_by_bends
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint
 
@@ -57,7 +59,7 @@ def rolling(
     touching = [[patches[k] for k in joint.patches if patches[k].kind in TOUCHING] for joint in joints]
     if not any(touching):
         return None
-    fast = _wedged(motions, edges, touching, frame)
+    fast = _wedged(motions, edges, touching, _guided(joints, edges, touching, len(nodes)), frame)
     doubt = ""
     if fast is not None:
         node, ratio = fast
@@ -67,7 +69,7 @@ def rolling(
         )
     bent = frozenset(str(j.name) for j in joints if j.readings and j.readings[0].cause == "bend")
     least = [_over_a_distance(joint, found) for joint, found in zip(joints, touching, strict=True)]
-    if bent and _between(least, edges, nodes, frame).shape[1] < span(scaled(motions[:, 1].T, frame)).shape[1]:
+    if bent and _between(least, edges, nodes, frame).shape[1] < span(second_moves(motions, frame)).shape[1]:
         bent = frozenset()
     sure = [_certain(joint, found, frame) for joint, found in zip(joints, touching, strict=True)]
     return Rolling(twist_at_origin(_between(sure, edges, nodes, frame), frame).T, doubt, bent)
@@ -75,7 +77,17 @@ def rolling(
 
 def _between(spaces: Sequence[Array], edges: Sequence[tuple[int, int]], nodes: Sequence[str], frame: Frame) -> Array:
     """(6, k) orthonormal: motions of the second node relative to the first that joints of these spaces leave."""
-    return span(scaled(body_twists(close(len(nodes), edges, spaces, 0, frame.length), edges, spaces)[:, 1].T, frame))
+    return span(second_moves(body_twists(close(len(nodes), edges, spaces, 0, frame.length), edges, spaces), frame))
+
+
+def second_moves(motions: Array, frame: Frame) -> Array:
+    """(6, k) scaled twists in `frame` of the second body in motions (k, nodes, 6), zero where it stands still beside
+    others and only rounding moves it."""
+    twists = scaled(motions.reshape(-1, 6).T, frame)
+    sizes = np.linalg.norm(twists, axis=0).reshape(motions.shape[:2])
+    still = sizes[:, 1] <= constants.EXACT_PAIR * sizes.max(axis=1)
+    own = twists.reshape(6, *motions.shape[:2])[:, :, 1]
+    return np.asarray(np.where(still, 0.0, own))
 
 
 def _over_a_distance(joint: Joint, touching: Sequence[Patch]) -> Array:
@@ -100,15 +112,30 @@ def _certain(joint: Joint, touching: Sequence[Patch], frame: Frame) -> Array:
     return np.asarray(twist_at_origin((space @ (space.T @ slide))[:, None], frame).T)
 
 
+def _guided(
+    joints: Sequence[Joint], edges: Sequence[tuple[int, int]], touching: Sequence[Sequence[Patch]], count: int
+) -> Flags:
+    """(nodes,) which bodies turn or slide on the two, or on bodies that do: gears are fast, and not wedged."""
+    every = zip(joints, edges, touching, strict=True)
+    alone = [edge for joint, edge, found in every if not found and len(joint.twists) == 1]
+    first, second = np.array([(0, 1), *alone]).T
+    group = components(first, second, count)
+    return np.asarray(group == group[0])
+
+
 def _wedged(
-    motions: Array, edges: Sequence[tuple[int, int]], touching: Sequence[Sequence[Patch]], frame: Frame
+    motions: Array,
+    edges: Sequence[tuple[int, int]],
+    touching: Sequence[Sequence[Patch]],
+    guided: Flags,
+    frame: Frame,
 ) -> tuple[int, float] | None:
     """The body (its number) that moves the fastest beside the second one, and how many times as fast, in the motion in
-    which it does so the most; None where that is not much."""
+    which it does so the most; None where that is not much. None that are `guided` (nodes,) count."""
     places: dict[int, list[Array]] = {}
     for edge, found in zip(edges, touching, strict=True):
         for patch, node in product(found, edge):
-            if node > 1:
+            if not guided[node]:
                 places.setdefault(node, []).append(patch.points.mean(axis=0))
     if not places:
         return None
@@ -116,7 +143,7 @@ def _wedged(
     of = np.array([node for node, at in places.items() for _ in at])
     at = np.concatenate(list(places.values())).reshape(-1, 3)
     moved = motions[:, of, 3:] + cross(motions[:, of, :3], at)
-    own = scaled(motions[:, 1].T, frame).T
+    own = second_moves(motions, frame).T
     left, values, _ = np.linalg.svd(own, full_matrices=True)
     rank = int(np.count_nonzero(values > constants.EXACT_PAIR * values.max(initial=0.0)))
     if not rank:

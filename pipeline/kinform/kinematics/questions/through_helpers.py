@@ -15,12 +15,12 @@ from collections.abc import Set as AbstractSet
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import Frame, scaled, span, twist_at_origin
+from kinform.foundation.algebra.screws import Frame, span, twist_at_origin
 from kinform.foundation.algebra.vectors import box, norm
 from kinform.frozen import dataclass
 from kinform.kinematics.loops.assembly_closure import body_twists, close
 from kinform.kinematics.pair.lower_pairs import JointForm, name_space
-from kinform.kinematics.questions.rolling import Rolling, rolling
+from kinform.kinematics.questions.rolling import Rolling, rolling, second_moves
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint, Kinematics
@@ -64,7 +64,7 @@ def motion_through_helpers(
     if not len(points):
         points = np.array([patches[k].point for j in joints for k in j.patches if k < len(patches)]).reshape(-1, 3)
     frame = _frame(points, size)
-    basis = span(scaled(motions[:, 1].T, frame))
+    basis = span(second_moves(motions, frame))
     names = tuple(sorted(helpers))
     known = rolling(joints, edges, nodes, patches, motions, frame)
     return HelperMotion(
