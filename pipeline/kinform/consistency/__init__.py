@@ -41,7 +41,7 @@ __all__ = [
     "with_baseline",
 ]
 
-CODE_VERSION: int = 51
+CODE_VERSION: int = 52
 
 __getattr__ = first_used(
     __name__,

@@ -6,7 +6,7 @@
 | not held | leaves the intended motion free, and more |
 | contradicts | forbids the intended motion, or gives the joint elsewhere |
 | no contact | there is none between the two bodies |
-| undecided | neither |
+| undecided | neither; or there is none, and a part with play between the two may carry the joint |
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ def _kind(tolerances: Tolerances, c: Comparison) -> tuple[str, str, str]:
     if c.state == "taken":
         assert c.joint is not None
         if not c.joint.patches:
-            return "no contact", "", ""
+            return "undecided" if c.afloat else "no contact", "", ""
         reading = c.joint.readings[0]
         if reading.cause == "doubt":
             return "undecided", "", ""

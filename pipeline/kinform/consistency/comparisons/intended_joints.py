@@ -15,6 +15,7 @@ from kinform.frozen import dataclass
 from kinform.kinematics.bodies.as_stated import leaves_free
 from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.partition.parting import joint_twists
+from kinform.kinematics.questions.afloat import AfloatParts, may_carry
 from kinform.kinematics.questions.rolling import Rolling
 from kinform.kinematics.questions.through_helpers import HelperMotion, motion_through_helpers
 from kinform.model.arrays import Array
@@ -38,6 +39,8 @@ class Comparison:
     `state`: stated (the joint comes from the function, nothing to compare), taken (the function states all joints, and
     this one as contact leaves it free without holding it, or does not touch it), one body (both sides are
     one body), absent (no contact, direct or through loose parts), undecided (`reason` says why), found.
+    Where there is no contact and a part that has play may carry the joint, `afloat` says so of a state that is taken,
+    and it is the reason of one that is undecided.
     """
 
     intended: IntendedJoint
@@ -64,6 +67,8 @@ class Comparison:
     """m: diagonal of the smaller body."""
     loose: bool = False
     """The joint is stated as fixed, which makes its sides one body, and contact would part them as `type` says."""
+    afloat: str = ""
+    """That there is no contact, and a part with play between the sides may carry the joint: in words."""
     position_limit: float = 0.0
     """By so much the axis or centre may lie beside the intended one (m)."""
 
@@ -109,8 +114,8 @@ def bodies_of(assembly: Assembly, kinematics: Kinematics, between: tuple[str, st
 class _Known:
     """What is asked about each of many intended joints, and the same for all."""
 
-    def __init__(self, assembly: Assembly, kinematics: Kinematics):
-        self._assembly, self._kinematics = assembly, kinematics
+    def __init__(self, assembly: Assembly, contacts: Contacts | None, kinematics: Kinematics):
+        self._assembly, self._contacts, self._kinematics = assembly, contacts, kinematics
 
     @cached_property
     def named(self) -> frozenset[str]:
@@ -123,13 +128,24 @@ class _Known:
         """Of the assembly."""
         return Extents(self._assembly)
 
+    @cached_property
+    def _parts_afloat(self) -> AfloatParts | None:
+        return AfloatParts(self._assembly, self._contacts) if self._contacts is not None else None
+
+    def afloat(self, first: str, second: str) -> str:
+        """What may carry a joint of two bodies between which there is no contact, in words; "" where nothing does."""
+        if self._parts_afloat is None:
+            return ""
+        one = may_carry(self._parts_afloat, self._kinematics, first, second, self.named)
+        return one.words() if one is not None else ""
+
 
 def compare_joints(
     assembly: Assembly, contacts: Contacts | None, kinematics: Kinematics, intended: Iterable[IntendedJoint]
 ) -> list[Comparison]:
     """The intended joints beside what the geometry of their two bodies, and of loose parts that connect them, leaves
     free."""
-    known = _Known(assembly, kinematics)
+    known = _Known(assembly, contacts, kinematics)
     return [_compared(assembly, contacts, kinematics, one, known) for one in intended]
 
 
@@ -149,7 +165,8 @@ def _compared(
         )
     direct = next(iter(kinematics.joints_between(first.name, second.name)), None)
     if direct is not None and direct.status == "stated":
-        return Comparison(intended, bodies, "taken", direct.reason, joint=direct)
+        afloat = "" if direct.patches else known.afloat(first.name, second.name)
+        return Comparison(intended, bodies, "taken", afloat or direct.reason, joint=direct, afloat=afloat)
     if direct is not None and direct.evidence == ("function",):
         return Comparison(intended, bodies, "stated", "the joint is taken from the function", joint=direct)
     size = _smaller(known.extents, bodies)
@@ -159,7 +176,8 @@ def _compared(
     if motion is not None:
         used = motion.joints
     if not used:
-        return Comparison(intended, bodies, "absent")
+        afloat = known.afloat(first.name, second.name)
+        return Comparison(intended, bodies, "undecided" if afloat else "absent", afloat, afloat=afloat)
     patches = [contacts.patches[k] for j in used for k in j.patches] if contacts is not None else []
     angle_slack, position_slack = _slack(patches)
     if motion is None and direct is not None:
