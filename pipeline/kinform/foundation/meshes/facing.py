@@ -61,7 +61,7 @@ def facing(first: Array, second: Array, distance: float, opposed: float) -> Faci
         out.append((i[near_by], j[near_by], gaps[near_by]))
     if not out:
         return Facing.of_none()
-    one, two = (joined([row[k] for row in out]) for k in range(2))
+    one, two = joined([i for i, *_ in out]), joined([j for _, j, _ in out])
     return Facing(normals.take(one, axis=0), others.take(two, axis=0), joined([gaps for *_, gaps in out]))
 
 
