@@ -60,11 +60,12 @@ def _doubt(context: Context, clusters: list[tuple[str, ...]], afloat: list[Afloa
 def _with_play(context: Context, clusters: list[tuple[str, ...]]) -> tuple[list[tuple[str, ...]], list[Afloat]]:
     """The clusters, with those as one that parts with play are between, or may hold; and these parts."""
     units = context.afloat.units
-    of = {units[name]: k for k, cluster in enumerate(clusters) for name in cluster}
-    sets, found = UnionFind(len(clusters)), list(context.afloat.between(of))
+    known = {units[name]: k for k, cluster in enumerate(clusters) for name in cluster}
+    each = {unit: k for k, unit in enumerate(sorted(known))}
+    sets, found = UnionFind(len(clusters)), list(context.afloat.between(each, known))
     for one in found:
         for side in one.sides:
-            sets.union(of[one.name], of[side])
+            sets.union(known[one.name], known[side])
     joined: dict[int, list[str]] = {}
     for k, cluster in enumerate(clusters):
         joined.setdefault(sets.find(k), []).extend(cluster)

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from itertools import combinations
 
@@ -145,14 +145,17 @@ class AfloatParts:
             out[second][first].extend([])
         return out
 
-    def between(self, of: Mapping[str, int]) -> Iterator[Afloat]:
+    def between(self, of: Mapping[str, int], known: Mapping[str, int] | None = None) -> Iterator[Afloat]:
         """All that are between two units that are not of one kind, in the order of their names; `of`: the kind of each
-        unit, and none of those that do not count. What touches one that does not count is held by that."""
+        unit, and none of those that do not count. What touches one that does not count is held by that. Of units that
+        are `known` to belong together by one number nothing is asked."""
         for name in sorted(self._near.keys() - self.named):
             touched = self._touched[name]
             if all(unit in of for unit in touched):
                 around = sorted(unit for unit in self._near[name] if unit in of)
-                yield from self._between(name, around, of)
+                for sides in combinations(around, 2):
+                    if known is None or len({known[unit] for unit in (name, *sides)}) > 1:
+                        yield from self._between(name, sides, of)
 
     def may_join(self, of: Mapping[str, int]) -> Iterator[tuple[int, ...]]:
         """Kinds that parts may be between, by boxes alone: all that `between` finds are among them."""
@@ -161,21 +164,17 @@ class AfloatParts:
             if len(kinds) > 1 and all(unit in of for unit in self._touched[name]):
                 yield tuple(kinds)
 
-    def _between(self, name: str, around: Collection[str], of: Mapping[str, int]) -> Iterator[Afloat]:
-        if len({of[unit] for unit in around}) < 2:
+    def _between(self, name: str, sides: tuple[str, str], of: Mapping[str, int]) -> Iterator[Afloat]:
+        (first, second), touched = sides, self._touched[name]
+        if of[first] == of[second] or (first in touched and second in touched):
             return
-        touched = self._touched[name]
-        for first, second in combinations(around, 2):
-            if of[first] == of[second] or (first in touched and second in touched):
-                continue
-            if not self._in_bores.isdisjoint({(name, first), (name, second)}):
-                continue
-            one, other = self._faced(name, first), self._faced(name, second)
-            opposed = one.normals @ other.normals.T <= AFLOAT_OPPOSED
-            opposed &= ~self._held(name, one.normals, second, of)[:, None] & ~self._held(name, other.normals, first, of)
-            if opposed.any():
-                gaps = (None if first in touched else one.gap, None if second in touched else other.gap)
-                yield Afloat(name, (first, second), gaps)
+        if not self._in_bores.isdisjoint({(name, first), (name, second)}):
+            return
+        one, other = self._faced(name, first), self._faced(name, second)
+        opposed = one.normals @ other.normals.T <= AFLOAT_OPPOSED
+        opposed &= ~self._held(name, one.normals, second, of)[:, None] & ~self._held(name, other.normals, first, of)
+        if opposed.any():
+            yield Afloat(name, sides, (None if first in touched else one.gap, None if second in touched else other.gap))
 
     def _held(self, name: str, towards: Array, by: str, of: Mapping[str, int]) -> Flags:
         """(n,) whether contact of a unit with any of the kind of another keeps it from going towards directions
