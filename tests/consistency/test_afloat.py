@@ -39,7 +39,7 @@ def plates(lower, upper, radius=RADIUS):
 
 
 def design_of(solids, *, kind="planar", between=("low", "high"), X=None, scale=1e-3, complete=False, **more):
-    """A design whose function states a joint of the two, and none where these are ()."""
+    """A design whose function states a joint of the two along z, and none where these are ()."""
     X = np.eye(4) if X is None else X
     joints = (intended("slide", *between, kind, X[:3, 2], X[:3, 3]),) if between else ()
     parts = (part(name, solid, X, scale) for name, solid in solids.items())
@@ -247,6 +247,38 @@ def test_neither_pose_nor_names_nor_facets_change_it(seed):
         solids = {names[name]: solid for name, solid in {**plates(0.15, upper), "element": shape}.items()}
         between = (names["low"], names["high"])
         assert answer_of(solids, between=between, ground=names["low"], X=X) == expected
+
+
+def guided(side, gap=0.15):
+    """A block that lies on a plate, with an upright roller and its play between it and a wall of the plate: beside it,
+    or ahead of it along x."""
+    reach = 2 * RADIUS + 2 * gap
+    wall, block_on_it = box(-40, 40, 20, 30, -1, 12), box(-15, 15, -10, 20 - reach, 0, 10)
+    upright = rod(RADIUS, 2.5, 8.5, 40).translate((0, 20 - RADIUS - gap, 0))
+    turned = (0, 0, 0 if side == "beside" else -90)
+    return {
+        "low": block(90, 90, 10).translate((0, 0, -5)) + wall.rotate(turned),
+        "high": block_on_it.rotate(turned),
+        "element": upright.rotate(turned),
+    }
+
+
+@pytest.mark.parametrize("complete", [False, True])
+def test_more_is_not_denied_where_a_part_with_play_may_hold_it(complete):
+    """A block on a plate is no slide; a roller beside it may make it one, and a roller ahead of it does not."""
+    x = np.array([1.0, 0.0, 0.0])
+    joint = (replace(intended("slide", "low", "high", "prismatic"), axis=x),)
+
+    def outcome(solids):
+        design = design_of(solids, between=(), joints=joint, complete=complete)
+        ((answer,), (found, doubts)) = answers(design), told(design)
+        return answer.answer, "KF414" in found, "KF414" in doubts
+
+    beside = guided("beside")
+    assert outcome(beside) == ("undecided", False, True)
+    assert outcome(guided("ahead")) == ("not held", True, False)
+    assert outcome(guided("beside", 0.6)) == ("not held", True, False)
+    assert outcome({name: solid for name, solid in beside.items() if name != "element"}) == ("not held", True, False)
 
 
 def test_nothing_is_measured_where_joints_are_in_contact(monkeypatch):

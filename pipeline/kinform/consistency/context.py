@@ -14,8 +14,10 @@ from typing import Literal, TypeVar
 import numpy as np
 
 from kinform.behaviour import imposed_couplings
+from kinform.consistency.comparisons.comparison import Comparison
 from kinform.consistency.comparisons.couplings import coupled_through
-from kinform.consistency.comparisons.intended_joints import Comparison, bodies_of, compare_joints
+from kinform.consistency.comparisons.intended_joints import compare_joints
+from kinform.consistency.comparisons.known import bodies_of
 from kinform.consistency.comparisons.links import Weighed, weighed
 from kinform.consistency.comparisons.plausibility import Doubt, doubts
 from kinform.consistency.constants import DAMPED_UNSEEN

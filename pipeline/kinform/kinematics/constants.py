@@ -676,5 +676,8 @@ than 60° pushes out what is in it; tapered rollers have 4° to 30°."""
 AFLOAT_HELD = 0.5
 """Cosine from which on a contact keeps a part from going towards the other side: it hangs on what it touches then. The
 pockets of cages hold rollers by up to 0.2."""
+AFLOAT_OPPOSES = 0.35
+"""Speed, of that of a unit motion of two bodies, at which a part between them is pressed and may hold it: 21°, by which
+the facets of a roller that face its race may lean, while the race slides past."""
 AFLOAT_BORE = -0.5
 """Least cosine of the normals of one round contact down to which it does not go round a part: 120°."""

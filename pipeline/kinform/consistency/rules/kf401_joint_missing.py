@@ -14,7 +14,7 @@ Example: the pin of a hinge was left out, and the two leaves are 2 mm apart.
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.intended_joints import Comparison
+from kinform.consistency.comparisons.comparison import Comparison
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled
 from kinform.consistency.rule import Rule
@@ -23,7 +23,7 @@ from kinform.foundation.words import counted, length, quoted
 
 def check(context: Context) -> Outcome:
     """Intended joints without any contact."""
-    doubts = [f"'{c.intended.name}': {c.afloat}" for c in context.comparisons if c.afloat]
+    doubts = [f"'{c.intended.name}': {c.afloat}" for c in context.comparisons if c.afloat and not c.touch]
     return settled(
         (
             RULE.finding(

@@ -25,11 +25,13 @@ class Facing:
     """(k, 3) unit, out of the second."""
     gaps: Array
     """(k,) between the two facets."""
+    facets: Ints
+    """(k,) which of the first it is."""
 
     @staticmethod
     def of_none() -> Facing:
         """Where no facets face each other."""
-        return Facing(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0))
+        return Facing(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0, np.int64))
 
 
 def facing(first: Array, second: Array, distance: float, opposed: float) -> Facing:
@@ -40,8 +42,8 @@ def facing(first: Array, second: Array, distance: float, opposed: float) -> Faci
         return Facing.of_none()
     low, high = (np.asarray(side) for side in triangle_boxes(second))
     origin = 0.5 * (low.min(axis=0) + high.max(axis=0))
-    near = _beside(first, low.min(axis=0) - distance, high.max(axis=0) + distance)
-    first, second = first.take(near, axis=0) - origin, second - origin
+    asked = _beside(first, low.min(axis=0) - distance, high.max(axis=0) + distance)
+    first, second = first.take(asked, axis=0) - origin, second - origin
     if not len(first):
         return Facing.of_none()
     low, high = triangle_boxes(first)
@@ -61,8 +63,10 @@ def facing(first: Array, second: Array, distance: float, opposed: float) -> Faci
         out.append((i[near_by], j[near_by], gaps[near_by]))
     if not out:
         return Facing.of_none()
-    one, two = joined([i for i, *_ in out]), joined([j for _, j, _ in out])
-    return Facing(normals.take(one, axis=0), others.take(two, axis=0), joined([gaps for *_, gaps in out]))
+    one, two, gaps = (
+        joined([i for i, *_ in out]), joined([j for _, j, _ in out]), joined([gaps for *_, gaps in out])
+    )  # fmt: skip
+    return Facing(normals.take(one, axis=0), others.take(two, axis=0), gaps, asked.take(one))
 
 
 def triangles_apart(first: Array, second: Array) -> Array:

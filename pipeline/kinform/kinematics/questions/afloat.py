@@ -18,13 +18,15 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from functools import cached_property
 from itertools import combinations
 
 import numpy as np
 
 from kinform.contacts.constants import MATING_REACH
+from kinform.foundation.algebra.screws import Frame, rows
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.meshes.facing import Facing, facing
@@ -38,8 +40,9 @@ from kinform.kinematics.constants import (
     AFLOAT_FACES,
     AFLOAT_HELD,
     AFLOAT_OPPOSED,
+    AFLOAT_OPPOSES,
 )
-from kinform.model.arrays import Array, Flags
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.kinematics import Kinematics
@@ -49,7 +52,7 @@ _BORES = ("cylinder", "cone", "helicoid")
 """Kinds of contact that go round a part."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Afloat:
     """A part, or a group of them by its name, between two others with play."""
 
@@ -58,6 +61,10 @@ class Afloat:
     """The two, sorted."""
     gaps: tuple[float | None, float | None]
     """m from either; None where it touches."""
+    normals: Array
+    """(k, 3) out of it, where it faces the first and the second is on the other side."""
+    places: Array
+    """(k, 3) m: corners of these facets."""
 
     def words(self) -> str:
         """What is known and what is not, as a sentence without its end."""
@@ -85,6 +92,10 @@ class _Faced:
 
     normals: Array
     """(k, 3) out of the one, distinct."""
+    facets: Array
+    """(n, 3, 3) m: of the one."""
+    number: Ints
+    """(n,) which of the normals that of each facet is."""
     gap: float
     """m: the least."""
 
@@ -174,7 +185,11 @@ class AfloatParts:
         opposed = one.normals @ other.normals.T <= AFLOAT_OPPOSED
         opposed &= ~self._held(name, one.normals, second, of)[:, None] & ~self._held(name, other.normals, first, of)
         if opposed.any():
-            yield Afloat(name, sides, (None if first in touched else one.gap, None if second in touched else other.gap))
+            there = opposed.any(axis=1).take(one.number)
+            yield Afloat(
+                name, sides, (None if first in touched else one.gap, None if second in touched else other.gap),
+                one.normals.take(one.number[there], axis=0).repeat(3, axis=0), one.facets[there].reshape(-1, 3),
+            )  # fmt: skip
 
     def _held(self, name: str, towards: Array, by: str, of: Mapping[str, int]) -> Flags:
         """(n,) whether contact of a unit with any of the kind of another keeps it from going towards directions
@@ -188,13 +203,18 @@ class AfloatParts:
         """Where a unit faces another one within the contact tolerance, and either is round."""
         key = (name, other)
         if key not in self._facing:
-            found = [self._facets(*pair) for pair in self._near[name][other]]
+            pairs = self._near[name][other]
+            found = [self._facets(*pair) for pair in pairs]
             mine, others = (
                 np.concatenate(rows) for rows in zip(*((one.normals, one.others) for one in found), strict=True)
             )
             faces = (dot(mine, others) <= AFLOAT_FACES) & (_bend(mine) or _bend(others))
             gap = np.concatenate([one.gaps for one in found])[faces].min(initial=math.inf)
-            self._facing[key] = _Faced(np.unique(mine[faces].round(AFLOAT_DIGITS), axis=0), float(gap))
+            corners = np.concatenate(
+                [self._corners(part)[one.facets] for (part, _), one in zip(pairs, found, strict=True)]
+            )
+            normals, number = np.unique(mine[faces].round(AFLOAT_DIGITS), axis=0, return_inverse=True)
+            self._facing[key] = _Faced(normals, corners[faces], number.ravel(), float(gap))
         return self._facing[key]
 
     def _facets(self, part: PartName, other: PartName) -> Facing:
@@ -215,33 +235,62 @@ def _bend(normals: Array) -> bool:
 
 
 def may_carry(
-    parts: AfloatParts, kinematics: Kinematics, first: str, second: str, named: Iterable[str]
+    parts: AfloatParts, kinematics: Kinematics, first: str, second: str, named: AbstractSet[str]
 ) -> Afloat | None:
     """A part with play by which two bodies may be connected that are not by contact: directly, or by way of bodies that
     are neither named nor ground and of others with play. None where it is sure that they are not."""
-    loose = {body.name for body in kinematics.bodies if not body.ground} - {*named}
-    index = {name: k for k, name in enumerate(sorted(loose | {first, second}))}
-    sets = UnionFind(len(index))
-    for joint in kinematics.joints_among(index.keys()):
-        if {*joint.bodies} != {first, second}:
-            sets.union(*(index[name] for name in joint.bodies))
-    body_of = {str(part): body.name for body in kinematics.bodies for part in body.parts}
-    of = {unit: sets.find(index[body_of[part]]) for part, unit in parts.units.items() if body_of[part] in index}
-    ends = sets.find(index[first]), sets.find(index[second])
-    if not _joined(ends, parts.may_join(of), len(index)):
+    of = _of_bodies(parts, kinematics, (first, second), named)
+    number = {body: k for k, body in enumerate(sorted({*of.values()}))}
+    if first not in number or second not in number:
         return None
-    found = UnionFind(len(index))
-    for one in parts.between(of):
-        found.union(*(of[side] for side in one.sides))
+    touching = UnionFind(len(number))
+    for joint in kinematics.joints_among(number.keys()):
+        if {*joint.bodies} != {first, second}:
+            touching.union(*(number[name] for name in joint.bodies))
+    kinds = {unit: touching.find(number[body]) for unit, body in of.items()}
+    ends = [touching.find(number[name]) for name in (first, second)]
+    near = UnionFind(len(number))
+    for some in parts.may_join(kinds):
+        for other in some[1:]:
+            near.union(some[0], other)
+    if near.find(ends[0]) != near.find(ends[1]):
+        return None
+    found = UnionFind(len(number))
+    for one in parts.between(kinds):
+        found.union(*(kinds[side] for side in one.sides))
         if found.find(ends[0]) == found.find(ends[1]):
             return one
     return None
 
 
-def _joined(ends: tuple[int, int], kinds: Iterable[tuple[int, ...]], count: int) -> bool:
-    sets = UnionFind(count)
-    for some in kinds:
-        first, *others = some
-        for other in others:
-            sets.union(first, other)
-    return sets.find(ends[0]) == sets.find(ends[1])
+def may_hold(
+    parts: AfloatParts,
+    kinematics: Kinematics,
+    bodies: Sequence[str],
+    named: AbstractSet[str],
+    motions: tuple[Array, Frame] | None,
+) -> Afloat | None:
+    """A part with play between two of these bodies that are connected by contact, the first two and loose ones beside
+    them: it may hold some of the motions of the second relative to the first, scaled columns (6, k), orthonormal; None:
+    any. None where it is sure that there is no such part."""
+    of = _of_bodies(parts, kinematics, bodies, named)
+    number = {body: k for k, body in enumerate(sorted({*of.values()}))}
+    for one in parts.between({unit: number[body] for unit, body in of.items()}):
+        between = {of[side] for side in one.sides}
+        if between <= {*bodies} and (motions is None or between != {*bodies[:2]} or _opposes(one, *motions)):
+            return one
+    return None
+
+
+def _opposes(one: Afloat, motions: Array, frame: Frame) -> bool:
+    """Whether some of these motions (6, k) bring the two sides of a part nearer to each other where it is."""
+    speeds = rows(one.places, one.normals, frame) @ motions
+    return bool((np.linalg.norm(speeds, axis=1) >= AFLOAT_OPPOSES).any())
+
+
+def _of_bodies(
+    parts: AfloatParts, kinematics: Kinematics, bodies: Sequence[str], named: AbstractSet[str]
+) -> dict[str, str]:
+    """The body of each unit of these bodies, and of those that are neither named nor ground."""
+    asked = [one for one in kinematics.bodies if one.name in bodies or not (one.ground or one.name in named)]
+    return {parts.units[part]: str(body.name) for body in asked for part in body.parts}
