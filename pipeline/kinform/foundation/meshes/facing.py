@@ -11,6 +11,7 @@ from kinform.foundation.joined import joined
 from kinform.foundation.meshes.box_pairs import meeting_in_slabs
 from kinform.foundation.meshes.boxes import meeting_box, triangle_boxes
 from kinform.foundation.meshes.closest import distances_between
+from kinform.foundation.meshes.proximity import near_boxes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 
@@ -40,15 +41,15 @@ def facing(first: Array, second: Array, distance: float, opposed: float) -> Faci
     are."""
     if not len(first) or not len(second):
         return Facing.of_none()
-    low, high = (np.asarray(side) for side in triangle_boxes(second))
-    origin = 0.5 * (low.min(axis=0) + high.max(axis=0))
-    asked = _beside(first, low.min(axis=0) - distance, high.max(axis=0) + distance)
-    first, second = first.take(asked, axis=0) - origin, second - origin
-    if not len(first):
+    keep, beside = near_boxes(*triangle_boxes(first), *triangle_boxes(second), distance)
+    asked = np.flatnonzero(keep)
+    first, second = first.take(asked, axis=0), second[beside]
+    if not len(first) or not len(second):
         return Facing.of_none()
+    origin = first[0, 0].copy()
+    first -= origin
+    second -= origin
     low, high = triangle_boxes(first)
-    near = _beside(second, low.min(axis=0) - distance, high.max(axis=0) + distance)
-    second = second.take(near, axis=0)
     one, two = _meeting((low - distance, high + distance), triangle_boxes(second))
     normals, others = _normals(first), _normals(second)
     opposing = dot(normals.take(one, axis=0), others.take(two, axis=0)) <= opposed
@@ -57,7 +58,8 @@ def facing(first: Array, second: Array, distance: float, opposed: float) -> Faci
     for start in range(0, len(one), FACING_AT_ONCE):
         i, j = one[start : start + FACING_AT_ONCE], two[start : start + FACING_AT_ONCE]
         mine, other = first.take(i, axis=0), second.take(j, axis=0)
-        front = _in_front(mine, normals.take(i, axis=0), other) & _in_front(other, others.take(j, axis=0), mine)
+        front = _in_front(mine, normals.take(i, axis=0), other, distance)
+        front &= _in_front(other, others.take(j, axis=0), mine, distance)
         i, j, gaps = i[front], j[front], triangles_apart(mine[front], other[front])
         near_by = gaps <= distance
         out.append((i[near_by], j[near_by], gaps[near_by]))
@@ -93,10 +95,11 @@ def _segments_apart(p: Array, u: Array, q: Array, v: Array) -> Array:
     return np.sqrt(dot(away, away))
 
 
-def _in_front(mine: Array, normals: Array, other: Array) -> Flags:
-    """(k,) whether any corner of other triangles (k, 3, 3) is in front of the planes of these, with normals (k, 3)."""
+def _in_front(mine: Array, normals: Array, other: Array, distance: float) -> Flags:
+    """(k,) whether other triangles (k, 3, 3) come in front of the planes of these, with normals (k, 3), and within a
+    distance of them."""
     heights = ((other - mine[:, :1]) * normals[:, None]).sum(axis=2)
-    return np.asarray(heights.max(axis=1) >= 0.0)
+    return np.asarray((heights.max(axis=1) >= 0.0) & (heights.min(axis=1) <= distance))
 
 
 def _normals(corners: Array) -> Array:
@@ -104,10 +107,6 @@ def _normals(corners: Array) -> Array:
     spans = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.sqrt(dot(spans, spans))
     return np.asarray(spans / np.where(length > 0.0, length, 1.0)[:, None])
-
-
-def _beside(corners: Array, low: Array, high: Array) -> Ints:
-    return np.flatnonzero(meeting_box(*triangle_boxes(corners), low, high))
 
 
 def _meeting(first: tuple[Array, Array], second: tuple[Array, Array]) -> tuple[Ints, Ints]:

@@ -181,6 +181,9 @@ class AfloatParts:
             return
         if not self._in_bores.isdisjoint({(name, first), (name, second)}):
             return
+        # of the one that it touches more is near, and mostly the other is not
+        if not all(len(self._faced(name, side).facets) for side in sorted(sides, key=touched.__contains__)):
+            return
         one, other = self._faced(name, first), self._faced(name, second)
         opposed = one.normals @ other.normals.T <= AFLOAT_OPPOSED
         opposed &= ~self._held(name, one.normals, second, of)[:, None] & ~self._held(name, other.normals, first, of)
