@@ -35,11 +35,12 @@ def test_the_joint_of_a_bearing_is_told(kind, k):
 @pytest.mark.parametrize("play", [0.002, 0.035])
 @pytest.mark.parametrize("kind", KINDS)
 def test_play_makes_nothing_certain_that_is_wrong(kind, play):
-    """Elements that keep farther apart from their races than parts that touch do are not in contact with these."""
+    """Elements that keep farther apart from their races than parts that touch do are not in contact with these, and may
+    carry them all the same."""
     size = replace(SIZES[1], play=play * SIZES[1].element)
     found = answers_of(KINDS[kind](size), np.random.default_rng(7))
     outcome, why = found.outcome()
-    assert outcome in ("agrees", "undecided") or (play > 0.01 and found.right.answer == "no contact"), why
+    assert outcome in ("agrees", "undecided"), why
 
 
 def shifted(bearing: Bearing, by: float) -> Bearing:

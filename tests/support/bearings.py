@@ -16,7 +16,8 @@ from random_assemblies.lathe import turned
 
 from kinform import contacts, kinematics, surfaces
 from kinform.consistency.comparisons.answers import Answer, answer_of
-from kinform.consistency.comparisons.intended_joints import FROM_GEOMETRY, compare_joints
+from kinform.consistency.comparisons.comparison import FROM_GEOMETRY
+from kinform.consistency.comparisons.intended_joints import compare_joints
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Kinematics
 from support.assemblies import assembly, intended

@@ -14,7 +14,8 @@ from kinform.model.findings import verdict
 
 if TYPE_CHECKING:
     from kinform.consistency.baseline import Baseline, adopt, read_baseline, with_baseline
-    from kinform.consistency.comparisons.intended_joints import Comparison, compare_joints
+    from kinform.consistency.comparisons.comparison import Comparison
+    from kinform.consistency.comparisons.intended_joints import compare_joints
     from kinform.consistency.documentation import UnknownRuleError, explain, rules_markdown
     from kinform.consistency.inspection import amended, check, margins
     from kinform.consistency.outcome import Outcome
@@ -50,7 +51,7 @@ __getattr__ = first_used(
         "adopt": "baseline",
         "read_baseline": "baseline",
         "with_baseline": "baseline",
-        "Comparison": "comparisons.intended_joints",
+        "Comparison": "comparisons.comparison",
         "compare_joints": "comparisons.intended_joints",
         "UnknownRuleError": "documentation",
         "explain": "documentation",

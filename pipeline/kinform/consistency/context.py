@@ -6,7 +6,7 @@ hands on (`lacks`). Properties that give the result of a stage may be read where
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import field
 from functools import cached_property
 from typing import Literal, TypeVar
@@ -14,8 +14,10 @@ from typing import Literal, TypeVar
 import numpy as np
 
 from kinform.behaviour import imposed_couplings
+from kinform.consistency.comparisons.comparison import Comparison
 from kinform.consistency.comparisons.couplings import coupled_through
-from kinform.consistency.comparisons.intended_joints import Comparison, bodies_of, compare_joints
+from kinform.consistency.comparisons.intended_joints import compare_joints
+from kinform.consistency.comparisons.known import bodies_of
 from kinform.consistency.comparisons.links import Weighed, weighed
 from kinform.consistency.comparisons.plausibility import Doubt, doubts
 from kinform.consistency.constants import DAMPED_UNSEEN
@@ -23,6 +25,7 @@ from kinform.consistency.outcome import Answer, Outcome, inconclusive, skipped, 
 from kinform.design import Design
 from kinform.foundation.meshes.shell_faults import ShellFaults, shell_faults
 from kinform.frozen import dataclass
+from kinform.kinematics import Afloat, AfloatParts
 from kinform.model.assembly import Assembly, MassOverride, Mesh, Part
 from kinform.model.checks import Ignore
 from kinform.model.contacts import Contacts
@@ -256,6 +259,20 @@ class Context:
     def kinematics(self) -> Kinematics:
         """Joints and mobility."""
         return self._result("kinematics", self.design.kinematics)
+
+    @cached_property
+    def afloat(self) -> AfloatParts:
+        """Parts with play between two others that they do not both touch."""
+        return AfloatParts(self.assembly, self.contacts)
+
+    def with_play(self, parts: Iterable[str] | None = None) -> Afloat | None:
+        """The first part with play between two bodies, of some parts or of all, that it does not both touch: what these
+        leave free may be held by it. None where the function states all joints, which decide then."""
+        if self.kinematics.membership:
+            return None
+        number = {str(part): k for k, body in enumerate(self.kinematics.bodies) for part in body.parts}
+        some = self.afloat.units if parts is None else {name: self.afloat.units[name] for name in parts}
+        return next(self.afloat.between({unit: number[name] for name, unit in some.items()}), None)
 
     @cached_property
     def mass(self) -> MassReport:

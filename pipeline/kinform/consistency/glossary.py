@@ -47,7 +47,11 @@ GLOSSARY: dict[str, tuple[str, str]] = {
         "Where a horn or a flange is between them, name the part that touches in `between`, put the parts into a "
         "[[group]], or state all joints with `complete = true`.",
     ),
-    "undecided": (ANSWER, "Contact does not tell whether it is this joint (KF901); the reason is given."),
+    "undecided": (
+        ANSWER,
+        "Contact does not tell whether it is this joint (KF901), or a part with play may carry it (KF401); the "
+        "reason is given.",
+    ),
     "fixed": (TYPE, "No freedom: the bodies do not move relative to each other."),
     "revolute": (TYPE, "One freedom: a turn about an axis, as a hinge or a journal between collars."),
     "prismatic": (TYPE, "One freedom: a slide along a direction, as a drawer or a key in its way."),

@@ -251,6 +251,11 @@ APART_AT_ONCE = 4096
 APART_ROUNDED = 1e-6
 """Share of a distance by which what keeps it is further apart."""
 
+# meshes/facing
+
+FACING_AT_ONCE = 20_000
+"""Pairs of facets that are measured at once: 20 MB."""
+
 # meshes/bulges
 
 BULGE = 0.35

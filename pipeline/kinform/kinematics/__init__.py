@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from kinform.kinematics.mobility.named_freedoms import Motions
     from kinform.kinematics.partition import propose, proposed_joints, stated_proposals
     from kinform.kinematics.questions.adrift import adrift, adrift_in_words
+    from kinform.kinematics.questions.afloat import Afloat, AfloatParts
     from kinform.kinematics.questions.intended_freedoms import IntendedAnswer, IntendedMotion, intended_answers
     from kinform.kinematics.questions.joint_insight import Insight, insight
     from kinform.kinematics.questions.motion_query import QueryAnswer, QueryBlocker, query
@@ -36,6 +37,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "CODE_VERSION",
+    "Afloat",
+    "AfloatParts",
     "Correction",
     "Insight",
     "IntendedAnswer",
@@ -79,6 +82,8 @@ __getattr__ = first_used(
         "stated_proposals": "partition",
         "adrift": "questions.adrift",
         "adrift_in_words": "questions.adrift",
+        "Afloat": "questions.afloat",
+        "AfloatParts": "questions.afloat",
         "IntendedAnswer": "questions.intended_freedoms",
         "IntendedMotion": "questions.intended_freedoms",
         "intended_answers": "questions.intended_freedoms",

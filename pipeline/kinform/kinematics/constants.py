@@ -657,3 +657,27 @@ NEAR_SETTLED = 1e-13
 """Change of a round after which nothing more is gained."""
 NEAR_CLOSED = 1e-12
 """rad, and shares of the size, by which loops may be open that close."""
+
+# questions/afloat
+
+AFLOAT_FACES = -0.93
+"""Greatest cosine between the normals of two facets that face each other, 21°, as of freeform faces that rest on each
+other: rounds in coarse meshes have no facets that oppose each other better."""
+AFLOAT_BESIDE = -0.7
+"""The same of facets that tell whether one of the two bends there, 45°: the neighbours of a facet of a coarse roller. A
+face that stands askew, with an edge near, has one direction within that."""
+AFLOAT_BENDS = math.radians(1.0)
+"""rad: facets that differ by more bend."""
+AFLOAT_DIGITS = 2
+"""Of the coordinates of directions that are told apart, for the next."""
+AFLOAT_OPPOSED = -0.5
+"""Greatest cosine between the directions in which a part has its two sides for it to be between them. A wedge wider
+than 60° pushes out what is in it; tapered rollers have 4° to 30°."""
+AFLOAT_HELD = 0.5
+"""Cosine from which on a contact keeps a part from going towards the other side: it hangs on what it touches then. The
+pockets of cages hold rollers by up to 0.2."""
+AFLOAT_OPPOSES = 0.35
+"""Speed, of that of a unit motion of two bodies, at which a part between them is pressed and may hold it: 21°, by which
+the facets of a roller that face its race may lean, while the race slides past."""
+AFLOAT_BORE = -0.5
+"""Least cosine of the normals of one round contact down to which it does not go round a part: 120°."""

@@ -15,7 +15,7 @@ from kinform.function import FREEDOMS, acted_freedom, resolve_joint
 def _single_freedom(context: Context, name: str, freedom: str) -> tuple[str, str]:
     """("", "") when a freedom of the joint of this name is meant; else ("absent" or "unknown", why)."""
     resolution = resolve_joint(context.assembly, context.kinematics, name)
-    joint, carried = resolution.joint, loose_carriers(context, name)
+    joint, carried = resolution.joint, loose_carriers(context, name) or _afloat(context, name)
     if joint is None:
         return ("unknown", carried) if carried else ("absent", resolution.reason)
     if joint.status == "ambiguous":
@@ -63,6 +63,12 @@ def without_freedom(
                 )
             )
     return settled(findings, "; ".join(dict.fromkeys(unknown)))
+
+
+def _afloat(context: Context, name: str) -> str:
+    """That the joint of this name may be carried by a part with play; else ""."""
+    every = () if context.lacks("comparisons") else context.comparisons
+    return next((f"joint '{name}': {c.afloat}" for c in every if c.intended.name == name and c.afloat), "")
 
 
 def loose_carriers(context: Context, name: str) -> str:

@@ -6,7 +6,7 @@
 | not held | leaves the intended motion free, and more |
 | contradicts | forbids the intended motion, or gives the joint elsewhere |
 | no contact | there is none between the two bodies |
-| undecided | neither |
+| undecided | neither; or a part with play between the two may carry the joint, or hold more of it |
 """
 
 from __future__ import annotations
@@ -15,12 +15,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.consistency.comparisons.intended_joints import Comparison, compare_joints
+from kinform.consistency.comparisons.comparison import Comparison, leaves_more
+from kinform.consistency.comparisons.intended_joints import compare_joints
 from kinform.design import Design
 from kinform.foundation.words import counted
 from kinform.frozen import dataclass
-from kinform.kinematics.bodies.as_stated import leaves_free
-from kinform.kinematics.partition.parting import joint_twists
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Body
 from kinform.model.tolerances import Tolerances
@@ -83,6 +82,8 @@ def _kind(tolerances: Tolerances, c: Comparison) -> tuple[str, str, str]:
     """The answer, what else is free, and what forbids it."""
     if c.state == "taken":
         assert c.joint is not None
+        if c.afloat:
+            return "undecided", "", ""
         if not c.joint.patches:
             return "no contact", "", ""
         reading = c.joint.readings[0]
@@ -104,17 +105,6 @@ def _kind(tolerances: Tolerances, c: Comparison) -> tuple[str, str, str]:
     if leaves_more(c):
         return "not held", f"{c.type}, {counted(c.freedoms, 'freedom')} by contact", ""
     return "contradicts", "", f"by contact it is {c.type}"
-
-
-def leaves_more(c: Comparison) -> bool:
-    """Whether the joint that was found leaves the intended motion free, and more beside."""
-    wanted = joint_twists(c.intended)
-    if c.state != "found" or c.right_type or c.twists is None or wanted is None:
-        return False
-    place = c.intended.point if c.intended.point is not None else c.point
-    if place is None or c.freedoms <= len(wanted):
-        return False
-    return leaves_free(c.twists, wanted, place, c.size)
 
 
 def _gap(assembly: Assembly, bodies: Sequence[Body]) -> float | None:

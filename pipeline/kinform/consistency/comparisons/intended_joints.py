@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
-from functools import cached_property
 
 import numpy as np
 
+from kinform.consistency.comparisons.comparison import FROM_GEOMETRY, Comparison
+from kinform.consistency.comparisons.known import Known
+from kinform.consistency.comparisons.with_play import with_play
 from kinform.consistency.constants import SHARED_MOTION
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.words import counted, quoted
-from kinform.frozen import dataclass
 from kinform.kinematics.bodies.as_stated import leaves_free, may_end
-from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.partition.parting import joint_twists
 from kinform.kinematics.questions.rolling import Rolling
 from kinform.kinematics.questions.through_helpers import HelperMotion, motion_through_helpers
@@ -23,118 +22,18 @@ from kinform.model.contacts import Contacts, Patch
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import FREEDOMS, Body, Joint, Kinematics, LeftOut
 
-STATES = ("stated", "taken", "one body", "absent", "undecided", "found")
-
-WITH_LINE = ("revolute", "cylindrical", "screw")
-"""Joints whose axis is a line: direction and position count."""
-FROM_GEOMETRY = ("fixed", "revolute", "prismatic", "cylindrical", "spherical", "planar")
-"""Joint types that contact alone can prove so far; of others only an assumption speaks."""
-
-
-@dataclass(frozen=True, eq=False)
-class Comparison:
-    """One intended joint and what was found of it. Angles in rad, lengths in m; None: not comparable.
-
-    `state`: stated (the joint comes from the function, nothing to compare), taken (the function states all joints, and
-    this one as contact leaves it free without holding it, or does not touch it), one body (both sides are
-    one body), absent (no contact, direct or through loose parts), undecided (`reason` says why), found.
-    """
-
-    intended: IntendedJoint
-    bodies: tuple[Body, Body]
-    state: str
-    reason: str = ""
-    type: str = ""
-    axis: Array | None = None
-    point: Array | None = None
-    axis2: Array | None = None
-    pitch: float | None = None
-    freedoms: int = 0
-    joint: Joint | None = None
-    """The direct joint of the two bodies."""
-    twists: Array | None = None
-    """(k, 6) what was found leaves free (ω; v at the world's origin)."""
-    through: tuple[str, ...] = ()
-    """Loose bodies that take part."""
-    angle_slack: float = 0.0
-    """Uncertainty of the found direction."""
-    position_slack: float = 0.0
-    """Uncertainty of the found position."""
-    size: float = 1.0
-    """m: diagonal of the smaller body."""
-    loose: bool = False
-    """The joint is stated as fixed, which makes its sides one body, and contact would part them as `type` says."""
-    position_limit: float = 0.0
-    """By so much the axis or centre may lie beside the intended one (m)."""
-
-    @property
-    def right_type(self) -> bool:
-        """Whether the joint is there and of the intended type."""
-        if self.state == "one body":
-            return self.intended.type == "fixed" and not self.loose
-        return self.state == "found" and self.type == self.intended.type
-
-    @property
-    def angle(self) -> float | None:
-        """Angle between the intended and the found axis, sign left aside."""
-        wanted, wanted2 = self.intended.axis, self.intended.axis2
-        if not self.right_type or wanted is None or self.axis is None:
-            return None
-        if wanted2 is None or self.axis2 is None:
-            return _between(wanted, self.axis)
-        straight = max(_between(wanted, self.axis), _between(wanted2, self.axis2))
-        crossed = max(_between(wanted, self.axis2), _between(wanted2, self.axis))
-        return min(straight, crossed)
-
-    @property
-    def offset(self) -> float | None:
-        """Distance of the found axis from the intended one, where the joint is; of centres for
-        spherical and universal joints."""
-        wanted = self.intended.point
-        if not self.right_type or wanted is None or self.point is None:
-            return None
-        if self.type in ("spherical", "universal"):
-            return float(np.linalg.norm(self.point - wanted))
-        if self.type not in WITH_LINE or self.intended.axis is None or self.axis is None:
-            return None
-        return _apart(self.intended.axis, wanted, self.axis, self.point)
-
-
-def bodies_of(assembly: Assembly, kinematics: Kinematics, between: tuple[str, str]) -> tuple[str, str]:
-    """Names of the bodies that contain two parts or groups."""
-    first, second = (kinematics.body_of(assembly.parts_of(name)[0]).name for name in between)
-    return first, second
-
-
-class _Known:
-    """What is asked about each of many intended joints, and the same for all."""
-
-    def __init__(self, assembly: Assembly, kinematics: Kinematics):
-        self._assembly, self._kinematics = assembly, kinematics
-
-    @cached_property
-    def named(self) -> frozenset[str]:
-        """Bodies that the function names."""
-        pairs = (bodies_of(self._assembly, self._kinematics, one.between) for one in self._assembly.function.joints)
-        return frozenset(name for pair in pairs for name in pair)
-
-    @cached_property
-    def extents(self) -> Extents:
-        """Of the assembly."""
-        return Extents(self._assembly)
-
 
 def compare_joints(
     assembly: Assembly, contacts: Contacts | None, kinematics: Kinematics, intended: Iterable[IntendedJoint]
 ) -> list[Comparison]:
     """The intended joints beside what the geometry of their two bodies, and of loose parts that connect them, leaves
     free."""
-    known = _Known(assembly, kinematics)
-    return [_compared(assembly, contacts, kinematics, one, known) for one in intended]
+    known = Known(assembly, contacts, kinematics)
+    return [with_play(_compared(assembly, contacts, kinematics, one, known), known) for one in intended]
 
 
 def _compared(
-    assembly: Assembly, contacts: Contacts | None, kinematics: Kinematics, intended: IntendedJoint, known: _Known
+    assembly: Assembly, contacts: Contacts | None, kinematics: Kinematics, intended: IntendedJoint, known: Known
 ) -> Comparison:
     first, second = (kinematics.body_of(assembly.parts_of(name)[0]) for name in intended.between)
     bodies = (first, second)
@@ -152,7 +51,7 @@ def _compared(
         return Comparison(intended, bodies, "taken", direct.reason, joint=direct)
     if direct is not None and direct.evidence == ("function",):
         return Comparison(intended, bodies, "stated", "the joint is taken from the function", joint=direct)
-    size = _smaller(known.extents, bodies)
+    size = known.smaller(bodies)
     every = contacts.patches if contacts is not None else ()
     motion = motion_through_helpers(kinematics, every, first.name, second.name, known.named, size)
     used: tuple[Joint, ...] = (direct,) if direct is not None else ()
@@ -271,30 +170,3 @@ def _slack(patches: list[Patch]) -> tuple[float, float]:
     if not patches:
         return 0.0, 0.0
     return max(p.uncertainty[0] for p in patches), max(p.uncertainty[1] for p in patches)
-
-
-def _smaller(extents: Extents, bodies: tuple[Body, Body]) -> float:
-    """Diagonal (m) of the smaller of the bodies that have one; of the assembly where none has."""
-    sizes = [size for body in bodies if (size := extents.diagonal(body.parts)) > 0.0]
-    return min(sizes) if sizes else extents.assembly
-
-
-def _between(a: Array, b: Array) -> float:
-    """Angle between two undirected lines (rad, 0 to π/2)."""
-    return math.atan2(float(np.linalg.norm(cross(a, b))), abs(float(a @ b)))
-
-
-def _apart(axis: Array, point: Array, other_axis: Array, other_point: Array) -> float:
-    """Least distance (m) of the second line from the first over the stretch between the two points.
-
-    Parallel lines: their distance. A tilt about any point of the stretch gives 0, so that a tilted
-    axis is not reported as displaced as well.
-    """
-    end = float(axis @ (other_point - point))
-    start = point - other_point
-    r0 = start - other_axis * float(other_axis @ start)
-    r1 = axis - other_axis * float(other_axis @ axis)
-    square = float(r1 @ r1)
-    at = -float(r0 @ r1) / square if square > 0.0 else 0.0
-    at = min(max(at, min(0.0, end)), max(0.0, end))
-    return float(np.linalg.norm(r0 + at * r1))

@@ -6,7 +6,8 @@ import math
 from dataclasses import replace
 
 from kinform.consistency import constants
-from kinform.consistency.comparisons.intended_joints import Comparison, bodies_of
+from kinform.consistency.comparisons.comparison import Comparison
+from kinform.consistency.comparisons.known import bodies_of
 from kinform.consistency.context import Context
 from kinform.foundation.words import angle, length, quoted
 from kinform.frozen import dataclass

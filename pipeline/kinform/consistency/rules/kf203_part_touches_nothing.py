@@ -3,8 +3,9 @@
 The connection is followed from the ground (without a known ground: from the largest cluster). Where the
 function intends a joint between the cluster and the rest, KF401 reports it as missing and this rule
 does not repeat it. Parts that overlap (KF201) touch. Where parts come as near each other as parts that touch do, and no
-contact that is known says how (KF209), or it is not known whether they overlap (KF210), the rule is inconclusive: it
-denies nothing that it does not know.
+contact that is known says how (KF209), it is not known whether they overlap (KF210), or a part has play between two
+others, less than the contact tolerance to either side, as balls and rollers between their races, the rule is
+inconclusive: it denies nothing that it does not know.
 
 Why it matters: a part that nothing holds has six freedoms. Usually its pose is wrong, a part between is
 missing, or the clearance is wider than the contact tolerance.
@@ -24,6 +25,7 @@ from kinform.consistency.outcome import Outcome, settled
 from kinform.consistency.rule import Rule
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.words import quoted
+from kinform.kinematics import Afloat
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
@@ -32,28 +34,57 @@ from kinform.model.findings import Finding
 
 def check(context: Context) -> Outcome:
     """Clusters of parts that are not connected with the ground."""
-    apart = _apart(context, unknown=True)
+    touching = _clusters(context.assembly, context.contacts, unknown=True)
+    apart, afloat = _apart(context, touching), list[Afloat]()
+    if apart:
+        near, afloat = _with_play(context, touching)
+        apart = _apart(context, near)
+    known = _apart(context, _clusters(context.assembly, context.contacts, unknown=False))
     sure = {name for cluster in apart for name in cluster}
-    doubtful = [cluster for cluster in _apart(context, unknown=False) if not sure.issuperset(cluster)]
-    names = quoted([cluster[0] for cluster in doubtful])
-    doubt = f"{names}: no contact that is known, but see KF209 and KF210" if doubtful else ""
-    return settled([_finding(context, cluster) for cluster in apart], doubt)
+    doubtful = [cluster for cluster in known if not sure.issuperset(cluster)]
+    found = [_finding(context, cluster, touch=cluster in touching) for cluster in apart]
+    return settled(found, _doubt(context, doubtful, afloat))
 
 
-def _apart(context: Context, *, unknown: bool) -> list[tuple[str, ...]]:
-    """The clusters that are not connected; contact of no known kind, and overlaps that are not sure, count or not."""
-    clusters = _clusters(context.assembly, context.contacts, unknown=unknown)
+def _doubt(context: Context, clusters: list[tuple[str, ...]], afloat: list[Afloat]) -> str:
+    """What is not known about some clusters, whether by parts with play or by contact of no known kind."""
+    names, units = {name for cluster in clusters for name in cluster}, context.afloat.units if afloat else {}
+    play = [one for one in afloat if any(units[name] in (one.name, *one.sides) for name in names)]
+    reached = {unit for one in play for unit in (one.name, *one.sides)}
+    others = [cluster[0] for cluster in clusters if not any(units.get(name) in reached for name in cluster)]
+    words = [f"{quoted(others)}: no contact that is known, but see KF209 and KF210"] if others else []
+    more = f" (and {len(play) - 1} more such)" if len(play) > 1 else ""
+    return "; ".join(words + [f"{one.words()}{more}" for one in play[:1]])
+
+
+def _with_play(context: Context, clusters: list[tuple[str, ...]]) -> tuple[list[tuple[str, ...]], list[Afloat]]:
+    """The clusters, with those as one that parts with play are between, or may hold; and these parts."""
+    units = context.afloat.units
+    known = {units[name]: k for k, cluster in enumerate(clusters) for name in cluster}
+    each = {unit: k for k, unit in enumerate(sorted(known))}
+    sets, found = UnionFind(len(clusters)), list(context.afloat.between(each, known))
+    for one in found:
+        for side in one.sides:
+            sets.union(known[one.name], known[side])
+    joined: dict[int, list[str]] = {}
+    for k, cluster in enumerate(clusters):
+        joined.setdefault(sets.find(k), []).extend(cluster)
+    return [tuple(sorted(names)) for names in joined.values()], found
+
+
+def _apart(context: Context, clusters: list[tuple[str, ...]]) -> list[tuple[str, ...]]:
+    """Those of the clusters that are not connected."""
     home = _home(context, clusters)
     return [cluster for cluster in clusters if cluster != home and not _intended(context.assembly, cluster)]
 
 
-def _finding(context: Context, cluster: tuple[str, ...]) -> Finding:
-    alone = len(cluster) == 1
+def _finding(context: Context, cluster: tuple[str, ...], *, touch: bool) -> Finding:
+    alone, play = len(cluster) == 1, "" if touch else ", or have play between each other"
     part = context.assembly.part(cluster[0])
     return RULE.finding(
         cluster,
         f"{quoted(cluster)} {'touches' if alone else 'touch'} "
-        f"{'no other part' if alone else 'each other, but no other part'}",
+        f"{'no other part' if alone else f'each other{play}, but no other part'}",
         found=f"no contact {'' if alone else 'with the rest '}that is known, and no point that comes as near "
         f"{'another part' if alone else 'it'} as parts that touch do",
         intended="contact with the rest of the assembly",
@@ -64,7 +95,8 @@ def _finding(context: Context, cluster: tuple[str, ...]) -> Finding:
 
 
 def _clusters(assembly: Assembly, contacts: Contacts, *, unknown: bool) -> list[tuple[str, ...]]:
-    """Parts connected by patches, overlaps, groups, assumptions, and stick bodies by their intended joints."""
+    """Parts connected by patches, overlaps, groups, assumptions, and stick bodies by their intended joints; contact of
+    no known kind, and overlaps that are not sure, count or not."""
     index = {str(part.name): k for k, part in enumerate(assembly.parts)}
     sets = UnionFind(len(index))
 

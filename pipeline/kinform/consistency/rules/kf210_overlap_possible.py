@@ -10,7 +10,7 @@ Why it matters: an overlap by less than facets stand off is not seen.
 
 What to do: export finer meshes of both parts where they meet, and check again.
 
-Example: a ball of 64 segments in a socket of 12, pushed into it by 0.1 mm.
+Example: a ball of 64 segments in the socket of 12 that it fits.
 """
 
 from __future__ import annotations

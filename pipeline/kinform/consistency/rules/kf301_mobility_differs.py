@@ -4,7 +4,8 @@ Compared with the *effective* mobility: independent motions of the whole assembl
 without freedoms that only spin or slide a single body on itself and that no intended joint names, and without
 freedoms that lead nowhere over a distance (KF305, KF306), where that is known. Blocked joints count by their
 type. Inconclusive when a joint is ambiguous, and where a body that no joint connects with ground overlaps with the
-rest: it would count as free, and what is drawn there may hold it.
+rest: it would count as free, and what is drawn there may hold it. So it is where there are too many freedoms, or bodies
+that nothing holds, and a part has play between two bodies (KF203): it may hold them.
 
 Why it matters: one freedom too few and the mechanism jams; one too many and something moves that no
 drive holds.
@@ -41,6 +42,11 @@ def check(context: Context) -> Outcome:
     mobility = kinematics.mobility
     if mobility.on_edge:
         return inconclusive(mobility.finite_reason)
+    adrift_bodies = any(freedom.driver is None for freedom in mobility.named)
+    if contacts is not None and (mobility.effective > intended or (mobility.effective == intended and adrift_bodies)):
+        afloat = context.with_play()
+        if afloat is not None:
+            return inconclusive(f"the counts take for free what may not be: {afloat.words()}")
     if mobility.effective == intended:
         return decided(reason=f"{counted(intended, 'freedom')}, as intended")
     whole, line = context.assembly.source, context.function.mobility_line

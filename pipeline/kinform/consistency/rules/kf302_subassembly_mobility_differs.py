@@ -2,7 +2,7 @@
 
 Why it matters: a sub-assembly that is reused, such as a motor, must move inside every design as it does
 on its own. Contacts with the surrounding parts are left out, and so are idle freedoms, as in KF301: pins and
-screws that only spin.
+screws that only spin. Inconclusive as in KF301.
 
 What to do: check the sub-assembly on its own with `kinform run`; correct it, or its `mobility`.
 
@@ -34,6 +34,10 @@ def check(context: Context) -> Outcome:
             continue
         idle = idle_within(kinematics, parts)
         mobility -= idle
+        too_many = sub.mobility is not None and mobility > sub.mobility
+        if too_many and context.design.contacts is not None and context.with_play(parts) is not None:
+            unknown.append(sub.name)
+            continue
         if mobility != sub.mobility:
             spinning = f" ({counted(idle, 'idle freedom')} not counted)" if idle else ""
             findings.append(
@@ -48,7 +52,8 @@ def check(context: Context) -> Outcome:
                 )
             )
     return settled(
-        findings, f"joints inside are ambiguous, or a rank is on the edge: {quoted(unknown)}" if unknown else ""
+        findings,
+        f"joints inside are ambiguous, parts have play, or a rank is on the edge: {quoted(unknown)}" if unknown else "",
     )
 
 

@@ -1,6 +1,8 @@
 """The function intends a joint between two bodies that do not touch.
 
-Contact through loose parts between them (a pin, a bearing) counts, if the function does not name them.
+Contact through loose parts between them (a pin, a bearing) counts, if the function does not name them. Where such a
+part has play between the two, less than the contact tolerance to either side, it is not known whether it carries the
+joint, and the rule is inconclusive.
 
 Why it matters: nothing carries the joint; the bodies move independently.
 
@@ -12,16 +14,17 @@ Example: the pin of a hinge was left out, and the two leaves are 2 mm apart.
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.intended_joints import Comparison
+from kinform.consistency.comparisons.comparison import Comparison
 from kinform.consistency.context import Context
-from kinform.consistency.outcome import Outcome, decided
+from kinform.consistency.outcome import Outcome, settled
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, length, quoted
 
 
 def check(context: Context) -> Outcome:
     """Intended joints without any contact."""
-    return decided(
+    doubts = [f"'{c.intended.name}': {c.afloat}" for c in context.comparisons if c.afloat and not c.touch]
+    return settled(
         (
             RULE.finding(
                 [c.intended.name],
@@ -35,14 +38,15 @@ def check(context: Context) -> Outcome:
             for c in context.comparisons
             if c.state == "absent" or _taken(c)
         ),
+        "; ".join(doubts),
         reason=f"{counted(len(context.comparisons), 'joint')} compared",
     )
 
 
 def _taken(comparison: Comparison) -> bool:
-    """Whether a complete function states the joint, and there is no contact."""
+    """Whether a complete function states the joint, and it is sure that there is no contact."""
     joint = comparison.joint
-    return comparison.state == "taken" and joint is not None and not joint.patches
+    return comparison.state == "taken" and joint is not None and not joint.patches and not comparison.afloat
 
 
 def _reason(context: Context, comparison: Comparison) -> str:

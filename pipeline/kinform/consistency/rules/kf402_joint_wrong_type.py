@@ -15,8 +15,7 @@ Example: a pitch axis whose shaft has a flat in its bore slides, and does not tu
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.answers import leaves_more
-from kinform.consistency.comparisons.intended_joints import Comparison
+from kinform.consistency.comparisons.comparison import Comparison, leaves_more
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled
 from kinform.consistency.rule import Rule

@@ -14,7 +14,7 @@ Example: the pitch axis of a gimbal was drilled 0.5° off square.
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.intended_joints import Comparison
+from kinform.consistency.comparisons.comparison import Comparison
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive, skipped
 from kinform.consistency.rule import Rule

@@ -15,7 +15,7 @@ Example: a hinge that was moved 2 mm in the CAD model, and not in the manifest.
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.intended_joints import Comparison
+from kinform.consistency.comparisons.comparison import Comparison
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive, skipped
 from kinform.consistency.rule import Rule

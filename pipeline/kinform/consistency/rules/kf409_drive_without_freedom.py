@@ -3,7 +3,8 @@
 Of a joint with several freedoms the one is driven that `freedom` names, or that the type of the intended joint means,
 or that the rest of the assembly leaves: a round ram slides where pins hold its spin, or where its spin is idle.
 
-Inconclusive when the joint is ambiguous, general, or carried by loose parts between its two bodies.
+Inconclusive when the joint is ambiguous, general, or carried by loose parts between its two bodies, or by a part that
+has play there.
 
 Why it matters: the drive moves nothing, or it is not clear what it moves.
 

@@ -3,7 +3,8 @@
 The intended motion is possible, and so are others. Where the function states all joints (`complete = true`), the joint
 is then taken as stated, and everything that follows from it says so; one that is stated as fixed makes its sides one
 body, and is found here where contact alone would let them turn as a joint does. Contact that forbids the joint is
-KF402.
+KF402. Where a part between the two has play, less than the contact tolerance to either side, it may hold what else is
+free, and the rule is inconclusive.
 
 Why it matters: parts that only lie against each other slide off. In many assemblies the pin or the bearing is just not
 modelled: then say so by `complete = true`, or model it.
@@ -16,25 +17,20 @@ Example: a pitch axis whose shaft can slide out is cylindrical, not revolute.
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.answers import leaves_more
-from kinform.consistency.comparisons.intended_joints import Comparison
+from kinform.consistency.comparisons.comparison import Comparison, leaves_more
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Findings, Rule
+from kinform.consistency.outcome import Outcome, settled
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, direction, quoted
 from kinform.model.findings import Finding
 from kinform.model.kinematics import FREEDOMS
 
 
-def check(context: Context) -> Findings:
+def check(context: Context) -> Outcome:
     """Intended joints that contact leaves free without holding them."""
-    return [_finding(c) for c in context.comparisons if leaves_more(c) or _taken_with_contact(c) or c.loose]
-
-
-def _taken_with_contact(c: Comparison) -> bool:
-    """Whether the function states all joints, and this one as contact leaves more free."""
-    return (
-        c.state == "taken" and c.joint is not None and any(one.cause in ("contact", "end") for one in c.joint.readings)
-    )
+    loose = [c for c in context.comparisons if leaves_more(c) or (c.left_free and not c.afloat) or c.loose]
+    doubts = [f"'{c.intended.name}': {c.afloat}" for c in context.comparisons if c.afloat and c.touch]
+    return settled([_finding(c) for c in loose], "; ".join(doubts))
 
 
 def _finding(c: Comparison) -> Finding:

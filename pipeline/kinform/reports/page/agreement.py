@@ -120,6 +120,8 @@ class _Table:
             behaviour = f"one body ({found.reason})" if found.reason else "one body"
         elif found.state == "absent":
             behaviour = "no contact, no joint"
+        elif found.afloat:
+            behaviour = f"not known: {found.afloat}"
         elif derived is not None:
             behaviour = self._derived(derived) + self._range_found(joint)
         else:
