@@ -4,7 +4,7 @@ Facets stand off the surface that they stand for, those of a coarse socket or co
 Solids that share no more than that may overlap or not: the surfaces that were meant are not known so well. An overlap
 that is deeper is known (KF201).
 
-A note. Between parts of one body there is nothing to say.
+A warning; a note between parts of one body.
 
 Why it matters: an overlap by less than facets stand off is not seen.
 
@@ -21,12 +21,11 @@ from kinform.foundation.words import length, quoted
 
 
 def check(context: Context) -> Findings:
-    """Each pair of parts of different bodies of which it is not known whether they overlap."""
+    """Each pair of parts of which it is not known whether they overlap."""
     for overlap in context.contacts.possible_overlaps:
-        if context.design.kinematics is not None and len({context.body(name) for name in overlap.parts}) == 1:
-            continue
+        one_body = context.design.kinematics is not None and len({context.body(name) for name in overlap.parts}) == 1
         depth = length(overlap.depth, context.units, 2)
-        yield RULE.finding(
+        yield (RULE.at("note") if one_body else RULE).finding(
             overlap.parts,
             f"{quoted(overlap.parts)} share some space, up to {depth} deep, no more than coarse facets there may stand "
             "off the surfaces that are meant: whether these overlap is not known",
@@ -38,4 +37,4 @@ def check(context: Context) -> Findings:
         )
 
 
-RULE = Rule("KF210", "overlap-possible", "note", __doc__, check, needs=("several parts", "contacts"))
+RULE = Rule("KF210", "overlap-possible", "warning", __doc__, check, needs=("several parts", "contacts"))
