@@ -86,7 +86,8 @@ def test_beyond_the_contact_tolerance_of_either_pair_there_is_no_contact():
     limit = design_of({**plates(0.1, 0.1), "element": roller()}).contacts.tolerance["element", "high"] * 1e3
     assert 0.2 < limit < 1.0
     for lower, upper, expected in ((0.98, 0.98, "undecided"), (0.5, 1.1, "no contact"), (1.1, 0.5, "no contact")):
-        assert answer_of({**plates(lower * limit, upper * limit), "element": roller()}) == expected
+        for X in (np.eye(4), random_pose(np.random.default_rng(6))):
+            assert answer_of({**plates(lower * limit, upper * limit), "element": roller()}, X=X) == expected
 
 
 def test_the_play_is_that_of_the_meshes_as_they_are_placed():
@@ -121,6 +122,20 @@ def test_what_its_own_bore_holds_comes_near_the_other_from_one_side():
         assert answer_of({"low": lower, "high": upper.translate((0, 0, 12.0 + gap)), "pin": tip}) == "no contact"
         beside = block(10, WIDE, 10).translate((8.0 + gap, 0, 7.0))
         assert answer_of({"low": lower, "high": beside, "pin": rod(3.0, -15, 5, 64)}) == "no contact"
+
+
+def test_what_hangs_from_hooks_of_one_side_does_not_reach_the_other():
+    """A roller with play to either side, whose thin ends are pressed against lips that keep it from going up."""
+    ends = rod(1.0, -20, 20, 40).rotate((90, 0, 0))
+    lips = box(-5, 5, 14, 18, 1.0, 2.0) + box(-5, 5, -18, -14, 1.0, 2.0)
+    posts = box(5, 8, 14, 18, -8, 2) + box(5, 8, -18, -14, -8, 2)
+    sides = plates(0.15, 0.15)
+    hung = {"low": sides["low"] + lips + posts, "high": sides["high"], "element": roller() + ends}
+    design = design_of(hung)
+    assert {patch.parts for patch in design.contacts.patches} == {("element", "low")}
+    assert [one.answer for one in answers(design)] == ["no contact"]
+    free = {**hung, "low": sides["low"] + (lips + posts).translate((0, 0, 0.7))}
+    assert answer_of(free) == "undecided"
 
 
 def test_a_roller_that_lies_on_one_race_may_carry_the_other():
@@ -291,3 +306,6 @@ def test_nothing_is_measured_where_joints_are_in_contact(monkeypatch):
     assert [one.answer for one in answers(design)] == ["agrees"]
     apart = plates(5.0, 5.0) | {"element": roller()}
     assert answer_of(apart) == "no contact"
+    # near a loose plate, which is far from the other
+    loose = block(WIDE, WIDE, 4).translate((0, 0, RADIUS + 2.15))
+    assert answer_of(plates(0.15, 20.0) | {"element": roller(), "loose": loose}) == "no contact"

@@ -160,20 +160,23 @@ class AfloatParts:
         """All that are between two units that are not of one kind, in the order of their names; `of`: the kind of each
         unit, and none of those that do not count. What touches one that does not count is held by that. Of units that
         are `known` to belong together by one number nothing is asked."""
-        for name in sorted(self._near.keys() - self.named):
-            touched = self._touched[name]
-            if all(unit in of for unit in touched):
-                around = sorted(unit for unit in self._near[name] if unit in of)
-                for sides in combinations(around, 2):
-                    if known is None or len({known[unit] for unit in (name, *sides)}) > 1:
-                        yield from self._between(name, sides, of)
+        for name, around in self._loose(of):
+            for sides in combinations(around, 2):
+                if known is None or len({known[unit] for unit in (name, *sides)}) > 1:
+                    yield from self._between(name, sides, of)
 
-    def may_join(self, of: Mapping[str, int]) -> Iterator[tuple[int, ...]]:
+    def may_join(self, of: Mapping[str, int]) -> Iterator[list[int]]:
         """Kinds that parts may be between, by boxes alone: all that `between` finds are among them."""
-        for name in self._near.keys() - self.named:
-            kinds = {of[unit] for unit in self._near[name] if unit in of}
-            if len(kinds) > 1 and all(unit in of for unit in self._touched[name]):
-                yield tuple(kinds)
+        for _, around in self._loose(of):
+            yield [of[unit] for unit in around]
+
+    def _loose(self, of: Mapping[str, int]) -> Iterator[tuple[str, list[str]]]:
+        """Units that nothing holds but what counts, in the order of their names, with what is near them and counts, if
+        that is of several kinds."""
+        for name in sorted(self._near.keys() - self.named):
+            around = sorted(unit for unit in self._near[name] if unit in of)
+            if len({of[unit] for unit in around}) > 1 and all(unit in of for unit in self._touched[name]):
+                yield name, around
 
     def _between(self, name: str, sides: tuple[str, str], of: Mapping[str, int]) -> Iterator[Afloat]:
         (first, second), touched = sides, self._touched[name]
