@@ -99,7 +99,7 @@ def test_suggested_commands_are_read_by_a_shell_as_they_are(ran):
         (("catalog", "fnd"), "find"),
         (("show", "r.h5", "joints", "--joint", "block~tabel"), '"block~table"'),
         (("query", "r.h5", "blok", "table", "--slide", "x"), '"block"'),
-        (("explain", "KF21"), "KF201"),
+        (("explain", "KF2011"), "KF201"),
         (("explain", "joint-wrong-typ"), "KF402 joint-wrong-type"),
     ],
 )

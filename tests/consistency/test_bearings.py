@@ -23,7 +23,12 @@ CAGED = ("needles, cage", "needles, flanges and cage")
 """What a thin cage touches is in doubt in some tessellations."""
 
 
-@pytest.mark.parametrize("k", range(3))
+def some(values, kept):
+    """All of these; those but the one that is `kept` are slow tests."""
+    return [value if value == kept else pytest.param(value, marks=pytest.mark.slow) for value in values]
+
+
+@pytest.mark.parametrize("k", some(range(3), 0))
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_joint_of_a_bearing_is_told(kind, k):
     found = answers_of(KINDS[kind](SIZES[k]), np.random.default_rng(k), SCALES[k])
@@ -32,7 +37,7 @@ def test_the_joint_of_a_bearing_is_told(kind, k):
     assert outcome in allowed, why
 
 
-@pytest.mark.parametrize("play", [0.002, 0.035])
+@pytest.mark.parametrize("play", some([0.002, 0.035], 0.035))
 @pytest.mark.parametrize("kind", KINDS)
 def test_play_makes_nothing_certain_that_is_wrong(kind, play):
     """Elements that keep farther apart from their races than parts that touch do are not in contact with these, and may
@@ -53,7 +58,7 @@ def shifted(bearing: Bearing, by: float) -> Bearing:
     return replace(bearing, solids=moved)
 
 
-@pytest.mark.parametrize("by", [1e-4, 2e-3, 2e-2])
+@pytest.mark.parametrize("by", some([1e-4, 2e-3, 2e-2], 2e-3))
 @pytest.mark.parametrize("kind", KINDS)
 def test_elements_that_are_not_quite_in_their_place_make_nothing_certain_that_is_wrong(kind, by):
     outcome, why = answers_of(shifted(KINDS[kind](SIZES[1]), by), np.random.default_rng(2)).outcome()

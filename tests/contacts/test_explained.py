@@ -127,7 +127,14 @@ def test_what_is_drawn_deeper_is_told(which, monkeypatch):
 
 
 @pytest.mark.parametrize("names", [("a", "b"), ("b", "a")])
-@pytest.mark.parametrize("segments, others", [(60, 12), (12, 60), (60, 8), (24, 32), (22, 8), (28, 8), (32, 28)])
+@pytest.mark.parametrize(
+    "segments, others",
+    [
+        (60, 12),
+        (12, 60),
+        *(pytest.param(*n, marks=pytest.mark.slow) for n in [(60, 8), (24, 32), (22, 8), (28, 8), (32, 28)]),
+    ],
+)
 def test_a_boss_beside_mates_is_no_part_of_them(segments, others, names, monkeypatch):
     seen = []
     for high in (0.002, 0.008, 0.03, 0.033, 0.06, 0.2):

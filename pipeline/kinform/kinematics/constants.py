@@ -666,6 +666,9 @@ other: rounds in coarse meshes have no facets that oppose each other better."""
 AFLOAT_BESIDE = -0.7
 """The same of facets that tell whether one of the two bends there, 45°: the neighbours of a facet of a coarse roller. A
 face that stands askew, with an edge near, has one direction within that."""
+AFLOAT_REACH = 1.02
+"""Times the contact tolerance that such a part may keep from its sides, as for faces that fit: clearances of exactly
+that are common, and rounding must not decide."""
 AFLOAT_BENDS = math.radians(1.0)
 """rad: facets that differ by more bend."""
 AFLOAT_DIGITS = 2

@@ -25,7 +25,6 @@ from itertools import combinations
 
 import numpy as np
 
-from kinform.contacts.constants import MATING_REACH
 from kinform.foundation.algebra.screws import Frame, rows
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.graphs.graph import UnionFind
@@ -41,6 +40,7 @@ from kinform.kinematics.constants import (
     AFLOAT_HELD,
     AFLOAT_OPPOSED,
     AFLOAT_OPPOSES,
+    AFLOAT_REACH,
 )
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Assembly
@@ -225,7 +225,7 @@ class AfloatParts:
 
     def _facets(self, part: PartName, other: PartName) -> Facing:
         tolerance = self._contacts.tolerance[min(part, other), max(part, other)]
-        return facing(self._corners(part), self._corners(other), MATING_REACH * tolerance, AFLOAT_BESIDE)
+        return facing(self._corners(part), self._corners(other), AFLOAT_REACH * tolerance, AFLOAT_BESIDE)
 
     def _corners(self, name: PartName) -> Array:
         """(F, 3, 3) m: the facets of a part as it is placed."""
