@@ -18,6 +18,7 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 
@@ -29,12 +30,11 @@ from random_assemblies.scene import TrueJoint
 from random_assemblies.verdict import tally
 
 from kinform import contacts, form, surfaces
-from kinform.kinematics import constants
-from kinform.kinematics.bodies.classification import Pairs, decide_all
-from kinform.kinematics.bodies.extents import Extents
-from kinform.kinematics.bodies.merging import Merger
-from kinform.kinematics.bodies.readings import choose_readings
-from kinform.kinematics.pair.question import bare_patches
+from kinform.kinematics.joints.bodies.classification import Pairs, decide_all
+from kinform.kinematics.joints.bodies.extents import Extents
+from kinform.kinematics.joints.bodies.merging import Merger
+from kinform.kinematics.joints.bodies.readings import choose_readings
+from kinform.kinematics.joints.pair.question import bare_patches
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.kinematics import only_bodies
@@ -143,18 +143,34 @@ def outcomes(counts: Counter[str]) -> tuple[int, int, int]:
     return counts["right"], counts["ambiguous"] + counts["honest"], bad
 
 
+def value_of(name: str) -> float:
+    """The value of a constant of the kinematics."""
+    return next(getattr(module, name) for module in holders(name))
+
+
+def holders(name: str) -> list[ModuleType]:
+    """The modules that define a constant or import it."""
+    return [m for key, m in sorted(sys.modules.items()) if key.startswith("kinform.kinematics") and hasattr(m, name)]
+
+
+def set_everywhere(name: str, value: float) -> None:
+    """Give a constant another value in all modules that use it."""
+    for module in holders(name):
+        setattr(module, name, value)
+
+
 def table(every: list[Sample]) -> None:
     """One block of lines a threshold."""
     names = sorted({one.group for one in every})
     for name, values in GRID.items():
-        used = getattr(constants, name)
+        used = value_of(name)
         by_value: dict[float, dict[str, Counter[str]]] = {}
         for value in values:
-            setattr(constants, name, value)
+            set_everywhere(name, value)
             by_value[value] = {group: Counter() for group in names}
             for one in every:
                 by_value[value][one.group].update(judged(one))
-        setattr(constants, name, used)
+        set_everywhere(name, used)
         picks: Counter[float] = Counter()
         held_out: Counter[str] = Counter()
         for group in names:

@@ -26,7 +26,7 @@ import kinform
 from kinform.consistency.comparisons.answers import answers
 from kinform.consistency.comparisons.sides import Pair, sides_of
 from kinform.design import Design
-from kinform.form.descriptions.meshes import MeshFiles
+from kinform.formats.description.mesh_files import MeshFiles
 from kinform.model.descriptions import DescribedLink
 from kinform.model.findings import Finding
 

@@ -77,8 +77,7 @@ def _top(name: str) -> str:
 def _sealed(image: bytes) -> bytes:
     """The file with the digest of what is now in it."""
     from kinform.results import SCHEMA
-    from kinform.results.constants import BLOCK
-    from kinform.results.seal import seal
+    from kinform.results.seal import BLOCK, seal
 
     return seal(image[BLOCK:], SCHEMA)
 

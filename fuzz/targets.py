@@ -151,8 +151,8 @@ def _csv(data: bytes) -> None:
 
 
 def _text(data: bytes) -> str:
-    from kinform.foundation.constants import JSON_BYTES
     from kinform.foundation.texts import read_text
+    from kinform_cli.commands.check import JSON_BYTES
 
     (_FOLDER / "text").write_bytes(data)
     return read_text(_FOLDER / "text", JSON_BYTES, "a text")

@@ -13,11 +13,14 @@ import sys
 from dataclasses import dataclass
 from typing import IO, TYPE_CHECKING
 
-from kinform_cli.constants import LEAST_WIDTH, WIDTH
-
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
     from rich.text import Text
+
+WIDTH = 80
+"""Columns where there is no terminal: what a pager or a log shows without cutting. `COLUMNS` asks for others."""
+LEAST_WIDTH = 40
+"""Columns below which sentences are not broken further; a choice."""
 
 
 @dataclass

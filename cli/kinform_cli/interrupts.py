@@ -12,7 +12,9 @@ import sys
 from importlib.machinery import ExtensionFileLoader
 from types import FrameType
 
-from kinform_cli.constants import AGAIN
+AGAIN = 0.01
+"""Seconds after which Ctrl-C is heard that came while a native module was imported; a choice."""
+
 
 _asked = False
 

@@ -13,10 +13,14 @@ from types import TracebackType
 from typing import TYPE_CHECKING
 
 from kinform_cli import console, interrupts
-from kinform_cli.constants import DELAY, PERIOD
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bars
+
+DELAY = 1.0
+"""Seconds after which a bar appears: shorter work needs none."""
+PERIOD = 0.1
+"""Seconds between two drawings of the bar; a choice."""
 
 
 _drawing = threading.RLock()

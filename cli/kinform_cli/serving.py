@@ -12,8 +12,11 @@ from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
 
-from kinform_cli.constants import KEEP_ALIVE
 from kinform_cli.errors import refuse
+
+KEEP_ALIVE = 15.0
+"""s after which a browser that follows a page is told again what it knows: so connections that are gone are noticed."""
+
 
 HOST = "127.0.0.1"
 

@@ -10,7 +10,10 @@ from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
 from rich.segment import Segment
 from rich.text import Text
 
-from kinform_cli.constants import MOST_OF_TOPIC
+MOST_OF_TOPIC = 60
+"""Lines of a topic in the overview of a large design; a choice: a screen or two, after which one looks at the
+topic alone. A fifth more is shown whole."""
+
 
 _T = TypeVar("_T")
 _SLACK = MOST_OF_TOPIC // 5

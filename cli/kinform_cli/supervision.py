@@ -15,7 +15,9 @@ import sys
 import time
 from typing import NoReturn
 
-from kinform_cli.constants import GRACE
+GRACE = 1.5
+"""Seconds after Ctrl-C in which the work may end by itself, with its own words; the promise is two."""
+
 
 _FAILED = 2
 

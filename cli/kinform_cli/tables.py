@@ -12,8 +12,20 @@ from rich.style import Style
 from rich.text import Text
 
 from kinform.foundation.words import shortened_ends
-from kinform_cli.constants import GAP, INDENT, INSET, LEAST_NAME, LEAST_TEXT, MOST_LINES
 from kinform_cli.text import NONE
+
+GAP = 3
+"""Blanks between two facts on one line of a block; a choice."""
+INDENT = 4
+"""Blanks before the facts of a block; a choice."""
+LEAST_NAME = 16
+"""Characters to which a name is shortened at most: of the two bodies of a joint seven each. A choice."""
+LEAST_TEXT = 24
+"""Columns below which a text is not wrapped in a table: about four words a line. A choice."""
+MOST_LINES = 4
+"""Lines that a text takes in a table at most; a row of which one takes more becomes a block. A choice."""
+INSET = 2
+"""Blanks before the columns that stand below what heads them; a choice."""
 
 
 class Rows:

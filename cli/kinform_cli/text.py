@@ -12,11 +12,25 @@ from typing import TYPE_CHECKING, Any
 
 from kinform.foundation import words
 from kinform.frozen import dataclass
-from kinform_cli.constants import FEW, FINE, LARGE, MANY, NO_LENGTH, NO_VALUE, ROUNDING
 
 if TYPE_CHECKING:
     from kinform.design import Design
     from kinform.model.assembly import Assembly
+
+FINE = 1e-5
+"""Places are written to this share of the largest part; the JSON has every digit."""
+NO_LENGTH = 1e-9
+"""Metres below which a length is written as zero: nobody makes a billionth of a metre."""
+ROUNDING = 1e-7
+"""Share of the largest part below which a length is rounding, and is written as zero: what single precision, in which
+meshes are stored, leaves of a coordinate."""
+NO_VALUE = 1e-9
+"""Below it a singular value, of scaled rows, is written as zero: it is rounding."""
+FEW, MANY = 0.01, 1e4
+"""A quantity is written in thousandths of its unit below, in thousands from there on: else it has leading zeros, or
+five digits before the point."""
+LARGE = 10.0
+"""m: diagonal of a part from which on places are told in m; a choice."""
 
 
 NONE = "–"

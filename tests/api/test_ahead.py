@@ -7,7 +7,6 @@ from pathlib import Path
 import kinform
 from kinform import ahead, stages
 from kinform.collisions import joint_ranges
-from kinform.contacts import constants
 
 FIXTURE = Path(__file__).parents[2] / "fixtures" / "mechanisms" / "four_bar" / "four_bar.toml"
 
@@ -17,7 +16,7 @@ def test_a_run_gives_the_same_with_something_done_ahead_of_it(tmp_path, monkeypa
     kinform.run(FIXTURE, alone)
     monkeypatch.setattr(ahead, "LARGE", 0)
     monkeypatch.setattr(joint_ranges, "SHARED_FACETS", 0)
-    monkeypatch.setattr(constants, "LITTLE_PAIRS", -1)
+    monkeypatch.setattr("kinform.contacts.find.LITTLE_PAIRS", -1)
     made = []
     of = ahead.of
     monkeypatch.setattr(ahead, "of", lambda assembly: made.append(of(assembly)) or made[-1])

@@ -10,8 +10,7 @@ from rich.console import Console
 from rich.text import Text
 from support.places import FIXTURES
 
-from kinform_cli.constants import MOST_OF_TOPIC
-from kinform_cli.shortened import Shortened
+from kinform_cli.shortened import MOST_OF_TOPIC, Shortened
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.views import assembly, joints, mobility
 

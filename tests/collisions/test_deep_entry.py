@@ -7,9 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from kinform.collisions.constants import SPECK
 from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.deep_entry import Inside
+from kinform.collisions.pair.prepared_pair import SPECK
 
 
 def inside(depth):

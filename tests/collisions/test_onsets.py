@@ -11,13 +11,13 @@ import pytest
 from support.solids import assembly, box, part, random_pose, rod
 
 from kinform import collisions, contacts, kinematics, surfaces
-from kinform.collisions import constants
 from kinform.collisions.driving import alone
+from kinform.collisions.driving.candidates import STOP_ANGLE, STOP_LENGTH
 from kinform.collisions.pair.advancement import First
 from kinform.collisions.pair.mate_surfaces import Mates
 
 SCALES = [1e-5, 1e-3, 1.0]
-WITHIN = constants.STOP_ANGLE
+WITHIN = STOP_ANGLE
 
 
 def ends(solids, along, X=None, scale=1e-3, names=None):
@@ -92,7 +92,7 @@ def test_a_flush_slider_stops_where_its_corner_meets_a_wall_askew(clear):
     wall = box(0, 5, -11, 11, -1, 10).rotate((0, 0, 3)).translate((25 + clear, 0, 0))
     slider = box(-10, 25, -10, 10, 0, 8)
     touch = clear - 10 * np.tan(radians(3))
-    everywhere({"base": rail() + wall, "mover": slider}, x, touch, constants.STOP_LENGTH * 41.1)
+    everywhere({"base": rail() + wall, "mover": slider}, x, touch, STOP_LENGTH * 41.1)
 
 
 @pytest.mark.parametrize("into", [0.001, 0.01, 0.03])
@@ -100,7 +100,7 @@ def test_what_is_drawn_in_its_stop_by_less_than_parts_may_scrape_is_at_its_stop(
     bar = box(20, 30, 4 - into, 9, -1, 8)
     everywhere({"base": plate() + bar, "mover": lever()}, z, 0.0, WITHIN)
     wall = box(25 - into, 30, -11, 11, -1, 10)
-    everywhere({"base": rail() + wall, "mover": box(-10, 25, -10, 10, 0, 8)}, x, 0.0, constants.STOP_LENGTH * 41.1)
+    everywhere({"base": rail() + wall, "mover": box(-10, 25, -10, 10, 0, 8)}, x, 0.0, STOP_LENGTH * 41.1)
 
 
 @pytest.mark.parametrize("away", [-0.5, 0.2, 0.5, 0.8])

@@ -15,9 +15,9 @@ from support.slots import lever_between_pegs
 from support.solids import assembly, box, part, random_pose, rod
 
 from kinform import collisions, contacts, kinematics, stages, surfaces
-from kinform.collisions import constants
 from kinform.collisions.driving import candidates
 from kinform.collisions.pair import distance_bounds
+from kinform.collisions.pair.advancement import STEPS_TOUCHED
 from kinform.collisions.pair.states import States
 from kinform.consistency import check
 from kinform.model.assembly import Group, Source
@@ -46,7 +46,7 @@ def values(item, joint, axis=(0, 0, 1.0)):
 
 @pytest.fixture
 def other_steps(monkeypatch):
-    monkeypatch.setattr(constants, "RESOLUTION", 9e-3)
+    monkeypatch.setattr("kinform.collisions.pair.advancement.RESOLUTION", 9e-3)
     monkeypatch.setattr(candidates, "WINDOW_TURN", 0.31)
     monkeypatch.setattr(candidates, "MODEL_MOST", 0.0)
     monkeypatch.setattr(distance_bounds, "SHORT_STEP", 0.003)
@@ -341,8 +341,8 @@ def test_what_is_told_ahead_of_parts_in_touch_changes_nothing(seed, family, know
     asked, expect = [], States.expect
     monkeypatch.setattr(States, "expect", lambda self, places, least: (asked.append(1), expect(self, places, least)))
     told = []
-    for steps in (constants.STEPS_TOUCHED, 10**9):
-        monkeypatch.setattr(constants, "STEPS_TOUCHED", steps)
+    for steps in (STEPS_TOUCHED, 10**9):
+        monkeypatch.setattr("kinform.collisions.pair.advancement.STEPS_TOUCHED", steps)
         asked.clear()
         (item,) = collisions.ranges(design.assembly, design.surfaces, design.contacts, design.kinematics)
         assert (item.lower.status == "found") == known

@@ -300,7 +300,7 @@ def test_nothing_is_measured_where_joints_are_in_contact(monkeypatch):
     def never(*_):
         raise AssertionError
 
-    monkeypatch.setattr("kinform.kinematics.questions.afloat.facing", never)
+    monkeypatch.setattr("kinform.consistency.questions.captive_parts.facing", never)
     bearing = KINDS["needles"](Size(5, 8.0, 2.2, 12.0))
     design = design_of(bearing.solids, kind="cylindrical", between=("ring", "shaft"))
     assert [one.answer for one in answers(design)] == ["agrees"]

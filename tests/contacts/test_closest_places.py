@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kinform.contacts import constants
-from kinform.contacts.higher.closest_places import closest_places
-from kinform.contacts.higher.outlines import Curve
+from kinform.contacts.constants import MATING_REACH
+from kinform.contacts.higher.closest_places import CURVES_OPPOSED, closest_places
+from kinform.contacts.higher.outlines import CURVE_SAMPLES, Curve
 
 
 def curve(points, near=None):
@@ -28,14 +28,14 @@ def lobes(rng, centre, radius, count, turns=1.0):
 def all_compared(first, second, tolerance):
     (s, p, u), (t, q, w) = first.samples, second.samples
     apart = p[:, None] - q[None]
-    square = np.where(u @ w.T < constants.CURVES_OPPOSED, (apart**2).sum(axis=2), np.inf)
+    square = np.where(u @ w.T < CURVES_OPPOSED, (apart**2).sum(axis=2), np.inf)
     nearest = square.argmin(axis=1)
     away = np.sqrt(square[np.arange(len(s)), nearest])
     outward = np.stack([w[nearest, 1], -w[nearest, 0]], axis=1)
     gap = np.where(np.isfinite(away), ((p - q[nearest]) * outward).sum(axis=1), np.inf)
-    step = max(np.diff(first.knots).max(), np.diff(second.knots).max()) / constants.CURVE_SAMPLES
+    step = max(np.diff(first.knots).max(), np.diff(second.knots).max()) / CURVE_SAMPLES
     out = []
-    for k in np.flatnonzero(np.isfinite(gap) & (away <= constants.MATING_REACH * tolerance + 2.0 * step)):
+    for k in np.flatnonzero(np.isfinite(gap) & (away <= MATING_REACH * tolerance + 2.0 * step)):
         before = gap[k - 1] if k else np.inf
         after = gap[k + 1] if k + 1 < len(gap) else np.inf
         if gap[k] <= before and gap[k] < after:

@@ -117,7 +117,7 @@ def test_what_comes_of_a_pair_does_not_depend_on_those_that_are_looked_at_with_i
     assert len(alone.candidates) > 7
     rng = np.random.default_rng(3)
     for together in (1, 2, 5, 7, 100):
-        monkeypatch.setattr(stage.constants, "TOGETHER_PAIRS", together)
+        monkeypatch.setattr(stage, "TOGETHER_PAIRS", together)
         monkeypatch.setattr(stage, "_by_neighbours", lambda pairs: [pairs[k] for k in rng.permutation(len(pairs))])
         assert same(alone, find(design, surfaces))
 
@@ -184,7 +184,7 @@ def test_what_is_known_of_a_mesh_is_dropped_after_its_last_pair(monkeypatch):
         return found
 
     before = find(*made)
-    monkeypatch.setattr(stage.constants, "TOGETHER_PAIRS", 1)
+    monkeypatch.setattr(stage, "TOGETHER_PAIRS", 1)
     monkeypatch.setattr(stage, "mated_pairs", counted)
     assert same(before, find(*made))
     assert list(before.candidates) == sorted(before.candidates)

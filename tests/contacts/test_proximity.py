@@ -6,8 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kinform.foundation.constants import BOXES_AT_ONCE
-from kinform.foundation.meshes.boxes import FlatBoxes, boxes_within
+from kinform.foundation.meshes.boxes import BOXES_AT_ONCE, FlatBoxes, boxes_within
 from kinform.foundation.meshes.proximity import near_boxes
 
 

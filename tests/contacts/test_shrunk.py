@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from support.analytic_solids import MM, assembly, box_loop, extrusion, flat_loop, pose, revolution, turned
 
-from kinform.contacts import constants, find
+from kinform.contacts import find
 from kinform.contacts.overlap import interference
+from kinform.contacts.overlap.constants import EXACT_OVERLAP
+from kinform.contacts.overlap.interference import THINNER
 from kinform.contacts.overlap.solids import SolidStore
 from kinform.contacts.search.candidates import candidate_pairs
 
@@ -29,7 +31,7 @@ def overlaps(first, second, X_second=None, X_all=None):
 def counts_from(first, second):
     """m: what is less deep than this is no overlap."""
     (tolerance,) = candidate_pairs(assembly({"a": (first, pose()), "b": (second, pose())})[0]).values()
-    return constants.EXACT_OVERLAP * tolerance
+    return EXACT_OVERLAP * tolerance
 
 
 @pytest.fixture
@@ -84,7 +86,7 @@ def test_solids_that_share_more_are_cut(cuts):
 @pytest.mark.parametrize("thick", [0.2, 1.0, 3.0])
 def test_a_blade_no_thicker_than_what_it_is_made_thinner_by_is_found(thick, cuts):
     cube = prism(box_loop(0, 0, 10, 10), 10.0)
-    least = constants.THINNER * counts_from(cube, cube)
+    least = THINNER * counts_from(cube, cube)
     blade = extrusion(box_loop(5 * MM, -3 * MM, 5 * MM + thick * least, 6 * MM), z0=-2 * MM, z1=7 * MM)
     (found,) = overlaps(cube, blade)
     assert found.depth > MM

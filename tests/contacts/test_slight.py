@@ -47,5 +47,5 @@ def test_what_is_slight_has_no_piece_that_counts(seed, monkeypatch):
     assert [told_of(derived(pose, **every)[1]) for pose, every in asked] == found
     monkeypatch.setattr(interference, "is_slight", lambda *_: False)
     assert [told_of(derived(pose, **every)[1]) for pose, every in asked] == found
-    monkeypatch.setattr(interference.constants, "CUT_FEW", 0)
+    monkeypatch.setattr("kinform.contacts.overlap.interference.CUT_FEW", 0)
     assert [told_of(derived(pose, **every)[1]) for pose, every in asked] == found

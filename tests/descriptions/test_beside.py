@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from kinform.form import constants
-from kinform.form.descriptions import meshes
+from kinform.formats.description import mesh_files
+from kinform.formats.description.mesh_files import ENTRIES_MOST
 
 
 def test_files_of_a_package_are_found_whatever_their_depth(tmp_path: Path) -> None:
@@ -15,14 +15,14 @@ def test_files_of_a_package_are_found_whatever_their_depth(tmp_path: Path) -> No
         path.write_text("x")
     (tmp_path / "dir.urdf").mkdir()
     (tmp_path / "a" / "again").symlink_to(tmp_path)
-    assert meshes.files_below(tmp_path, (".urdf", ".xacro")) == [below / "y.XACRO", tmp_path / "z.urdf"]
+    assert mesh_files.files_below(tmp_path, (".urdf", ".xacro")) == [below / "y.XACRO", tmp_path / "z.urdf"]
 
 
 def test_links_that_lead_nowhere_are_no_files(tmp_path: Path) -> None:
     (tmp_path / "a.urdf").write_text("x")
     for name, target in (("loop.urdf", "loop.urdf"), ("gone.urdf", "nowhere"), ("b.urdf", "a.urdf")):
         (tmp_path / name).symlink_to(target)
-    assert meshes.files_below(tmp_path, (".urdf",)) == [tmp_path / "a.urdf", tmp_path / "b.urdf"]
+    assert mesh_files.files_below(tmp_path, (".urdf",)) == [tmp_path / "a.urdf", tmp_path / "b.urdf"]
 
 
 def test_a_home_folder_is_not_searched_to_its_end(tmp_path: Path, monkeypatch) -> None:
@@ -33,6 +33,6 @@ def test_a_home_folder_is_not_searched_to_its_end(tmp_path: Path, monkeypatch) -
     far.mkdir()
     for number in range(60):
         (far / f"{number}.urdf").write_text("x")
-    monkeypatch.setattr(meshes, "ENTRIES_MOST", 50)
-    assert meshes.files_below(tmp_path, (".urdf",)) == [tmp_path / "near" / "n.urdf"]
-    assert constants.ENTRIES_MOST >= 1453  # entries of the largest public package tried
+    monkeypatch.setattr(mesh_files, "ENTRIES_MOST", 50)
+    assert mesh_files.files_below(tmp_path, (".urdf",)) == [tmp_path / "near" / "n.urdf"]
+    assert ENTRIES_MOST >= 1453  # entries of the largest public package tried

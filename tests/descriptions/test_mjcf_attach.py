@@ -7,7 +7,7 @@ import pytest
 
 from kinform import form
 from kinform.errors import InputError
-from kinform.form.descriptions import mjcf_attach
+from kinform.formats.mjcf.reading import attach
 
 ARM = """<mujoco model="arm own"><compiler angle="degree" eulerseq="zyx"/>
 <default><geom type="box" size="0.1 0.2 0.3"/>
@@ -123,7 +123,7 @@ def test_what_is_wrong_is_told_with_file_line_and_remedy(tmp_path, case):
 
 
 def test_models_that_double_again_and_again_end_at_a_limit(tmp_path, monkeypatch):
-    monkeypatch.setattr(mjcf_attach, "ATTACHED_MOST", 500)
+    monkeypatch.setattr(attach, "ATTACHED_MOST", 500)
     twice = '<attach model="m" body="q" prefix="{}"/>'
     for k in range(12):
         inner = f'<asset><model name="m" file="m{k + 1}.xml"/></asset>' if k < 11 else ""

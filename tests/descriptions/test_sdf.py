@@ -10,8 +10,8 @@ from tests.support.validators import package
 import kinform
 from kinform import form
 from kinform.errors import InputError
-from kinform.form.descriptions.poses import rpy
 from kinform.form.sources import Reading
+from kinform.formats.description.poses import rpy
 
 BOX = "<geometry><box><size>0.1 0.2 0.3</size></box></geometry>"
 INERTIA = "<inertia><ixx>0.02</ixx><iyy>0.03</iyy><izz>0.04</izz><ixy>0.001</ixy></inertia>"

@@ -138,7 +138,7 @@ def doubling(deep):
     ids=["doubling", "power", "text", "itself"],
 )
 def test_what_has_no_end_is_refused_in_bounded_time_and_memory(tmp_path, monkeypatch, text, words):
-    monkeypatch.setattr("kinform.form.descriptions.xacro.XACRO_SECONDS", 1)
+    monkeypatch.setattr("kinform.formats.urdf.reading.xacro.XACRO_SECONDS", 1)
     path = tmp_path / "r.urdf.xacro"
     path.write_text(text)
     with pytest.raises(InputError) as caught:

@@ -8,9 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kinform.exports.constants import MOST_NESTED
 from kinform.exports.exported import ExportError
-from kinform.exports.mjcf import _nested
+from kinform.formats.mjcf.writing.writer import MOST_NESTED, _nested
 
 
 def body(name, *children):

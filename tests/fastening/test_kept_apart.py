@@ -19,7 +19,7 @@ from support.suggestions import found, made_of
 from kinform import kinematics, stages
 from kinform.consistency import check
 from kinform.contacts import find
-from kinform.kinematics.bodies.kept_apart import Apart, contradicted
+from kinform.kinematics.joints.bodies.kept_apart import Apart, contradicted
 from kinform.model.contacts import Suggestion
 from kinform.surfaces import recover
 

@@ -10,7 +10,7 @@ from scipy.spatial import ConvexHull, cKDTree
 
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.near import Near
-from kinform.kinematics.pair.extremes import hull
+from kinform.kinematics.joints.pair.extremes import hull
 
 
 def _links(kind: str, count: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:

@@ -7,7 +7,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from kinform.form import constants
+from kinform.form.meshes.constants import FAULTS_SHOWN
 from kinform.form.meshes.obj import read_obj
 from kinform.form.meshes.raw import MeshError
 
@@ -43,7 +43,7 @@ def test_of_many_polygons_that_cross_themselves_the_first_are_enough(monkeypatch
     bow = b"v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\n" + b"f 1 2 3 4\n" * 500
     with pytest.raises(MeshError, match="crosses itself"):
         read_obj(bow)
-    assert len(tried) == constants.FAULTS_SHOWN
+    assert len(tried) == FAULTS_SHOWN
 
 
 @pytest.mark.parametrize(

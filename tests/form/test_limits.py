@@ -12,12 +12,13 @@ from kinform.changes import read_lock
 from kinform.consistency import read_baseline
 from kinform.errors import InputError
 from kinform.form import load, load_meshes
-from kinform.form.constants import NAME_LENGTH, PROBLEMS_MOST
+from kinform.form.constants import NAME_LENGTH
 from kinform.form.meshes import blocks
 from kinform.form.meshes.health import build_mesh
 from kinform.form.meshes.obj import parse_obj
 from kinform.form.meshes.raw import MeshError, RawMesh
 from kinform.form.meshes.stl import parse_ascii, parse_binary, read_stl
+from kinform.form.problems import PROBLEMS_MOST
 from kinform.foundation.processes import in_own_process
 
 HEAD = 'schema = 1\n[assembly]\nname = "x"\nunits = "mm"\n'

@@ -7,7 +7,7 @@ import pytest
 
 from kinform.errors import InputError
 from kinform.form import load, schema
-from kinform.form.constants import MANIFEST_DEPTH
+from kinform.form.readers.toml_text import MANIFEST_DEPTH
 
 HEAD = 'schema = 1\n[assembly]\nname = "x"\nunits = "mm"\n'
 TWO = HEAD + '[[part]]\nname = "a"\n[[part]]\nname = "b"\n'

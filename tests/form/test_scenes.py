@@ -204,7 +204,7 @@ def test_a_manifest_of_meshes_imports_nothing_of_this():
     code = (
         "import sys, kinform; from kinform import form; form.load(sys.argv[1]); "
         "print([m for m in sys.modules if m.split('.')[0] in ('trimesh', 'collada', 'cascadio', 'lxml') "
-        "or m.startswith(('kinform.form.scenes', 'kinform.form.descriptions.'))])"
+        "or m.startswith(('kinform.form.scenes', 'kinform.formats.description.'))])"
     )
     out = subprocess.run([sys.executable, "-c", code, str(FOUR_BAR)], capture_output=True, text=True, check=True)
     assert out.stdout.strip() == "[]"

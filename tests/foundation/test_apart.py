@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from kinform.foundation.algebra.splines import through
-from kinform.foundation.constants import BULGE
 from kinform.foundation.meshes import apart
 from kinform.foundation.meshes.apart import keep_apart
+from kinform.foundation.meshes.bulges import BULGE
 from kinform.foundation.meshes.closest import distances_from
 
 

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from support.solids import ball, box, part
 
-from kinform.foundation.constants import SEEN_AT_ONCE
-from kinform.foundation.meshes.parity import winding
+from kinform.foundation.meshes.parity import SEEN_AT_ONCE, winding
 
 FINE = part("ball", ball(10, 128), np.eye(4)).mesh
 """Of 10 mm radius, and of more facets than are had at once."""

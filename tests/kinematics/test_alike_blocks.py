@@ -7,9 +7,9 @@ import pytest
 from support.devices import joint
 from support.linkages import KNOWN, generic, planar
 
-from kinform.kinematics.loops.loop_kinematics import loop_system
 from kinform.kinematics.mobility.finite_motion import block_frame, finite_mobility
 from kinform.kinematics.mobility.local_dimension import local_motions, local_motions_of_each
+from kinform.mechanism.loop_system import loop_system
 from kinform.reuse.packing import pack
 
 TABLE = {name: mechanism for name, (mechanism, *_) in KNOWN.items()}

@@ -10,12 +10,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.patches import cylinder
 
-from kinform.kinematics.axes.bounds import MoveBounds, move_bounds
-from kinform.kinematics.axes.equal_lengths import equalise_lengths
-from kinform.kinematics.axes.misfit import misfit_of, moves_between
-from kinform.kinematics.axes.snapping import snap_axes
-from kinform.kinematics.loops.joint_graph import JointGraph
-from kinform.kinematics.pair.joint import twists_of
+from kinform.kinematics.joints.axes.bounds import MoveBounds, move_bounds
+from kinform.kinematics.joints.axes.equal_lengths import equalise_lengths
+from kinform.kinematics.joints.axes.misfit import misfit_of, moves_between
+from kinform.kinematics.joints.axes.snapping import snap_axes
+from kinform.kinematics.joints.pair.joint import twists_of
+from kinform.mechanism.joint_graph import JointGraph
 from kinform.model.kinematics import FREEDOMS, Body, Joint
 
 ALIGNMENT = np.radians(0.2)

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kinform.foundation.algebra.screws import Frame, rotation, scaled, span, translation
-from kinform.kinematics.pair.canonical_basis import canonical_twists
+from kinform.kinematics.joints.pair.canonical_basis import canonical_twists
 from kinform.kinematics.wording import motions_in_words
 
 X, Y, Z = np.eye(3)

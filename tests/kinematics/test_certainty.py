@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from support.patches import Z, cylinder, patch, plane, ring, sphere
 
-from kinform.kinematics.pair.decision import decide
-from kinform.kinematics.pair.evidence import gather
-from kinform.kinematics.pair.lower_pairs import JointForm
-from kinform.kinematics.pair.uncertainty import disagreement, joint_uncertainty
+from kinform.kinematics.joints.pair.decision import decide
+from kinform.kinematics.joints.pair.evidence import gather
+from kinform.kinematics.joints.pair.lower_pairs import JointForm
+from kinform.kinematics.joints.pair.uncertainty import disagreement, joint_uncertainty
 from kinform.model.tolerances import Tolerances
 
 X, Y = np.eye(3)[0], np.eye(3)[1]

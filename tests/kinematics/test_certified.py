@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from kinform.kinematics.constants import LARGEST_TWIST
 from kinform.kinematics.separation.cone import nothing_opens, nothing_opens_in_each
+from kinform.kinematics.separation.lifting import LARGEST_TWIST
 
 
 def fastest(rows, fixed):

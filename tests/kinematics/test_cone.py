@@ -11,7 +11,7 @@ from support.solids import ball, box, derived, random_pose, rod
 
 from kinform.foundation.algebra.screws import Frame
 from kinform.kinematics import derive
-from kinform.kinematics.pair.extremes import extreme_samples
+from kinform.kinematics.joints.pair.extremes import extreme_samples
 from kinform.kinematics.separation.cone import extreme_rays, held_for_certain, opening, rows_beside, unit_rows
 from kinform.kinematics.separation.contact_rows import Cone
 from kinform.kinematics.separation.releases import certainly_held, leaving_of_each

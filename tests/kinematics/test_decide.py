@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from support.patches import Z, cone, cylinder, plane, ring, sphere
 
-from kinform.kinematics.pair.decision import decide
-from kinform.kinematics.pair.evidence import gather
+from kinform.kinematics.joints.pair.decision import decide
+from kinform.kinematics.joints.pair.evidence import gather
 from kinform.model.contacts import Patch
 from kinform.model.tolerances import Tolerances
 

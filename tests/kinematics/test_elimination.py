@@ -8,8 +8,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kinform.kinematics.partition import constants
-from kinform.kinematics.partition.elimination import clear_labels
+from kinform.kinematics.partition.elimination import CLEARLY_LESS, clear_labels
 
 
 def costs_of(own, pairs, wide):
@@ -39,7 +38,7 @@ def test_clear_labels_are_the_cheapest_and_no_others_come_near(seed, nodes, wide
     pairs = {(a, b): number(wide, wide) for a in range(nodes) for b in range(a + 1, nodes) if draw.random() < 0.6}
     (least, labels), (second, _), *_ = costs_of(own, pairs, wide)
     found = clear_labels(own, pairs)
-    clearly = second - least > constants.CLEARLY_LESS
+    clearly = second - least > CLEARLY_LESS
     assert found == (list(labels) if clearly else None)
 
 

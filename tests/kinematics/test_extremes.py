@@ -9,7 +9,7 @@ from scipy.spatial import ConvexHull
 from tests.support.patches import Z, cylinder, plane, ring
 
 from kinform.foundation.algebra.vectors import perpendicular, weighted_mean
-from kinform.kinematics.pair.extremes import extreme_samples, hull
+from kinform.kinematics.joints.pair.extremes import extreme_samples, hull
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -10,7 +10,7 @@ import pytest
 from support.copies import Change, answers, checked, copy_of, derived, turned
 from support.places import FIXTURES
 
-from kinform.kinematics.loops.assembly_closure import close
+from kinform.mechanism.first_order import close
 
 DESIGNS = {
     "revolute_collars": "pairs",

@@ -9,8 +9,8 @@ import pytest
 from support.patches import Z, cone, cylinder, plane, ring, sphere
 
 from kinform.foundation.in_step import in_step
-from kinform.kinematics.pair.in_step import Remainder, remains
-from kinform.kinematics.pair.question import Question, answer_each
+from kinform.kinematics.joints.pair.in_step import Remainder, remains
+from kinform.kinematics.joints.pair.question import Question, answer_each
 from kinform.model.tolerances import Tolerances
 from kinform.reuse.packing import pack
 

@@ -10,9 +10,8 @@ from hypothesis import event, given, settings
 from hypothesis import strategies as st
 
 from kinform.foundation.graphs.graph import UnionFind
-from kinform.kinematics.partition import constants
-from kinform.kinematics.partition.joining import Joining
-from kinform.kinematics.partition.labelling import Edge, label_all
+from kinform.kinematics.partition.joining import LOOK_AHEAD, MOST_CUTS, Joining
+from kinform.kinematics.partition.labelling import JAMMED, Edge, label_all
 from kinform.kinematics.partition.loops import Loops
 
 PRICES = (1.0, 30.0, 40.0, 300.0, 5030.0)
@@ -124,7 +123,7 @@ class Whole:
 
     def joined(self, now):
         while ways := self.ways(now):
-            deep = len(set(self.sets(now))) <= constants.LOOK_AHEAD
+            deep = len(set(self.sets(now))) <= LOOK_AHEAD
             for way in ways:
                 self.cost(way)
             cost, best = min((self.least(way) if deep else self.cost(way), way) for way in ways)
@@ -161,7 +160,7 @@ def test_what_is_joined_and_what_it_costs_is_what_cutting_the_whole_graph_tells(
     assert Fraction(found.cost, 2**52) == whole.cost(wanted)
     assert {pair: Fraction(cost, 2**52) for pair, (_, cost) in found.parted.items()} == whole.parted(wanted)
     assert search.on_axes(found) == whole.about(wanted)
-    assert len(search._looked_at) == min(len(whole.looked_at), constants.MOST_CUTS + 1)
+    assert len(search._looked_at) == min(len(whole.looked_at), MOST_CUTS + 1)
 
 
 @settings(max_examples=30, deadline=None)
@@ -213,5 +212,5 @@ def test_what_joining_costs_hangs_on_the_bodies_that_a_joint_connects_with_eithe
     known = cuts.joining(cut, a, x)
     assert not known.cost
     later = cuts.joining(cuts.after(cut, cuts.joining(cut, c, d)), a, x)
-    assert Fraction(later.cost, 2**52) == 2 * (1.0 - constants.JAMMED)
+    assert Fraction(later.cost, 2**52) == 2 * (1.0 - JAMMED)
     assert not known.met.isdisjoint((c, d))

@@ -6,8 +6,8 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import perpendicular
-from kinform.kinematics.constants import CONE_HELD
 from kinform.kinematics.separation import separations
+from kinform.kinematics.separation.constants import CONE_HELD
 from kinform.kinematics.separation.contact_rows import Cone
 from kinform.kinematics.separation.lifting import lifts_apart
 from kinform.kinematics.separation.separations import Link

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from kinform.foundation.graphs.cycles import short_cycles
-from kinform.kinematics.loops.assembly_closure import body_twists, close
-from kinform.kinematics.pair.joint import twists_of
+from kinform.kinematics.joints.pair.joint import twists_of
+from kinform.mechanism.first_order import body_twists, close
 
 Z = np.array([0.0, 0.0, 1.0])
 

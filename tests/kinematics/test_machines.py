@@ -17,7 +17,6 @@ from support.solids import box, part, rod
 from kinform import contacts, kinematics, surfaces
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics import propose, proposed_joints
-from kinform.kinematics.partition import constants
 from kinform.kinematics.partition.contact import Contact
 from kinform.kinematics.partition.labelling import Edge
 from kinform.kinematics.partition.one_body import joined_by_cost, one_body
@@ -65,7 +64,7 @@ def test_joints_that_some_points_tell_apart_part_nothing(seed, monkeypatch):
     told = []
     asked = Contact._surely_opposed
     monkeypatch.setattr(Contact, "_surely_opposed", lambda of, motions: told.append(asked(of, motions)) or told[-1])
-    monkeypatch.setattr(constants, "NUMBERS_AT_ONCE", 1)
+    monkeypatch.setattr("kinform.kinematics.partition.contact.NUMBERS_AT_ONCE", 1)
     assert prices(joints, twists, contact.patches, contact.suggestions).by_joint == every.by_joint
     assert np.concatenate(told).any() or len(joints) == 1
 

@@ -7,8 +7,8 @@ import pytest
 from support.linkages import CLOSED, bennett
 
 from kinform.foundation.graphs.graph import UnionFind, blocks, forest
-from kinform.kinematics.loops.assembly_closure import body_twists, close
-from kinform.kinematics.pair.joint import twists_of
+from kinform.kinematics.joints.pair.joint import twists_of
+from kinform.mechanism.first_order import body_twists, close
 
 X, Y, Z = np.eye(3)
 

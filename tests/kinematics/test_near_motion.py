@@ -11,8 +11,8 @@ from support.assemblies import contacts as no_contacts
 from support.devices import assembly, body, intended, joint, kinematics
 
 from kinform.consistency import check
+from kinform.consistency.questions.near_motion import near_motions
 from kinform.design import Design
-from kinform.kinematics import near_motions
 from kinform.model.function import Function
 
 Z, STRAIGHT = np.array([0.0, 0.0, 1.0]), np.eye(3)

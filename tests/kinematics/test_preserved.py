@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from support.patches import Z, cone, cylinder, plane, ring, sphere
 
-from kinform.kinematics.pair import preserved
-from kinform.kinematics.pair.evidence import gather
-from kinform.kinematics.pair.hypotheses import candidate_motions
+from kinform.kinematics.joints.pair import preserved
+from kinform.kinematics.joints.pair.evidence import gather
+from kinform.kinematics.joints.pair.hypotheses import candidate_motions
 from kinform.model.tolerances import Tolerances
 
 X = np.eye(3)[0]

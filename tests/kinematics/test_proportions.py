@@ -9,12 +9,12 @@ import pytest
 from support.linkages import bennett, bricard, planar, ring
 
 from kinform.foundation.algebra.screws import Frame
-from kinform.kinematics.axes.bounds import MoveBounds
-from kinform.kinematics.axes.misfit import misfit_of, moves_between
-from kinform.kinematics.axes.proportions import fit_proportions
-from kinform.kinematics.loops.joint_graph import JointGraph
-from kinform.kinematics.loops.loop_kinematics import loop_system
-from kinform.kinematics.pair.joint import twists_of
+from kinform.kinematics.joints.axes.bounds import MoveBounds
+from kinform.kinematics.joints.axes.misfit import misfit_of, moves_between
+from kinform.kinematics.joints.axes.proportions import fit_proportions
+from kinform.kinematics.joints.pair.joint import twists_of
+from kinform.mechanism.joint_graph import JointGraph
+from kinform.mechanism.loop_system import loop_system
 from kinform.model.kinematics import Body, Joint
 
 MECHANISMS = {"Bennett": lambda: ring(*bennett()), "Bricard": bricard}

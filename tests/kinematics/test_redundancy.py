@@ -13,7 +13,7 @@ from support.patches import cylinder, patch, plane, ring
 
 from kinform.design import Design
 from kinform.kinematics import Motions, derive
-from kinform.kinematics.questions.motion_query import query
+from kinform.kinematics.queries.motion_query import query
 
 X, Y, Z = np.eye(3)
 

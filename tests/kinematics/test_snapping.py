@@ -14,7 +14,7 @@ from support.assemblies import assembly, between, contacts, part
 from support.patches import cylinder, plane, ring, sphere
 
 from kinform.kinematics import derive
-from kinform.kinematics.axes.concurrence import Locus, meeting_shifts
+from kinform.kinematics.joints.axes.concurrence import Locus, meeting_shifts
 
 SIGMA = 1e-8
 

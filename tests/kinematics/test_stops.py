@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from support.patches import Z, cylinder, patch, plane, ring, sphere
 
-from kinform.kinematics.pair.decision import decide
-from kinform.kinematics.pair.evidence import gather
+from kinform.kinematics.joints.pair.decision import decide
+from kinform.kinematics.joints.pair.evidence import gather
 from kinform.model.tolerances import Tolerances
 
 X, Y = np.eye(3)[0], np.eye(3)[1]

@@ -9,8 +9,8 @@ import pytest
 from support.patches import Z, cylinder, ring
 from support.solids import ball, box, derived, random_pose, rod
 
-from kinform.kinematics.pair.decision import decide
-from kinform.kinematics.pair.evidence import gather
+from kinform.kinematics.joints.pair.decision import decide
+from kinform.kinematics.joints.pair.evidence import gather
 from kinform.model.tolerances import Tolerances
 
 POSES = [None, 0, 1]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinform.kinematics.constants import REDUCED_RATES
 from kinform.kinematics.mobility import gauss_newton
+from kinform.kinematics.mobility.gauss_newton import REDUCED_RATES
 from kinform.kinematics.mobility.truncation import regular_solution, truncated_solution
 
 

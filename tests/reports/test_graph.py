@@ -12,8 +12,8 @@ import pytest
 
 from kinform.exports.graph.drawing import graph_dot, graph_svg
 from kinform.exports.graph.layout import box_centres
-from kinform.kinematics.pair.joint import stated_joint
-from kinform.kinematics.pair.lower_pairs import JointForm
+from kinform.kinematics.joints.pair.joint import stated_joint
+from kinform.kinematics.joints.pair.lower_pairs import JointForm
 from kinform.model.kinematics import Body, ConstraintMatrix, Freedom, Kinematics, Misfit, Mobility, Redundancy
 
 SVG = "{http://www.w3.org/2000/svg}"

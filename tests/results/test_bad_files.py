@@ -11,8 +11,7 @@ from support.sealing import editing
 
 from kinform import results
 from kinform.errors import ResultsError
-from kinform.results.constants import BLOCK
-from kinform.results.seal import seal
+from kinform.results.seal import BLOCK, seal
 
 
 @pytest.fixture(scope="module")

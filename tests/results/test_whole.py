@@ -21,8 +21,7 @@ from support.sealing import editing
 from kinform import results
 from kinform.errors import ResultsError
 from kinform.results import opening
-from kinform.results.constants import BLOCK
-from kinform.results.seal import read_seal, seal
+from kinform.results.seal import BLOCK, read_seal, seal
 
 PAIR = FIXTURES / "pairs" / "revolute_collars"
 NAME = "revolute_collars.toml"

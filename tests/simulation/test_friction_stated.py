@@ -222,7 +222,7 @@ def test_friction_alone_asks_for_no_simulation(tmp_path):
 
 
 def test_built_in_pairs_are_sorted_and_at_rest_not_less_than_in_motion():
-    from kinform.behaviour.constants import MATERIAL_PAIRS
+    from kinform.behaviour.sliding import MATERIAL_PAIRS
 
     assert all(pair == tuple(sorted(pair)) and low <= high for pair, (low, high) in MATERIAL_PAIRS.items())
 

@@ -7,8 +7,7 @@ import pytest
 from support.port_models import DOWN, Model, four_bars
 
 from kinform.simulation import Course, simulate_system
-from kinform.simulation.constants import EVEN, FALLEN
-from kinform.simulation.mechanism.closure import counted
+from kinform.simulation.mechanism.closure import EVEN, FALLEN, counted
 from kinform.simulation.mechanism.construction import assemble
 from kinform.simulation.mechanism.loop_systems import loop_values
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.kinematics.pair.joint import twists_of
+from kinform.kinematics.joints.pair.joint import twists_of
 from kinform.mass import compile_mass
 from kinform.model.assembly import Assembly, MassOverride, Part, Source
 from kinform.model.function import Drive, Function, InitialValue, IntendedJoint, Law, SimulationRequest

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.kinematics.pair.joint import twists_of
+from kinform.kinematics.joints.pair.joint import twists_of
 from kinform.model.checks import Ignore
 from kinform.model.contacts import Interference
 from kinform.model.function import Coupling, Drive, Law, Load, Requirement

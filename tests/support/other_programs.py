@@ -120,8 +120,8 @@ def loaded(found, folder):
 
 def origin(found, name):
     """Where the body's frame in the file is at the pose of the meshes: on its joint."""
-    from kinform.exports.mjcf import CLOSABLE
     from kinform.exports.tree import grow
+    from kinform.formats.mjcf.writing.writer import CLOSABLE
 
     links = grow(found.system, CLOSABLE, found.stated).links
     return next(link.origin for link in links if link.body.subject == name)

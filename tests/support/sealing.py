@@ -9,8 +9,7 @@ from pathlib import Path
 import h5py
 
 from kinform.results import SCHEMA
-from kinform.results.constants import BLOCK
-from kinform.results.seal import seal
+from kinform.results.seal import BLOCK, seal
 
 
 @contextlib.contextmanager

@@ -8,10 +8,9 @@ from support.meshes import of_manifold
 from support.solids import block, centred_rod
 
 from kinform.model.tolerances import Tolerances
-from kinform.surfaces.constants import STEADY
 from kinform.surfaces.kinds.batch import Batch
 from kinform.surfaces.recovery import _Start
-from kinform.surfaces.regions.cycles import Cycles
+from kinform.surfaces.regions.cycles import STEADY, Cycles
 
 REGIONS = 6
 

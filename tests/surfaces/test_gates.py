@@ -8,14 +8,14 @@ from support.meshes import mesh_of, of_manifold
 from support.solids import block, centred_rod
 
 from kinform.model.tolerances import Tolerances
-from kinform.surfaces import constants
 from kinform.surfaces.kinds.batch import Batch
 from kinform.surfaces.kinds.cylinder import Cylinder
 from kinform.surfaces.recovery import _Start, recover
 from kinform.surfaces.regions import growth
 from kinform.surfaces.regions.candidates import Candidates
-from kinform.surfaces.regions.chords import Rounds
-from kinform.surfaces.regions.growth import _may_be_most
+from kinform.surfaces.regions.chords import ROUND_CHORDS, Rounds
+from kinform.surfaces.regions.constants import WIDEST
+from kinform.surfaces.regions.growth import MAJORITY, _may_be_most
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +40,7 @@ def test_first_look_refuses_only_what_does_not_conform_for_the_greatest_part(sta
     may = _may_be_most(candidates, batch)
     fits = candidates.conforms(batch, candidates.reach(batch))
     many = np.bincount(batch.region[fits], minlength=200)
-    most = (many / batch.size >= constants.MAJORITY) & (many >= Cylinder.least)
+    most = (many / batch.size >= MAJORITY) & (many >= Cylinder.least)
     assert not (most & ~may).any()
     assert most.sum() > 20
     assert (~may).sum() > 5
@@ -52,7 +52,7 @@ def test_pieces_too_few_of_whose_polygons_conform_come_to_nothing_later(monkeypa
     solid += centred_rod(0.006, 0.03, 6).translate((-0.02, 0, 0)) ^ block(0.06, 0.04, 0.024)
     mesh = of_manifold(solid.refine_to_length(0.02))
     early = recover(mesh, Tolerances())
-    monkeypatch.setattr(growth, "_most", lambda kind, conforming, size: conforming / size >= constants.MAJORITY)
+    monkeypatch.setattr(growth, "_most", lambda kind, conforming, size: conforming / size >= MAJORITY)
     late = recover(mesh, Tolerances())
     assert (early.labels == late.labels).all()
     for one, other in zip(early.surfaces, late.surfaces, strict=True):
@@ -95,8 +95,8 @@ def test_rounds_are_tried(strips, angle):
 
 
 def test_a_round_between_the_widest_strips_is_tried():
-    half = constants.ROUND_CHORDS / 2 + 1e-9  # not to hang on roundings
-    inner = half - constants.WIDEST
+    half = ROUND_CHORDS / 2 + 1e-9  # not to hang on roundings
+    inner = half - WIDEST
     assert tried([-half, *np.linspace(-inner, inner, 7), half])
 
 

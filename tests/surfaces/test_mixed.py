@@ -8,14 +8,13 @@ from support.meshes import of_manifold
 from support.solids import block, centred_rod
 
 from kinform.model.tolerances import Tolerances
-from kinform.surfaces.constants import STRAIGHT
 from kinform.surfaces.kinds.batch import Batch
 from kinform.surfaces.kinds.mixed import Mixed
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.recovery import _Start
 from kinform.surfaces.regions.growth import pursue
-from kinform.surfaces.regions.partition import CONE, CYLINDER, _around
+from kinform.surfaces.regions.partition import CONE, CYLINDER, STRAIGHT, _around
 from kinform.surfaces.regions.territory import Territory
 
 KINDS = (CYLINDER, CONE)

@@ -11,7 +11,7 @@ from support.solids import block, centred_rod
 
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import packs, recover, recover_all
-from kinform.surfaces.constants import PACK
+from kinform.surfaces.recovery import PACK
 
 
 def meshes():

@@ -11,9 +11,9 @@ from support.meshes import kinds, of_manifold
 from support.solids import block
 
 from kinform.model.tolerances import Tolerances
-from kinform.surfaces import constants, recover
+from kinform.surfaces import recover
 from kinform.surfaces.recovery import _Start
-from kinform.surfaces.swept.threads import _advances, _distances, _level, _Screw, _with_helices
+from kinform.surfaces.swept.threads import WIDE, _advances, _distances, _level, _Screw, _with_helices
 
 
 def posed(seed):
@@ -106,7 +106,7 @@ def test_no_line_that_suggests_an_advance_is_left_out(lead, segments):
     kept = {id(line): level for line, level in _with_helices(work, edges, about, scale)}
     suggests = set()
     for line in about:
-        level = edges[_level(work, edges, _distances(work, [line])[0], constants.WIDE[0], scale)]
+        level = edges[_level(work, edges, _distances(work, [line])[0], WIDE[0], scale)]
         if id(line) in kept:
             assert kept[id(line)].tolist() == level.tolist()
         if _advances(work, level, _Screw(*line, 0.0), scale):

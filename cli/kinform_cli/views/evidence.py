@@ -10,10 +10,12 @@ from kinform.design import Design
 from kinform.foundation.words import angle, counted, length
 from kinform.kinematics import Insight, insight
 from kinform.model.kinematics import Joint, Release
-from kinform_cli.constants import NO_TURN
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths, singular, vector
 from kinform_cli.views.joints import blockers, sentence
+
+NO_TURN = 1e-7
+"""rad below which the uncertainty of an axis is not told: meshes in single precision do not say so much."""
 
 
 def render(design: Design, name: str) -> RenderableType:

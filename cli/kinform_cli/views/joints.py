@@ -14,13 +14,15 @@ from kinform.function.body_titles import body_titles
 from kinform.model.collisions import JointRange
 from kinform.model.kinematics import Joint, Kinematics, Release
 from kinform.reports.phrases import answers_line
-from kinform_cli.constants import MOST_WAYS
 from kinform_cli.shortened import beginning
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import NONE, Lengths, degrees, ground_note, singular, vector
 
 if TYPE_CHECKING:
     from kinform.consistency.comparisons.answers import Answer
+
+MOST_WAYS = 3
+"""Ways to leave that are listed for each joint; `--joint` lists all. A choice."""
 
 
 def render(design: Design, *, short: bool = False) -> RenderableType:

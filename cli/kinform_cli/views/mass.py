@@ -11,10 +11,12 @@ from rich.text import Text
 from kinform.design import Design
 from kinform.foundation import words
 from kinform.model.mass import MassProperties
-from kinform_cli.constants import HEAVY
 from kinform_cli.shortened import beginning
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import NONE, Lengths, number
+
+HEAVY = 1.0
+"""kg: where something in a table weighs as much, masses are in kg, else in g."""
 
 
 def bodies(design: Design, *, short: bool = False) -> RenderableType:

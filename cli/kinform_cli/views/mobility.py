@@ -15,10 +15,23 @@ from kinform.kinematics import Motions, adrift, adrift_in_words
 from kinform.model.kinematics import Coupling, Mobility
 from kinform.reports.freedom_phrases import follower_rates, freedom_text
 from kinform.reports.values.kinematics import mobility_counts
-from kinform_cli.constants import MOST_MOVES, MOST_NAMES, NO_ANGLE, NO_SHIFT, SHOWN_SHIFT, SHOWN_TURN
 from kinform_cli.shortened import beginning
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import NONE, Lengths
+
+MOST_NAMES = 8
+"""Bodies or joints that are listed for a freedom; the JSON has them all. A choice."""
+NO_ANGLE = 1e-7
+"""Radians below which a misfit of directions is none: single precision tells no less of a direction."""
+NO_SHIFT = 1e-12
+"""Share of the largest part below which a misfit of places is none: rounding."""
+SHOWN_SHIFT = 1e-6
+"""Share of the largest part from which on the shift of a joint is listed: below are the roundings of mesh files."""
+SHOWN_TURN = 1e-5
+"""Radians from which on its turn is: noise, and no rounding. A choice."""
+MOST_MOVES = 12
+"""Joints that were moved that are listed; the JSON has them all. A choice."""
+
 
 _MEANINGS = (
     ("effective", "without idle freedoms: what `mobility` is compared with"),

@@ -15,9 +15,15 @@ from numpy.typing import NDArray
 
 from kinform.model.simulation import Simulation
 from kinform.reports.values.runs import coordinates
-from kinform_cli.constants import REST, SAME_PEAK, SPARK_WIDTH
 from kinform_cli.tables import Rows
 from kinform_cli.text import Lengths, degrees, number, scaled
+from kinform_cli.views.constants import REST
+
+SPARK_WIDTH = 20
+"""Characters of a line of blocks: with the extremes it fits in 80 columns where names are short."""
+SAME_PEAK = 1e-6
+"""Share of the span of a series within which two of its peaks are equally high: the first is named."""
+
 
 BLOCKS = "▁▂▃▄▅▆▇█"
 PLAIN = "_.:-=+*#"

@@ -13,9 +13,15 @@ from kinform.design import Design
 from kinform.foundation.words import by_cause, counted
 from kinform.function import as_intended, designers_joints
 from kinform.model.simulation import Simulation
-from kinform_cli.constants import BALANCED, NAMED_PAIRS, REST
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths, degrees, number, quantity
+from kinform_cli.views.constants import REST
+
+BALANCED = 1e-8
+"""Share of the largest energy below which the balance is as exact as the integration is asked to be."""
+NAMED_PAIRS = 3
+"""Pairs of parts that are named where all have one reason."""
+
 
 _NUMBERS = ("start", "end", "lowest", "highest", "fastest")
 _SHOWN: dict[str, Any] = {"names": ["joint"], "texts": ["stopped by"]}

@@ -16,10 +16,17 @@ from dataclasses import replace
 from types import TracebackType
 from typing import Any
 
-from kinform.batch import constants
 from kinform.batch.desks import close_all, perform
 from kinform.batch.task import DIED, INTERNAL, Answer, Task, failed
 from kinform.errors import InputError, Problem
+
+TRIES = 2
+"""How often a task is begun whose worker died: once, and once more elsewhere."""
+WAITING = 2
+"""Tasks a worker that are under way or waiting for it, so that none is idle while an answer travels. A choice."""
+PATIENCE = 20.0
+"""s in which a scheduler has to answer, and to have a worker."""
+
 
 MISSING = "many designs at once need Dask, which is not installed"
 REMEDY = "install it: pip install 'kinform[batch]'"
@@ -103,7 +110,7 @@ class Crew:
             return True
 
         def fill() -> None:
-            most = constants.WAITING * max(self.size, 1)
+            most = WAITING * max(self.size, 1)
             while len(under_way) < most and more():
                 pass
 
@@ -113,7 +120,7 @@ class Crew:
             task, tries = under_way.pop(future)
             answer, avoided = _outcome(future, task)
             future.release()
-            if answer.failure is not None and answer.failure.kind == DIED and tries < constants.TRIES:
+            if answer.failure is not None and answer.failure.kind == DIED and tries < TRIES:
                 waiting.append((task, tries + 1, avoided))
             else:
                 yield replace(answer, tries=tries)
@@ -122,12 +129,12 @@ class Crew:
     def _connected(self, distributed: Any) -> Any:
         address = str(self._scheduler)
         try:
-            client = distributed.Client(address, timeout=constants.PATIENCE, set_as_default=False)
+            client = distributed.Client(address, timeout=PATIENCE, set_as_default=False)
         except (OSError, TimeoutError, ValueError) as error:
             remedy = "start one: dask scheduler; and workers: dask worker ADDRESS --nthreads 1"
             raise InputError([Problem(f"no scheduler answers there: {error}", address, None, remedy)]) from None
         try:
-            client.wait_for_workers(1, timeout=constants.PATIENCE)
+            client.wait_for_workers(1, timeout=PATIENCE)
         except TimeoutError:
             client.close()
             remedy = f"start one: dask worker {address} --nthreads 1"

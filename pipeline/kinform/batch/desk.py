@@ -21,13 +21,17 @@ import traceback
 from dataclasses import replace
 from typing import IO, Any
 
-from kinform.batch import constants
 from kinform.batch.task import DIED, INPUT, INTERNAL, MEMORY, TIME, Answer, Failure, Limits, Task, failed
 from kinform.errors import InputError, KinformError, Problem, ResultsError
 from kinform.foundation import at_work
 from kinform.foundation.orphans import end_with
 from kinform.foundation.processes import cause_of
 from kinform.foundation.words import number
+
+LOOK = 0.05
+"""s between two looks at the memory of a task and at its clock: a process that writes new memory at 1 GB/s is seen
+within 50 MB of its limit. A choice."""
+
 
 IMPORTED = (
     "kinform.method", "kinform.stages", "kinform.results", "kinform.form.readers.assembly", "kinform.kinematics",
@@ -175,7 +179,7 @@ def _wait(stream: Any, child: int, limits: Limits, asker: int | None, began: flo
     watched = [stream.fileno()] + ([] if asker is None else [asker])
     limited = limits.seconds is not None or limits.memory is not None
     while True:
-        ready, _, _ = select.select(watched, [], [], constants.LOOK if limited else None)
+        ready, _, _ = select.select(watched, [], [], LOOK if limited else None)
         if stream.fileno() in ready:
             piece = stream.read(1 << 20)
             if not piece:

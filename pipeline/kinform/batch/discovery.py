@@ -14,12 +14,15 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from kinform.batch import constants
 from kinform.errors import InputError, Problem
 from kinform.form.constants import MANIFEST_BYTES
 from kinform.form.sources import states_units
 from kinform.foundation.regular import not_a_file
 from kinform.frozen import dataclass
+
+HEAD = 65536
+"""Bytes of an XML file in which its root element is looked for."""
+
 
 DESCRIPTIONS = (".urdf", ".xacro", ".sdf", ".world", ".mjcf", ".xml")
 """Suffixes of files that are looked into, beside manifests."""
@@ -97,7 +100,7 @@ def is_design(path: Path) -> bool:
         return False
     try:
         with path.open("rb") as stream:
-            head = stream.read(constants.HEAD)
+            head = stream.read(HEAD)
     except OSError:
         return True
     return re.search(_ROOTS[suffix], re.sub(rb"<!--.*?-->", b"", head, flags=re.S)) is not None

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from kinform.batch import constants, record
+from kinform.batch import record
 from kinform.batch.crew import Crew
 from kinform.batch.desk import code_of_here
 from kinform.batch.desks import close_all, perform
@@ -17,6 +17,9 @@ from kinform.batch.task import INPUT, UNLIMITED, Answer, Failure, Limits, Task
 from kinform.batch.unchanged import row_if_unchanged
 from kinform.errors import InputError, Problem, ResultsError
 from kinform.frozen import dataclass
+
+KEEPING = 5.0
+"""s between two writings of the record: what a killed batch has to look at again."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +79,7 @@ def _run(
                 rows[one.name] = kept.rows[one.name] = _row(one, answer)
                 if progress is not None:
                     progress(done, len(left))
-                if time.monotonic() - written > constants.KEEPING:
+                if time.monotonic() - written > KEEPING:
                     record.write(kept, folder)
                     written = time.monotonic()
         finally:

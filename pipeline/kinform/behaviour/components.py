@@ -11,13 +11,15 @@ from typing import Annotated
 import numpy as np
 
 from kinform.behaviour import shafts
-from kinform.behaviour.constants import LEAST_GAS
 from kinform.behaviour.joints import JointGeometry, JointKind
 from kinform.behaviour.ports import FRAME, Component, Node, Port
 from kinform.behaviour.signals import STEADY, Signal
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.quantities import MATRIX, XYZ, Direction, Inertia, JointValue, Metres, Place, Ratio
+
+LEAST_GAS = 1e-6
+"""Share of the column of a gas spring below which its force grows no further: nothing is pushed in so far."""
 
 
 @dataclass(frozen=True)

@@ -19,10 +19,13 @@ from kinform.behaviour.components import (
     RigidBody,
     System,
 )
-from kinform.behaviour.constants import UNIT_LENGTH
 from kinform.behaviour.ports import Component
 from kinform.behaviour.shafts import Actor, Controller, DcMotor, EndStop, Friction, VoltageController, VoltageSource
 from kinform.behaviour.signals import LAWS, Table
+
+UNIT_LENGTH = 1e-9
+"""Length of an axis beyond 1 that no rounding explains."""
+
 
 _SIGNALS = tuple(LAWS.values())
 _UNBOUNDED = ("lower", "upper", "limit", "current_limit", "speed_limit")

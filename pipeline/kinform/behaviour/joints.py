@@ -11,12 +11,14 @@ from collections.abc import Callable
 
 import numpy as np
 
-from kinform.behaviour.constants import PARALLEL_AXES
 from kinform.behaviour.primitives import Ball, OneFreedom, Primitive
 from kinform.foundation.algebra.vectors import perpendicular
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.quantities import Direction, Metres, Place
+
+PARALLEL_AXES = 1e-6
+"""rad: the axes of a universal joint make no cross at less, far above the rounding of unit vectors."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,9 +8,16 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from kinform.behaviour.constants import OVERSHOOT, SPLINE_SAMPLES, STRAIGHT
 from kinform.frozen import dataclass
 from kinform.model.function import Law
+
+OVERSHOOT = 0.02
+"""Share of a table's span that a spline may leave its rows: a sine of sixteen rows a turn does."""
+SPLINE_SAMPLES = 17
+"""Places in each stretch of a table at which a spline is compared with its straight line: ends and sixteenths."""
+STRAIGHT = 1e-9
+"""Share of a table's span by which rows may be off the line between its ends and count as on it: tables that programs
+write have nine digits and more."""
 
 
 class Signal(Protocol):

@@ -15,7 +15,6 @@ from dataclasses import field, replace
 
 import numpy as np
 
-from kinform.behaviour.constants import ALIKE_RADII, ALONG_AXIS, MATERIAL_PAIRS
 from kinform.behaviour.rubbing import Rubs
 from kinform.foundation.words import listed
 from kinform.frozen import dataclass
@@ -27,6 +26,25 @@ from kinform.model.function import ARMS, Drive, friction_arms
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.names import BodyName
 from kinform.model.surfaces import MeshSurfaces
+
+ALONG_AXIS = 0.9998
+"""Cosine of the angle (1.1°) up to which a surface counts as along, or across, the axis of its joint for friction: what
+contact takes for one axis agrees far better, and other faces stand at degrees."""
+ALIKE_RADII = 0.02
+"""Share by which radii of journals, or of thrust rings, may differ and count as one; coefficients are known worse."""
+MATERIAL_PAIRS: dict[tuple[str, str], tuple[float, float]] = {
+    ("aluminium", "steel"): (0.47, 0.61),
+    ("brass", "steel"): (0.44, 0.51),
+    ("copper", "steel"): (0.36, 0.53),
+    ("glass", "glass"): (0.40, 0.94),
+    ("ptfe", "ptfe"): (0.04, 0.04),
+    ("ptfe", "steel"): (0.04, 0.04),
+    ("steel", "steel"): (0.57, 0.74),
+}
+"""(in motion, at rest) of clean and dry pairs of materials, sorted, as tables of general physics have them (Serway and
+Jewett, Physics for Scientists and Engineers, table 5.1; Marks' Standard Handbook for Mechanical Engineers, section 3.2,
+for brass and for PTFE on steel). Lubrication, finish and wear change them several times over: runs name what they
+took, and a [[friction]] of the manifest goes before."""
 
 
 @dataclass(frozen=True, eq=False)

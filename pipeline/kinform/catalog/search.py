@@ -10,11 +10,18 @@ from typing import Any
 
 import numpy as np
 
-from kinform.catalog import constants
 from kinform.catalog.build import digest_of
 from kinform.catalog.entry import CatalogJoint, Entry
 from kinform.catalog.store import entry_from, open_catalog
 from kinform.frozen import dataclass
+
+MOST_ALIKE = 20
+"""Designs that are named as like another one; a choice."""
+LOOKED_AT = 120
+"""Designs of the same graph and mobility, those of the nearest size, whose axes are compared: 0.05 s. A choice."""
+PARALLEL = 1e-6
+"""Sine of the angle below which two axes are parallel."""
+
 
 JOINT_TYPES = (
     "fixed", "revolute", "prismatic", "cylindrical", "spherical", "planar", "screw", "universal", "general",
@@ -74,9 +81,7 @@ def find(path: str | Path, wanted: Wanted) -> tuple[tuple[Entry, ...], int]:
         return tuple(entry_from(database, row) for row in rows), int(total)
 
 
-def like(
-    path: str | Path, entry: Entry, most: int = constants.MOST_ALIKE
-) -> tuple[tuple[tuple[float, Entry], ...], int]:
+def like(path: str | Path, entry: Entry, most: int = MOST_ALIKE) -> tuple[tuple[tuple[float, Entry], ...], int]:
     """The designs of the catalog at `path` that do the same as this one, with how far each is from it, the nearest
     first; and how many designs it has.
 
@@ -89,7 +94,7 @@ def like(
         ).fetchall()
         total = database.execute("SELECT count(*) FROM designs").fetchone()[0]
         size = _extent(entry)
-        near = sorted(rows, key=lambda row: (_ratio(size, _row_extent(row)), row["path"]))[: constants.LOOKED_AT]
+        near = sorted(rows, key=lambda row: (_ratio(size, _row_extent(row)), row["path"]))[:LOOKED_AT]
         found = [(distance(entry, other), other) for other in (entry_from(database, row) for row in near)]
         found.sort(key=lambda pair: (pair[0], pair[1].path))
         return tuple(found[:most]), int(total)
@@ -130,7 +135,7 @@ def _between(a: CatalogJoint, b: CatalogJoint) -> tuple[float, float]:
     if a.point is None or b.point is None or "prismatic" in (a.type, b.type):
         return turn, 0.0
     apart = np.array(b.point) - np.array(a.point)
-    if sine > constants.PARALLEL:
+    if sine > PARALLEL:
         return turn, abs(float(apart @ across)) / sine
     return turn, float(np.linalg.norm(np.cross(u, apart)))
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 
-from kinform.changes import constants
 from kinform.changes.behaviours import Snapshot
 from kinform.changes.change import Change
 from kinform.changes.matching import new_names
@@ -20,6 +19,9 @@ from kinform.foundation.words import number
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Part
+
+OF_THE_WHOLE = ("mobility", "simulation")
+"""Kinds of changes that are about no part."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +103,7 @@ def grouped(
     wholes = {side.assembly for side in snapshots} - set(of_name)
     for change in changes:
         concerned = {part for name in change.subject for part in of_name.get(name, (name,))}
-        of_whole = change.kind in constants.OF_THE_WHOLE or not wholes.isdisjoint(change.subject)
+        of_whole = change.kind in OF_THE_WHOLE or not wholes.isdisjoint(change.subject)
         key = tuple(changed) if of_whole else tuple(part for part in changed if part in concerned)
         groups.setdefault(key, []).append(change)
     order = sorted(groups, key=lambda key: (not key, len(key) > 1, len(key), [changed.index(part) for part in key]))

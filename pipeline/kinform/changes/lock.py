@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any
 from kinform.changes.behaviours import Axis, BodyMass, JointState, Snapshot, Vector
 from kinform.changes.change import Change
 from kinform.changes.comparison import Comparison, compare
-from kinform.changes.constants import DIRECTION_PLACES, GRAIN_SHARE, LENGTH_ERROR
 from kinform.changes.tolerance import Tolerance
 from kinform.design import Design
 from kinform.errors import InputError, Problem
@@ -26,6 +25,13 @@ from kinform.model.findings import CheckReport, Finding
 
 if TYPE_CHECKING:
     from kinform.consistency import Outcome
+
+GRAIN_SHARE = 0.1
+"""Values are rounded to this share of their tolerance: rounding cannot make a difference by itself."""
+DIRECTION_PLACES = 6
+"""Decimals of directions: 1e-6 rad is far below any tolerance of angles that a lock has."""
+LENGTH_ERROR = 1e-3
+"""By so much a direction in a lock may miss the length 1; more is a mistake of who wrote it."""
 
 
 SCHEMA = "kinform/behaviour-lock/1"

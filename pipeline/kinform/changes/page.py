@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from kinform.changes import constants
 from kinform.changes.causes import Cause
 from kinform.changes.comparison import Comparison
 from kinform.changes.render import cause_lines, change_lines, new_lines, verdict_words
@@ -17,13 +16,21 @@ from kinform.foundation.algebra.displacements import displacement, inverse, twis
 from kinform.foundation.algebra.spatial import quaternions
 from kinform.foundation.units import metres_per
 from kinform.model.assembly import Part
-from kinform.reports import constants as drawing
+from kinform.reports.constants import EYE_RISE, EYE_TURN, FINDING_MARGIN, FINDING_SHIFT, FINDING_ZOOM, OVERLAP_COLOUR
 from kinform.reports.page import Artist, Scene
 from kinform.reports.page.html import environment, frame, image_url
 from kinform.reports.page.meshes import shape_of
 from kinform.reports.page.packing import Blob
-from kinform.reports.page.scene_data import packed_frames, packed_mesh
+from kinform.reports.page.scene_data import FIT_COLOURS, packed_frames, packed_mesh
 from kinform.reports.values.plain import plain
+
+REVISION_COLOURS = {
+    "as it was": "#8b929c", "moved": "#3f7fbf", "other material": "#b08abf", "other shape, before": "#d39a5b",
+    "other shape, after": "#2e9e76", "new": "#79ab83", "gone": "#c9807a",
+}  # fmt: skip
+"""Of parts on the page of two revisions; the legend and the text say the same in words."""
+REVISION_FRAMES = 17
+"""Poses from before to after: enough for a turn of half a circle to look round."""
 
 
 def diff_page(comparison: Comparison, before: Design, after: Design, files: tuple[str, str]) -> str:
@@ -46,7 +53,7 @@ def diff_page(comparison: Comparison, before: Design, after: Design, files: tupl
             groups=_groups(comparison, numbers),
             missing=comparison.missing,
             new=new_lines(comparison),
-            legend=[(kind, colour, kinds[kind]) for kind, colour in constants.REVISION_COLOURS.items() if kinds[kind]],
+            legend=[(kind, colour, kinds[kind]) for kind, colour in REVISION_COLOURS.items() if kinds[kind]],
         )
     )
 
@@ -105,8 +112,7 @@ def _drawn(comparison: Comparison, before: Design, after: Design) -> tuple[dict[
         "metres": metres_per(after.assembly.units),
         "meshes": [packed_mesh(blob, shape_of(mesh, None)) for mesh in shapes.values()],
         "bodies": [
-            {"name": name, "ground": False, "colour": constants.REVISION_COLOURS[kind]}
-            for name, _, kind, _, _ in entries
+            {"name": name, "ground": False, "colour": REVISION_COLOURS[kind]} for name, _, kind, _, _ in entries
         ],
         "parts": [
             {
@@ -120,16 +126,16 @@ def _drawn(comparison: Comparison, before: Design, after: Design) -> tuple[dict[
         ],
         "joints": [],
         "patches": {"items": [], "rows": 0, "offset": 0, "low": [0.0] * 7, "size": [1.0] * 7},
-        "fits": drawing.FIT_COLOURS,
-        "overlapColour": drawing.OVERLAP_COLOUR,
+        "fits": FIT_COLOURS,
+        "overlapColour": OVERLAP_COLOUR,
         "overlaps": [],
         "findings": [],
         "look": {
-            "turn": drawing.EYE_TURN,
-            "rise": drawing.EYE_RISE,
-            "margin": drawing.FINDING_MARGIN,
-            "zoom": drawing.FINDING_ZOOM,
-            "shift": drawing.FINDING_SHIFT,
+            "turn": EYE_TURN,
+            "rise": EYE_RISE,
+            "margin": FINDING_MARGIN,
+            "zoom": FINDING_ZOOM,
+            "shift": FINDING_SHIFT,
         },
         "motions": [_motion(blob, [(k, cause) for k, (*_, cause) in enumerate(entries) if cause is not None])],
     }
@@ -138,7 +144,7 @@ def _drawn(comparison: Comparison, before: Design, after: Design) -> tuple[dict[
 
 def _motion(blob: Blob, moved: list[tuple[int, Cause]]) -> dict[str, Any]:
     """From before to after: parts that moved go their way, the others change in the middle."""
-    shares = np.linspace(0.0, 1.0, constants.REVISION_FRAMES)
+    shares = np.linspace(0.0, 1.0, REVISION_FRAMES)
     poses = np.array(
         [[inverse(displacement((1.0 - s) * twist_of(cause.X))) for _, cause in moved if cause.X is not None]
          for s in shares]

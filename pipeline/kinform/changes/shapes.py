@@ -7,12 +7,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.changes import constants
 from kinform.foundation.algebra.displacements import inverse, twist_of
 from kinform.foundation.meshes.closest import closest_facets
 from kinform.foundation.words import angle, direction, length, listed
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh, Part
+
+SAME_SHAPE = 1e-6
+"""Share of a part's size by which vertices may miss a displaced mesh: what files of single precision round."""
+SAME_PLACE = 1e-7
+"""Share of a part's size, and rad, below which it has not moved: rounding of poses."""
+SAME_VOLUME = 0.005
+"""%: smaller differences of volume are told as none, as they would be told as 0.00 %."""
+ALONG = 1e-6
+"""By how much the component of a direction may miss 1 for the direction to be that of an axis."""
 
 
 def displacement(was: Part, part: Part) -> tuple[Array | None, bool]:
@@ -35,7 +43,7 @@ def displacement(was: Part, part: Part) -> tuple[Array | None, bool]:
 
 def _near(was: Part, part: Part) -> float:
     """m: by how much the same place may differ, as files and poses round it."""
-    return max(constants.SAME_SHAPE * _size(part), was.step, part.step)
+    return max(SAME_SHAPE * _size(part), was.step, part.step)
 
 
 def _box(points: Array) -> Array:
@@ -94,7 +102,7 @@ def moved(X: Array, was: Part, part: Part, units: str) -> str:
     """ "moved 1 mm along x", "turned 2° about z"; empty where the displacement is rounding."""
     size = _size(part)
     same = was.mesh is None or part.mesh is None or was.mesh.digest == part.mesh.digest
-    least = constants.SAME_PLACE * size if same else max(constants.SAME_PLACE * size, was.step, part.step)
+    least = SAME_PLACE * size if same else max(SAME_PLACE * size, was.step, part.step)
     twist = twist_of(X)
     turn = float(np.linalg.norm(twist[:3]))
     place = part.X_WP[:3, 3] if part.mesh is None else _middle_of(part)
@@ -128,7 +136,7 @@ def _size(part: Part) -> float:
 def _along(unit: Array) -> str:
     """x, -z, or the components."""
     k = int(np.argmax(np.abs(unit)))
-    if abs(abs(float(unit[k])) - 1.0) < constants.ALONG:
+    if abs(abs(float(unit[k])) - 1.0) < ALONG:
         return ("" if unit[k] > 0.0 else "-") + "xyz"[k]
     return direction(np.round(unit, 3))
 
@@ -146,7 +154,7 @@ def reshaped(was: Part, part: Part, X: Array | None, units: str) -> tuple[str, s
     told = []
     if old.health.watertight and new.health.watertight and old.health.volume > 0.0:
         share = 100.0 * (new.health.volume - old.health.volume) / old.health.volume
-        told.append("the same volume" if abs(share) < constants.SAME_VOLUME else f"volume {share:+.2g} %")
+        told.append("the same volume" if abs(share) < SAME_VOLUME else f"volume {share:+.2g} %")
     before, after = (one, _placed(part)) if X is None else (old.vertices, new.vertices)
     for k, name in enumerate("xyz"):
         grown = float(np.ptp(after[:, k]) - np.ptp(before[:, k]))

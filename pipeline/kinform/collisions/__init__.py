@@ -23,6 +23,12 @@ relative to another does a part first meet it (`pair`)? The rooms are read in th
    each other, with those of their facets that can meet (`apart_for_good`).
 
 Less deep than mates may overlap it is a scrape, and none of this counts.
+
+Sub-packages; each imports only those above it:
+
+- `parts`: one part: its shape, its probes, the motions that map it onto itself
+- `pair`: two parts on a course: when they first touch, and how deep
+- `driving`: joints driven until something stops them
 """
 
 from __future__ import annotations

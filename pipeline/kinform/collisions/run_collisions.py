@@ -7,14 +7,13 @@ from itertools import combinations, product
 
 import numpy as np
 
-from kinform.collisions import constants
 from kinform.collisions.between_outputs import nodes_of
 from kinform.collisions.first_crossings import FirstCrossings
 from kinform.collisions.joint_ranges import shapes_of
 from kinform.collisions.pair.advancement import First
 from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.posed_pairs import Moving, Nodes, moving_pairs
-from kinform.collisions.pair.prepared_pair import PairTest
+from kinform.collisions.pair.prepared_pair import OVERLAP_SAME, PairTest
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.progress import Progress
 from kinform.model.arrays import Array
@@ -24,6 +23,28 @@ from kinform.model.contacts import Contacts
 from kinform.model.kinematics import Kinematics
 from kinform.model.simulation import Simulation
 from kinform.model.surfaces import MeshSurfaces
+
+CONTACT_TIME = 1e-4
+"""Share of the time between two outputs to which a first contact is found."""
+OUTPUT_TURN = 0.2
+"""rad that a joint may turn between outputs: then arcs are as good as straight."""
+OUTPUT_SLIDE = 0.05
+"""The same of a slide, as a share of the assembly's size."""
+OUTPUT_PEAK = 0.005
+"""Share of these that a joint may go further on between outputs than at them, where it turns back."""
+OUTPUTS_MOST = 50_000
+"""Outputs up to which a run is asked for again."""
+OUTPUTS_FOR_PEAKS = 2_000
+"""The same where that is for what happens where joints turn back: impacts would ask for any number."""
+RUN_ASKED = 3
+"""How often: with more outputs more of the motion is seen."""
+COLLISIONS_MOST = 100
+"""Collisions after which later ones are not looked for."""
+DEPTH_SOON = 17
+"""Times within an output step of the first contact at which the depth is measured too."""
+DEPTH_TIMES = 12
+"""Output times after the first contact at which the depth is measured: so many spread over the rest, and about the
+worst."""
 
 
 def along(
@@ -52,10 +73,10 @@ def along(
     nodes = nodes_of(simulation, kinematics.joints)
     pairs = moving_pairs(shapes, names, kinematics.joints, nodes)
     end, step = float(simulation.time[-1]), float(np.diff(simulation.time).min())
-    met = FirstCrossings(pairs, end, constants.CONTACT_TIME * step, progress)
+    met = FirstCrossings(pairs, end, CONTACT_TIME * step, progress)
     untested: list[tuple[str, str, str]] = []
     out: list[Collision] = []
-    most = constants.COLLISIONS_MOST
+    most = COLLISIONS_MOST
     while True:
         for k, crossing in met.up_to(most):
             found = _judged(assembly, simulation, nodes, pairs[k], crossing)
@@ -63,7 +84,7 @@ def along(
                 out.append(found)
             else:
                 untested += [(*pairs[k].test.part_names, reason) for reason in found]
-        if met.end >= end or len(out) >= constants.COLLISIONS_MOST:
+        if met.end >= end or len(out) >= COLLISIONS_MOST:
             break
         most *= 2
     late = f"not followed after t = {met.end:.6g} s, by when {len(out)} other pairs had collided"
@@ -90,7 +111,7 @@ def _judged(
         return [*why, f"they roll or mesh, and overlap by more than chord errors at t = {crossing.hit:.6g} s"]
     place = (nodes.between(crossing.hit)[item.first] @ np.append(crossing.place, 1.0))[:3]
     depth = _depth(test, item.course, simulation.time, crossing.hit)
-    if crossing.before > 0.0 and depth <= constants.OVERLAP_SAME * crossing.before + test.scrape:
+    if crossing.before > 0.0 and depth <= OVERLAP_SAME * crossing.before + test.scrape:
         return [*why, "they overlap from the start, and again later"]
     if depth <= 0.0 and all(_closed(assembly.part(name)) for name in test.part_names):
         return [*why, f"facets cross at t = {crossing.hit:.6g} s, but no point of one is found in the other"]
@@ -108,8 +129,8 @@ def _followed(simulation: Simulation, size: float, finer: Callable[[int], Simula
     if finer is None:
         return simulation, ""
     times, (wanted, _) = 1, _parts_of_a_step(simulation, size)
-    for _ in range(constants.RUN_ASKED):
-        if wanted == 1 or 2 * wanted * len(simulation.time) > constants.OUTPUTS_MOST:
+    for _ in range(RUN_ASKED):
+        if wanted == 1 or 2 * wanted * len(simulation.time) > OUTPUTS_MOST:
             break
         times *= 2 * wanted
         again = finer(times)
@@ -119,7 +140,7 @@ def _followed(simulation: Simulation, size: float, finer: Callable[[int], Simula
         wanted, _ = _parts_of_a_step(simulation, size)
     if wanted == 1:
         _, wished = _parts_of_a_step(simulation, size)
-        if 1 < wished and wished * len(simulation.time) <= constants.OUTPUTS_FOR_PEAKS:
+        if 1 < wished and wished * len(simulation.time) <= OUTPUTS_FOR_PEAKS:
             again = finer(times * wished)
             simulation = again if len(again.time) > len(simulation.time) else simulation
         return simulation, ""
@@ -148,7 +169,7 @@ def _parts_of_a_step(simulation: Simulation, size: float) -> tuple[int, int]:
     step = float(np.diff(simulation.time).max())
     turns = {joint: kind != "prismatic" for joint, kind in enumerate(simulation.joint_types)}
     owner = np.repeat(np.arange(len(simulation.joint_types)), np.diff(simulation.joint_offset))
-    reach = np.array([constants.OUTPUT_TURN if turns[int(joint)] else constants.OUTPUT_SLIDE * size for joint in owner])
+    reach = np.array([OUTPUT_TURN if turns[int(joint)] else OUTPUT_SLIDE * size for joint in owner])
     if not len(reach):
         return 1, 1
     rate, acceleration = (
@@ -156,14 +177,14 @@ def _parts_of_a_step(simulation: Simulation, size: float) -> tuple[int, int]:
         for values in (simulation.joint_velocity, simulation.joint_acceleration)
     )
     parts = max(rate * step, float(np.sqrt(0.5 * acceleration)) * step)
-    peaks = float(np.sqrt(0.125 * acceleration / constants.OUTPUT_PEAK)) * step
+    peaks = float(np.sqrt(0.125 * acceleration / OUTPUT_PEAK)) * step
     return max(1, int(np.ceil(parts - 1e-6))), max(1, int(np.ceil(peaks - 1e-6)))
 
 
 def _depth(test: PairTest, course: Course, time: Array, hit: float) -> float:
     """m: how deep two parts are in each other at the worst of some times from the first contact on: soon after it,
     between outputs too, at outputs spread over the run, and about the worst of these."""
-    soon = np.linspace(hit, min(hit + float(np.diff(time).max()), float(time[-1])), constants.DEPTH_SOON)
+    soon = np.linspace(hit, min(hit + float(np.diff(time).max()), float(time[-1])), DEPTH_SOON)
     after = np.unique(np.concatenate([soon, time[time >= hit]]))
     last = len(after) - 1
     depths: dict[int, float] = {}
@@ -173,10 +194,10 @@ def _depth(test: PairTest, course: Course, time: Array, hit: float) -> float:
             depths[n] = test.deepest(course.displacement(float(after[n])))
         return depths[n]
 
-    tried = {int(n) for n in np.linspace(0, last, constants.DEPTH_TIMES)} | {
-        2**k - 1 for k in range(constants.DEPTH_TIMES) if 2**k - 1 <= last
+    tried = {int(n) for n in np.linspace(0, last, DEPTH_TIMES)} | {
+        2**k - 1 for k in range(DEPTH_TIMES) if 2**k - 1 <= last
     }
-    worst, step = max(sorted(tried), key=deep), max(last // constants.DEPTH_TIMES, 1)
+    worst, step = max(sorted(tried), key=deep), max(last // DEPTH_TIMES, 1)
     while step:
         better = max((n for n in (worst, worst - step, worst + step) if 0 <= n <= last), key=deep)
         worst, step = better, step if better != worst else step // 2

@@ -3,6 +3,12 @@
 `check` runs the rules of `RULES` on a design; each rule passes, fails, is inconclusive or is skipped
 because it does not apply. `verdict` turns a report into the exit code of the gate, `explain` prints
 what a code means.
+
+Sub-packages; each imports only those above it:
+
+- `questions`: what several rules ask of a design, and nobody else
+- `comparisons`: quantities of function and behaviour beside each other
+- `rules`: one rule a file
 """
 
 from __future__ import annotations

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from kinform.consistency.constants import FEW_WARNINGS, NAMED_WARNINGS, WORST_WARNINGS
 from kinform.consistency.context import Unused
 from kinform.consistency.outcome import Outcome
 from kinform.consistency.profiles import SETTLED, at_most
@@ -14,6 +13,15 @@ from kinform.foundation.words import counted
 from kinform.frozen import dataclass
 from kinform.model.checks import CheckSettings, Ignore
 from kinform.model.findings import Finding, Ignored, RuleOutcome
+
+FEW_WARNINGS = 6
+"""Warnings of one rule on a robot description that are told one by one: the sides of three joints. Of more, nobody
+reads the last."""
+WORST_WARNINGS = 3
+"""Of more, so many are told; the rest is one finding."""
+NAMED_WARNINGS = 4
+"""Of these, so many are named."""
+
 
 DOUBT = "KF9"
 """Rules that have one finding for each thing that could not be decided."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TypeVar
 
-from kinform.consistency.constants import NO_EFFORT
 from kinform.consistency.context import Context, Need
 from kinform.consistency.outcome import Answer, Outcome, decided, skipped, undecided
 from kinform.consistency.rule import Rule
@@ -20,6 +19,10 @@ from kinform.function.requirement_kinds import Kind
 from kinform.model.function import Requirement
 from kinform.model.kinematics import Joint
 from kinform.model.simulation import Simulation
+
+NO_EFFORT = 1e-12
+"""N·m or N below which an effort is shown as nothing: rounding."""
+
 
 SIMULATE = "Ask for a simulation that runs to its end: [simulation], and a [[function.drive]] that moves the joints."
 DYNAMIC = 'Ask for `level = "dynamic"`, with the mass of every moving part known.'

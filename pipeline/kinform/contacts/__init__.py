@@ -31,6 +31,14 @@ tolerance is 0.5 mm. The mate of the shaft's cylinder (124 facets) with the bore
 the chord errors, within its limit of 0.51 mm. Unrolled about the mean of both axes, the facets of both sides cover
 1,899 mm², in bins of at most an arc of 15°, with the rim as points of its own: 146 points. A probe a bin finds facets
 on both sides, and the patch is a `cylinder` with 0.15 mm of `clearance`.
+
+Sub-packages; each imports only those above it:
+
+- `search`: pairs of parts, and places on them, that are near each other
+- `mating`: surfaces that lie on each other
+- `higher`: contact at points and along lines
+- `overlap`: solids that share a volume
+- `fastening`: suggestions of what is fastened
 """
 
 from __future__ import annotations

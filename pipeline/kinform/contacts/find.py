@@ -6,7 +6,6 @@ from collections import defaultdict, deque
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 
-from kinform.contacts import constants
 from kinform.contacts.fastening import suggest
 from kinform.contacts.overlap.boundaries import boundaries_cross
 from kinform.contacts.overlap.explained import explained
@@ -15,14 +14,25 @@ from kinform.contacts.pair import PairContacts, mated_pairs, pair_contacts, touc
 from kinform.contacts.search.candidates import Pair, candidate_pairs
 from kinform.contacts.search.pair_view import PairView
 from kinform.foundation.at_work import at_work_on
-from kinform.foundation.constants import LARGE_MESH
-from kinform.foundation.meshes.index import MeshStore
+from kinform.foundation.meshes.index import LARGE_MESH, MeshStore
 from kinform.foundation.processes import Crash, map_in_processes
 from kinform.foundation.progress import Progress
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch, Suggestion
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces
+
+TOGETHER_PAIRS = 64
+"""Pairs whose decisions are taken together: numpy takes as long to begin as to go through hundreds of numbers, ..."""
+TOGETHER_FACETS = 50_000
+"""... as long as no more facets come to those of the first pair: what is known of one takes about half a kilobyte."""
+SHARES = 4
+"""Shares of the pairs that each process gets at least, one after the other: some take much longer than others."""
+LITTLE_PAIRS = 64
+"""Pairs, of ..."""
+LITTLE_FACETS = 10_000
+"""... facets in all, that are looked at in one process: less than half a second of work, and another process costs 0.05
+to 0.1 s to start, with what it imports."""
 
 
 class _Work:
@@ -72,11 +82,11 @@ class _Work:
             meshes = {mesh.digest: len(mesh.faces) for name in pair if (mesh := self.parts[name].mesh) is not None}
             more += sum(count for digest, count in meshes.items() if digest not in known)
             alone = self._is_alone(pair)
-            if chunk and (alone or len(chunk) >= most or more > constants.TOGETHER_FACETS):
+            if chunk and (alone or len(chunk) >= most or more > TOGETHER_FACETS):
                 out.append(tuple(chunk))
                 chunk, known = [], set()
             if not chunk:
-                more = constants.TOGETHER_FACETS + 1 if alone else 0
+                more = TOGETHER_FACETS + 1 if alone else 0
             chunk.append(pair)
             known |= meshes.keys()
         return [*out, tuple(chunk)] if chunk else out
@@ -97,7 +107,7 @@ class _Work:
     def is_little(self, pairs: list[Pair]) -> bool:
         """Whether it takes no longer than other processes take to start."""
         meshes = [mesh for name in {name for pair in pairs for name in pair} if (mesh := self.parts[name].mesh)]
-        return len(pairs) <= constants.LITTLE_PAIRS and sum(len(m.faces) for m in meshes) <= constants.LITTLE_FACETS
+        return len(pairs) <= LITTLE_PAIRS and sum(len(m.faces) for m in meshes) <= LITTLE_FACETS
 
 
 def find(
@@ -154,8 +164,8 @@ def _computed(
 ) -> dict[Pair, PairContacts]:
     """The contacts of all pairs of the work: of many small ones at once; where a process ends over that, one by one, so
     that it is told which pair it was."""
-    share = len(work.order) if jobs <= 1 else len(work.order) // (constants.SHARES * jobs)
-    for most in (max(1, min(constants.TOGETHER_PAIRS, share)), 1):
+    share = len(work.order) if jobs <= 1 else len(work.order) // (SHARES * jobs)
+    for most in (max(1, min(TOGETHER_PAIRS, share)), 1):
         chunks, done = work.chunks(most), dict[Pair, PairContacts]()
         computed = map_in_processes(work.contacts, chunks, jobs, None, _name_of, little=little, meanwhile=meanwhile)
         try:

@@ -3,6 +3,10 @@
 Every exporter reads the port model of `kinform.behaviour` and what belongs to it (`model.ExportModel`).
 What a format cannot carry is named in `Exported.lost` and in the files themselves. Nothing written depends
 on clock, host or path.
+
+Sub-packages; each imports only those above it:
+
+- `graph`: the kinematic graph as a drawing
 """
 
 from __future__ import annotations

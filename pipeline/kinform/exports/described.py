@@ -20,10 +20,10 @@ from lxml import etree
 
 from kinform.design import Design
 from kinform.exports.exported import Exported
-from kinform.form.descriptions.elements import xml_bytes
-from kinform.form.descriptions.meshes import MeshFiles
-from kinform.form.descriptions.robot import At, Inertial, Robot, RobotJoint
 from kinform.form.problems import Problems
+from kinform.formats.description.elements import xml_bytes
+from kinform.formats.description.mesh_files import MeshFiles
+from kinform.formats.description.robot import At, Inertial, Robot, RobotJoint
 from kinform.frozen import dataclass
 from kinform.mass.shapes import solid_of
 from kinform.model.arrays import Array
@@ -57,7 +57,7 @@ def export(design: Design, format: str, *, inertia: bool = False, folder: str | 
     changes = _Changes(design.assembly, description, robot)
     masses, left = _masses(design, description, robot, inertia=inertia)
     ranges = dict(changes.ranges())
-    text = _Text(description, import_module(f"kinform.exports.written_back.{format}"))
+    text = _Text(description, import_module(f"kinform.formats.{format}.writing.edits"))
     for joint, bounds in ranges.items():
         text.module.write_range(text.root, robot, joint, bounds)
     for link, stated in masses.items():
@@ -76,7 +76,7 @@ def export(design: Design, format: str, *, inertia: bool = False, folder: str | 
 
 def _read(description: Description) -> Robot:
     """The robot of the text, by its reader; meshes need not be there."""
-    reader = import_module(f"kinform.form.descriptions.{description.format}")
+    reader = import_module(f"kinform.formats.{description.format}.reading.reader")
     data, path = xml_bytes(description.text), Path(description.file)
     robot: Robot | None = reader.read(path, data, description.file, Problems(), MeshFiles(path, {}))
     assert robot is not None, "it was read before"

@@ -17,8 +17,7 @@ import numpy as np
 
 from kinform.behaviour import Actor, Gear, JointComponent, MotionDrive, RigidBody, smooth
 from kinform.behaviour.signals import Constant, Ramp, Signal, Sine, Spline, Table
-from kinform.exports.constants import CLOSE_CHOICE, LEAST_MOTION, POSES_OF_RUN
-from kinform.exports.free_columns import free_columns
+from kinform.exports.free_columns import CLOSE_CHOICE, free_columns
 from kinform.exports.model import ExportModel
 from kinform.exports.motors import left_out
 from kinform.exports.tree import Closing, Tree, grow
@@ -26,6 +25,11 @@ from kinform.foundation.algebra.vectors import perpendicular
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.mechanism.closure import rank_of
+
+LEAST_MOTION = 1e-9
+"""rad or m: what counts as motion of a joint along our run. Far above rounding; a choice, not a measurement."""
+POSES_OF_RUN = 24
+"""Poses of our run at which the free coordinates must be good; a choice: a turn is seen every 15°."""
 
 
 @dataclass(frozen=True, eq=False)

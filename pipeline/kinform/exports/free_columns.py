@@ -7,8 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.exports.constants import CLOSE_CHOICE
 from kinform.model.arrays import Array
+
+CLOSE_CHOICE = 0.7
+"""Choices within this factor of the best count as equal, and the first is taken: the same on all machines."""
 
 
 def free_columns(equations: Sequence[Array]) -> list[int]:

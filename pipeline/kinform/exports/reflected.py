@@ -10,11 +10,14 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.behaviour import RigidBody
-from kinform.exports.constants import LOCKED_SHARE
 from kinform.exports.model import ExportModel
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.simulation.mechanism.states import states_at
+
+LOCKED_SHARE = 1e-6
+"""Share of what one rate opens loops by that the others may leave open: more, and the loops lock it. Axes that contact
+made agree close loops to 1e-9 and better."""
 
 
 @dataclass(frozen=True)

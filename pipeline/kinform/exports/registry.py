@@ -23,25 +23,23 @@ class Format:
     @property
     def write(self) -> Callable[[ExportModel], Exported]:
         """Its exporter, imported when it is needed."""
-        exporter: Callable[[ExportModel], Exported] = getattr(
-            import_module(f"kinform.exports.{self.module}"), self.exporter
-        )
+        exporter: Callable[[ExportModel], Exported] = getattr(import_module(f"kinform.{self.module}"), self.exporter)
         return exporter
 
 
 FORMATS: dict[str, Format] = {
     format.name: format
     for format in (
-        Format("csv", "series", "the motion as tables of bodies and joints"),
-        Format("dot", "graph.formats", "the kinematic graph, for Graphviz", "export_dot"),
-        Format("glb", "glb", "shapes in motion, for viewers of glTF"),
-        Format("json", "port_model", "the port model, with its schema"),
-        Format("mjcf", "mjcf", "bodies, joints, loops and drives, for MuJoCo"),
-        Format("modelica", "modelica", "components and connectors, for solvers of equations"),
-        Format("sdf", "sdf", "links and joints, for Gazebo and Drake"),
-        Format("svg", "graph.formats", "the kinematic graph, drawn", "export_svg"),
-        Format("urdf", "urdf", "a tree of links and joints, for ROS and its relatives"),
-        Format("vhdl-ams", "vhdl_ams", "entities of the standard IEEE 1076.1"),
+        Format("csv", "exports.series", "the motion as tables of bodies and joints"),
+        Format("dot", "exports.graph.formats", "the kinematic graph, for Graphviz", "export_dot"),
+        Format("glb", "exports.glb", "shapes in motion, for viewers of glTF"),
+        Format("json", "exports.port_model", "the port model, with its schema"),
+        Format("mjcf", "formats.mjcf.writing.writer", "bodies, joints, loops and drives, for MuJoCo"),
+        Format("modelica", "exports.modelica", "components and connectors, for solvers of equations"),
+        Format("sdf", "formats.sdf.writing.writer", "links and joints, for Gazebo and Drake"),
+        Format("svg", "exports.graph.formats", "the kinematic graph, drawn", "export_svg"),
+        Format("urdf", "formats.urdf.writing.writer", "a tree of links and joints, for ROS and its relatives"),
+        Format("vhdl-ams", "exports.vhdl_ams", "entities of the standard IEEE 1076.1"),
     )
 }
 

@@ -1,6 +1,13 @@
 """Form: manifests, units, mesh files, sub-assemblies, in SI and world axes, with every error at once.
 
 Nothing of it is imported before it is used: a run that finds everything in earlier results parses no manifest.
+
+Sub-packages; each imports only those above it:
+
+- `manifest`: tables of the manifest as pydantic types
+- `meshes`: mesh files and primitives
+- `readers`: from tables to the assembly
+- `scenes`: CAD and scene files
 """
 
 from __future__ import annotations

@@ -8,7 +8,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from kinform.form.constants import HASHED_AT_ONCE
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, scaled
 from kinform.form.problems import Problems
 from kinform.form.sources import AS_IT_IS, Reading, is_scene
@@ -17,6 +16,10 @@ from kinform.foundation.regular import AS_A_FILE, listing, not_a_file
 from kinform.foundation.units import metres_per
 from kinform.frozen import dataclass
 from kinform.model.assembly import Assembly, Mesh, Part
+
+HASHED_AT_ONCE = 8
+"""Mesh files that are hashed at the same time: more gain nothing on one disk."""
+
 
 MESHES = (".stl", ".obj")
 """Suffixes of mesh files that kinform reads itself."""
@@ -200,7 +203,7 @@ class DesignFiles:
         """Meshes of this name, whatever its case, below the folder of the top, else below others that may be read: two
         at most."""
         if self._by_name is None:
-            from kinform.form.descriptions.meshes import files_below
+            from kinform.formats.description.mesh_files import files_below
 
             self._by_name = {}
             for root in (self.top, *sorted(self._allowed - {self.top})):

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from kinform.form.constants import SOLID_DEVIATION, STEP_TURN
+from kinform.form.constants import STEP_TURN
 from kinform.form.meshes.health import build_mesh
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate, scaled
 from kinform.form.problems import Problems
@@ -24,6 +24,10 @@ from kinform.model.assembly import Assembly, Part, Source, Subassembly
 from kinform.model.function import Function
 from kinform.model.names import PartName
 from kinform.model.tolerances import Tolerances
+
+SOLID_DEVIATION = 1e-3
+"""Deviation of facets of solids that a program holds, in diagonals: `STEP_TURN` decides for what is round."""
+
 
 WHERE = "(python)"
 """In place of a file, in what is told of such parts."""

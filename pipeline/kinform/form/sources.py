@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any
 from kinform.frozen import dataclass
 
 if TYPE_CHECKING:
-    from kinform.form.descriptions.facts import Facts
     from kinform.form.problems import Problems
     from kinform.form.readers.places import Places
+    from kinform.formats.description.facts import Facts
 
 _FORMATS: Mapping[str, str] = {
     ".urdf": "descriptions.tables",

@@ -12,15 +12,6 @@ from pathlib import Path
 import numpy as np
 
 from kinform.errors import InputError, Problem
-from kinform.form.constants import (
-    LARGEST_ASSEMBLY,
-    MISTAKEN_METRES,
-    NOISE,
-    ROUNDED,
-    SMALLEST_ASSEMBLY,
-    USUAL_ASSEMBLY,
-    WIDTH,
-)
 from kinform.form.files import read_raw
 from kinform.form.materials import BUILT_IN
 from kinform.form.meshes.bodies import named_bodies, shell_bodies
@@ -37,6 +28,22 @@ from kinform.model.assembly import Assembly, Part, Source
 from kinform.model.function import Function, IntendedJoint
 from kinform.model.names import PartName
 from kinform.model.tolerances import Tolerances
+
+SMALLEST_ASSEMBLY = 1e-3
+"""Diagonal (m) below which a unit is doubted."""
+LARGEST_ASSEMBLY = 100.0
+"""Diagonal (m) above which a unit is doubted."""
+MISTAKEN_METRES = 20.0
+"""Diagonal (m) from which on metres are doubted: machines of that size are drawn in mm, and in mm it is 20 mm."""
+USUAL_ASSEMBLY = (0.01, 10.0)
+"""Diagonals (m) between which another unit is proposed."""
+WIDTH = 100
+"""Columns of comments."""
+NOISE = 2e-5
+"""Components of a proposed axis or point below this share of the largest are written as zero: 0.001°, or 6 µm at 0.3 m,
+is the rounding of meshes in float32 far from the origin, and nothing that is meant."""
+ROUNDED = 1e-12
+"""Coordinates of a proposed point below this share of the greatest of all meshes are the rounding of doubles."""
 
 
 def load_meshes(

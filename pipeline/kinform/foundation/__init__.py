@@ -1,4 +1,11 @@
-"""The ground floor: what all stages share, and nothing of any stage."""
+"""The ground floor: what all stages share, and nothing of any stage.
+
+Sub-packages; each imports only those above it:
+
+- `algebra`: vectors, rotations, displacements, screws, splines
+- `graphs`: components, blocks and cycles, without physics
+- `meshes`: edges, shells, boxes, nearness, probes, FCL
+"""
 
 __all__ = ["CODE_VERSION"]
 

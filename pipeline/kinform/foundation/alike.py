@@ -12,8 +12,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.constants import HASHES
 from kinform.model.arrays import Ints
+
+HASHES = 12
+"""Hashes of rows before what is left, one row in eight after each, is sorted."""
+
 
 _Words = Sequence[NDArray[np.unsignedinteger]]
 

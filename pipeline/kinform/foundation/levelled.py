@@ -6,7 +6,12 @@ import math
 from collections.abc import Mapping
 from typing import TypeVar
 
-from kinform.foundation.constants import AS_LARGE, SIZE_BITS
+AS_LARGE = 1e-3
+"""Share by which parts and bodies differ in mass or size that are equal but for the rounding of their files: a bar of
+56 mm, as STL 40 m from the origin, is off by up to a ten thousandth. None of them is the ground because of that."""
+SIZE_BITS = 50
+"""Bits in the sizes of all together, of the 53 that a float has."""
+
 
 Key = TypeVar("Key", bound=str)
 

@@ -5,7 +5,16 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
-from kinform.foundation.constants import CHOICES_COMPARED, CLOSE_NAMES, LISTED_NAMES, MEANT_NAMES, NAME_SHOWN
+NAME_SHOWN = 255
+"""Characters of a name that a message shows."""
+CLOSE_NAMES = 0.6
+"""Likeness (of difflib, its default) from which on a known name is probably the one that was meant."""
+CHOICES_COMPARED = 500
+"""Known names that a wrong one is compared with: each takes ten microseconds."""
+MEANT_NAMES = 2
+"""Names that are proposed, at most."""
+LISTED_NAMES = 12
+"""Known names that are listed where none is close."""
 
 
 def in_quotes(name: object) -> str:

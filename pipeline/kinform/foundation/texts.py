@@ -7,8 +7,16 @@ import re
 from pathlib import Path
 from typing import Any
 
-from kinform.foundation.constants import JSON_DEPTH, JSON_DIGITS, JSON_LARGEST
 from kinform.foundation.regular import not_a_file
+
+JSON_DEPTH = 32
+"""Brackets in each other in a JSON file: those that kinform writes go five deep."""
+JSON_DIGITS = 18
+"""Digits of a whole number in a JSON file: more is no count."""
+JSON_LARGEST = 1e60
+"""The largest magnitude of a number in a JSON file: moments of inertia of mountains in g·mm² are smaller, and cubes of
+it are still finite."""
+
 
 _JSON_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*+"?|[\[{]|[\]}]', re.DOTALL)
 

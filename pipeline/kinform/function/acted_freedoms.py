@@ -17,11 +17,15 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.words import counted
 from kinform.frozen import dataclass
-from kinform.function.constants import FREEDOM_AT_REST
 from kinform.function.joint_names import Resolution, resolve_joint
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Joint, Kinematics
+
+FREEDOM_AT_REST = 1e-6
+"""Share of the fastest joint's rate (slides over the size) below which a freedom of a joint is at rest in a motion:
+far above rounding, and far below what the ends of a ram turn or slide when it moves."""
+
 
 FREEDOMS: Mapping[str, tuple[str, ...]] = {
     "revolute": ("turn",),

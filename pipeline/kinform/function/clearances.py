@@ -19,11 +19,14 @@ from kinform.foundation.at_work import at_work_on
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_model, fcl_pose
 from kinform.foundation.meshes.index import MeshIndex
 from kinform.frozen import dataclass
-from kinform.function.constants import GRID
 from kinform.model.arrays import Array, Flags
 from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.contacts import Contacts
 from kinform.model.surfaces import MeshSurfaces
+
+GRID = 8
+"""Divisions of a triangle's side by points between which a place to look at is found; a choice."""
+
 
 _GRID = np.array([[i, j, GRID - i - j] for i in range(GRID + 1) for j in range(GRID + 1 - i)]) / GRID
 

@@ -17,12 +17,28 @@ from kinform.foundation.algebra.screws import Frame, scaled
 from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.graphs.graph import blocks
 from kinform.frozen import dataclass
-from kinform.function import constants
 from kinform.function.joint_names import stated_ranges
-from kinform.kinematics.loops.loop_kinematics import LoopSystem, loop_system
+from kinform.mechanism.loop_system import LoopSystem, loop_system
 from kinform.model.arrays import Array, Flags
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Joint, Kinematics
+
+LOOPS_CLOSED = 1e-9
+"""Residual (rad, share of the size) at which loops count as closed."""
+CLOSING_STEPS = 40
+"""Newton's steps to close loops, after which they cannot be closed."""
+CLOSING_STEP = 0.3
+"""rad, or share of the size, that one of these steps changes a coordinate at most."""
+DEPENDENT = 1e-7
+"""Relative singular value below which constraints depend on each other, as in the count of freedoms."""
+SOLVED = 1e-9
+"""The same in least squares."""
+RATE_MOVES = 1e-6
+"""Rate of a coordinate in a unit motion above which it takes part."""
+BODY_MOVES = 1e-9
+"""Twist of a body in a unit motion above which it moves."""
+ONE_POINT = 1e-9
+"""Share of the largest part's size within which the joints of a chain are at one point; rounding."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +74,7 @@ class Chain:
     @property
     def freedoms(self) -> int:
         """Freedoms of first order in the pose of the meshes."""
-        return len(null_space(self._rows, constants.DEPENDENT))
+        return len(null_space(self._rows, DEPENDENT))
 
     @property
     def _rows(self) -> Array:
@@ -86,9 +102,9 @@ class Chain:
         held = np.eye(len(self.coordinates))[[c.known for c in self.coordinates]]
         tip = self.system.reach[self.index(body)]
         moved = [
-            [c.joint for c, rate in zip(self.coordinates, loose, strict=True) if abs(rate) > constants.RATE_MOVES]
-            for loose in null_space(np.concatenate([self._rows, held]), constants.DEPENDENT)
-            if np.abs((tip * loose) @ self.system.screws).max() > constants.BODY_MOVES
+            [c.joint for c, rate in zip(self.coordinates, loose, strict=True) if abs(rate) > RATE_MOVES]
+            for loose in null_space(np.concatenate([self._rows, held]), DEPENDENT)
+            if np.abs((tip * loose) @ self.system.screws).max() > BODY_MOVES
         ]
         return tuple(dict.fromkeys(name for names in moved for name in names))
 
@@ -157,7 +173,7 @@ def _chain(assembly: Assembly, kinematics: Kinematics, joints: Sequence[Joint], 
     points = np.array([j.point for j in joints if j.point is not None]).reshape(-1, 3)
     frame = Frame.of(points) if len(points) else Frame(np.zeros(3), 1.0)
     half = max((0.5 * part.mesh.diagonal for part in assembly.parts if part.mesh is not None), default=0.0)
-    if frame.length <= constants.ONE_POINT * half or len(points) < 2:
+    if frame.length <= ONE_POINT * half or len(points) < 2:
         frame = Frame(frame.centre, half or 1.0)
     edges = [(bodies.index(j.bodies[0]), bodies.index(j.bodies[1])) for j in joints]
     ties = [(index[c.joints[0]], index[c.joints[1]], c.meshing.ratio) for c in geared if c.meshing is not None]
@@ -199,12 +215,12 @@ def close(chain: Chain, q: Array, held: Flags) -> Array | None:
     steps of least size find none."""
     q = q.copy()
     free = ~held
-    for _ in range(constants.CLOSING_STEPS):
+    for _ in range(CLOSING_STEPS):
         state = chain.system.close(q[None])
         residual = state.residual[0]
-        if float(np.abs(residual).max(initial=0.0)) < constants.LOOPS_CLOSED:
+        if float(np.abs(residual).max(initial=0.0)) < LOOPS_CLOSED:
             return q
-        step = np.linalg.lstsq(state.jacobian[0][:, free], -residual, rcond=constants.SOLVED)[0]
+        step = np.linalg.lstsq(state.jacobian[0][:, free], -residual, rcond=SOLVED)[0]
         size = float(np.abs(step).max(initial=0.0))
-        q[free] += step * min(1.0, constants.CLOSING_STEP / max(size, 1e-300))
+        q[free] += step * min(1.0, CLOSING_STEP / max(size, 1e-300))
     return None

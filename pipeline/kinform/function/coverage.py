@@ -14,9 +14,50 @@ from numpy.typing import NDArray
 from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.algebra.vectors import cross
 from kinform.frozen import dataclass
-from kinform.function import constants
-from kinform.function.configurations import Chain, close
+from kinform.function.configurations import DEPENDENT, Chain, close
 from kinform.model.arrays import Array, Flags
+
+SAMPLES = 4000
+"""Configurations in the box of ranges."""
+WALK = 600
+"""Configurations along closed loops."""
+WALK_STEP = 0.25
+"""rad, or share of the size, of a step of that walk in the coordinate that moves most; a choice."""
+WALK_TRIES = 8
+"""Steps for each configuration after which the walk ends."""
+RANGE_ROUNDING = 1e-9
+"""rad, or share of the size, by which such a step may leave a range."""
+STARTS = 6
+"""Samples from which each target is approached."""
+AGAIN = 40
+"""How many of the farthest targets are approached again, ..."""
+STARTS_AGAIN = 48
+"""... and from how many samples."""
+TOGETHER = 400
+"""Approaches that are made at once, so that their arrays stay small."""
+TURNS = 60
+"""Steps of an approach at most."""
+TARGET_CLOSED = 1e-8
+"""Residual at which the loops of an approach count as closed."""
+FAR = 1.0
+"""Loops may close in several ways: what is farther (rad, or sizes) from all that the walk came through is not
+counted."""
+STIFF = 10.0
+"""Weight of a loop that is open beside a target that is missed."""
+DAMPING = 1e-3
+"""Levenberg and Marquardt's damping at the start, ..."""
+DAMPING_BETTER = 0.2
+"""... its factor after a step that came nearer, ..."""
+DAMPING_WORSE = 5.0
+"""... and after one that did not: textbook values."""
+DAMPING_RANGE = (1e-12, 1e6)
+"""Where it stays."""
+DAMPING_STUCK = 1e2
+"""When no approach comes nearer and none is damped by less, all have ended."""
+APPROACH_STEP = 0.5
+"""rad, or share of the size, that one step changes a coordinate at most."""
+AT_BOUND = 1e-12
+"""How near a coordinate is to the end of its range when it is held there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,13 +88,13 @@ def cover(chain: Chain, body: str, carried: Array, targets: Array, *, directions
     best, where = gaps[first, np.arange(len(aims))], images[first]
 
     def attempt(which: NDArray[np.intp], starts: int) -> None:
-        size = max(1, constants.TOGETHER // starts)
+        size = max(1, TOGETHER // starts)
         for chunk in (which[k : k + size] for k in range(0, len(which), size)):
             seeds = _seeds(aims[chunk], images, starts)
             repeated = np.repeat(aims[chunk], seeds.shape[1], axis=0)
             solved, image, valid = _approach(chain, tip, image_of, q[seeds.ravel()], repeated, directions)
             if chain.looped:
-                valid &= np.abs(solved - q[seeds.ravel()]).max(axis=1) < constants.FAR
+                valid &= np.abs(solved - q[seeds.ravel()]).max(axis=1) < FAR
             miss = np.where(valid, _distance(image, repeated, directions), np.inf).reshape(seeds.shape)
             pick = miss.argmin(axis=1)
             nearest = miss[np.arange(len(chunk)), pick]
@@ -61,9 +102,9 @@ def cover(chain: Chain, body: str, carried: Array, targets: Array, *, directions
             best[chunk[better]] = nearest[better]
             where[chunk[better]] = image.reshape(*seeds.shape, 3)[np.arange(len(chunk)), pick][better]
 
-    attempt(np.arange(len(aims)), constants.STARTS)
+    attempt(np.arange(len(aims)), STARTS)
     missed = np.flatnonzero(best > enough)
-    attempt(missed[np.argsort(-best[missed], kind="stable")][: constants.AGAIN], constants.STARTS_AGAIN)
+    attempt(missed[np.argsort(-best[missed], kind="stable")][:AGAIN], STARTS_AGAIN)
     if not directions:
         best, where = best * chain.frame.length, where * chain.frame.length + chain.frame.centre
     return Coverage(best, where, len(q))
@@ -75,18 +116,18 @@ def _sampled(chain: Chain) -> Array:
     low, high = _box(chain)
     start = np.zeros(len(low))
     if not chain.looped:
-        return np.vstack([np.clip(start, low, high), rng.uniform(low, high, (constants.SAMPLES, len(low)))])
+        return np.vstack([np.clip(start, low, high), rng.uniform(low, high, (SAMPLES, len(low)))])
     free = np.zeros(len(low), dtype=np.bool_)
     closed, tries = [start], 0
-    while len(closed) < constants.WALK and tries < constants.WALK_TRIES * constants.WALK:
+    while len(closed) < WALK and tries < WALK_TRIES * WALK:
         base = closed[int(rng.integers(len(closed)))]
         tries += 1
-        loose = null_space(chain.system.close(base[None]).jacobian[0], constants.DEPENDENT)
+        loose = null_space(chain.system.close(base[None]).jacobian[0], DEPENDENT)
         if not len(loose):
             break
         way = rng.normal(size=len(loose)) @ loose
-        stepped = close(chain, base + constants.WALK_STEP * way / np.abs(way).max(), free)
-        slack = constants.RANGE_ROUNDING
+        stepped = close(chain, base + WALK_STEP * way / np.abs(way).max(), free)
+        slack = RANGE_ROUNDING
         if stepped is not None and ((stepped >= low - slack) & (stepped <= high + slack)).all():
             closed.append(stepped)
     return np.array(closed)
@@ -126,19 +167,17 @@ def _approach(
     """Configurations (d, n), their images (d, 3), and which of them are closed."""
     system = chain.system
     low, high = _box(chain)
-    damping = np.full(len(q), constants.DAMPING)
+    damping = np.full(len(q), DAMPING)
     image, miss, rows, residual = _linear(chain, tip, image_of, q, aims, directions)
-    for _ in range(constants.TURNS):
+    for _ in range(TURNS):
         gradient = (np.swapaxes(rows, 1, 2) @ residual[..., None])[..., 0]
-        stuck = ((q <= low + constants.AT_BOUND) & (gradient > 0.0)) | (
-            (q >= high - constants.AT_BOUND) & (gradient < 0.0)
-        )
+        stuck = ((q <= low + AT_BOUND) & (gradient > 0.0)) | ((q >= high - AT_BOUND) & (gradient < 0.0))
         active = np.where(stuck[:, None, :], 0.0, rows)
         normal = np.swapaxes(active, 1, 2) @ active
         normal += damping[:, None, None] * np.eye(system.coordinates)
         step = -np.linalg.solve(normal, (np.swapaxes(active, 1, 2) @ residual[..., None]))[..., 0]
         longest = np.abs(step).max(axis=1, keepdims=True)
-        step *= np.minimum(1.0, constants.APPROACH_STEP / np.maximum(longest, 1e-300))
+        step *= np.minimum(1.0, APPROACH_STEP / np.maximum(longest, 1e-300))
         trial = np.clip(q + step, low, high)
         new_image, new_miss, new_rows, new_residual = _linear(chain, tip, image_of, trial, aims, directions)
         better = new_miss < miss
@@ -147,13 +186,11 @@ def _approach(
         rows = np.where(better[:, None, None], new_rows, rows)
         residual = np.where(better[:, None], new_residual, residual)
         miss = np.where(better, new_miss, miss)
-        damping = np.clip(
-            np.where(better, constants.DAMPING_BETTER, constants.DAMPING_WORSE) * damping, *constants.DAMPING_RANGE
-        )
-        if not better.any() and damping.min() > constants.DAMPING_STUCK:
+        damping = np.clip(np.where(better, DAMPING_BETTER, DAMPING_WORSE) * damping, *DAMPING_RANGE)
+        if not better.any() and damping.min() > DAMPING_STUCK:
             break
-    opened = np.abs(residual[:, 3:]).max(axis=1, initial=0.0) / constants.STIFF
-    return q, image, opened < constants.TARGET_CLOSED
+    opened = np.abs(residual[:, 3:]).max(axis=1, initial=0.0) / STIFF
+    return q, image, opened < TARGET_CLOSED
 
 
 def _linear(
@@ -166,6 +203,6 @@ def _linear(
     columns = state.columns * system.reach[tip][None, :, None]
     turn = cross(columns[..., :3], image[:, None, :])
     moves = turn if directions else turn + columns[..., 3:]
-    rows = np.concatenate([np.swapaxes(moves, 1, 2), constants.STIFF * state.jacobian], axis=1)
-    residual = np.concatenate([image - aims, constants.STIFF * state.residual], axis=1)
+    rows = np.concatenate([np.swapaxes(moves, 1, 2), STIFF * state.jacobian], axis=1)
+    residual = np.concatenate([image - aims, STIFF * state.residual], axis=1)
     return image, np.einsum("di,di->d", residual, residual), rows, residual

@@ -6,12 +6,16 @@ are taken in pairs: what one side opens the other closes, and their sum is the c
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection
 
 from kinform.frozen import dataclass
-from kinform.function.constants import OPPOSED
 from kinform.model.arrays import Array
 from kinform.model.contacts import Contacts, Patch
+
+OPPOSED = -math.cos(math.radians(1.0))
+"""Cosine of normals below which two planes face away from each other."""
+
 
 ROUND = ("cylinder", "sphere", "cone")
 

@@ -13,9 +13,20 @@ import numpy as np
 
 from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.algebra.vectors import cross
-from kinform.function.configurations import Chain, close
-from kinform.function.constants import DEPENDENT, LEAST_WORK, MOVES, NO_WORK, POSE_STEPS, SOLVED, STILL
+from kinform.function.configurations import DEPENDENT, SOLVED, Chain, close
 from kinform.model.arrays import Array
+
+STILL = 1e-9
+"""Twist of a body in a unit motion below which it does not move."""
+POSE_STEPS = 20
+"""Steps in which joints are brought to a pose, so that loops are followed and not jumped."""
+MOVES = 1e-6
+"""Rate by which a joint may miss a unit motion that is asked of it."""
+NO_WORK = 1e-6
+"""Share of the work of the joint's motion that forces may do along what else is free, ..."""
+LEAST_WORK = 1e-9
+"""... and W below which that motion counts as so much."""
+
 
 Force = Callable[[str, Array], tuple[Array, Array] | None]
 """Force (3,) N and torque (3,) N·m about the world's origin on a body that is displaced by (4, 4); None: unknown."""

@@ -8,9 +8,15 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import perpendicular
 from kinform.frozen import dataclass
-from kinform.function.constants import ALONG, INSIDE, RIM
 from kinform.function.requirement_kinds import Box, Cone, Region
 from kinform.model.arrays import Array
+
+INSIDE = 240
+"""Directions inside of a cone."""
+RIM = 48
+"""Directions on its rim."""
+ALONG = 7
+"""Places along each edge of a box."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,8 +21,16 @@ from kinform.foundation.algebra.vectors import cross
 from kinform.frozen import dataclass
 from kinform.function.clearances import Apart, Nearest
 from kinform.function.configurations import Chain
-from kinform.function.constants import BUDGET, FIRST, FLOOR, FLOOR_TOGETHER
 from kinform.model.arrays import Array
+
+BUDGET = 4000
+"""Poses that are measured before giving up."""
+FIRST = 1e-3
+"""Share of the shortest step to which the first pose that falls short is found."""
+FLOOR = 1e-4
+"""Shortest step, of the size of the smaller group, ..."""
+FLOOR_TOGETHER = 10.0
+"""... and how many times that where several joints move at once."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,30 +10,28 @@ import numpy as np
 from kinform.foundation.memory import uncollected
 from kinform.frozen import dataclass
 from kinform.kinematics.answers import Answers
-from kinform.kinematics.axes.bounds import move_bounds, uncertainties
-from kinform.kinematics.axes.equal_lengths import equalise_lengths
-from kinform.kinematics.axes.higher_pairs import align_higher_pairs
-from kinform.kinematics.axes.misfit import misfit_of, moves_between
-from kinform.kinematics.axes.proportions import fit_proportions
-from kinform.kinematics.axes.snapping import snap_axes
-from kinform.kinematics.bodies.as_stated import as_stated
-from kinform.kinematics.bodies.classification import Pairs, decide_all, decide_beside
-from kinform.kinematics.bodies.complete import complete_joints, rests
-from kinform.kinematics.bodies.extents import Extents
-from kinform.kinematics.bodies.fasteners import (
+from kinform.kinematics.joints.axes.bounds import move_bounds, uncertainties
+from kinform.kinematics.joints.axes.equal_lengths import equalise_lengths
+from kinform.kinematics.joints.axes.higher_pairs import align_higher_pairs
+from kinform.kinematics.joints.axes.misfit import misfit_of, moves_between
+from kinform.kinematics.joints.axes.proportions import fit_proportions
+from kinform.kinematics.joints.axes.snapping import snap_axes
+from kinform.kinematics.joints.bodies.as_stated import as_stated
+from kinform.kinematics.joints.bodies.classification import Pairs, decide_all, decide_beside
+from kinform.kinematics.joints.bodies.complete import complete_joints, rests
+from kinform.kinematics.joints.bodies.extents import Extents
+from kinform.kinematics.joints.bodies.fasteners import (
     fasten,
     fastenings,
     harmless,
     label_inferred,
     turn_about_suggested_axes,
 )
-from kinform.kinematics.bodies.merging import Merger
-from kinform.kinematics.bodies.readings import choose_readings
-from kinform.kinematics.bodies.set_aside import asides
-from kinform.kinematics.bodies.stated_joints import Pair, intended_joints, stated_joints
-from kinform.kinematics.constants import MOST_BASIS_NUMBERS
-from kinform.kinematics.loops.assembly_closure import Closure, body_twists
-from kinform.kinematics.loops.joint_graph import JointGraph
+from kinform.kinematics.joints.bodies.merging import Merger
+from kinform.kinematics.joints.bodies.readings import choose_readings
+from kinform.kinematics.joints.bodies.set_aside import asides
+from kinform.kinematics.joints.bodies.stated_joints import Pair, intended_joints, stated_joints
+from kinform.kinematics.joints.pair.question import Answer, bare_patches
 from kinform.kinematics.mobility.couplings import couplings_between
 from kinform.kinematics.mobility.finite_motion import finite_mobility
 from kinform.kinematics.mobility.idle import idle_turns, touching_balls
@@ -41,12 +39,13 @@ from kinform.kinematics.mobility.joint_redundancy import redundancy_within
 from kinform.kinematics.mobility.loop_redundancy import redundancies_of_loops
 from kinform.kinematics.mobility.named_freedoms import named_freedoms
 from kinform.kinematics.mobility.stated_couplings import coupled_mobility, coupling_rows, restrict_closure
-from kinform.kinematics.pair.question import Answer, bare_patches
 from kinform.kinematics.partition import Partition, left_out, partition, with_sides
 from kinform.kinematics.separation.constraint_matrix import constraint_matrix
 from kinform.kinematics.separation.contact_rows import ContactRows, pair_cones
 from kinform.kinematics.separation.releases import with_releases
 from kinform.kinematics.separation.separations import links_between, separations
+from kinform.mechanism.first_order import Closure, body_twists
+from kinform.mechanism.joint_graph import JointGraph
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch, Suggestion
@@ -64,6 +63,9 @@ from kinform.model.kinematics import (
 )
 from kinform.model.names import BodyName, JointName, PartName
 from kinform.model.surfaces import MeshSurfaces
+
+MOST_BASIS_NUMBERS = 1_000_000
+"""Largest dense basis of freedoms that is kept; the named freedoms are sparse."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,14 +17,25 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, span
 from kinform.foundation.algebra.vectors import canonical, cross, cross_matrix, norm, perpendicular
 from kinform.foundation.words import counted, listed
-from kinform.kinematics import constants
-from kinform.kinematics.pair.canonical_basis import directions as canonical_directions
+from kinform.kinematics.constants import EXACT_MOTION, RCOND, SAME_DIRECTION
+from kinform.kinematics.joints.pair.canonical_basis import directions as canonical_directions
 from kinform.model.arrays import Array
+
+EXACT_WRENCH = 1e-6
+"""The same of wrenches, whose joints are snapped already."""
+NO_LEAD = 1e-6
+"""Advance a turn, over the length of the frame, that is none."""
+NAMED_AXIS = 5e-4
+"""Directions this near (sine) to an axis of the world have its name: their components read 1, 0 and 0 then."""
+SHOWN_COMPONENT = 5e-4
+"""Components below this are shown as 0: they would not be seen in three digits beside 1."""
+SHOWN_COORDINATE = 1e-6
+"""The same of coordinates of a point, over the largest, and over the length of the frame."""
 
 
 def components(direction: Array) -> str:
     """ "(0, 0.6, 0.8)"."""
-    return _in_brackets(direction, constants.SHOWN_COMPONENT, "{:.3g}")
+    return _in_brackets(direction, SHOWN_COMPONENT, "{:.3g}")
 
 
 def _in_brackets(numbers: Array, least: float, form: str) -> str:
@@ -36,12 +47,12 @@ def direction_words(direction: Array) -> str:
     """A signed unit direction: "+z", "-x", or its components."""
     size = np.abs(direction)
     axis = int(size.argmax())
-    if size[axis] > 1.0 - 0.5 * constants.SAME_DIRECTION**2:
+    if size[axis] > 1.0 - 0.5 * SAME_DIRECTION**2:
         return f"{'+' if direction[axis] > 0.0 else '-'}{'xyz'[axis]}"
     return components(direction)
 
 
-def axis_word(direction: Array, near: float = constants.NAMED_AXIS) -> str:
+def axis_word(direction: Array, near: float = NAMED_AXIS) -> str:
     """ "z", where it is so near to it (sine), or "(0.6, 0.8, 0)"."""
     unit = canonical(direction)
     for name, axis in zip("xyz", np.eye(3), strict=True):
@@ -61,14 +72,14 @@ def _group(turns: Array, slides: Array) -> str:
     if kind in _NAMES:
         return _NAMES[kind]
     if kind == (1, 0):
-        return "revolute" if abs(_lead(turns[:, 0])) < constants.EXACT_MOTION else "screw"
+        return "revolute" if abs(_lead(turns[:, 0])) < EXACT_MOTION else "screw"
     if kind[0] == 1:
         axis = turns[:3, 0] / norm(turns[:3, 0])
         along = norm(axis @ slides[3:])
-        if kind == (1, 1) and along > 1.0 - constants.EXACT_MOTION:
+        if kind == (1, 1) and along > 1.0 - EXACT_MOTION:
             return "cylindrical"
-        if kind == (1, 2) and along < constants.EXACT_MOTION:
-            return "planar" if abs(_lead(turns[:, 0])) < constants.EXACT_MOTION else "planar screw"
+        if kind == (1, 2) and along < EXACT_MOTION:
+            return "planar" if abs(_lead(turns[:, 0])) < EXACT_MOTION else "planar screw"
         return ""
     centre = _centre(turns) if kind[0] > 1 and kind[1] == 0 else None
     return "spherical" if kind == (3, 0) and centre is not None else ""
@@ -102,10 +113,10 @@ def _split(basis: Array) -> tuple[Array, Array]:
     if not basis.shape[1]:
         return basis, basis
     if basis.shape[1] == 1:
-        count, mixed = int(norm(basis[:3]) > constants.EXACT_MOTION), basis
+        count, mixed = int(norm(basis[:3]) > EXACT_MOTION), basis
     else:
         _, values, right = np.linalg.svd(basis[:3], full_matrices=True)
-        count = int(np.count_nonzero(values > constants.EXACT_MOTION))
+        count = int(np.count_nonzero(values > EXACT_MOTION))
         mixed = basis @ right.T
     turns, slides = mixed[:, :count].copy(), mixed[:, count:].copy()
     if slides.shape[1]:
@@ -131,10 +142,7 @@ def _turning(turns: Array, slides: Array, frame: Frame) -> list[str]:
         # along a slide it may be anywhere
         place = frame.centre + frame.length * cross(twist[:3], twist[3:]) / (twist[:3] @ twist[:3])
         through = "" if slides.shape[1] > 1 else f" through {_point(place, frame)}"
-        if (
-            abs(lead) > constants.NO_LEAD * frame.length
-            and norm(slides[3:].T @ canonical(twist[:3])) < 1.0 - constants.EXACT_MOTION
-        ):
+        if abs(lead) > NO_LEAD * frame.length and norm(slides[3:].T @ canonical(twist[:3])) < 1.0 - EXACT_MOTION:
             return [f"screws about {_axis_components(twist[:3])}{through}, {1e3 * lead:.4g} mm a turn"]
         return [f"turns about {_axis_components(twist[:3])}{through}"]
     centre = _centre(turns) if not slides.shape[1] else None
@@ -150,7 +158,7 @@ def _centre(turns: Array) -> Array | None:
     """The point, in lengths from the centre of the frame, that rests under all turns; None where there is none."""
     matrix, right = cross_matrix(turns[:3].T).reshape(-1, 3), -turns[3:].T.ravel()
     centre, *_ = np.linalg.lstsq(matrix, right, rcond=None)
-    return None if float(np.abs(matrix @ centre - right).max()) > 10.0 * constants.EXACT_MOTION else np.asarray(centre)
+    return None if float(np.abs(matrix @ centre - right).max()) > 10.0 * EXACT_MOTION else np.asarray(centre)
 
 
 def _tidy(directions: Array) -> Array:
@@ -163,7 +171,7 @@ def _tidy(directions: Array) -> Array:
 
 def _point(place: Array, frame: Frame) -> str:
     size = max(*(abs(x) for x in place.tolist()), frame.length)
-    return _in_brackets(1e3 * place, constants.SHOWN_COORDINATE * 1e3 * size, "{:.4g}") + " mm"
+    return _in_brackets(1e3 * place, SHOWN_COORDINATE * 1e3 * size, "{:.4g}") + " mm"
 
 
 def _axis_components(direction: Array) -> str:
@@ -179,7 +187,7 @@ def rows_too_many(count: int) -> str:
     return f"{counted(count, 'row')} too many"
 
 
-def locked_wrenches(wrenches: Array, near: float = constants.NAMED_AXIS) -> list[Locked]:
+def locked_wrenches(wrenches: Array, near: float = NAMED_AXIS) -> list[Locked]:
     """The space of the rows (k, 6), (τ about the centre over the length; f), in readable directions: forces first.
 
     Directions within `near` (sine) of an axis of the world have its name. A force is followed by " with a moment
@@ -187,14 +195,14 @@ def locked_wrenches(wrenches: Array, near: float = constants.NAMED_AXIS) -> list
     """
     basis = span(wrenches.T)
     left, values, right = np.linalg.svd(basis[3:], full_matrices=True)
-    rank = int(np.count_nonzero(values > constants.EXACT_WRENCH))
+    rank = int(np.count_nonzero(values > EXACT_WRENCH))
     moments = basis[:3] @ right[rank:].T
     moments = span(moments) if moments.shape[1] else moments
     out: list[Locked] = []
     for direction in _directions(left[:, :rank]):
-        wrench = basis @ np.linalg.lstsq(basis[3:], direction, rcond=constants.RCOND)[0]
+        wrench = basis @ np.linalg.lstsq(basis[3:], direction, rcond=RCOND)[0]
         wrench[:3] -= moments @ (moments.T @ wrench[:3])
-        twisted = abs(float(wrench[:3] @ direction)) > 10.0 * constants.EXACT_WRENCH
+        twisted = abs(float(wrench[:3] @ direction)) > 10.0 * EXACT_WRENCH
         out.append(
             (f"force along {axis_word(direction, near)}" + (" with a moment about it" if twisted else ""), wrench)
         )
@@ -213,7 +221,7 @@ def _directions(space: Array) -> list[Array]:
     if count == 1:
         return [canonical(space[:, 0])]
     normal = canonical(cross(space[:, 0], space[:, 1]))
-    inside = [e for e in np.eye(3) if abs(float(e @ normal)) < constants.EXACT_WRENCH]
+    inside = [e for e in np.eye(3) if abs(float(e @ normal)) < EXACT_WRENCH]
     if len(inside) == 2:
         return inside
     if len(inside) == 1:

@@ -5,8 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical, cross
-from kinform.mass.constants import EQUAL_MOMENTS, NEAREST, ROUNDED_MOMENTS
 from kinform.model.arrays import Array
+
+EQUAL_MOMENTS = 1e-9
+"""Moments that differ by less than this share of the largest are one: rounding makes their axes."""
+ROUNDED_MOMENTS = 1e-6
+"""Share of the largest moment by which stated moments may break a law: six printed digits."""
+NEAREST = 1e-3
+"""How much shorter the projection of a world's axis may be than the longest, where x goes before y before z, as in the
+sign of an axis."""
 
 
 def principal(inertia: Array) -> tuple[Array, Array]:

@@ -1,6 +1,11 @@
 """Findings as text for people, tools and CI: one renderer a format, all from one model.
 
 A renderer is imported when its format is asked for: a run that changes nothing takes less time than all of them.
+
+Sub-packages; each imports only those above it:
+
+- `values`: a design as plain values, for JSON and the page
+- `page`: the page and pictures
 """
 
 from __future__ import annotations

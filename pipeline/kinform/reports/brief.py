@@ -16,8 +16,31 @@ from kinform.foundation.words import counted, one_line, shortened, shortened_end
 from kinform.frozen import dataclass
 from kinform.function.body_titles import body_titles
 from kinform.model.findings import CheckReport, Finding
-from kinform.reports import constants
+from kinform.reports.constants import WIDTH
 from kinform.reports.phrases import answers_line, rule_counts, severity_counts, verdict_told
+
+MOST_BRIEF = 10
+"""Findings that are told line by line, the worst; with all that stands around them they fill a screen of 24 lines."""
+LEAST_BRIEF = 5
+"""Findings that are told line by line though what was found has to be cut; above, fewer are told, and whole."""
+BRIEF_LINES = 21
+"""Lines up to which single findings that do not fit beside their rule take a second one: a screen of 24, without the
+two of the next commands and the prompt."""
+COMPARED = ("KF3", "KF4")
+"""Rules, by how their codes begin, that compare with what is stated: what was found says little without it."""
+TOLD_NOTES = ("KF509",)
+"""Rules whose notes stand on the first screen with all that was found: what was simulated at all."""
+LEAST_BESIDE = 12
+"""Characters beside a rule below which a finding goes below it: two shortened names and what was found need so many."""
+LEAST_NAME = 12
+"""Characters of the name of a part to which names are shortened before what was found is: both its ends are still
+recognised. A choice."""
+MANY_JOINTS = 9
+"""Derived joints from which a design without a complete function is told how it gets fewer: contact alone counts each
+part that is screwed on; few mechanisms are meant to have so many. A choice."""
+BRIEF_NAME = 28
+"""Characters of the name of the ground: with the rest of its line it fits in 80."""
+
 
 _KINDS = ("warning", "not decided", "error")
 """What is told line by line, the worst last."""
@@ -42,7 +65,7 @@ class _Item:
         return f"{self.kind}: {self.code} {self.rule}"
 
 
-def render(report: CheckReport, design: Design, fail_on: str = "error", *, width: int = constants.WIDTH) -> str:
+def render(report: CheckReport, design: Design, fail_on: str = "error", *, width: int = WIDTH) -> str:
     """Verdict and counts; a line for each group of notes; what was skipped or assumed; the worst findings, the worst
     last. No line is longer than `width`, unless it has one word that is."""
     name = shortened(one_line(design.assembly.name), width // 2)
@@ -56,10 +79,10 @@ def render(report: CheckReport, design: Design, fail_on: str = "error", *, width
     if report.answers:
         lines += textwrap.wrap(f"intended joints: {answers_line(report.answers)}", width, subsequent_indent="  ")
     items = _items(report)
-    for most in range(constants.MOST_BRIEF, constants.LEAST_BRIEF - 1, -1):
+    for most in range(MOST_BRIEF, LEAST_BRIEF - 1, -1):
         chosen, rest = _worst(items, most)
         more = _more(rest, width)
-        told, whole = _groups(chosen, width, constants.BRIEF_LINES - len(lines) - len(more))
+        told, whole = _groups(chosen, width, BRIEF_LINES - len(lines) - len(more))
         if whole:
             break
     return "\n".join([*lines, *more, *told]) + "\n"
@@ -169,7 +192,7 @@ def _single(item: _Item, width: int) -> list[list[str]]:
     """The forms of the only finding of its rule: beside it where there is room."""
     below = [[item.head, *form] for form in _below(item, width)]
     left = width - len(item.head) - 2
-    if left < constants.LEAST_BESIDE:
+    if left < LEAST_BESIDE:
         return below
     uncut = _uncut(item, left)
     whole = f"{item.head}: {_subject(item)}{_told(item)}"
@@ -190,7 +213,7 @@ def _subject(item: _Item) -> str:
 
 def _told(item: _Item) -> str:
     """What was found, and where the function is what it is compared with, what is intended."""
-    stated = item.more is not None and item.code.startswith(constants.COMPARED)
+    stated = item.more is not None and item.code.startswith(COMPARED)
     return f"{item.text}; intended: {one_line(item.more or '')}" if stated else item.text
 
 
@@ -208,7 +231,7 @@ def _uncut(item: _Item, room: int) -> str | None:
     text = _told(item)
     left = room - len(text) - 2
     bodies = [body for name in item.subject for body in one_line(name).split("~")]
-    least = sum(min(len(body), constants.LEAST_NAME) for body in bodies) + 2 * len(bodies) - 2
+    least = sum(min(len(body), LEAST_NAME) for body in bodies) + 2 * len(bodies) - 2
     if not item.subject:
         return text if len(text) <= room else None
     return f"{_names(item.subject, left)}: {text}" if left >= least else None
@@ -242,7 +265,7 @@ def _notes(report: CheckReport, width: int) -> list[str]:
     notes = sorted((f for f in report.findings if f.severity == "note"), key=lambda f: f.code)
     lines = []
     for (code, rule), group in groupby(notes, lambda f: (f.code, f.rule)):
-        if code in constants.TOLD_NOTES:
+        if code in TOLD_NOTES:
             if code not in undecided:
                 lines += _in_full(next(group), width)
             continue
@@ -274,7 +297,7 @@ def _assumptions(report: CheckReport, design: Design) -> Iterable[str]:
         titles = body_titles(design.assembly, design.kinematics)
         ground = next((titles.get(b.name, str(b.name)) for b in design.kinematics.bodies if b.ground), None)
         if ground is not None:
-            yield f"assumed ground: {shortened(one_line(ground), constants.BRIEF_NAME)} (`ground` in [assembly])"
+            yield f"assumed ground: {shortened(one_line(ground), BRIEF_NAME)} (`ground` in [assembly])"
     if design.assembly.notes:
         yield f"{counted(len(design.assembly.notes), 'remark')} on what was read (-v)"
 
@@ -282,7 +305,7 @@ def _assumptions(report: CheckReport, design: Design) -> Iterable[str]:
 def _many_joints(design: Design, width: int) -> list[str]:
     """Where contact alone tells the joints, and there are many: how to have those that are meant."""
     function, kinematics = design.assembly.function, design.kinematics
-    if kinematics is None or function.complete or len(kinematics.joints) < constants.MANY_JOINTS:
+    if kinematics is None or function.complete or len(kinematics.joints) < MANY_JOINTS:
         return []
     many = f"{counted(len(kinematics.joints), 'joint')} between {counted(len(design.assembly.parts), 'part')}"
     advice = "if too many, take over those that `kinform init` proposes, with `complete = true`"

@@ -1,4 +1,9 @@
-"""Results: the HDF5 file that carries a design from stage to stage, and what may be reused of it."""
+"""Results: the HDF5 file that carries a design from stage to stage, and what may be reused of it.
+
+Sub-packages; each imports only those above it:
+
+- `groups`: the groups of the file, one module each
+"""
 
 from kinform.results.at_need import Earlier
 from kinform.results.file import (

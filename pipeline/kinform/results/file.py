@@ -18,20 +18,22 @@ import h5py
 from kinform.design import Design
 from kinform.errors import ResultsError
 from kinform.model.fingerprints import Fingerprints
-from kinform.results import constants
 from kinform.results.at_need import NONSENSE, STAGE_OF, Earlier, codec, marks_of
 from kinform.results.conformity import check_group
 from kinform.results.groups import assembly
 from kinform.results.held import HeldGroup
 from kinform.results.opening import DAMAGE, SCHEMA, NotWholeError, check_replaceable, not_whole, opened
 from kinform.results.replacement import check_target, refuse, replace_file
-from kinform.results.seal import block_of, seal
+from kinform.results.seal import BLOCK, block_of, seal
 from kinform.reuse import lineage
 from kinform.version import __version__
 
 if TYPE_CHECKING:
     from kinform.model.assembly import Assembly
     from kinform.model.kinematics import Kinematics
+
+GROWTH = 1 << 20
+"""Bytes by which the image of a file grows: with fewer it is copied often."""
 
 
 def write(design: Design, path: str | Path) -> None:
@@ -118,7 +120,7 @@ def to_bytes(design: Design) -> bytes:
 def _image(design: Design) -> bytes:
     """The HDF5 of a results file, made to stand behind its seal."""
     file = h5py.File(
-        "results", "w", driver="core", backing_store=False, block_size=constants.GROWTH, userblock_size=constants.BLOCK,
+        "results", "w", driver="core", backing_store=False, block_size=GROWTH, userblock_size=BLOCK,
         libver=("earliest", "v108"), track_order=False,
     )  # fmt: skip
     with file:

@@ -13,10 +13,9 @@ import h5py
 
 from kinform.errors import ResultsError
 from kinform.foundation.regular import not_a_file
-from kinform.results import constants
 from kinform.results.held import HeldGroup, hold
 from kinform.results.replacement import refuse
-from kinform.results.seal import Seal, is_sealed, read_seal
+from kinform.results.seal import BLOCK, Seal, is_sealed, read_seal
 from kinform.results.structure import ForeignError, check_structure
 from kinform.version import __version__
 
@@ -59,7 +58,7 @@ def opened(path: str | Path) -> Iterator[HeldGroup]:
 def check_replaceable(path: Path) -> None:
     """Raise ResultsError where a file is there that kinform did not write, or in another schema."""
     with _stream(path) as stream:
-        start = stream.read(constants.BLOCK)
+        start = stream.read(BLOCK)
         if not is_sealed(start):
             raise _stranger(path, stream)
         if f"schema {SCHEMA}\n".encode() in start:

@@ -16,7 +16,10 @@ import re
 from io import BufferedReader
 
 from kinform.frozen import dataclass
-from kinform.results import constants
+
+BLOCK = 512
+"""Bytes before the HDF5: the least that HDF5 allows, and more than the digest needs."""
+
 
 _MARK = b"kinform results\n"
 _FAMILY = b"\nschema kinform/results/"
@@ -39,7 +42,7 @@ class Seal:
 def block(schema: str, length: int, digest: str) -> bytes:
     """The block before `length` bytes of HDF5 with this SHA-256 (hex)."""
     text = f"{_MARK.decode()}schema {schema}\nbytes {length}\nsha256 {digest}\n{_ADVICE}"
-    return text.ljust(constants.BLOCK - 1).encode() + b"\n"
+    return text.ljust(BLOCK - 1).encode() + b"\n"
 
 
 def seal(image: bytes, schema: str) -> bytes:
@@ -61,7 +64,7 @@ def read_seal(stream: BufferedReader) -> Seal | None:
     """What the block of an open file says, after all of the file was read and compared with it; the stream is then at
     its start again. None where it does not start as a results file does. Raises OSError as reading does."""
     stream.seek(0)
-    start = stream.read(constants.BLOCK)
+    start = stream.read(BLOCK)
     if not is_sealed(start):
         stream.seek(0)
         return None
@@ -76,8 +79,8 @@ def _compare(stream: BufferedReader, start: bytes) -> Seal:
         return Seal("", "its first 512 bytes are not as they were written")
     schema, length, digest = stated[1].decode(), int(stated[2]), stated[3].decode()
     present = os.fstat(stream.fileno()).st_size - len(start)
-    if len(start) < constants.BLOCK or present < length:
-        return Seal(schema, f"{length - max(present, 0)} of its {length + constants.BLOCK} bytes are missing")
+    if len(start) < BLOCK or present < length:
+        return Seal(schema, f"{length - max(present, 0)} of its {length + BLOCK} bytes are missing")
     if present > length:
         return Seal(schema, f"{present - length} bytes more than were written are in it")
     hasher = hashlib.file_digest(stream, "sha256")

@@ -17,7 +17,15 @@ import numpy as np
 from h5py import h5a, h5d, h5g, h5l, h5o, h5s, h5t
 
 from kinform.frozen import dataclass
-from kinform.results import constants
+
+MOST_OBJECTS = 10_000
+"""Groups, datasets and attributes of a file: kinform writes some two hundred, whatever the design, and some for each
+kind of thing that is in it. More would take long to look through, and are not of kinform."""
+DEPTH = 6
+"""Groups in groups: kinform writes three, and a group that contains itself has no end."""
+READ_AT_ONCE = 1 << 16
+"""Bytes of a table that are looked through at once: memory that is used again is cheaper than new memory."""
+
 
 _SIMPLE = frozenset((h5t.INTEGER, h5t.FLOAT, h5t.ENUM, h5t.STRING))
 _TEXT = np.dtype([("length", "<u4"), ("heap", "<u8"), ("index", "<u4")])
@@ -43,11 +51,11 @@ def check_structure(file: h5py.File, stream: BufferedReader, size: int) -> None:
     """Raise ForeignError where an open file of `size` bytes holds what no results file does. Errors of HDF5 as h5py
     raises them."""
     counted = 0
-    for place, thing in _objects(file.id, "", constants.DEPTH, set()):
+    for place, thing in _objects(file.id, "", DEPTH, set()):
         attributes = h5a.get_num_attrs(thing)
         counted += 1 + attributes
-        if counted > constants.MOST_OBJECTS:
-            raise ForeignError(f"more than {constants.MOST_OBJECTS} groups, datasets and attributes")
+        if counted > MOST_OBJECTS:
+            raise ForeignError(f"more than {MOST_OBJECTS} groups, datasets and attributes")
         for index in range(attributes):
             attribute = h5a.open(thing, index=index)
             _check_extent(attribute, _item(attribute.get_type(), place), place, size)
@@ -81,8 +89,8 @@ def _objects(group: Any, place: str, depth: int, seen: set[Any]) -> Iterator[tup
 
 def _names(group: Any) -> list[bytes]:
     count = group.get_num_objs()
-    if count > constants.MOST_OBJECTS:
-        raise ForeignError(f"more than {constants.MOST_OBJECTS} groups, datasets and attributes")
+    if count > MOST_OBJECTS:
+        raise ForeignError(f"more than {MOST_OBJECTS} groups, datasets and attributes")
     return list(group)
 
 
@@ -144,7 +152,7 @@ def _check_dataset(dataset: h5d.DatasetID, place: str, stream: BufferedReader, s
 def _check_texts(stream: BufferedReader, rows: int, item: _Item, place: str, size: int) -> None:
     """Raise ForeignError where texts of any length are longer, together, than the file, or not in it."""
     lengths = [0] * len(item.texts)
-    at_once = max(constants.READ_AT_ONCE // item.size, 1)
+    at_once = max(READ_AT_ONCE // item.size, 1)
     for first in range(0, rows, at_once):
         count = min(at_once, rows - first)
         data = np.frombuffer(stream.read(count * item.size), np.uint8).reshape(count, item.size)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import Any
 
-from kinform.kinematics.pair.question import Answer
+from kinform.kinematics.joints.pair.question import Answer
 from kinform.model.kinematics import Blocker, Joint, Reading, Release
 from kinform.reuse import fingerprints
 from kinform.reuse.digest import digest

@@ -19,6 +19,7 @@ MOTION = (
     "function",
     "mass",
     "kinematics",
+    "mechanism",
     "collisions",
     "surfaces",
     "contacts",
@@ -67,7 +68,7 @@ CONTACTS = Stage(
 )
 JOINTS = Stage(
     "joints",
-    code={"joints": ("kinematics", "foundation")},
+    code={"joints": ("kinematics", "mechanism", "foundation")},
     fills=("kinematics",),
     marks=("decisions",),
     view=views.for_joints,
@@ -75,7 +76,7 @@ JOINTS = Stage(
 )
 MASS = Stage(
     "mass",
-    code={"mass": ("mass", "kinematics", "foundation")},
+    code={"mass": ("mass", "kinematics", "mechanism", "foundation")},
     fills=("mass",),
     view=views.for_mass,
     needs=("surfaces", "bodies"),
@@ -95,5 +96,7 @@ FINDINGS = Stage(
 )
 STAGES = (CONTACTS, JOINTS, MASS, SIMULATION, FINDINGS)
 """Those after the import, in their order: what a stage made is dropped when one before it makes something new."""
-CODE = {"assembly": ("form", "foundation")} | {kind: rooms for stage in STAGES for kind, rooms in stage.code.items()}
+CODE = {"assembly": ("form", "formats", "foundation")} | {
+    kind: rooms for stage in STAGES for kind, rooms in stage.code.items()
+}
 """Rooms whose code decides the results of each kind, the assembly that is read first."""

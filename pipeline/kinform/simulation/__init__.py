@@ -2,6 +2,13 @@
 
 Reads the port model of `kinform.behaviour`; importing it brings in neither scipy nor compiled kernels, and the solvers
 only when something is solved.
+
+Sub-packages; each imports only those above it:
+
+- `kernel`: single steps, as loops over numbers, compiled or not
+- `mechanism`: a port model in joint coordinates
+- `outcome`: reactions, balances, results
+- `solver`: a run through time, from event to event
 """
 
 from __future__ import annotations

@@ -12,8 +12,10 @@ from kinform.model.assembly import Assembly
 from kinform.model.function import Drive
 from kinform.model.kinematics import Kinematics, Meshing
 from kinform.model.quantities import Reason
-from kinform.simulation.constants import WHOLE_TURN
 from kinform.simulation.mechanism.mechanism import Mechanism
+
+WHOLE_TURN = 1e-6
+"""rad: teeth whose pitches make a turn to within this go all round."""
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,6 @@ from kinform.foundation.progress import Progress, Say
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.simulation import Simulation
-from kinform.simulation.constants import INERTIA_ROUNDING, LAST_OUTPUT, OUTPUT_NUMBERS, OUTPUT_TIMES
 from kinform.simulation.mechanism.actuation import Actuation
 from kinform.simulation.mechanism.construction import assemble
 from kinform.simulation.mechanism.dynamics import Dynamics
@@ -26,9 +25,17 @@ from kinform.simulation.solver.dynamic import run_dynamic
 from kinform.simulation.solver.friction_known import friction_not_determined
 from kinform.simulation.solver.kinematic import notes_of_rest, run_kinematic
 from kinform.simulation.solver.start import Stated, begin, loop_rank, torn_at_start
-from kinform.simulation.solver.stick_slip import run_with_friction
+from kinform.simulation.solver.stick_slip import LAST_OUTPUT, run_with_friction
 from kinform.simulation.solver.stops import beyond
 from kinform.simulation.subject import Failures, refuse
+
+OUTPUT_NUMBERS = 100_000_000
+"""Numbers that a run gives in all, at all output times: 800 MB in the results file, and three times that while they are
+computed. A four-bar has a hundred at each time."""
+OUTPUT_TIMES = 10_000_000
+"""Output times of a run, whatever it gives at each."""
+INERTIA_ROUNDING = 1e-9
+"""Share of the greatest number of an inertia by which it may be unsymmetric or have a negative moment."""
 
 
 @dataclass(frozen=True, eq=False)

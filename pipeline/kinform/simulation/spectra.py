@@ -15,7 +15,22 @@ import numpy as np
 
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
-from kinform.simulation import constants
+
+UNEVEN = 1e-6
+"""Share of the first step by which others may differ from it: times are sums of steps, with their rounding."""
+LEAST_SAMPLES = 16
+"""Samples of a spectrum, at least: the window alone is four of its frequencies wide."""
+LEAST_LINE = 3e-2
+"""Share of the greatest amplitude that a line has at least: the lobes of the window beside a line have up to 2.7 % of
+it."""
+NO_LINE = 1e-9
+"""Share of the greatest sample below which a line is rounding."""
+MOST_LINES = 3
+"""Lines that are named."""
+LEAST_PERIODS = 8.0
+"""Periods below which an envelope says no more than the curve."""
+LEAST_IN_PERIOD = 4.0
+"""Samples of a period, at least, for its extremes to be among them."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +60,7 @@ def even_samples(time: Array) -> int:
     if len(time) < 2:
         return len(time)
     steps = np.diff(time)
-    uneven = np.flatnonzero(np.abs(steps - steps[0]) > constants.UNEVEN * steps[0])
+    uneven = np.flatnonzero(np.abs(steps - steps[0]) > UNEVEN * steps[0])
     return int(uneven[0]) + 1 if len(uneven) else len(time)
 
 
@@ -54,7 +69,7 @@ def amplitude_spectrum(time: Array, values: Array) -> Spectrum | None:
     samples that are not all numbers."""
     count = even_samples(time)
     samples = np.asarray(values[:count], dtype=np.float64)
-    if count < constants.LEAST_SAMPLES or not np.isfinite(samples).all():
+    if count < LEAST_SAMPLES or not np.isfinite(samples).all():
         return None
     span = float(time[count - 1] - time[0]) * count / (count - 1)
     window = 0.5 - 0.5 * np.cos(2.0 * math.pi / count * np.arange(count))
@@ -76,9 +91,7 @@ def _lines(amplitude: Array, samples: Array, span: float) -> tuple[Line, ...]:
     """Sines that stand out, the greatest first."""
     inner = amplitude[1:-1]
     tops = 1 + np.flatnonzero((inner > amplitude[:-2]) & (inner >= amplitude[2:]))
-    floor = max(
-        constants.LEAST_LINE * float(amplitude.max()), constants.NO_LINE * float(np.abs(samples).max(initial=0.0))
-    )
+    floor = max(LEAST_LINE * float(amplitude.max()), NO_LINE * float(np.abs(samples).max(initial=0.0)))
     found = []
     for k in tops[amplitude[tops] > floor].tolist():
         side = 1 if amplitude[k + 1] > amplitude[k - 1] else -1
@@ -86,7 +99,7 @@ def _lines(amplitude: Array, samples: Array, span: float) -> tuple[Line, ...]:
         offset = min(max((2.0 * share - 1.0) / (1.0 + share), 0.0), 0.5)
         height = float(amplitude[k]) * (1.0 - offset**2) / float(np.sinc(offset))
         found.append(Line((k + side * offset) / span, height))
-    return tuple(sorted(found, key=lambda line: (-line.amplitude, line.frequency))[: constants.MOST_LINES])
+    return tuple(sorted(found, key=lambda line: (-line.amplitude, line.frequency))[:MOST_LINES])
 
 
 def envelope(time: Array, values: Array, period: float) -> tuple[Array, Array] | None:
@@ -96,7 +109,7 @@ def envelope(time: Array, values: Array, period: float) -> tuple[Array, Array] |
     if count < len(time) - 1 or count < 2:
         return None
     step = float(time[1] - time[0])
-    if (count - 1) * step < constants.LEAST_PERIODS * period or period < constants.LEAST_IN_PERIOD * step:
+    if (count - 1) * step < LEAST_PERIODS * period or period < LEAST_IN_PERIOD * step:
         return None
     half = math.ceil(0.5 * period / step)
     padded = np.pad(np.asarray(values, dtype=np.float64), half, mode="edge")

@@ -11,7 +11,9 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array
-from kinform.statics.constants import BOTH_WAYS
+
+BOTH_WAYS = 1e-9
+"""Relative singular value below which wrenches given both ways depend on each other."""
 
 
 def pushes_at(points: Array, normals: Array, centre: Array, length: float) -> Array:

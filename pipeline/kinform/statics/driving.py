@@ -28,7 +28,13 @@ from kinform.simulation.solver.friction_known import friction_not_determined
 from kinform.simulation.solver.run_state import Run
 from kinform.simulation.solver.slip import NotDeterminedError, Rub, dry
 from kinform.simulation.solver.start import Start, Stated, begin
-from kinform.statics.constants import MOVES_AT_REST, SHARES_LOAD, STAYS
+
+SHARES_LOAD = 1e-6
+"""Share of a motion (rad, or lengths) below which a joint takes no part in it."""
+MOVES_AT_REST = 1e-6
+"""Share of gravity over the mechanism's length by which what is held may accelerate: rounding stays far below."""
+STAYS = 1e-12
+"""Share of the load that may be missing to hold it: rounding, of friction that just holds."""
 
 
 @dataclass(frozen=True)

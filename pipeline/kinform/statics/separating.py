@@ -23,9 +23,17 @@ from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.simulation import Simulation
 from kinform.statics.carrying import pushes_at, uncarried
-from kinform.statics.constants import APART, CLOSE, LOOKS, NO_WRENCH
 from kinform.statics.disengaging import SLIDES, slide_of
 from kinform.statics.sharing import axes_of, decidable, self_stresses
+
+APART = 1e-2
+"""Share of a wrench that contacts cannot carry, beyond which no tessellation of their borders explains it."""
+CLOSE = 1e-3
+"""Share below which it is rounding; in between nobody knows."""
+NO_WRENCH = 1e-6
+"""Share of the greatest wrench of the run in any joint below which a wrench is none."""
+LOOKS = 200
+"""Output times at which loads that redundant constraints share are looked at, besides those before a finding."""
 
 
 @dataclass(frozen=True, eq=False)

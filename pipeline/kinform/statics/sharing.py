@@ -18,7 +18,11 @@ from kinform.foundation.algebra.vectors import cross_matrix, perpendicular
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.simulation import Simulation
-from kinform.statics.constants import DEPENDENT, MOST_JOINTS
+
+DEPENDENT = 1e-7
+"""Relative singular value below which a balance depends on the others, as in the count of freedoms."""
+MOST_JOINTS = 60
+"""Joints up to which all wrenches are looked for."""
 
 
 def axes_of(joint: Joint, R: Array, X: Array) -> tuple[list[Array], list[Array], list[Array]]:

@@ -10,7 +10,11 @@ import numpy as np
 
 from kinform.foundation.words import number
 from kinform.model.arrays import Array
-from kinform.study import constants
+from kinform.study.constants import NOTHING_VARIES
+
+BINS_MOST = 60
+"""Bars of a histogram at most: thinner than 4 px they are no more to be told apart. A choice."""
+
 
 _WIDTH, _HEIGHT = 320, 220
 _LEFT, _RIGHT, _TOP, _BOTTOM = 62, 12, 10, 40
@@ -72,22 +76,22 @@ class _Axis:
 
 def _bins(values: Array) -> int | Array:
     """Bars, or their edges where values are few and whole, as of a mobility."""
-    if float(np.ptp(values)) <= constants.NOTHING_VARIES * float(np.abs(values).max()):
+    if float(np.ptp(values)) <= NOTHING_VARIES * float(np.abs(values).max()):
         return np.array(_span([float(values.min())]))
     low, high = float(values.min()), float(values.max())
-    if np.all(values == np.round(values)) and high - low < constants.BINS_MOST:
+    if np.all(values == np.round(values)) and high - low < BINS_MOST:
         return np.arange(low - 0.5, high + 1.0)
     quarters = np.quantile(values, [0.25, 0.75])
     width = 2.0 * float(quarters[1] - quarters[0]) / len(values) ** (1.0 / 3.0)
     least = math.ceil(math.log2(len(values)) + 1.0)  # Sturges 1926, where half of the samples are one value
-    return min(max(math.ceil((high - low) / width) if width > 0.0 else 0, least), constants.BINS_MOST)
+    return min(max(math.ceil((high - low) / width) if width > 0.0 else 0, least), BINS_MOST)
 
 
 def _span(values: Sequence[float]) -> tuple[float, float]:
     """Least and greatest, with room beside them; not less room than rounding shows."""
     low, high = min(values), max(values)
     size = max(abs(low), abs(high))
-    room = 0.04 * (high - low) if high - low > constants.NOTHING_VARIES * size else 0.05 * size or 1.0
+    room = 0.04 * (high - low) if high - low > NOTHING_VARIES * size else 0.05 * size or 1.0
     return low - room, high + room
 
 

@@ -13,7 +13,14 @@ from kinform.errors import InputError, Problem
 from kinform.form.keys import steps_of
 from kinform.form.stated import stated_value, toml_of
 from kinform.frozen import dataclass
-from kinform.study import constants, fits
+from kinform.study import fits
+
+SAMPLES_MOST = 1_000_000
+"""Samples of a study; its table is held in memory. A choice."""
+SIGMAS = 3.0
+"""Standard deviations from the middle of a tolerance to its limits, where it is met by a normal distribution: a process
+whose capability is 1, so that 0.27 % lie outside. What drawings are commonly read as."""
+
 
 METHODS = ("grid", "one-at-a-time", "latin-hypercube", "sobol", "monte-carlo")
 
@@ -28,7 +35,7 @@ class Study(_Table):
     design: str
     """The manifest or description, relative to this file."""
     method: Literal["grid", "one-at-a-time", "latin-hypercube", "sobol", "monte-carlo"] = "monte-carlo"
-    samples: Annotated[int, Field(ge=1, le=constants.SAMPLES_MOST)] | None = None
+    samples: Annotated[int, Field(ge=1, le=SAMPLES_MOST)] | None = None
     seed: Annotated[int, Field(ge=0)] = 0
     indices: bool = False
     """With sobol: also first-order indices, by d + 2 times as many samples."""
@@ -170,7 +177,7 @@ def _axis(one: Vary, design: Path) -> Axis:
         kind = one.distribution or "uniform"
         return Axis(one.name, steps, None, kind, *one.between, one.steps)
     if one.mean is not None and one.deviation is not None:
-        width = constants.SIGMAS * one.deviation
+        width = SIGMAS * one.deviation
         return Axis(one.name, steps, None, "normal", one.mean - width, one.mean + width, one.steps)
     middle = one.nominal
     if middle is None and steps is not None and design.is_file():

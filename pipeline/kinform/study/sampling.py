@@ -9,8 +9,7 @@ import numpy as np
 from scipy.stats import norm, qmc
 
 from kinform.model.arrays import Array
-from kinform.study import constants
-from kinform.study.plan import Axis, Plan
+from kinform.study.plan import SIGMAS, Axis, Plan
 
 
 def samples(plan: Plan) -> list[tuple[Any, ...]]:
@@ -35,7 +34,7 @@ def at(axis: Axis, share: float) -> Any:
         return axis.values[min(int(share * len(axis.values)), len(axis.values) - 1)]
     width = axis.high - axis.low
     if axis.distribution == "normal":
-        half = width / (2.0 * constants.SIGMAS)
+        half = width / (2.0 * SIGMAS)
         return float(axis.low + width / 2.0 + half * norm.ppf(share))
     if axis.distribution == "triangular":
         part = np.sqrt(share / 2.0) if share < 0.5 else 1.0 - np.sqrt((1.0 - share) / 2.0)

@@ -14,8 +14,15 @@ from scipy import stats
 
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
-from kinform.study import constants
+from kinform.study.constants import NOTHING_VARIES
 from kinform.study.session import Outcome
+
+CONFIDENCE = 0.95
+"""Of intervals; a choice."""
+WORST = 5
+"""Samples that are listed as the worst of a measure; a choice."""
+RESAMPLES = 999
+"""Of the bootstrap of Sobol' indices; scipy's own choice is as many."""
 
 
 @dataclass(frozen=True)
@@ -103,7 +110,7 @@ def _of_measure(outcome: Outcome, k: int) -> Statistics:
     mean, deviation = (float(np.mean(known)) if len(known) else None, _deviation(known))
     low = high = spread_low = spread_high = None
     if chance and mean is not None and deviation is not None:
-        half = stats.t.ppf(0.5 + constants.CONFIDENCE / 2.0, len(known) - 1) * deviation / math.sqrt(len(known))
+        half = stats.t.ppf(0.5 + CONFIDENCE / 2.0, len(known) - 1) * deviation / math.sqrt(len(known))
         low, high = mean - float(half), mean + float(half)
         spread_low, spread_high = _deviation_interval(known, deviation)
     return Statistics(
@@ -127,12 +134,12 @@ def _deviation_interval(known: Array, deviation: float) -> tuple[float, float]:
         return 0.0, 0.0
     kurtosis = float(np.mean(centred**4)) / float(np.mean(centred**2)) ** 2
     error = math.sqrt(max(kurtosis - (n - 3) / (n - 1), 0.0) / n)
-    half = float(stats.norm.ppf(0.5 + constants.CONFIDENCE / 2.0)) * error
+    half = float(stats.norm.ppf(0.5 + CONFIDENCE / 2.0)) * error
     return deviation * math.exp(-half / 2.0), deviation * math.exp(half / 2.0)
 
 
 def _share(good: int, n: int) -> tuple[float, float, float]:
-    interval = stats.binomtest(good, n).proportion_ci(constants.CONFIDENCE, method="exact")
+    interval = stats.binomtest(good, n).proportion_ci(CONFIDENCE, method="exact")
     return good / n, float(interval.low), float(interval.high)
 
 
@@ -162,7 +169,7 @@ def _rank(given: Array, values: Array) -> float | None:
 
 
 def _constant(values: Array) -> bool:
-    return bool(np.ptp(values) <= constants.NOTHING_VARIES * np.max(np.abs(values)))
+    return bool(np.ptp(values) <= NOTHING_VARIES * np.max(np.abs(values)))
 
 
 def _indices(outcome: Outcome, values: Array) -> tuple[Array, Array, Array] | None:
@@ -174,7 +181,7 @@ def _indices(outcome: Outcome, values: Array) -> tuple[Array, Array, Array] | No
     parts = values.reshape(d + 2, n)
     given = {"f_A": parts[0][None], "f_B": parts[1][None], "f_AB": parts[2:][:, None]}
     found = stats.sobol_indices(func=given, n=n, rng=np.random.default_rng(outcome.plan.study.seed))
-    ends = found.bootstrap(constants.CONFIDENCE, n_resamples=constants.RESAMPLES).first_order.confidence_interval
+    ends = found.bootstrap(CONFIDENCE, n_resamples=RESAMPLES).first_order.confidence_interval
     return np.ravel(found.first_order), np.ravel(ends.low), np.ravel(ends.high)
 
 
@@ -192,4 +199,4 @@ def _worst(outcome: Outcome, k: int, values: Array) -> tuple[int, ...]:
     if measure.least is None and measure.most is None:
         beyond = np.abs(some - some.mean())
     order = sorted(range(len(known)), key=lambda i: (-beyond[i], known[i]))
-    return tuple(int(known[i]) for i in order[: constants.WORST])
+    return tuple(int(known[i]) for i in order[:WORST])

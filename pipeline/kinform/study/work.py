@@ -14,7 +14,19 @@ from kinform.errors import InputError, Problem
 from kinform.form.keys import looked_up
 from kinform.form.sources import Reading
 from kinform.reports.values.topics import TOPICS, summary
-from kinform.study import constants
+
+UNITS = {
+    "mass": "kg",
+    "volume": "m³",
+    "area": "m²",
+    "centre_of_mass": "m",
+    "point": "m",
+    "inertia": "kg·m²",
+    "principal_moments": "kg·m²",
+    "duration": "s",
+}
+"""What values of these names are in, where nothing beside them says it."""
+
 
 _BESIDES = ("margins", "requirements", "sensors", "exit_code")
 """What can be measured besides the topics of `kinform show`."""
@@ -106,7 +118,7 @@ def _unit(values: Any, steps: tuple[str, ...]) -> str:
         unit = entry.get("unit") if isinstance(entry, Mapping) else None
         if isinstance(unit, str):
             return f"{unit}/s" if last == "fastest" else "" if unit == "1" else unit
-    return constants.UNITS.get(last, "")
+    return UNITS.get(last, "")
 
 
 def _topic(design: Design, topic: str) -> Any:

@@ -75,6 +75,13 @@ A plate of 60 × 40 × 10 mm with a bore of 32 strips and 8 mm radius, 10 mm off
 - The same plate with vertices that scatter by 10 µm in each coordinate: σ is read as 8.2 µm, so `fit` is 41 µm. There
   are 38 polygons again and one cylinder: radius 8.0015 mm, its point off by 1.5 µm (stated: 5.1 µm), its axis by 0.46
   mrad (stated: 1.01 mrad).
+
+Sub-packages; each imports only those above it:
+
+- `polygons`: coplanar facets, noise, curvature
+- `kinds`: one kind of surface a file
+- `regions`: which polygons are one surface
+- `swept`: threads, revolutions, extrusions
 """
 
 from kinform.surfaces.copies import rigid_copies, surfaces_of_copy

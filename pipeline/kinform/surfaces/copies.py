@@ -19,7 +19,15 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array, freeze
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
-from kinform.surfaces.constants import COPY_ROUNDINGS, COPY_SIZE_ROUNDINGS, COVERAGE, EPS32, MIRRORED
+from kinform.surfaces.constants import COVERAGE, EPS32
+
+COPY_ROUNDINGS = 2
+"""Roundings of the largest coordinate by which a vertex of a copy may be off."""
+COPY_SIZE_ROUNDINGS = 4
+"""Roundings by which the size of a copy may be, with room for the rounding of sums."""
+MIRRORED = 1e-9
+"""Spread across a flat mesh, as a share of its length, below which it is its own mirror image."""
+
 
 TURNS = ("cylinder", "torus", "revolution", "extrusion", "helicoid")
 """Kinds whose axis has no sense of its own."""

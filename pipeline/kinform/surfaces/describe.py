@@ -13,16 +13,27 @@ import numpy as np
 from kinform.foundation.algebra.vectors import canonical_sign, dot
 from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Ints
-from kinform.surfaces import constants
+from kinform.surfaces.constants import COVERAGE
 from kinform.surfaces.groups import columns_of, group_range, group_sum, members, normal_equations, parted, sums_of
 from kinform.surfaces.kinds.axial import angular_widths, azimuths, cylindrical
 from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.kinds.kind import Kind
-from kinform.surfaces.kinds.ruled import with_apices
+from kinform.surfaces.kinds.ruled import APEX, with_apices
 from kinform.surfaces.polygons.coplanar import fit_planes
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.candidates import Candidates
+
+ROUNDED_SCATTER = 0.3
+"""Least scatter of the vertices of a curved surface, in roundings: rounding to a step of one scatters by 1/√12."""
+ROUNDED_SCATTER_OF_PLANES = 0.6
+"""The same for planes, which are stated twice as carefully."""
+LEAST_SPREAD = 1e-12
+"""Extent of a plane across its longest direction, at least, for its uncertainty."""
+SINGULAR = 1e-14
+"""Ratio of eigenvalues below which a direction of the parameters is undetermined."""
+FULL_TURN = 1e-6
+"""Angle by which a sweep may miss a whole turn that is one."""
 
 
 class Description(NamedTuple):
@@ -68,10 +79,10 @@ def flat(work: Patchwork, number: Ints, scales: Scales) -> list[Description]:
     normal, centre, variances = fit_planes(region, points, outward)
     distance = dot(points - columns_of(centre, region), columns_of(normal, region))
     squares, samples, deepest = _deviations(region, distance, count)
-    scatter = np.maximum(np.sqrt(squares / np.maximum(samples - 3, 1)), constants.ROUNDED_SCATTER_OF_PLANES * rounding)
-    spread = np.maximum(np.sqrt(variances[:, 1] * samples), constants.LEAST_SPREAD)
-    angular = np.minimum(constants.COVERAGE * scatter / spread, np.pi / 2)
-    linear = np.maximum(constants.COVERAGE * scatter / np.sqrt(np.maximum(samples, 1)), rounding)
+    scatter = np.maximum(np.sqrt(squares / np.maximum(samples - 3, 1)), ROUNDED_SCATTER_OF_PLANES * rounding)
+    spread = np.maximum(np.sqrt(variances[:, 1] * samples), LEAST_SPREAD)
+    angular = np.minimum(COVERAGE * scatter / spread, np.pi / 2)
+    linear = np.maximum(COVERAGE * scatter / np.sqrt(np.maximum(samples, 1)), rounding)
     numbers = (values.tolist() for values in (deepest, angular, linear, squares, samples))
     return [
         Description(
@@ -130,7 +141,7 @@ def curved(surfaces: Candidates, batch: Batch, scale: Scales) -> list[Descriptio
     squares, samples, deepest = _deviations(region, distance, count)
     columns, group = kind.jacobian(columns_of(placed, region), points), region
     if kind.name == "cone":
-        tips = np.flatnonzero(cylindrical(params[region], points).rho < constants.APEX * params[region, 6])
+        tips = np.flatnonzero(cylindrical(params[region], points).rho < APEX * params[region, 6])
         group, columns, _ = with_apices(placed[region[tips]], points[tips], region, columns, distance, tips)
     has_axis = kind.name != "sphere"
     angular, linear = _uncertainties(group, columns, squares, samples, scale, has_axis)
@@ -191,19 +202,19 @@ def _uncertainties(
     """(rad, unit lengths) of each region, from the least squares at the surface's point."""
     count, free = len(samples), columns.shape[1]
     freedom = np.maximum(samples - free, 1)
-    scatter = np.maximum(np.sqrt(squares / freedom), constants.ROUNDED_SCATTER * scale.rounding)
+    scatter = np.maximum(np.sqrt(squares / freedom), ROUNDED_SCATTER * scale.rounding)
     matrix, _ = normal_equations(sums_of(region, count), columns.T, np.zeros(len(columns)))
     size = np.sqrt(np.maximum(np.einsum("rii->ri", matrix), 1e-300))
     outer = size[:, :, None] * size[:, None, :]
-    inverse = np.linalg.pinv(np.ascontiguousarray(matrix) / outer, hermitian=True, rcond=constants.SINGULAR) / outer
+    inverse = np.linalg.pinv(np.ascontiguousarray(matrix) / outer, hermitian=True, rcond=SINGULAR) / outer
     vague = samples <= free
     offset = _largest(inverse[:, :2, :2] if has_axis else inverse[:, :3, :3])
-    linear = np.where(vague, 1.0, constants.COVERAGE * scatter * offset)
+    linear = np.where(vague, 1.0, COVERAGE * scatter * offset)
     if not has_axis:
         return np.where(vague, np.pi / 2, 0.0), linear
     tilt = _largest(inverse[:, 2:4, 2:4])
-    angular = np.where(vague, np.pi / 2, np.minimum(constants.COVERAGE * scatter * tilt, np.pi / 2))
-    return angular, np.maximum(linear, constants.ROUNDED_SCATTER * scale.rounding)
+    angular = np.where(vague, np.pi / 2, np.minimum(COVERAGE * scatter * tilt, np.pi / 2))
+    return angular, np.maximum(linear, ROUNDED_SCATTER * scale.rounding)
 
 
 def _largest(covariance: Array) -> Array:
@@ -243,4 +254,4 @@ def angles_covered(params: Params, batch: Batch, width: Array) -> Array:
     same = np.flatnonzero(region[1:] == region[:-1]) + 1
     reach[same] = np.maximum(reach[same], high[by_size[before[same - 1] % len(high)]])
     covered = np.bincount(region, np.maximum(np.minimum(high, turn) - np.maximum(low, reach), 0), count) + wrapped
-    return np.where(covered > turn - constants.FULL_TURN, turn, covered)
+    return np.where(covered > turn - FULL_TURN, turn, covered)

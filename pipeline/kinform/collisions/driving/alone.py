@@ -8,7 +8,6 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from kinform.collisions.constants import SCREW_TURNS, SCREW_TURNS_MOST
 from kinform.collisions.driving.candidates import Approach, Candidate
 from kinform.collisions.driving.overlaps import Overlap, Pair, overlap_words
 from kinform.collisions.driving.swept_profiles import Profile
@@ -20,6 +19,11 @@ from kinform.model.arrays import Array
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.kinematics import Joint
 from kinform.model.names import PartName
+
+SCREW_TURNS = 20
+"""Turns of a screw that are tried at once to each side."""
+SCREW_TURNS_MOST = 400
+"""Turns of a screw that are tried in all, where its threads end."""
 
 
 def drive_alone(shapes: Shapes, joint: Joint, still: Sequence[str], moving: Sequence[str]) -> JointRange:

@@ -7,12 +7,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.collisions.constants import MEETING_MARGIN, ONE_MOTION, TURNED_LEAST
+from kinform.collisions.driving.constants import MEETING_MARGIN
 from kinform.collisions.driving.swept_profiles import Profile, meeting
 from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array
+
+ONE_MOTION = 0.1
+"""Share of what swept profiles are apart at least, by which points may leave the one axis or direction."""
+TURNED_LEAST = 1e-3
+"""Sine of the greatest turn, below which an axis is not looked for."""
 
 
 def that_can_meet(shapes: Shapes, test: PairTest, relative: Array) -> PairTest | None:

@@ -7,19 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property, lru_cache, partial
 
-from kinform.collisions.constants import (
-    CROSSING_LEAST,
-    FACETS_STEP,
-    MEETING_MARGIN,
-    MODEL_MOST,
-    MODEL_SHARED,
-    SEEN_BEYOND,
-    STOP_ANGLE,
-    STOP_LENGTH,
-    WINDOW_LEAST,
-    WINDOW_SLIDE,
-    WINDOW_TURN,
-)
+from kinform.collisions.driving.constants import MEETING_MARGIN
 from kinform.collisions.driving.meeting_spans import Spans, meeting_spans
 from kinform.collisions.driving.overlaps import Overlap, Pair
 from kinform.collisions.driving.swept_profiles import Meeting, Profile, meeting
@@ -28,13 +16,35 @@ from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.distance_bounds import Apart, Counted, Wholes
 from kinform.collisions.pair.mate_surfaces import Kept
 from kinform.collisions.pair.passages import Path
-from kinform.collisions.pair.prepared_pair import PairTest
+from kinform.collisions.pair.prepared_pair import CROSSING_LEAST, PairTest
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.displacements import displacements_along
 from kinform.frozen import dataclass
 from kinform.kinematics.mobility.guides import preserved
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
+
+SEEN_BEYOND = 0.016
+"""So much further than where the first pair is too deep others are followed, which may have met before it did: four
+steps of parts in touch."""
+STOP_ANGLE = math.radians(2e-5)
+"""rad: to which a stop of a turn is found."""
+STOP_LENGTH = 1e-5
+"""To which a stop of a slide is found."""
+WINDOW_TURN = 2.0 * math.pi / 32
+"""rad of a turn, ..."""
+WINDOW_SLIDE = 0.05
+"""... and share of the smaller part's diagonal of a slide, that parts which come near each other are followed with the
+facets that can meet there, ..."""
+WINDOW_LEAST = 0.1
+"""... of which no less than this share is left where it begins."""
+FACETS_STEP = 2000
+"""Facets of a pair of which it is asked which can meet at all, in the time of one step as wholes: nested parts of 1,000
+facets took 0.5 ms and 1 to 3 ms, those of an arm with 20,000 took 5 ms and 0.5 to 2 ms."""
+MODEL_MOST = 0.7
+"""Where more than this share of the facets that can meet at all can in a window, all are modelled, ..."""
+MODEL_SHARED = 8.0
+"""... and a model that is there is used for as many times fewer of its facets."""
 
 
 class Candidate:

@@ -13,14 +13,52 @@ from functools import cached_property
 
 import numpy as np
 
-from kinform.collisions import constants
 from kinform.foundation.algebra.displacements import exponentials, inverse
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.graphs.graph import forest
 from kinform.frozen import dataclass
-from kinform.kinematics.loops.loop_kinematics import LoopSystem, loop_system
+from kinform.mechanism.loop_system import LoopSystem, loop_system
 from kinform.model.arrays import Array, Flags
 from kinform.model.kinematics import Freedom, Kinematics
+
+STEP = 0.04
+"""Arc length of a step: rad, and share of the block's size."""
+PATH_STEPS = 900
+"""Steps to each side at most."""
+STEP_KEPT = 0.3
+"""Share of a step that has to be left of it where the loops are closed again."""
+STEPS_AWAY = 8
+"""Steps after which the motion may be back where it began."""
+CLOSING_STEPS = 12
+"""Newton steps that close the loops."""
+LOOP_RANK = 1e-4
+"""Singular values of the closure below this leave motions."""
+SINGULAR = 2e-3
+"""One more of them within this is a branching."""
+LONG_STEP = 0.4
+"""rad: the longest step where a motion goes on evenly: screws and slides along one line, on which there is nothing to
+be passed over."""
+EVEN_TRIED = 30
+"""Steps after which it is believed that a motion goes on evenly."""
+EVEN_STEPS = 6000
+"""Steps of an even motion in all."""
+JACOBIAN_SAME = 1e-9
+"""Change of the closure's Jacobian within which a motion goes on evenly."""
+RETURN_MISS = 1e-5
+"""rad and share of the size by which a motion may miss where it began and be back there."""
+NARROW = 1e-2
+"""Share of the assembly's size that a block's size is at least: its joints may be on one point."""
+NODES_THROUGH = 6
+"""Nodes that the motion between two of them is taken through."""
+SMOOTH = 1e-9
+"""rad and share of the size that loops may be open between nodes."""
+CLOSED = 1e-6
+"""rad, and share of the size: loops that are left open by less close, as far as their axes fit."""
+CLOSED_EXACTLY = 1e-12
+"""rad, and share of the size: loops that are left open by less need no more steps."""
+RATE_SAME = 0.99
+"""Rates of an idle freedom from this share of the greatest are the same but for rounding, and go by their order."""
+
 
 Edge = tuple[int, int]
 
@@ -46,7 +84,7 @@ class Linkage:
         centre, length = np.zeros(3), size
         if placed:
             low, high = np.min(placed, axis=0), np.max(placed, axis=0)
-            centre, length = 0.5 * (low + high), max(0.5 * float(np.linalg.norm(high - low)), constants.NARROW * size)
+            centre, length = 0.5 * (low + high), max(0.5 * float(np.linalg.norm(high - low)), NARROW * size)
         self.system: LoopSystem = loop_system(
             [edges[k] for k in block], [j.twists for j in joints], Frame(centre, length)
         )
@@ -79,7 +117,7 @@ class Linkage:
                     rates[columns[coordinate]] = abs(rate)
             if rates.any():
                 # rates that are the same but for rounding go by their order
-                held.append(int(np.flatnonzero(rates > constants.RATE_SAME * rates.max())[0]))
+                held.append(int(np.flatnonzero(rates > RATE_SAME * rates.max())[0]))
         return held
 
     def poses(self, q: Array) -> Array:
@@ -113,15 +151,15 @@ class Linkage:
     def closed(self, q: Array) -> Array | None:
         """The nearest coordinates at which the loops close."""
         left = math.inf
-        for _ in range(constants.CLOSING_STEPS):
+        for _ in range(CLOSING_STEPS):
             residual, jacobian = self._loops(q)
             before, left = left, float(np.abs(residual).max())
-            if left < constants.CLOSED_EXACTLY or (left < constants.CLOSED and left > 0.5 * before):
+            if left < CLOSED_EXACTLY or (left < CLOSED and left > 0.5 * before):
                 return q
             rows = np.vstack([jacobian, self.held])
             wanted = np.concatenate([residual, self.held @ q])
-            q = np.asarray(q - np.linalg.lstsq(rows, wanted, rcond=3.0 * constants.LOOP_RANK)[0], float)
-        return q if np.abs(self._loops(q)[0]).max() < constants.CLOSED else None
+            q = np.asarray(q - np.linalg.lstsq(rows, wanted, rcond=3.0 * LOOP_RANK)[0], float)
+        return q if np.abs(self._loops(q)[0]).max() < CLOSED else None
 
     def _loops(self, q: Array) -> tuple[Array, Array]:
         """Residual (m,) and Jacobian (m, n) of the loops at q (n,), which is asked several times before the next."""
@@ -139,10 +177,10 @@ class Linkage:
         jacobian = np.vstack([self._loops(q)[1], self.held])
         _, values, rows = np.linalg.svd(jacobian, full_matrices=True)
         values = np.concatenate([values, np.zeros(max(len(rows) - len(values), 0))])[: len(rows)]
-        count = int((values < constants.LOOP_RANK).sum())
+        count = int((values < LOOP_RANK).sum())
         if count == 0:
             return None
-        return rows[-1], count == 1 and bool(len(values) < 2 or values[-2] > constants.SINGULAR)
+        return rows[-1], count == 1 and bool(len(values) < 2 or values[-2] > SINGULAR)
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,7 +202,7 @@ def follow(linkage: Linkage, sign: float) -> Path:
     q = np.zeros(linkage.system.coordinates)
     tangent = linkage.tangent(q)
     assert tangent is not None
-    along, step = sign * tangent[0], constants.STEP
+    along, step = sign * tangent[0], STEP
     even: Array | None = linkage.jacobian(q)
     path, s = [q], [0.0]
     turns = np.array(linkage.turns)
@@ -172,28 +210,28 @@ def follow(linkage: Linkage, sign: float) -> Path:
     def ended(why: str) -> Path:
         return Path(np.array(path), np.array(s), why, len(path) > 2 and even is not None)
 
-    while len(path) <= constants.PATH_STEPS:
-        if even is not None and len(path) > constants.EVEN_TRIED:
-            rest = np.arange(1.0, constants.EVEN_STEPS)[:, None] * step * along
-            if np.abs(linkage.system.close(q + rest[-1:]).residual).max() < constants.CLOSED:
+    while len(path) <= PATH_STEPS:
+        if even is not None and len(path) > EVEN_TRIED:
+            rest = np.arange(1.0, EVEN_STEPS)[:, None] * step * along
+            if np.abs(linkage.system.close(q + rest[-1:]).residual).max() < CLOSED:
                 path.extend(q + rest)
-                s.extend(s[-1] + np.arange(1.0, constants.EVEN_STEPS) * step / constants.STEP)
+                s.extend(s[-1] + np.arange(1.0, EVEN_STEPS) * step / STEP)
                 break
         following = linkage.closed(q + step * along)
-        if following is None or float(np.linalg.norm(following - q)) < constants.STEP_KEPT * step:
+        if following is None or float(np.linalg.norm(following - q)) < STEP_KEPT * step:
             return ended("the loops cannot be closed further")
         tangent = linkage.tangent(following)
         if tangent is None or not tangent[1]:
             return ended("a singular pose, from which motions branch")
-        if even is not None and np.abs(linkage.jacobian(following) - even).max(initial=0.0) > constants.JACOBIAN_SAME:
+        if even is not None and np.abs(linkage.jacobian(following) - even).max(initial=0.0) > JACOBIAN_SAME:
             even = None
         q = following
         path.append(q)
-        s.append(s[-1] + step / constants.STEP)
-        step = constants.STEP if even is None else min(2.0 * step, constants.LONG_STEP)
+        s.append(s[-1] + step / STEP)
+        step = STEP if even is None else min(2.0 * step, LONG_STEP)
         along = tangent[0] if float(tangent[0] @ along) >= 0.0 else -tangent[0]
         if (
-            len(path) > constants.STEPS_AWAY
+            len(path) > STEPS_AWAY
             and float(np.linalg.norm(_around(q, turns))) < step
             and _meets_start(linkage, q, turns)
         ):
@@ -214,7 +252,7 @@ def _meets_start(linkage: Linkage, q: Array, turns: Flags) -> bool:
         if back is None:
             return False
         q = back
-    return float(np.linalg.norm(_around(q, turns))) < constants.RETURN_MISS
+    return float(np.linalg.norm(_around(q, turns))) < RETURN_MISS
 
 
 class Between:
@@ -231,7 +269,7 @@ class Between:
         if n not in self._smooth:
             # what closes the loops in the middle of a step does so all along it
             middle = self._through(n, 0.5 * float(self._s[n] + self._s[n + 1]))
-            self._smooth[n] = bool(np.abs(self._linkage.system.close(middle[None]).residual).max() < constants.SMOOTH)
+            self._smooth[n] = bool(np.abs(self._linkage.system.close(middle[None]).residual).max() < SMOOTH)
         guess = self._through(n, x)
         if self._smooth[n]:
             return guess
@@ -240,8 +278,8 @@ class Between:
 
     def _through(self, n: int, x: float) -> Array:
         """The polynomial through the nodes about step n (Lagrange), at x."""
-        first = min(max(n - constants.NODES_THROUGH // 2 + 1, 0), max(len(self._s) - constants.NODES_THROUGH, 0))
-        s, q = self._s[first : first + constants.NODES_THROUGH], self._q[first : first + constants.NODES_THROUGH]
+        first = min(max(n - NODES_THROUGH // 2 + 1, 0), max(len(self._s) - NODES_THROUGH, 0))
+        s, q = self._s[first : first + NODES_THROUGH], self._q[first : first + NODES_THROUGH]
         apart = s[:, None] - s
         np.fill_diagonal(apart, 1.0)
         away = np.broadcast_to(x - s, apart.shape).copy()

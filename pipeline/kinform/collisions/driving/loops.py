@@ -13,10 +13,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from kinform.collisions.constants import CLOSED, LOOP_STOP, TURNED_ROUND
 from kinform.collisions.driving.alone import drive_alone
 from kinform.collisions.driving.apart_for_good import that_can_meet
-from kinform.collisions.driving.loop_motion import RETURNED, Between, Linkage, Path, follow
+from kinform.collisions.driving.loop_motion import CLOSED, RETURNED, Between, Linkage, Path, follow
 from kinform.collisions.driving.overlaps import Overlap, Pair, overlap_words
 from kinform.collisions.pair.advancement import First, Near, first_crossing
 from kinform.collisions.pair.posed_pairs import Moving, Nodes, moving_pairs
@@ -28,6 +27,12 @@ from kinform.model.arrays import Array
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.kinematics import Freedom, Joint, Kinematics
 from kinform.model.names import BodyName, PartName
+
+TURNED_ROUND = 2.0 * math.pi - 0.2
+"""rad: a joint of a motion that comes back, and turned by more, goes round and round."""
+LOOP_STOP = 1e-3
+"""Share of a step to which a contact along a motion of loops is found."""
+
 
 Edge = tuple[int, int]
 

@@ -15,22 +15,32 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from kinform.collisions.constants import (
-    DIVIDED_AT_ONCE,
-    DIVIDED_MOST,
-    DIVIDED_ROUNDS,
-    DIVIDED_TO,
-    PLACES,
-    PROFILE_CELLS,
-    SECTORS,
-    SPANS_MOST,
-    TESTED_MOST,
-    TESTED_TOGETHER,
-)
 from kinform.collisions.driving.swept_profiles import TURN, nearest, spanned
 from kinform.foundation.meshes.boxes import along_curve, triangle_boxes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
+
+DIVIDED_TO = 0.02
+"""Share of a turn, or of a part's length along a slide, that a facet spans at most, or it is divided."""
+DIVIDED_ROUNDS = 2
+"""So often they are asked which of them meet, and those divided further."""
+DIVIDED_AT_ONCE = 2
+"""Times that they are divided into four before they are asked."""
+DIVIDED_MOST = 60_000
+"""Pieces of a part at most."""
+PROFILE_CELLS = 60
+"""Profiles of one surface that are the same to so many parts of where both parts are, are taken together."""
+TESTED_MOST = 20_000_000
+"""Groups of one part times those of the other, up to which they are asked."""
+SPANS_MOST = 4_000_000
+"""Spans of pairs of groups in all."""
+PLACES = 8192
+"""Spans begin and end at so many places of a turn, or of the length of the longer part."""
+SECTORS = 64
+"""Of the motion, for each of which it is known which facets can meet in it."""
+TESTED_TOGETHER = 64
+"""Groups of one that are asked at once."""
+
 
 Along = Callable[[Ints, Ints, Array, Array], Flags]
 """Which facets of surfaces (n,) of one part and of the other, that overlap in boxes (n, 2), low and high, of what they

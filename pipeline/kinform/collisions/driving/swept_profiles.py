@@ -11,12 +11,17 @@ from functools import cached_property
 
 import numpy as np
 
-from kinform.collisions.constants import CHUNK, LEVEL
 from kinform.foundation.algebra.vectors import cross, perpendicular
 from kinform.foundation.meshes.boxes import along_curve, bounds, facet_boxes
 from kinform.foundation.meshes.proximity import near_boxes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
+
+CHUNK = 64
+"""Facets that lie together and are asked as one whether any of them can meet any of others."""
+LEVEL = 1e-12
+"""m a radian by which a turn may advance and keep heights, over its reach and the distance of its axis: rounding."""
+
 
 TURN = 2.0 * math.pi
 

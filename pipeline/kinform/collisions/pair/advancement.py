@@ -13,14 +13,30 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from kinform.collisions import constants
 from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.deep_entry import Entry, Inside
 from kinform.collisions.pair.onsets import Onsets
-from kinform.collisions.pair.prepared_pair import PairTest
+from kinform.collisions.pair.prepared_pair import CROSSING_LEAST, SPECK, PairTest
 from kinform.collisions.pair.states import State, States
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
+
+WORK = 4000
+"""Poses of one pair that one question may try."""
+STEPS_TOUCHED = 12
+"""Steps in touch after which what crosses is told for several at once: as many as there were, ..."""
+STEPS_AHEAD = 48
+"""... and so many at most. One of a thread took 2.5 ms alone, and 0.8 ms among 48."""
+RESOLUTION = 4e-3
+"""So far a part may travel unseen where others are in touch."""
+OVERLAPPING = 5.0
+"""Steps are so much longer while parts overlap: all that is asked is whether they part."""
+BEHIND_FACE = (1.0, 0.2, 0.04)
+"""Shares of the resolution behind a face at which it is asked what is inside: parts may be thinner."""
+BEHIND_LEAST = 4.0
+"""Nothing is asked behind a face nearer than this many times what a contact is found to."""
+BEHIND_DEPTH = 0.4
+"""Share of the way behind a face by which its points are then inside."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,9 +94,7 @@ class Search:
         self._piece: tuple[float, float, PairTest] | None = None
         """From where to where what meets is asked of some facets only."""
         self._fine, self._end = fine, end
-        self._resolution = max(
-            constants.RESOLUTION * test.size, (course.travel(end) - course.travel(start)) / constants.WORK * 2.0
-        )
+        self._resolution = max(RESOLUTION * test.size, (course.travel(end) - course.travel(start)) / WORK * 2.0)
         self.overlaps = False
         """Crossing since the start, by more than chord errors."""
         self.before = 0.0
@@ -151,7 +165,7 @@ class Search:
             self._look_ahead(left, stack)
             if (
                 self.state(left).distance + self.state(right).distance
-                > (1.0 + 1e-6) * way + constants.CROSSING_LEAST * self.test.size
+                > (1.0 + 1e-6) * way + CROSSING_LEAST * self.test.size
             ):
                 # nothing comes to be inside where no facets that count meet: the end is asked all the same
                 entered = self.entered(right, end) if right >= end else None
@@ -161,7 +175,7 @@ class Search:
                 left = self.pass_(left, stack.pop())
                 continue
             if self._long(left, right):
-                if self._states.tried > constants.WORK:
+                if self._states.tried > WORK:
                     return First(None, None, None, self.overlaps, left)
                 stack.append(self.course.middle(left, right))
                 continue
@@ -190,7 +204,7 @@ class Search:
         self.overlaps = bool(crossing) and (self.test.overlapping or self.too_deep(start))
         if self.overlaps:
             depth = self._onsets.depth(start)
-            self.before = depth if depth > constants.SPECK * self.test.size else 0.0
+            self.before = depth if depth > SPECK * self.test.size else 0.0
             middles = crossing.segments().mean(axis=1)
             self.place = self._world(middles[np.argmin(np.linalg.norm(middles - middles.mean(axis=0), axis=1))])
             self._look_where_it_leads(start)
@@ -213,14 +227,14 @@ class Search:
     def _long(self, left: float, right: float) -> bool:
         """Whether a step is to be halved where parts are in touch."""
         way = self.course.travel(right) - self.course.travel(left)
-        return way > (constants.OVERLAPPING if self.overlaps else 1.0) * self._resolution and right - left > self._fine
+        return way > (OVERLAPPING if self.overlaps else 1.0) * self._resolution and right - left > self._fine
 
     def _look_ahead(self, left: float, stack: Sequence[float]) -> None:
         """Where parts have been in touch for some steps, make ready what is asked of as many more of them: they are
         likely to be so further on."""
-        if self._touched < constants.STEPS_TOUCHED or stack[-1] in self._states:
+        if self._touched < STEPS_TOUCHED or stack[-1] in self._states:
             return
-        most, stack, places = min(self._touched, constants.STEPS_AHEAD), list(stack), dict[float, None]()
+        most, stack, places = min(self._touched, STEPS_AHEAD), list(stack), dict[float, None]()
         while stack and len(places) < most:
             right, meets = self._step(left, stack)
             if not meets:
@@ -258,7 +272,7 @@ class Search:
         before, after = self.state(left), self.state(right)
         if before.crossing or after.crossing or (before.distance <= 0.0 and after.distance <= 0.0):
             return False
-        least = constants.CROSSING_LEAST * self.test.size
+        least = CROSSING_LEAST * self.test.size
         if before.distance > least:
             low, high = self._heights(left, right, before)
             return low > least >= high
@@ -275,13 +289,13 @@ class Search:
         sooner."""
         test, nearest = self.state(s).test, self.state(s).nearest
         begun = self.course.travel(s)
-        for share in constants.BEHIND_FACE:
+        for share in BEHIND_FACE:
             further = self.course.when(begun + share * self._resolution, s, end)
             way = self.course.travel(further) - begun
-            if further - s < constants.BEHIND_LEAST * self._fine:
+            if further - s < BEHIND_LEAST * self._fine:
                 return False
             D = self.course.displacement(further)
-            if test.faces(D, *nearest) if share < 1.0 else test.inside(D, *nearest, constants.BEHIND_DEPTH * way):
+            if test.faces(D, *nearest) if share < 1.0 else test.inside(D, *nearest, BEHIND_DEPTH * way):
                 return True
         return False
 

@@ -11,11 +11,20 @@ from functools import partial
 
 import numpy as np
 
-from kinform.collisions.constants import CERTAIN, REFINED, SPARSE, SPECK, UNSEEN
+from kinform.collisions.pair.constants import CERTAIN
 from kinform.collisions.pair.course import Course, narrowed
-from kinform.collisions.pair.prepared_pair import PairTest
+from kinform.collisions.pair.prepared_pair import SPECK, PairTest
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
+
+UNSEEN = 0.5
+"""Share of what mates may be deep that points may travel unseen."""
+SPARSE = 0.016
+"""So far points near the other part may travel between two questions: to ask whether they are inside is dear, and what
+came in is found by halving anyhow."""
+REFINED = 2e-3
+"""Share of what a contact is found to, to which the facets that cross first, or a point that comes in, are followed:
+less than 1e-9 rad of a turn."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,19 +13,23 @@ from functools import cached_property
 import fcl
 import numpy as np
 
-from kinform.collisions.constants import (
-    CERTAIN,
-    SHORT_STEP,
-    STEPS_MOST,
-    STEPS_TRIED,
-    WHOLES_TOUCH,
-)
+from kinform.collisions.pair.constants import CERTAIN
 from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.at_work import at_work_on
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_pose
 from kinform.model.arrays import Array
+
+SHORT_STEP = 0.01
+"""Steps below this are short."""
+STEPS_MOST = 60
+"""Steps that are taken as wholes."""
+STEPS_TRIED = 8
+"""Steps after which it is seen whether so many reach the end: a pair that stays near is followed with the facets that
+count, which are fewer."""
+WHOLES_TOUCH = 1e-6
+"""Wholes nearer to each other than this share of a short step touch."""
 
 
 class Apart:

@@ -15,14 +15,6 @@ from itertools import pairwise
 import numpy as np
 from manifold3d import Manifold
 
-from kinform.collisions.constants import (
-    OVERLAP_FINE,
-    OVERLAP_GROWS,
-    OVERLAP_PIECES,
-    OVERLAP_SHRINKS,
-    OVERLAP_SOON,
-    OVERLAP_STEPS,
-)
 from kinform.collisions.pair.course import narrowed
 from kinform.contacts.overlap.solids import ScaledSolid, bounds_volume, overlap_of, scaled_solid
 from kinform.foundation.algebra.displacements import inverse
@@ -30,6 +22,25 @@ from kinform.foundation.meshes.boxes import bounds, box_corners
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh
+
+OVERLAP_STEPS = (0.25, 0.5, 1.0, 2.0, 4.0)
+"""Thicknesses of a piece of the overlap that it travels until it is asked what the parts share there: two plates that
+are drawn in each other by all of one's thickness have parted after twice as much, two ridges crest in crest after
+more."""
+OVERLAP_SOON = 4
+"""So many of these, the first, tell whether parts go on into each other: on a longer way others of their features may
+meet."""
+OVERLAP_FINE = 1e-3
+"""Share of the way to which these places are found."""
+OVERLAP_GROWS = 1.15
+"""Parts that come to share so many times as much go into each other: those of robots that rub on each other, or are
+pressed together, share as much to within a few per cent over such a way."""
+OVERLAP_SHRINKS = 0.5
+"""Parts that come to share less than this part: a leaf that turns out of another has left it by half where its far end
+has travelled as far as it was in it."""
+OVERLAP_PIECES = 4
+"""Pieces that are asked about, the largest."""
+
 
 Pose = Callable[[float], Array]
 """(4, 4) of the second part in the first, at a parameter of a motion."""

@@ -8,11 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from kinform.collisions.constants import ALONG_AXIS, MATE_ROUNDING
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import MeshSurfaces, Surface
+
+MATE_ROUNDING = 1e-6
+"""By so much more than chord errors, gap and uncertainty points may be off the surface of a mate."""
+ALONG_AXIS = 0.9
+"""Cosine between axes of cylinders and of a turn, below which it is not told how far points are off."""
+
 
 SurfacePair = tuple[int, int]
 

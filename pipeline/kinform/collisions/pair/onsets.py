@@ -11,13 +11,23 @@ import math
 from collections.abc import Callable, Collection, Iterable, Iterator
 from functools import partial
 
-from kinform.collisions import constants
 from kinform.collisions.pair.course import Course, narrowed
-from kinform.collisions.pair.deep_entry import Entry
+from kinform.collisions.pair.deep_entry import REFINED, Entry
 from kinform.collisions.pair.mate_surfaces import SurfacePair
-from kinform.collisions.pair.prepared_pair import PairTest
+from kinform.collisions.pair.prepared_pair import CROSSING_LEAST, PairTest
 from kinform.collisions.pair.states import State
 from kinform.model.arrays import Ints
+
+TOGETHER = 8.0
+"""Surfaces that come to cross within so many chord errors of travel belong to one collision, and so does a point that
+comes in."""
+FIRST_TRIED = 4
+"""So often the facets that cross first are looked for among those that cross a little later."""
+RISE = 0.02
+"""Share of what may be overlap of mates or chord errors by which the depth has to grow."""
+RISE_UNEVEN = 0.1
+"""Share of the same by which a depth that grows may have been greater before: it is measured at some points."""
+
 
 Step = tuple[float, float]
 """From where to where the pair was followed at once."""
@@ -88,7 +98,7 @@ class Onsets:
     def flat(self, left: float, right: float) -> Entry:
         """Where faces meet flat: one passes through the other between `left` and `right`."""
         state = self._state(left)
-        left, right = narrowed(left, right, constants.REFINED * self._fine, partial(self._behind, state))
+        left, right = narrowed(left, right, REFINED * self._fine, partial(self._behind, state))
         return Entry(left, right, state.test.middle(self._course.displacement(right), *state.nearest), right)
 
     def depth(self, s: float) -> float:
@@ -98,7 +108,7 @@ class Onsets:
 
     def _earliest(self, steps: Iterable[Step], slack: float) -> Iterator[Step]:
         """Of steps that follow each other closely the first: of the last such, then of those before."""
-        near = constants.TOGETHER * slack + 2.0 * self._step
+        near = TOGETHER * slack + 2.0 * self._step
         order = sorted(set(steps), reverse=True)
         for step, before in zip(order, [*order[1:], None][: len(order)], strict=True):
             if before is None or self._course.travel(step[0]) - self._course.travel(before[1]) > near:
@@ -106,7 +116,7 @@ class Onsets:
 
     def _behind(self, state: State, s: float) -> bool:
         height = state.test.height(self._course.displacement(s), state.nearest)
-        return height <= constants.CROSSING_LEAST * self._test.size
+        return height <= CROSSING_LEAST * self._test.size
 
     def _deep(self, s: float, pairs: Collection[SurfacePair]) -> bool:
         crossing = self._state(s).crossing
@@ -121,11 +131,11 @@ class Onsets:
         while place > self._start:
             place = self._course.when(travel(place) - self._step, self._start, place)
             depth = self.depth(place)
-            if depth >= least + constants.RISE_UNEVEN * slack:
+            if depth >= least + RISE_UNEVEN * slack:
                 break
             if depth < least:
                 low, least = place, depth
-        least += constants.RISE * slack
+        least += RISE * slack
         left, hit = narrowed(low, right, self._fine, lambda s: self.depth(s) > least)
         if travel(hit) - travel(self._start) <= self._step:
             left, hit = self._start, min(self._start + self._fine, hit)
@@ -142,8 +152,8 @@ class Onsets:
         was come near to.
         """
         before = self._state(left).crossing.shared.keys()
-        for to in (self._fine, constants.REFINED * self._fine):
-            for _ in range(constants.FIRST_TRIED):
+        for to in (self._fine, REFINED * self._fine):
+            for _ in range(FIRST_TRIED):
                 state = self._state(right)
                 hits = state.test.of_surfaces(state.hits, pairs)
                 low, high = narrowed(left, right, to, partial(self._cross, state.test, hits))

@@ -11,12 +11,15 @@ import math
 
 import numpy as np
 
-from kinform.collisions.constants import PASSAGE_ROUNDING
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.meshes.boxes import FlatBoxes, triangle_boxes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
+
+PASSAGE_ROUNDING = 1e-9
+"""By this share of a facet's extent points pass through it that pass beside: of two that share an edge, one is met."""
+
 
 TURN = 2.0 * math.pi
 

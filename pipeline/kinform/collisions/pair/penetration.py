@@ -12,18 +12,22 @@ from functools import lru_cache
 
 import numpy as np
 
-from kinform.collisions.constants import (
-    CERTAIN,
-    DEPTH_ENDS,
-    DEPTH_FINER,
-    DEPTH_INSIDE,
-    DEPTH_MEASURED,
-    DEPTH_MIDDLES,
-    DEPTH_SEGMENTS,
-)
+from kinform.collisions.constants import DEPTH_MEASURED
+from kinform.collisions.pair.constants import CERTAIN
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.meshes.index import MeshIndex
 from kinform.model.arrays import Array, Flags, Ints
+
+DEPTH_ENDS = 32
+"""Ends of crossing segments between which the depth is looked for."""
+DEPTH_SEGMENTS = 256
+"""Segments to which these are so near, or not, that they may be deep."""
+DEPTH_MIDDLES = 64
+"""Places between them that are asked whether they are inside both parts."""
+DEPTH_INSIDE = 40
+"""Of those that are, at which the depth is measured."""
+DEPTH_FINER = 4
+"""So many times as many places for a depth that is reported."""
 
 
 class Penetration:

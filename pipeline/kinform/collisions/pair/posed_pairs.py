@@ -9,16 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from kinform.collisions.constants import (
-    CERTAIN,
-    CHORD_SLACK,
-    HIGHER_KINDS,
-    LOWER_TYPES,
-    REMEMBERED,
-    SPARE_SHARE,
-    STILL,
-    WORLD_BOXES,
-)
+from kinform.collisions.pair.constants import CERTAIN
 from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.distance_bounds import Wholes
 from kinform.collisions.pair.prepared_pair import PairTest
@@ -30,6 +21,21 @@ from kinform.frozen import dataclass
 from kinform.kinematics.mobility.guides import preserved
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.kinematics import Joint
+
+HIGHER_KINDS = ("point", "line")
+"""Patches whose place on the parts changes as they move."""
+LOWER_TYPES = ("revolute", "prismatic", "cylindrical", "spherical", "planar", "screw")
+"""Joints whose twists stay the same in both bodies."""
+SPARE_SHARE = 1e-9
+"""Share of the size by which boxes may miss each other and be looked at again."""
+STILL = 1e-9
+"""rad, and share of the assembly's size, that bodies at rest to each other move by rounding."""
+REMEMBERED = 64
+"""Displacements of a pair that are kept: the same are asked for several times."""
+WORLD_BOXES = 64
+"""Times for which bodies are boxed in the world, to see which of them stay away from each other."""
+CHORD_SLACK = 1.05
+"""Points between two poses may travel more than their straight distance."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,12 +14,11 @@ from itertools import pairwise
 import fcl
 import numpy as np
 
-from kinform.collisions import constants
 from kinform.collisions.pair.drawn_overlap import DrawnOverlap
 from kinform.collisions.pair.facet_crossings import crossings
 from kinform.collisions.pair.mate_surfaces import Mates, SurfacePair
 from kinform.collisions.pair.passages import Passages, Path, passages
-from kinform.collisions.pair.penetration import Penetration
+from kinform.collisions.pair.penetration import DEPTH_FINER, Penetration
 from kinform.collisions.parts.probes import Probes
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.vectors import perpendicular
@@ -30,6 +29,26 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.names import PartName
+
+SPECK = 1e-8
+"""By this much a point is inside."""
+FACET_GRID = 12
+"""Points along the side of a facet that are asked whether they are inside the other part."""
+DIRECTIONS_ROUND = np.stack([np.cos(np.arange(8) * np.pi / 4), np.sin(np.arange(8) * np.pi / 4)], axis=1)
+"""(8, 2) directions about a point in a plane."""
+CROSSING_LEAST = 1e-9
+"""Facets cross, and are apart, by more than this."""
+CROSSINGS_MOST = 200_000
+"""Crossing facets that one question may return."""
+OVERLAP_SAME = 1.25
+"""Parts that overlapped at the start, and come to overlap by no more than this share of it, come back to where they
+were; ..."""
+DEEPER = 5e-3
+"""... and go into each other where it is by so much more: an arm that lies 0.3 mm in its base, of 166 mm, rubs on it by
+0.74 mm until it is clear of it."""
+OVERLAP_THIN = 0.25
+"""Share of what mates may be deep to which pieces of an overlap are thin: twice their volume over their area, which is
+half as much as a wedge is deep, or a third as a ball."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,12 +134,12 @@ class PairTest:
 
     def going_deeper(self, before: float) -> float:
         """m: deeper than that, parts that overlapped by `before` (m) do not just rub on, but go into each other."""
-        return constants.OVERLAP_SAME * before + self._rubs
+        return OVERLAP_SAME * before + self._rubs
 
     @property
     def _rubs(self) -> float:
         """m: so far parts that overlap as they are drawn may go on."""
-        return max(self.loose, constants.DEEPER * self.size)
+        return max(self.loose, DEEPER * self.size)
 
     def leads_in(self, displacement: Callable[[float], Array], start: float, end: float) -> float | None:
         """How far a motion from `start` up to `end` goes until it is seen to lead on into what the parts share at its
@@ -129,7 +148,7 @@ class PairTest:
         X = self.pose(displacement(start))
         with at_work_on(*self.names):
             if X.tobytes() not in self._drawn:
-                self._drawn[X.tobytes()] = DrawnOverlap(*self._meshes, X, constants.OVERLAP_THIN * self.loose)
+                self._drawn[X.tobytes()] = DrawnOverlap(*self._meshes, X, OVERLAP_THIN * self.loose)
             return self._drawn[X.tobytes()].leads_in(lambda s: self.pose(displacement(s)), start, end, self._rubs)
 
     def pose(self, D: Array) -> Array:
@@ -193,7 +212,7 @@ class PairTest:
         for name, points, normal in self._on(D, f, g):
             index = self._shapes.index(name)
             within = points[index.contains(points)]
-            for e in constants.DIRECTIONS_ROUND @ np.stack(perpendicular(normal)):
+            for e in DIRECTIONS_ROUND @ np.stack(perpendicular(normal)):
                 within = within[index.contains(within + self.loose * e)] if len(within) else within
             if len(within):
                 return True
@@ -204,14 +223,8 @@ class PairTest:
         normal."""
         X = self.pose(D)
         grid = (
-            np.array(
-                [
-                    (a, b, constants.FACET_GRID - a - b)
-                    for a in range(constants.FACET_GRID + 1)
-                    for b in range(constants.FACET_GRID + 1 - a)
-                ]
-            )
-            / constants.FACET_GRID
+            np.array([(a, b, FACET_GRID - a - b) for a in range(FACET_GRID + 1) for b in range(FACET_GRID + 1 - a)])
+            / FACET_GRID
         )
         first, second = grid @ self._corners(0, f), grid @ self._corners(1, g)
         yield self.names[1], (first - X[:3, 3]) @ X[:3, :3], self._normals[0][f] @ X[:3, :3]
@@ -271,7 +284,7 @@ class PairTest:
         heights = self.heights(D, np.arange(len(places)), away=False, alike=True)
         n = int(np.argmax(heights))
         depth = float(heights[n])
-        return depth if depth > constants.SPECK * self.size else 0.0, (self.X_WA @ np.append(places[n], 1.0))[:3]
+        return depth if depth > SPECK * self.size else 0.0, (self.X_WA @ np.append(places[n], 1.0))[:3]
 
     def deepest(self, D: Array) -> float:
         """m: how deep the parts go into each other where they cross, or where points of one are inside the other."""
@@ -280,7 +293,7 @@ class PairTest:
         places = self.places(D)
         inside = self.heights(D, np.arange(len(places))) > self.loose
         places_deep = [points for points in (self.crossing(D).segments(), places[inside]) if len(points)]
-        return max((self.depth(D, points, finer=constants.DEPTH_FINER) for points in places_deep), default=0.0)
+        return max((self.depth(D, points, finer=DEPTH_FINER) for points in places_deep), default=0.0)
 
     def middle(self, D: Array, f: int, g: int) -> Array:
         """(3,) m, first part's frame: between two facets that count."""
@@ -300,7 +313,7 @@ class PairTest:
         poses = [self.pose(D) for D in displacements]
         placed = [self._touching(X, some) for X, some in zip(poses, hits, strict=True) if len(some)]
         first, second, *normals = (np.concatenate(sides) for sides in zip(*placed, strict=True))
-        cross, segments = crossings(first, second, (normals[0], normals[1]), constants.CROSSING_LEAST * self.size)
+        cross, segments = crossings(first, second, (normals[0], normals[1]), CROSSING_LEAST * self.size)
         rows = np.flatnonzero(cross)
         every, segments = np.concatenate(hits)[rows], segments[rows]
         labels = self.counted(0)[every[:, 0]], self.counted(1)[every[:, 1]]
@@ -362,7 +375,7 @@ class PairTest:
     @cached_property
     def _penetration(self) -> Penetration:
         first, second = (self._shapes.index(name) for name in self.names)
-        return Penetration(first, second, constants.CROSSING_LEAST * self.size)
+        return Penetration(first, second, CROSSING_LEAST * self.size)
 
 
 def _moved(points: Array, X: Array) -> Array:
@@ -373,8 +386,6 @@ def _moved(points: Array, X: Array) -> Array:
 def _hits(first: fcl.CollisionObject, second: fcl.CollisionObject) -> Ints:
     """(n, 2) facets of two models that FCL finds to touch, each pair once, in order."""
     result = fcl.CollisionResult()
-    fcl.collide(
-        first, second, fcl.CollisionRequest(num_max_contacts=constants.CROSSINGS_MOST, enable_contact=False), result
-    )
+    fcl.collide(first, second, fcl.CollisionRequest(num_max_contacts=CROSSINGS_MOST, enable_contact=False), result)
     key = distinct(np.array([(c.b1 << 32) + c.b2 for c in result.contacts], dtype=np.int64))
     return np.stack([key >> 32, key & 0xFFFFFFFF], axis=1)

@@ -10,10 +10,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.collisions.constants import COARSE_CELL, COARSE_WORTH
 from kinform.foundation.sorting import distinct, numbered
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
+
+COARSE_CELL = 0.02
+"""Side of the cells whose vertices become one, of the part itself: facets of fine details vanish, ..."""
+COARSE_WORTH = 0.5
+"""... and where more than this share of all are left, all are."""
 
 
 def coarse_mesh(mesh: Mesh) -> tuple[Array, Ints, float] | None:

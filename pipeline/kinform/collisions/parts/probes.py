@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.collisions.constants import DEPTH_MEASURED, POINTS_FAR, POINTS_FINE, POINTS_PART, POINTS_SURFACE
+from kinform.collisions.constants import DEPTH_MEASURED
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.meshes.divided import inner_weights, longest_sides
 from kinform.foundation.meshes.index import MeshIndex
@@ -17,6 +17,15 @@ from kinform.foundation.sorting import ascending
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
+
+POINTS_SURFACE = 24
+"""Points on one surface."""
+POINTS_PART = 480
+"""Points on one part."""
+POINTS_FINE = 6
+"""A surface's largest facets are divided until they are about so many times smaller than it."""
+POINTS_FAR = 0.05
+"""Share of the other part's diagonal beyond whose box a point needs no closer look."""
 
 
 @dataclass(frozen=True, eq=False)

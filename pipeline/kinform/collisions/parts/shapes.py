@@ -9,7 +9,6 @@ from hashlib import blake2b
 import fcl
 import numpy as np
 
-from kinform.collisions.constants import SCRAPE, SCRAPE_ANGLES
 from kinform.collisions.parts.coarse_meshes import coarse_mesh
 from kinform.collisions.parts.probes import Probes, probes
 from kinform.collisions.parts.slippage import Allowed, OwnMotions, Slippage
@@ -21,6 +20,12 @@ from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.surfaces import MeshSurfaces
+
+SCRAPE = 1e-3
+"""By so much parts may overlap as they slide along each other: by rounding of their files and by what is left over
+where joints were fitted."""
+SCRAPE_ANGLES = 1.5
+"""What a surface may be off an exact invariance, in alignment tolerances."""
 
 
 @dataclass

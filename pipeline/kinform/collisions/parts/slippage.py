@@ -15,13 +15,17 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.collisions.constants import DRIFT, EVEN
 from kinform.foundation.algebra.vectors import cross, perpendiculars
 from kinform.foundation.sorting import ascending, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
+
+DRIFT = 0.02
+"""Share of the advance of a screw by which its threads' pitch may be off."""
+EVEN = 1e-6
+"""Advance a radian, relative to a surface's radius, that is rounding."""
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.consistency import constants
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.words import rate
 from kinform.frozen import dataclass
@@ -19,6 +18,17 @@ from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.function import Coupling as Stated
 from kinform.model.kinematics import Coupling, Joint, Kinematics
+
+UNCOUNTED_TEETH = 1e-2
+"""Relative: what the ratio of teeth at one pose may be off."""
+COUNTED_TEETH = 1e-3
+"""Relative: what a stated ratio may be rounded by where the teeth are counted."""
+SCREW_PITCH = 1e-3
+"""Relative: what the pitch of a screw may be off."""
+UNCERTAIN_RATIO = 0.05
+"""Relative uncertainty, for each coupling of a chain, beyond which a ratio says nothing."""
+DEVIATIONS = 3.0
+"""Standard uncertainties of a derived ratio within which a stated one agrees."""
 
 
 @dataclass(frozen=True)
@@ -53,15 +63,15 @@ def derived_ratio(
             return f"'{coupling.through}' is a cam: its ratio is another in every pose"
         if coupling.meshing is not None:
             ratio *= coupling.meshing.ratio if forward else 1.0 / coupling.meshing.ratio
-            relative += constants.COUNTED_TEETH
+            relative += COUNTED_TEETH
             continue
         ratio *= coupling.ratio if forward else 1.0 / coupling.ratio
         spread = coupling.uncertainty / abs(coupling.ratio) if math.isfinite(coupling.uncertainty) else 0.0
         relative += max(
-            constants.DEVIATIONS * spread,
-            constants.SCREW_PITCH if coupling.kind == "screw" else constants.UNCOUNTED_TEETH,
+            DEVIATIONS * spread,
+            SCREW_PITCH if coupling.kind == "screw" else UNCOUNTED_TEETH,
         )
-    if relative > constants.UNCERTAIN_RATIO * len(chain):
+    if relative > UNCERTAIN_RATIO * len(chain):
         return f"the {shown_ratio(assembly, stated, ratio)} is uncertain by {100 * relative:.2g} %"
     return Ratio(ratio, abs(ratio) * relative, tuple(str(coupling.through) for coupling, _ in chain))
 
@@ -126,10 +136,10 @@ def derived_sum(
     found, meant = float(rates[worst, 0]), -float(rates[worst, 1:].sum())
     doubtful = next((j for j in kinematics.joints if j.name in tied and j.status != "determined"), None)
     if doubtful is not None:
-        at = "agrees with the ratios" if shares[worst] <= constants.UNCOUNTED_TEETH else "is off by "
-        off = "" if shares[worst] <= constants.UNCOUNTED_TEETH else f"{100 * shares[worst]:.2g} % of its greatest term"
+        at = "agrees with the ratios" if shares[worst] <= UNCOUNTED_TEETH else "is off by "
+        off = "" if shares[worst] <= UNCOUNTED_TEETH else f"{100 * shares[worst]:.2g} % of its greatest term"
         return f"the contact '{doubtful.name}' is {doubtful.status}; as it stands, the motion at this pose {at}{off}"
-    if constants.UNCOUNTED_TEETH < shares[worst] <= constants.UNCERTAIN_RATIO:
+    if UNCOUNTED_TEETH < shares[worst] <= UNCERTAIN_RATIO:
         return f"the motion at this pose is off by {100 * shares[worst]:.2g} %, which normals of teeth may be"
     return Difference(float(shares[worst]), found, meant, tuple(tied))
 
@@ -200,5 +210,5 @@ def _leads(kinematics: Kinematics) -> Iterator[Coupling]:
             if coupling.through in moved or slides[0] in moved:
                 rates.append((moved.get(slides[0], 0.0), moved.get(coupling.through, 0.0)))
         ratios = [slide / screw for slide, screw in rates if screw]
-        if len(ratios) == len(rates) > 0 and ratios[0] and np.ptp(ratios) <= constants.SCREW_PITCH * abs(ratios[0]):
+        if len(ratios) == len(rates) > 0 and ratios[0] and np.ptp(ratios) <= SCREW_PITCH * abs(ratios[0]):
             yield replace(coupling, joints=(slides[0], coupling.through), ratio=ratios[0])

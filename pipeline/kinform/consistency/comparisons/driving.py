@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from kinform.consistency.constants import AT_END
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Answer, undecided
 from kinform.consistency.requirements import shown_value, single_joint, stated_as
@@ -12,6 +11,10 @@ from kinform.function import resolve_joint, stated_ranges
 from kinform.model.function import PASSIVE
 from kinform.model.kinematics import Joint
 from kinform.statics.driving import Driving, driving
+
+AT_END = 1e-6
+"""rad or m: a pose at the very end of a range is inside."""
+
 
 STATE = "State masses, drives, joints and friction so that the load is determined."
 NO_FRICTION = "no friction is stated"

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from kinform.consistency.constants import OPENS
 from kinform.consistency.context import Context
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.graph import UnionFind
@@ -21,6 +20,10 @@ from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.descriptions import DescribedLink, Description
 from kinform.model.names import PartName
+
+OPENS = 1e-3
+"""Least speed with which all of a contact must open, for a motion of 1: normals of surfaces that were recovered from
+meshes are off by less, and a bore that reaches half round, less one facet of 3000, still opens."""
 
 
 @dataclass(frozen=True, eq=False)

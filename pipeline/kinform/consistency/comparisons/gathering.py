@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
-from kinform.consistency.constants import ALIKE_MOST
 from kinform.foundation.words import counted, quoted
 from kinform.frozen import dataclass
 from kinform.model.findings import Finding
+
+ALIKE_MOST = 3
+"""Findings of one kind in one description that are told one by one; more are one finding, of the worst."""
 
 
 @dataclass(frozen=True)

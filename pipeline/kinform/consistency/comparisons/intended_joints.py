@@ -9,18 +9,20 @@ import numpy as np
 from kinform.consistency.comparisons.comparison import FROM_GEOMETRY, Comparison
 from kinform.consistency.comparisons.known import Known
 from kinform.consistency.comparisons.with_play import with_play
-from kinform.consistency.constants import SHARED_MOTION
+from kinform.consistency.questions.rolling_elements import Rolling
+from kinform.consistency.questions.through_intermediates import HelperMotion, motion_through_helpers
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.words import counted, quoted
-from kinform.kinematics.bodies.as_stated import leaves_free, may_end
+from kinform.kinematics.joints.bodies.as_stated import leaves_free, may_end
 from kinform.kinematics.partition.parting import joint_twists
-from kinform.kinematics.questions.rolling import Rolling
-from kinform.kinematics.questions.through_helpers import HelperMotion, motion_through_helpers
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import FREEDOMS, Body, Joint, Kinematics, LeftOut
+
+SHARED_MOTION = 0.02
+"""Share of a motion within which what contact leaves is a motion that a loop's closure leaves, too; as `ADMITTED`."""
 
 
 def compare_joints(

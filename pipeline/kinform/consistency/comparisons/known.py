@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from kinform.kinematics.bodies.extents import Extents
-from kinform.kinematics.questions.afloat import AfloatParts
+from kinform.consistency.questions.captive_parts import AfloatParts
+from kinform.kinematics.joints.bodies.extents import Extents
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.kinematics import Body, Kinematics

@@ -11,7 +11,6 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from kinform.consistency.constants import BENT_ALIKE, MOST_STEPS, QUIET, RATE_RESOLVED
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Answer, Margin, met, undecided, violated
 from kinform.consistency.requirements import simulated, single_joint
@@ -22,6 +21,17 @@ from kinform.function.requirement_kinds import JointLimit, TorqueSpeed
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
 from kinform.model.simulation import Simulation
+
+RATE_RESOLVED = 0.1
+"""Share of the greatest rate by which a rate may miss what its derivatives at both ends of a step make of it; a sine is
+within it from six output times a period."""
+MOST_STEPS = 0.2
+"""Share of the steps that may miss by more: single kinks and jumps of a law are no reason to doubt."""
+QUIET = 1e-9
+"""rad/s or m/s below which nothing moves."""
+BENT_ALIKE = 0.25
+"""Share of its curvature that a peak's neighbours must have for a parabola to say how high it is; a choice."""
+
 
 WEIGH = "Give every part of it a density, a material or a mass, and a closed mesh."
 FINER = "Ask for a shorter `step` of the output."

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.consistency.constants import MOST_CORRECTIONS
 from kinform.consistency.context import Context
+from kinform.consistency.questions.near_motion import Correction, NearMotion, near_motions
 from kinform.consistency.requirements import stated_as
 from kinform.foundation.words import angle, length, listed, number
-from kinform.kinematics import Correction, NearMotion, near_motions
+
+MOST_CORRECTIONS = 4
+"""Corrections, and joints of the loops, that are named of one motion that loops nearly make: a choice."""
 
 
 def nearly_moves(context: Context) -> str:

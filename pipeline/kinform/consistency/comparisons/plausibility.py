@@ -14,28 +14,40 @@ any size, and no size proves a mistake; nothing but these doubts depends on it:
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 from kinform.consistency.comparisons.links import weighed
-from kinform.consistency.constants import (
-    HULL_DENSITY,
-    LARGE,
-    MASSIVE,
-    MIXED,
-    MIXED_ROUNDING,
-    OUTLIER,
-    SCALE_OUTLIER,
-    SCALE_SPREAD,
-    TINY,
-    TINY_ELSE,
-    WRONG_SCALE,
-)
 from kinform.foundation.words import length, mass, number, quoted, volume
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Part, Source
+
+LARGE = 20.0
+"""Diagonal (m) above which the units are doubted."""
+MASSIVE = 1000.0
+"""Volume of solid material (m³) above which the units are doubted."""
+TINY: Mapping[str, float] = {"um": 3e-6}
+"""Diagonal (m) below which the units are doubted, for each unit; `TINY_ELSE` where not listed."""
+TINY_ELSE = 3e-3
+"""m."""
+OUTLIER = 100.0
+"""A part so many times larger than all others together is doubted."""
+MIXED = 1000.0
+"""Parts whose largest is so many times larger than the smallest, with a gap between two sizes of `OUTLIER`, are in
+different units: metres and millimetres."""
+MIXED_ROUNDING = 1e-3
+"""By so much less may they differ: the same part in metres and in millimetres has numbers that are rounded."""
+WRONG_SCALE = 1e9
+"""By so much a density is off where a mesh is in metres and is in millimetres, or the other way round."""
+SCALE_SPREAD = 50.0
+"""Factor about `WRONG_SCALE` within which a density says a wrong unit: hulls of 10 to 25 000 kg/m³ are right ones."""
+HULL_DENSITY = 500.0
+"""kg/m³: mass over the volume of the convex hull, as parts of robots have it; in the middle of what there is."""
+SCALE_OUTLIER = 20.0
+"""Factor by which a shape with such a density must also be larger or smaller than the middle one of the others: what a
+placeholder of a nanogram is stated for is not."""
 
 
 @dataclass(frozen=True)

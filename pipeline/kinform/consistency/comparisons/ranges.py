@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from kinform.consistency import constants
 from kinform.consistency.comparisons.comparison import Comparison
 from kinform.consistency.comparisons.known import bodies_of
+from kinform.consistency.constants import DRAWN_SLIDE, DRAWN_TURN
 from kinform.consistency.context import Context
 from kinform.foundation.words import angle, length, quoted
 from kinform.frozen import dataclass
@@ -96,7 +96,7 @@ def _clear(intended: IntendedJoint, end: RangeEnd) -> RangeEnd | None:
     if end.value is None:
         return end
     lower, upper = intended.range or (-math.inf, math.inf)
-    near = constants.DRAWN_SLIDE * (upper - lower) if intended.type == "prismatic" else constants.DRAWN_TURN
+    near = DRAWN_SLIDE * (upper - lower) if intended.type == "prismatic" else DRAWN_TURN
     return None if abs(end.value) <= near else end
 
 

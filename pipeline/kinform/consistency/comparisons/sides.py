@@ -13,12 +13,19 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from kinform.consistency import constants
 from kinform.consistency.comparisons.links import Weighed
 from kinform.foundation.algebra.vectors import cross
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.descriptions import DescribedLink, Description
+
+MIRRORED = 2e-3
+"""Share of the span of all pairs by which a frame may be off its mirror image: rounded numbers."""
+PLANE_NEAR = math.cos(math.radians(15.0))
+"""Cosine of the angle within which the plane of symmetry is across an axis of the first link: robots are drawn so."""
+MIRRORED_ANGLE = math.radians(0.5)
+"""rad by which an axis may be off its mirror image."""
+
 
 _OTHER = {
     "left": "right", "l": "r", "fl": "fr", "lf": "rf", "hl": "hr", "lh": "rh", "bl": "br", "lb": "rb", "rl": "rr",
@@ -64,7 +71,7 @@ class Sides:
 
     def agrees(self, pair: Pair) -> bool:
         """Whether the frames of a pair are mirrored."""
-        return pair.off <= constants.MIRRORED * self.span and pair.tilt <= constants.MIRRORED_ANGLE
+        return pair.off <= MIRRORED * self.span and pair.tilt <= MIRRORED_ANGLE
 
 
 def partner(name: str, names: Mapping[str, DescribedLink]) -> str | None:
@@ -150,7 +157,7 @@ def _mirror(a: Array, b: Array, R: Array) -> Image:
     """The mirror that takes a to b, across an axis of the frame R (3, 3) that is near; the plane half way between."""
     normal = (b - a) / np.linalg.norm(b - a)
     nearest = R[:, int(np.argmax(np.abs(R.T @ normal)))]
-    if abs(float(nearest @ normal)) > constants.PLANE_NEAR:
+    if abs(float(nearest @ normal)) > PLANE_NEAR:
         normal = nearest
     return Image(np.eye(3) - 2.0 * np.outer(normal, normal), 2.0 * float(normal @ (0.5 * (a + b))) * normal)
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 from kinform.consistency.comparisons.comparison import Comparison, leaves_more
 from kinform.consistency.comparisons.known import Known
+from kinform.consistency.questions.captive_parts import Afloat, may_carry, may_hold
 from kinform.foundation.algebra.screws import Frame, scaled, span
 from kinform.kinematics.partition.parting import joint_twists
-from kinform.kinematics.questions.afloat import Afloat, may_carry, may_hold
 from kinform.model.arrays import Array
 
 

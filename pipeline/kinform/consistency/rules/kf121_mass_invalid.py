@@ -19,7 +19,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from kinform.consistency.comparisons.links import described_links
-from kinform.consistency.constants import TRIANGLE_ROUNDING
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive, skipped
 from kinform.consistency.rule import Rule
@@ -28,6 +27,9 @@ from kinform.mass.principal import impossible
 from kinform.model.assembly import Part, Source
 from kinform.model.findings import Finding
 from kinform.model.mass import MassProperties
+
+TRIANGLE_ROUNDING = 1e-9
+"""Relative rounding that the triangle inequality of the moments is allowed (thin discs reach equality)."""
 
 
 def check(context: Context) -> Outcome:

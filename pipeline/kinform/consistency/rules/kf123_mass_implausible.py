@@ -24,11 +24,26 @@ import numpy as np
 
 from kinform.consistency.comparisons.gathering import Ranked, gathered
 from kinform.consistency.comparisons.links import Weighed
-from kinform.consistency.constants import DENSEST, HEAVY, INERTIA_FAR, INERTIA_LARGE, LIGHT
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, mass, number, volume
+
+DENSEST = 23000.0
+"""kg/m³: osmium has 22 600. Nothing has more mass over the volume of its convex hull, in which all of it is."""
+HEAVY = 12000.0
+"""kg/m³ above which what closed meshes enclose is doubted: lead has 11 340; a screw or a motor that is not drawn makes
+a small part heavy."""
+LIGHT = 5.0
+"""kg/m³ below which what closed meshes enclose is doubted: the lightest foams have 10; hollow links of public robots
+have 100 and more."""
+INERTIA_LARGE = 1.001
+"""Share of m·r² (r from the centre of mass to the farthest point of the hull) above which half the trace of an inertia
+is impossible: rounding of stated numbers."""
+INERTIA_FAR = 30.0
+"""Factor by which an inertia may be below or above that of the same mass, spread evenly over the shape, before it is
+doubted: hollow shells have up to 3, dense motors in light shells down to a tenth."""
+
 
 _UNITS = {1e9: "g·mm²", 1e6: "kg·mm²", 1e4: "kg·cm²", 1e3: "g·m²", 1e7: "g·cm²"}
 

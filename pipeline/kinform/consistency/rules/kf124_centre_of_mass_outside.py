@@ -18,10 +18,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from kinform.consistency.comparisons.gathering import Ranked, gathered
-from kinform.consistency.constants import CENTRE_OUTSIDE
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import length, place
+
+CENTRE_OUTSIDE = 0.03
+"""Share of the size by which a centre of mass may lie outside of the hull: pieces that are not drawn, rounding."""
 
 
 def check(context: Context) -> Findings:

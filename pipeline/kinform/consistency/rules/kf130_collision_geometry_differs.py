@@ -17,7 +17,6 @@ from __future__ import annotations
 
 from kinform.consistency.comparisons.gathering import Ranked, gathered
 from kinform.consistency.comparisons.links import described_links
-from kinform.consistency.constants import BARE_DEPTH, BARE_SHARE, FAR_BEYOND, THOUSAND, THOUSAND_SPREAD
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided
 from kinform.consistency.rule import Rule
@@ -25,6 +24,18 @@ from kinform.foundation.words import counted, length, number
 from kinform.model.assembly import Source
 from kinform.model.descriptions import Coverage, DescribedLink
 from kinform.model.findings import Finding
+
+BARE_SHARE = 0.15
+"""Share of the visual's area that may lie outside of the collision geometry: rounded covers by boxes stay below."""
+BARE_DEPTH = 0.10
+"""Share of the link's size by which it may reach out there."""
+FAR_BEYOND = 0.30
+"""Share of the link's size by which collision geometry may reach beyond the visual: boxes and cylinders around slender
+links."""
+THOUSAND = 1000.0
+"""Metres over millimetres."""
+THOUSAND_SPREAD = 5.0
+"""Factor about it within which two sizes of one link say so."""
 
 
 def check(context: Context) -> Outcome:

@@ -23,6 +23,7 @@ import numpy as np
 
 from kinform.consistency.comparisons.links import Weighed
 from kinform.consistency.comparisons.sides import (
+    MIRRORED_ANGLE,
     Image,
     Look,
     Pair,
@@ -33,7 +34,6 @@ from kinform.consistency.comparisons.sides import (
     sides_of,
     unlike,
 )
-from kinform.consistency.constants import MIRRORED_ANGLE, SAME_CENTRE, SAME_INERTIA, SAME_LOOK, SAME_MASS
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, skipped
 from kinform.consistency.rule import Rule
@@ -41,6 +41,16 @@ from kinform.foundation.words import angle, counted, length, number, quoted
 from kinform.model.assembly import Source
 from kinform.model.descriptions import Description
 from kinform.model.findings import Finding
+
+SAME_LOOK = 0.02
+"""Share of a link's size by which its geometry may be off the image of the other side: screws, labels, connectors."""
+SAME_MASS = 0.02
+"""Relative difference of masses of two sides."""
+SAME_CENTRE = 0.02
+"""Share of the size by which a centre of mass may be off the image of the other side's."""
+SAME_INERTIA = 0.10
+"""Relative difference of inertias of two sides, products included."""
+
 
 _Told = tuple[float, Pair, str]
 """How bad, which pair, in which words."""

@@ -18,15 +18,17 @@ Example: a gimbal ring whose lug reaches 1.5 mm into the housing wall.
 
 from __future__ import annotations
 
-from kinform.consistency.constants import AT_JOINT
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
-from kinform.contacts.constants import PRESS_SHARE
-from kinform.contacts.presses import beyond_press, press_limit
+from kinform.contacts.presses import PRESS_SHARE, beyond_press, press_limit
 from kinform.foundation.words import length, quoted, volume
 from kinform.model.contacts import Interference
 from kinform.model.findings import Finding
 from kinform.model.names import PartName
+
+AT_JOINT = 0.02
+"""Share of the size of the smaller of two links that a joint joins, up to which they may overlap in a description:
+bearings, flush horns, bevel gears drawn at their nominal size."""
 
 
 def check(context: Context) -> Findings:

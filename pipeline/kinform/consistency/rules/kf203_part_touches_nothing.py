@@ -22,10 +22,10 @@ import numpy as np
 
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled
+from kinform.consistency.questions.captive_parts import Afloat
 from kinform.consistency.rule import Rule
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.words import quoted
-from kinform.kinematics import Afloat
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts

@@ -13,11 +13,13 @@ Example: an idler horn between two links, screwed to neither in the model.
 
 from __future__ import annotations
 
-from kinform.consistency.constants import NAMED_UNCLEAR
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import counted, quoted
 from kinform.model.findings import Finding
+
+NAMED_UNCLEAR = 8
+"""So many parts of unclear bodies are named in one finding."""
 
 
 def check(context: Context) -> Findings:

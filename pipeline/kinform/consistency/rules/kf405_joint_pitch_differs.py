@@ -11,11 +11,13 @@ Example: an M6 lead screw with a pitch of 1 mm where 1.25 mm is intended.
 
 from __future__ import annotations
 
-from kinform.consistency.constants import SAME_PITCH
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, skipped
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import length
+
+SAME_PITCH = 1e-3
+"""Relative difference of pitches that counts as equal."""
 
 
 def check(context: Context) -> Outcome:

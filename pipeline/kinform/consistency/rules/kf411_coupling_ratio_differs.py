@@ -16,8 +16,13 @@ Example: `ratio = -2.5` where gears of 20 and 48 teeth give −2.4.
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.couplings import Difference, derived_ratio, derived_sum, shown_ratio
-from kinform.consistency.constants import UNCERTAIN_RATIO
+from kinform.consistency.comparisons.couplings import (
+    UNCERTAIN_RATIO,
+    Difference,
+    derived_ratio,
+    derived_sum,
+    shown_ratio,
+)
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, skipped
 from kinform.consistency.rule import Rule

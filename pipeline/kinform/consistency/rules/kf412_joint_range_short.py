@@ -17,13 +17,17 @@ from __future__ import annotations
 import math
 
 from kinform.consistency.comparisons.ranges import RangeComparison, range_comparisons, shown
-from kinform.consistency.constants import SHORT_SLIDE, SHORT_TURN
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, skipped
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import quoted
 from kinform.model.collisions import RangeEnd
 from kinform.model.findings import Finding
+
+SHORT_TURN = math.radians(0.02)
+"""rad by which a turn may fall short: a stop on facets is not where it is on the surface."""
+SHORT_SLIDE = 1e-3
+"""Share of a stated length by which a slide may fall short."""
 
 
 def check(context: Context) -> Outcome:

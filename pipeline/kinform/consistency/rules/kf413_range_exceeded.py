@@ -20,7 +20,6 @@ import numpy as np
 
 from kinform.consistency.comparisons.limits import coarse
 from kinform.consistency.comparisons.ranges import joint_as_intended, shown
-from kinform.consistency.constants import BEYOND
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive
 from kinform.consistency.rule import Rule
@@ -29,6 +28,10 @@ from kinform.model.findings import Finding
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
 from kinform.model.simulation import Simulation
+
+BEYOND = 1e-6
+"""Share of the range (rad or m where it is endless) by which a motion may pass its end: a drive to just there is no
+finding."""
 
 
 def check(context: Context) -> Outcome:

@@ -19,7 +19,6 @@ import math
 from collections.abc import Iterator
 
 from kinform.consistency.comparisons.gathering import Ranked, gathered
-from kinform.consistency.constants import DEGREES
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided
 from kinform.consistency.rule import Rule
@@ -27,6 +26,11 @@ from kinform.foundation.words import counted, number, quoted
 from kinform.model.assembly import Source
 from kinform.model.descriptions import DescribedJoint, Description
 from kinform.model.findings import Finding
+
+DEGREES = 8.0 * math.pi, 360.0
+"""Limits of a joint that turns (rad) which are probably degrees, or stand for none: from four turns on, which hardly a
+joint of a robot goes, to as many degrees as a turn has. A choice."""
+
 
 TURNING = ("revolute", "hinge")
 """Joints that turn between limits, as formats call them."""

@@ -23,7 +23,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.consistency.comparisons.plausibility import extent
-from kinform.consistency.constants import REACHED_ANGLE, REACHED_SHARE, SAMPLED_FREEDOMS
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Answer, met, undecided, violated
 from kinform.consistency.requirements import JOINTS, requirement_rule, stated_as
@@ -33,6 +32,14 @@ from kinform.function.configurations import Chain, chain_between
 from kinform.function.coverage import Coverage, cover
 from kinform.function.regions import Targets, targets_of
 from kinform.function.requirement_kinds import Reach
+
+REACHED_SHARE = 1e-3
+"""Share of the assembly's size within which a place is reached, where no tolerance is stated; a choice."""
+REACHED_ANGLE = math.radians(0.1)
+"""rad within which a direction is reached, where no tolerance is stated; a choice."""
+SAMPLED_FREEDOMS = 2
+"""Freedoms of closed loops up to which sampling is dense enough for a "no"."""
+
 
 OTHERWISE = "Check it by other means, or require `follow` of a simulated motion."
 REMEDY = "Widen a range, lengthen a link, or move the base."

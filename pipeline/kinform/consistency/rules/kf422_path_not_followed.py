@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from kinform.consistency.constants import SAME_TIME
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Answer, Margin, met, undecided, violated
 from kinform.consistency.requirements import requirement_rule, simulated
@@ -24,6 +23,10 @@ from kinform.function.paths import Deviation, deviation
 from kinform.function.requirement_kinds import Follow
 from kinform.model.arrays import Array
 from kinform.model.simulation import Simulation
+
+SAME_TIME = 1e-9
+"""Share of the simulated time by which a path may be longer: rounding."""
+
 
 REMEDY = "Correct the drives or the geometry, or the path."
 

@@ -19,8 +19,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from kinform.consistency.comparisons.driving import driven_in, pose_words, worst
-from kinform.consistency.constants import AT_END
+from kinform.consistency.comparisons.driving import AT_END, driven_in, pose_words, worst
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Answer, Margin, met, undecided, violated
 from kinform.consistency.requirements import (

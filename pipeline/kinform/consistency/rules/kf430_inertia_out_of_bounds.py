@@ -13,12 +13,15 @@ Example: `kind = "inertia"`, `of = "rotor"`, `axis = [0, 0, 1]`, `maximum = 2e-5
 from __future__ import annotations
 
 from kinform.consistency.comparisons.limits import Quantity, amount, beside_bounds, whose
-from kinform.consistency.constants import INERTIA_SPREAD
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Answer
 from kinform.consistency.requirements import MASSES, requirement_rule
 from kinform.foundation.words import direction, number
 from kinform.function.requirement_kinds import Inertia
+
+INERTIA_SPREAD = 5.0 / 3.0
+"""An error of the shape that adds so much to the mass adds so much more to the inertia, at equal proportions."""
+
 
 REMEDY = "Move material, or change the bound."
 

@@ -14,9 +14,10 @@ Example: `kind = "retained"`, `part = "shaft"` for a shaft with a shoulder on on
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
-from kinform.consistency.constants import NO_TURN, SAME_DIRECTION
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Answer, met, undecided, violated
 from kinform.consistency.requirements import JOINTS, requirement_rule
@@ -25,6 +26,12 @@ from kinform.foundation.words import direction, quoted
 from kinform.function.requirement_kinds import Retained
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Body, Joint, Kinematics, Release, Separation
+
+SAME_DIRECTION = math.cos(math.radians(1.0))
+"""Cosine of the angle within which directions agree."""
+NO_TURN = 1e-6
+"""Share of the greatest rate below which a freedom does not turn, or does not slide; a choice."""
+
 
 REMEDY = "Add a shoulder, a clip, a lid or a screw; or list the direction."
 

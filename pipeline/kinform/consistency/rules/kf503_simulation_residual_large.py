@@ -14,11 +14,13 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.consistency.comparisons.plausibility import extent
-from kinform.consistency.constants import LOOP_RESIDUAL
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive, skipped
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import number
+
+LOOP_RESIDUAL = 1e-6
+"""Residual relative to the size of the assembly (m), and absolute (rad)."""
 
 
 def check(context: Context) -> Outcome:

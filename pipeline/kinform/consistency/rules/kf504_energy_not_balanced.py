@@ -14,11 +14,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.consistency.constants import ENERGY_DRIFT, ENERGY_SOLVED, NO_ENERGY
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive, skipped
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import number
+
+ENERGY_DRIFT = 1e-3
+"""Drift relative to the energy exchanged."""
+ENERGY_SOLVED = 1e-6
+"""Share of the greatest kinetic energy that solving leaves: output times may catch the motion where nothing is
+exchanged."""
+NO_ENERGY = 1e-15
+"""Energy exchanged (J) below which there is nothing to compare."""
 
 
 def check(context: Context) -> Outcome:

@@ -18,8 +18,7 @@ Example: a rocker of 50 g held by a spring of 10^7 N·m/rad, which swings 13,500
 
 from __future__ import annotations
 
-from kinform.consistency.constants import DAMPED_UNSEEN
-from kinform.consistency.context import Context
+from kinform.consistency.context import DAMPED_UNSEEN, Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import number

@@ -18,7 +18,7 @@ from __future__ import annotations
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import quoted
-from kinform.kinematics.bodies.kept_apart import contradicted, kept_apart
+from kinform.kinematics.joints.bodies.kept_apart import contradicted, kept_apart
 from kinform.model.contacts import Suggestion
 from kinform.model.kinematics import Kinematics
 

@@ -8,12 +8,20 @@ from dataclasses import fields
 
 import numpy as np
 
-from kinform.contacts.constants import AXES_COAXIAL, AXES_PARALLEL, HOLE_SINK, ROUND_SWEEP, SHAFT_COSINE
+from kinform.contacts.constants import ROUND_SWEEP
+from kinform.contacts.fastening.constants import AXES_PARALLEL
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Part
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import MeshSurfaces
+
+AXES_COAXIAL = 0.2
+"""Distance of axes that count as one."""
+HOLE_SINK = 0.6
+"""Depth of a chamfer or countersink between a plane and the hole behind it, in radii of the hole."""
+SHAFT_COSINE = 0.99
+"""Least cosine between a hole and a shaft that stands in it."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,12 +10,18 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.contacts.constants import AXES_PARALLEL, RIM_KINDS, RIM_SCATTER, ROUND_SWEEP
+from kinform.contacts.constants import ROUND_SWEEP
+from kinform.contacts.fastening.constants import AXES_PARALLEL
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.meshes.edges import edge_ends
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh, Part
 from kinform.model.surfaces import MeshSurfaces, Surface
+
+RIM_KINDS = frozenset({"cylinder", "cone", "torus", "revolution"})
+"""Surfaces at which a rim ends."""
+RIM_SCATTER = 0.01
+"""Greatest spread of the distances of a rim's vertices from its axis, of their mean."""
 
 
 def rims_of(part: Part, surfaces: MeshSurfaces, plane: int) -> list[tuple[Array, float]]:

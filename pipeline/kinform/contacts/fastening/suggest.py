@@ -10,8 +10,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from kinform.contacts import constants
 from kinform.contacts.fastening.bores import (
+    AXES_COAXIAL,
     Cylinders,
     Holes,
     aligned_holes,
@@ -28,6 +28,18 @@ from kinform.model.assembly import Assembly, Part
 from kinform.model.contacts import Contacts, Patch, Suggestion
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces
+
+AXIS_AREA = 100.0
+"""Least area, in squared contact tolerances, of a contact from which an axis is read."""
+PATTERN_ALIKE = 0.02
+"""Relative difference of radii and distances within which holes are of one pattern."""
+UPRIGHT_COSINE = 0.9999
+"""Least cosine of planes that are parallel, and of holes that stand on one."""
+WALL_COSINE = 0.02
+"""Cosine below which a face is parallel to a direction."""
+POCKET_GAP = math.pi - 0.05
+"""rad: walls with no wider gap between them leave no way aside."""
+
 
 Pair = tuple[PartName, PartName]
 
@@ -104,10 +116,8 @@ def _of_pair(pair: Pair, patches: list[Patch], scene: _Scene, tolerance: float) 
             out.append(_hint(pair, kind, text, holes.axes[0], holes.places.mean(axis=0)))
             return out
     largest = planes[0]
-    flat = all(
-        patch.kind == "plane" and abs(float(patch.axis @ largest.axis)) > constants.UPRIGHT_COSINE for patch in patches
-    )
-    if flat and sum(patch.area for patch in planes) >= constants.AXIS_AREA * tolerance**2:
+    flat = all(patch.kind == "plane" and abs(float(patch.axis @ largest.axis)) > UPRIGHT_COSINE for patch in patches)
+    if flat and sum(patch.area for patch in planes) >= AXIS_AREA * tolerance**2:
         out += _axis(pair, planes, scene, tolerance)
     return out
 
@@ -130,9 +140,7 @@ def _holes(pair: Pair, planes: list[Patch], scene: _Scene, tolerance: float) -> 
 def _pivoted(plane: Patch, patches: list[Patch], tolerance: float) -> bool:
     """Whether the parts share one journal that stands on the plane: they may be meant to turn. Two journals side
     by side are dowels."""
-    upright = [
-        p for p in patches if p.kind == "cylinder" and abs(float(p.axis @ plane.axis)) > 1 - constants.WALL_COSINE
-    ]
+    upright = [p for p in patches if p.kind == "cylinder" and abs(float(p.axis @ plane.axis)) > 1 - WALL_COSINE]
     if not upright:
         return False
     offset = np.array([p.point for p in upright]) - upright[0].point
@@ -161,10 +169,10 @@ def _pocket(pair: Pair, firm: list[Patch]) -> list[Suggestion]:
     axes = np.array([patch.axis for patch in round_]).reshape(-1, 3)
     for floor in flat:
         along = normals @ floor.axis
-        walls = normals[np.abs(along) < constants.WALL_COSINE]
-        if along.min() <= -constants.WALL_COSINE or (np.abs(axes @ floor.axis) <= 1 - constants.WALL_COSINE).any():
+        walls = normals[np.abs(along) < WALL_COSINE]
+        if along.min() <= -WALL_COSINE or (np.abs(axes @ floor.axis) <= 1 - WALL_COSINE).any():
             continue
-        if len(walls) and widest_gap(walls, floor.axis) < constants.POCKET_GAP:
+        if len(walls) and widest_gap(walls, floor.axis) < POCKET_GAP:
             text = "in a pocket that it can leave one way only"
             return [_hint(pair, "pocket", text, floor.axis, floor.point)]
     return []
@@ -172,7 +180,7 @@ def _pocket(pair: Pair, firm: list[Patch]) -> list[Suggestion]:
 
 def _axis(pair: Pair, planes: list[Patch], scene: _Scene, tolerance: float) -> list[Suggestion]:
     """The one axis about which both parts have rims at their contact, or patterns of holes about one centre."""
-    near, normal = constants.AXES_COAXIAL * tolerance, planes[0].axis
+    near, normal = AXES_COAXIAL * tolerance, planes[0].axis
     coaxial: list[tuple[Array, float, float]] = []
     for patch in planes:
         rims = scene.rims(pair[0], patch.surfaces[0])
@@ -201,9 +209,7 @@ def _axis(pair: Pair, planes: list[Patch], scene: _Scene, tolerance: float) -> l
 def _bolt_circle(side: Cylinders, plane: Patch, tolerance: float) -> tuple[Array, int] | None:
     """Centre on the plane, and number, of the largest set of equal holes that are evenly spaced on a circle."""
     upright = (
-        (side.sides < 0) & (np.abs(side.axes @ plane.axis) > constants.UPRIGHT_COSINE)
-        if len(side.radii)
-        else np.zeros(0, bool)
+        (side.sides < 0) & (np.abs(side.axes @ plane.axis) > UPRIGHT_COSINE) if len(side.radii) else np.zeros(0, bool)
     )
     holes = side.chosen(upright)
     height = (holes.points - plane.point) @ plane.axis
@@ -211,17 +217,14 @@ def _bolt_circle(side: Cylinders, plane: Patch, tolerance: float) -> tuple[Array
     near = np.abs(height) <= holes.halves + tolerance
     best: tuple[Array, int] | None = None
     for radius in np.unique(holes.radii[near]):
-        alike = places[near & (np.abs(holes.radii - radius) <= constants.PATTERN_ALIKE * radius)]
+        alike = places[near & (np.abs(holes.radii - radius) <= PATTERN_ALIKE * radius)]
         if len(alike) < 3 or (best is not None and len(alike) <= best[1]):
             continue
         centre = alike.mean(axis=0)
         arms = np.linalg.norm(alike - centre, axis=1)
         apart = 2 * arms.mean() * math.sin(math.pi / len(alike))
         steps = np.sort(np.linalg.norm(alike[:, None] - alike[None], axis=2), axis=1)[:, 1]
-        if (
-            np.ptp(arms) <= constants.PATTERN_ALIKE * arms.mean()
-            and np.abs(steps - apart).max() <= constants.PATTERN_ALIKE * apart
-        ):
+        if np.ptp(arms) <= PATTERN_ALIKE * arms.mean() and np.abs(steps - apart).max() <= PATTERN_ALIKE * apart:
             best = (centre, len(alike))
     return best
 

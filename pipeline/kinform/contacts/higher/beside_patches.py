@@ -13,13 +13,17 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from kinform.contacts import constants
-from kinform.contacts.higher.points_and_lines import may_touch, touches_between
-from kinform.contacts.mating.unread import MotionsLeft, motions_left, unread_surfaces
+from kinform.contacts.constants import EXACT_GAP, TOUCH, TOUCHING
+from kinform.contacts.higher.constants import ROUND_KINDS, SIGMAS
+from kinform.contacts.higher.points_and_lines import OPPOSITE_COSINE, may_touch, touches_between
+from kinform.contacts.mating.unread import ENCLOSED_HELD, MotionsLeft, motions_left, unread_surfaces
 from kinform.contacts.search.pair_view import PairView
 from kinform.foundation.algebra.screws import Frame
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
+
+CORNER_COSINE = 0.5
+"""Two walls are at a corner for a pin where what they hold has at most this cosine, either way."""
 
 
 def holding_touches(pair: PairView, patches: Sequence[Patch]) -> list[Patch]:
@@ -28,7 +32,7 @@ def holding_touches(pair: PairView, patches: Sequence[Patch]) -> list[Patch]:
 
     None beside other points and lines, and none of surfaces that have a patch, or that are next to one that has.
     """
-    if not patches or any(patch.kind in constants.TOUCHING for patch in patches):
+    if not patches or any(patch.kind in TOUCHING for patch in patches):
         return []
     if not may_touch(pair, pair.overlap(pair.tolerance)):
         return []
@@ -38,8 +42,8 @@ def holding_touches(pair: PairView, patches: Sequence[Patch]) -> list[Patch]:
     left = motions_left(patches, Frame.of(np.concatenate([patch.points for patch in patches])))
     if not len(left):
         return []
-    play = max([_play(patch) for patch in patches if patch.kind in constants.ROUND_KINDS], default=0.0)
-    play = max(play, constants.EXACT_GAP * pair.tolerance)
+    play = max([_play(patch) for patch in patches if patch.kind in ROUND_KINDS], default=0.0)
+    play = max(play, EXACT_GAP * pair.tolerance)
 
     def opposed(points: Array, normals: Array) -> Flags:
         return _any_cosine(left, points, normals, play, _opposite)
@@ -60,7 +64,7 @@ def holding_touches(pair: PairView, patches: Sequence[Patch]) -> list[Patch]:
 
 def _cornered(pair: PairView, touches: list[Patch], left: MotionsLeft, play: float) -> list[Patch]:
     """Those of a pin, or a ball, that touches two planes which oppose different motions."""
-    close = [p for p in touches if p.flat and float(np.abs(p.gaps).max()) <= constants.TOUCH * pair.tolerance]
+    close = [p for p in touches if p.flat and float(np.abs(p.gaps).max()) <= TOUCH * pair.tolerance]
     pins: dict[tuple[int, int], list[Patch]] = {}
     for patch in close:
         side = 0 if patch.radii[0] > 0.0 else 1
@@ -77,15 +81,15 @@ def _cornered(pair: PairView, touches: list[Patch], left: MotionsLeft, play: flo
 
 def _play(patch: Patch) -> float:
     """m by which the axis or the centre of the patch may be elsewhere."""
-    return max(patch.gap, 0.0) + patch.offset + constants.SIGMAS * patch.uncertainty[1]
+    return max(patch.gap, 0.0) + patch.offset + SIGMAS * patch.uncertainty[1]
 
 
 def _opposite(cosine: Array) -> Flags:
-    return np.asarray(cosine < constants.OPPOSITE_COSINE)
+    return np.asarray(cosine < OPPOSITE_COSINE)
 
 
 def _askew(cosine: Array) -> Flags:
-    return np.asarray(np.abs(cosine) < constants.CORNER_COSINE)
+    return np.asarray(np.abs(cosine) < CORNER_COSINE)
 
 
 def _any_cosine(
@@ -96,8 +100,8 @@ def _any_cosine(
     count, velocities = len(left.slides), left.velocities(points)
     speeds = (velocities * normals[:, None]).sum(axis=2)
     cosines, levers, way = speeds[:, :count], speeds[:, count:], np.linalg.norm(velocities[:, count:], axis=2)
-    turned = np.abs(levers) > np.maximum(constants.ENCLOSED_HELD * way, play)
-    holds = np.flatnonzero(turned.any(axis=1) | (np.linalg.norm(cosines, axis=1) > constants.ENCLOSED_HELD))
+    turned = np.abs(levers) > np.maximum(ENCLOSED_HELD * way, play)
+    holds = np.flatnonzero(turned.any(axis=1) | (np.linalg.norm(cosines, axis=1) > ENCLOSED_HELD))
     flags = np.zeros(len(points), dtype=bool)
     slide, lever = cosines[holds], np.where(turned, levers, 0.0)[holds]
     # of two samples, levers are shares of the longer one's

@@ -10,8 +10,9 @@ import math
 
 import numpy as np
 
-from kinform.contacts import constants
+from kinform.contacts.constants import ROUND_SWEEP
 from kinform.contacts.higher.beside import EXACT_KINDS, beside
+from kinform.contacts.higher.constants import BALL_BORE_SAMPLES, EDGE_RISE
 from kinform.contacts.higher.nearest import Circle
 from kinform.contacts.higher.sharp import ConvexEdges
 from kinform.contacts.mating.charts import perpendicular
@@ -22,6 +23,14 @@ from kinform.foundation.sorting import heads, median
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.surfaces import KINDS
+
+RIM_UNEVEN = 0.02
+"""Vertices of a rim are on one circle to within this: a sixth of what touches."""
+RIM_EVEN = 0.75
+"""Least share of the vertices of a rim that are."""
+RIM_SAMPLES = 4
+"""Least number of samples along a rim of which not all is there."""
+
 
 _TURNING, _EXACT, _PLANE, _SPHERE = (
     np.isin(KINDS, kinds) for kinds in (("cylinder", "cone", "torus"), EXACT_KINDS, ("plane",), ("sphere",))
@@ -53,7 +62,7 @@ class Rim(Circle):
     def rises(self, angles: Array, normals: Array) -> Flags:
         """(n,) whether both faces leave a surface that touches the rim at these angles, with outward normals (n, 3)."""
         speeds = np.stack([(self.outward(angles) * normals).sum(axis=1), normals @ self.axis])
-        return np.asarray((self.slopes @ speeds > constants.EDGE_RISE).all(axis=0))
+        return np.asarray((self.slopes @ speeds > EDGE_RISE).all(axis=0))
 
     def has(self, angles: Array, slack: float) -> Flags:
         """(n,) whether the part has an edge there, or within `slack` (rad)."""
@@ -63,13 +72,13 @@ class Rim(Circle):
     @property
     def closed(self) -> bool:
         """Whether it goes all round."""
-        return float(self.spans.sum()) >= constants.ROUND_SWEEP
+        return float(self.spans.sum()) >= ROUND_SWEEP
 
     def samples(self) -> tuple[Array, float]:
         """(n,) angles evenly over what is there of it, and the arc (m) that each stands for."""
         total = float(self.spans.sum())
-        most = constants.BALL_BORE_SAMPLES
-        count = min(max(math.ceil(most * total / (2.0 * math.pi) - 1e-9), constants.RIM_SAMPLES), most)
+        most = BALL_BORE_SAMPLES
+        count = min(max(math.ceil(most * total / (2.0 * math.pi) - 1e-9), RIM_SAMPLES), most)
         passed = (np.arange(count) + 0.5) / count * total
         ends = np.cumsum(self.spans)
         edge = np.minimum(np.searchsorted(ends, passed), len(ends) - 1)
@@ -137,7 +146,7 @@ def _axis(near: NearSurfaces, rows: Ints) -> _Axis:
 
 def _circles(view: PairView, rows: Ints, ends: Ints) -> list[Rim]:
     """The circles about one axis on which edges (e, 2) between two near surfaces lie, if all are level."""
-    limit = constants.RIM_UNEVEN * view.tolerance
+    limit = RIM_UNEVEN * view.tolerance
     axis = _axis(view.near[0], rows)
     along = times(view.a.vertices.take(ends, axis=0) - axis.point, axis.along)
     if float(np.ptp(along, axis=1).max()) > limit:
@@ -152,7 +161,7 @@ def _circles(view: PairView, rows: Ints, ends: Ints) -> list[Rim]:
 def _rim(view: PairView, rows: Ints, axis: _Axis, ends: Ints) -> Rim | None:
     """The circle about an axis on which edges (e, 2) between two near surfaces lie. Of a mesh that was cut, some end on
     the chords of others."""
-    near, limit, corners = view.near[0], constants.RIM_UNEVEN * view.tolerance, view.a.vertices[ends]
+    near, limit, corners = view.near[0], RIM_UNEVEN * view.tolerance, view.a.vertices[ends]
     arm = corners - axis.point
     along = times(arm, axis.along)
     aside = arm - along[..., None] * axis.along
@@ -160,7 +169,7 @@ def _rim(view: PairView, rows: Ints, axis: _Axis, ends: Ints) -> Rim | None:
     radius, centre = median(far.ravel()), axis.point + float(along.mean()) * axis.along
     off = np.abs(far - radius)
     loose = float(off.max()) > limit + float(near.chords[rows].max()) or np.ptp(along) > limit
-    if loose or radius <= limit or np.count_nonzero(off <= limit) < constants.RIM_EVEN * off.size:
+    if loose or radius <= limit or np.count_nonzero(off <= limit) < RIM_EVEN * off.size:
         return None
     outward = perpendicular(axis.along)
     slopes = _slopes(near, rows, centre + radius * outward, axis.along, outward)
@@ -195,4 +204,4 @@ def _slopes(near: NearSurfaces, rows: Ints, on: Array, axis: Array, outward: Arr
     slopes = np.stack([-normals[:, 1], normals[:, 0]], axis=1)
     # where the edge is convex, each face goes down beside the other
     down = np.array([slopes[0] @ normals[1], slopes[1] @ normals[0]])
-    return None if np.abs(down).min() < constants.EDGE_RISE else -np.sign(down)[:, None] * slopes
+    return None if np.abs(down).min() < EDGE_RISE else -np.sign(down)[:, None] * slopes

@@ -5,18 +5,23 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.contacts import constants
-from kinform.contacts.higher.outlines import Curve
+from kinform.contacts.constants import MATING_REACH
+from kinform.contacts.higher.outlines import CURVE_SAMPLES, Curve
 from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Ints
+
+CURVE_CHUNK = 16
+"""Samples that follow each other in one box, whose distance says which need to be compared at all."""
+CURVES_OPPOSED = -0.9
+"""Greatest cosine between the tangents of two curves that touch."""
 
 
 def closest_places(first: Curve, second: Curve, tolerance: float) -> list[tuple[float, float]]:
     """Parameters of both curves where samples of the first come closer to the second than their neighbours, and as
     close as curves that touch, of which samples may be a step off, within the tolerance (m)."""
     (s, p, tangent), (t, q, other) = first.samples, second.samples
-    step = max(float(np.diff(first.knots).max()), float(np.diff(second.knots).max())) / constants.CURVE_SAMPLES
-    far = constants.MATING_REACH * tolerance + 2.0 * step
+    step = max(float(np.diff(first.knots).max()), float(np.diff(second.knots).max())) / CURVE_SAMPLES
+    far = MATING_REACH * tolerance + 2.0 * step
     spread = far + float(np.sqrt(((p[1:] - p[:-1]) ** 2).sum(axis=1).max(initial=0.0)))
     nearest, away, gap = _opposed((p, tangent), (q, other), *_beside(p, q, spread))
     # of those beside which something is near, also what is not
@@ -35,15 +40,15 @@ def closest_places(first: Curve, second: Curve, tolerance: float) -> list[tuple[
 def _beside(points: Array, others: Array, far: float) -> tuple[Ints, Ints]:
     """Pairs (k,) of points (n, 2) and of others (m, 2) along a curve, all that come within `far` (m) of each other
     among them, by the first, then by the second: by the boxes of few others that follow each other."""
-    starts = np.arange(0, len(others), constants.CURVE_CHUNK)
+    starts = np.arange(0, len(others), CURVE_CHUNK)
     low = np.minimum.reduceat(others, starts) - far
     high = np.maximum.reduceat(others, starts) + far
     inside = (points[:, :1] >= low[:, 0]) & (points[:, :1] <= high[:, 0])
     inside &= (points[:, 1:] >= low[:, 1]) & (points[:, 1:] <= high[:, 1])
     point, chunk = np.nonzero(inside)
-    other = (starts[chunk, None] + np.arange(constants.CURVE_CHUNK)).ravel()
+    other = (starts[chunk, None] + np.arange(CURVE_CHUNK)).ravel()
     there = other < len(others)
-    return np.repeat(point, constants.CURVE_CHUNK)[there], other[there]
+    return np.repeat(point, CURVE_CHUNK)[there], other[there]
 
 
 def _opposed(
@@ -55,7 +60,7 @@ def _opposed(
     nearest, away, gap = np.zeros(len(p), np.int64), np.full(len(p), np.inf), np.full(len(p), np.inf)
     tx, ty = tangent.T
     ox, oy = other.T
-    facing = np.flatnonzero(tx[one] * ox[two] + ty[one] * oy[two] < constants.CURVES_OPPOSED)
+    facing = np.flatnonzero(tx[one] * ox[two] + ty[one] * oy[two] < CURVES_OPPOSED)
     if not len(facing):
         return nearest, away, gap
     one, two = one[facing], two[facing]

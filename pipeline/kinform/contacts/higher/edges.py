@@ -10,7 +10,8 @@ import math
 
 import numpy as np
 
-from kinform.contacts import constants
+from kinform.contacts.constants import GIVER_AREA, PROBE_SPARE, TOUCH
+from kinform.contacts.higher.constants import EDGE_RISE, LINE_SAMPLES, ZONE
 from kinform.contacts.higher.sharp import ConvexEdges, on_surface
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.pair_view import PairView, PartView
@@ -20,6 +21,11 @@ from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances
+
+NEARLY = 1.001
+"""Share of a limit within which it is looked closer whether it is kept: far more than rounding."""
+EDGES_MOST = 64
+"""More edges and corners than these on one plane are a rough surface."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +52,7 @@ def edge_contacts(
     out = []
     for view, first, edges in ((pair, True, convex[0]), (pair.swapped, False, convex[1])):
         planes = view.near[1]
-        large = planes.areas >= constants.GIVER_AREA * pair.tolerance**2
+        large = planes.areas >= GIVER_AREA * pair.tolerance**2
         sharp = edges.where(edges.cosine < math.cos(pair.tolerances.smooth_edge))
         rows = np.flatnonzero((planes.kinds == KINDS.index("plane")) & large)
         for row in rows[_reached(view, sharp, rows)]:
@@ -64,7 +70,7 @@ def _reached(view: PairView, edges: ConvexEdges, rows: Ints) -> Flags:
     planes, ends = view.near[1], view.a.vertices[np.unique(edges.ends)]
     axes, points = planes.axes[rows], planes.points[rows]
     height = np.abs(ends @ axes.T - dot(axes, points))
-    return np.asarray((height <= constants.NEARLY * constants.TOUCH * view.tolerance).any(axis=0))
+    return np.asarray((height <= NEARLY * TOUCH * view.tolerance).any(axis=0))
 
 
 def _bends(sharp: PartView, edges: ConvexEdges, k: int, tolerances: Tolerances) -> bool:
@@ -79,7 +85,7 @@ def _bends(sharp: PartView, edges: ConvexEdges, k: int, tolerances: Tolerances) 
 
 def _standing(view: PairView, edges: ConvexEdges, row: int) -> list[_Touch]:
     """Edges and corners of the first part that stand on one plane of the second."""
-    (sharp, flat), planes, limit = view.parts, view.near[1], constants.TOUCH * view.tolerance
+    (sharp, flat), planes, limit = view.parts, view.near[1], TOUCH * view.tolerance
     normal, origin = planes.axes[row], planes.points[row]
     if not len(edges.ends) or float(planes.point_uncertainty[row]) > limit:
         return []
@@ -100,12 +106,12 @@ def _standing(view: PairView, edges: ConvexEdges, row: int) -> list[_Touch]:
     corners = np.setdiff1d(ends[inside], ends[lying])
     if len(corners):
         corners = corners[_lowest(sharp, corners, height, slope)]
-    if not 0 < len(lines) + len(corners) <= constants.EDGES_MOST:
+    if not 0 < len(lines) + len(corners) <= EDGES_MOST:
         return []
     spots: list[tuple[Ints, Array, Array | None]] = [
         (
             edges.facets[at, 0],
-            _between(sharp, edges.ends[at], 1 if _bends(sharp, edges, at, view.tolerances) else constants.LINE_SAMPLES),
+            _between(sharp, edges.ends[at], 1 if _bends(sharp, edges, at, view.tolerances) else LINE_SAMPLES),
             vectors[k] / length[k],
         )
         for k, at in zip(lines.tolist(), some.take(lines).tolist(), strict=True)
@@ -119,11 +125,11 @@ def _standing(view: PairView, edges: ConvexEdges, row: int) -> list[_Touch]:
         ids = (int(sharp.surfaces.labels[facet]), int(planes.ids[row]))
         gaps = (points - origin) @ normal
         on, up = points - gaps[:, None] * normal, np.tile(normal, (len(points), 1))
-        holds = on_surface(flat, on, up, ids[1], constants.PROBE_SPARE * view.tolerance)
+        holds = on_surface(flat, on, up, ids[1], PROBE_SPARE * view.tolerance)
         if holds.any():
-            area = math.pi * (constants.ZONE * view.tolerance) ** 2
+            area = math.pi * (ZONE * view.tolerance) ** 2
             if len(points) > 1:
-                area = 2.0 * constants.ZONE * view.tolerance * float(np.linalg.norm(points[1] - points[0]))
+                area = 2.0 * ZONE * view.tolerance * float(np.linalg.norm(points[1] - points[0]))
             line = axis if len(points) > 1 else None
             out.append(_Touch(ids, row, points[holds], gaps[holds], line, area))
     return out
@@ -140,7 +146,7 @@ def _rises(sharp: PartView, edges: ConvexEdges, height: Array) -> Flags:
         along = sharp.vertices[edges.ends[:, 1]] - sharp.vertices[edges.ends[:, 0]]
         along = along / np.maximum(lengths(along), 1e-300)[:, None]
         away = lengths(reach - dot(reach, along)[:, None] * along)
-        out &= height[third] - base > constants.EDGE_RISE * away
+        out &= height[third] - base > EDGE_RISE * away
     return out
 
 

@@ -6,11 +6,13 @@ import math
 
 import numpy as np
 
-from kinform.contacts.constants import RIM_STEPS
 from kinform.contacts.higher.beside import Beside, beside
 from kinform.contacts.search.pair_view import NearSurfaces
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
+
+RIM_STEPS = 20
+"""Steps between two such places to where it comes nearest: the angle is then exact."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from kinform.contacts.constants import CURVE_BEND_LEAST, CURVE_SAMPLES, CYLINDER_EXACT, SEGMENT_LONG, STRIP_HEIGHT
+from kinform.contacts.constants import CYLINDER_EXACT
 from kinform.contacts.mating.charts import plane_basis
 from kinform.contacts.search.pair_view import PartView
 from kinform.foundation.algebra import splines
@@ -26,6 +26,17 @@ from kinform.foundation.sorting import ascending, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.surfaces import KINDS
+
+SEGMENT_LONG = 3.0
+"""A segment this many times longer than both neighbours is a straight face between curves."""
+CURVE_BEND_LEAST = math.radians(3.0)
+"""rad: a curve that turns less than this in all is a straight face."""
+STRIP_HEIGHT = 0.3
+"""A facet is a strip of a doubly curved surface where its neighbour on along the direction is longer than this
+share."""
+CURVE_SAMPLES = 6
+"""Samples a segment, to find where two curves come close."""
+
 
 _CYLINDER = KINDS.index("cylinder")
 

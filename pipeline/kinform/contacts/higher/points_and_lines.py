@@ -14,19 +14,26 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.contacts import constants
+from kinform.contacts.constants import CLEARLY, MATING_REACH, PROBE_SPARE, TOUCH
+from kinform.contacts.higher.constants import CAPTIVE, ZONE
 from kinform.contacts.higher.meeting import Meeting
 from kinform.contacts.higher.rounds import meeting, on_plane
 from kinform.contacts.higher.stations import where_short
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.narrow_phase import Probes, verify
-from kinform.contacts.search.pair_view import NearSurfaces, PairView, SurfacePair
+from kinform.contacts.search.pair_view import CLEARANCE_SHARE, NearSurfaces, PairView, SurfacePair
 from kinform.foundation.algebra.vectors import cross
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances
+
+OPPOSITE_COSINE = -0.999
+"""Two sides of a slot hold a pin where their normals have at most this cosine."""
+ACROSS_SINE = 1e-3
+"""Directions with at most this sine between them are parallel: planes across a line leave it free."""
+
 
 _CYLINDER = KINDS.index("cylinder")
 _SPHERE = KINDS.index("sphere")
@@ -93,7 +100,7 @@ def _candidates(view: PairView, flags: Flags, first: bool) -> Flags:
     # a roller in a ring not much wider is a shaft in its bore, a ball in such a bowl that of a joint: they mate, or
     # keep apart
     tube = (kinds == other.kinds) & ((kinds == _CYLINDER) | (kinds == _SPHERE)) & hollow
-    play = constants.MATING_REACH * np.maximum(view.play, constants.CLEARANCE_SHARE * other.radii)
+    play = MATING_REACH * np.maximum(view.play, CLEARANCE_SHARE * other.radii)
     apart &= ~tube | (other.radii - ball.radii.take(rows)[:, None] > play)
     out[rows] = flags[rows] & (plane | apart)
     if out.any():
@@ -137,7 +144,7 @@ def touches_between(
         candidates, plane = _candidates(view, flags, first), _PLANAR[view.near[1].kinds]
         for row in np.flatnonzero(candidates.any(axis=1)):
             for column in [*np.flatnonzero(candidates[row] & plane), *np.flatnonzero(candidates[row] & ~plane)]:
-                touch = _touch(view, view.surfaces(int(row), int(column)), first, 1.0 if play else constants.CAPTIVE)
+                touch = _touch(view, view.surfaces(int(row), int(column)), first, 1.0 if play else CAPTIVE)
                 if touch is not None:
                     touches.append(touch)
     touches = touches if play else _held(touches, pair.tolerance)
@@ -171,11 +178,9 @@ def _off_planes(view: PairView) -> Flags:
     arms = roller.points.take(rows, axis=0)[:, None] - flat.points.take(columns, axis=0)
     gaps = np.sum(arms * normals, axis=2) - roller.radii.take(rows)[:, None]
     ends = roller.extents.take(rows, axis=0)[:, :, None] * sine[:, None]
-    limit = constants.CAPTIVE * view.tolerance + constants.CLEARLY * (
-        np.abs(arms).max(axis=2) + np.abs(ends).max(axis=1)
-    )
+    limit = CAPTIVE * view.tolerance + CLEARLY * (np.abs(arms).max(axis=2) + np.abs(ends).max(axis=1))
     clear = (gaps + ends.min(axis=1) > limit) | (gaps + ends.max(axis=1) < -limit)
-    out[rows[:, None], columns] = clear | (np.abs(sine) > np.sin(parallel) + constants.CLEARLY)
+    out[rows[:, None], columns] = clear | (np.abs(sine) > np.sin(parallel) + CLEARLY)
     return out
 
 
@@ -192,11 +197,11 @@ def _touch(view: PairView, surfaces: SurfacePair, first: bool, share: float) -> 
     if met is None:
         return None
     close = np.abs(met.gaps) <= limit
-    if sum(surfaces.shifts) > constants.TOUCH * view.tolerance or not close.any():
+    if sum(surfaces.shifts) > TOUCH * view.tolerance or not close.any():
         return None
     # a roller on a plane lies along it, however little of it is close
     line = met.line and (surfaces.kinds[1] == "plane" or bool(close.sum() > 1))
-    tube = met.clearance is not None and met.clearance <= constants.CAPTIVE * view.tolerance
+    tube = met.clearance is not None and met.clearance <= CAPTIVE * view.tolerance
     return _Touch(surfaces, first, line, met.chosen(close), tube)
 
 
@@ -210,9 +215,9 @@ def _at_wall(view: PairView, touch: _Touch) -> _Touch | None:
         return touch
     met = on_plane(touch.surfaces, parallel_within(touch.surfaces, view.tolerances), short)
     assert met is not None
-    band = constants.TOUCH * view.tolerance
+    band = TOUCH * view.tolerance
     if float(np.abs(touch.meeting.gaps).max()) > band:
-        band = constants.CAPTIVE * view.tolerance
+        band = CAPTIVE * view.tolerance
     close = np.abs(met.gaps) <= band
     return replace(touch, meeting=met.chosen(close)) if close.any() else None
 
@@ -222,7 +227,7 @@ def _held(touches: list[_Touch], tolerance: float) -> list[_Touch]:
     out = []
     for touch in touches:
         captive = touch.tube or any(_opposes(touch, other) for other in touches)
-        close = np.abs(touch.meeting.gaps) <= constants.TOUCH * tolerance
+        close = np.abs(touch.meeting.gaps) <= TOUCH * tolerance
         if captive or close.all():
             out.append(touch)
         elif close.any():
@@ -233,7 +238,7 @@ def _held(touches: list[_Touch], tolerance: float) -> list[_Touch]:
 def _opposes(touch: _Touch, other: _Touch) -> bool:
     """Whether the other surface holds the same ball or pin from the opposite side."""
     same = touch.first == other.first and touch.surfaces.row == other.surfaces.row
-    return same and float((touch.meeting.normals @ other.meeting.normals.T).min()) < constants.OPPOSITE_COSINE
+    return same and float((touch.meeting.normals @ other.meeting.normals.T).min()) < OPPOSITE_COSINE
 
 
 def pins_in_slots(pair: PairView, patches: list[Patch]) -> list[Patch]:
@@ -242,7 +247,7 @@ def pins_in_slots(pair: PairView, patches: list[Patch]) -> list[Patch]:
     axis = patches[0].axis if patches else np.zeros(3)
 
     def parallel(patch: Patch) -> bool:
-        return float(np.linalg.norm(cross(patch.axis, axis))) < constants.ACROSS_SINE
+        return float(np.linalg.norm(cross(patch.axis, axis))) < ACROSS_SINE
 
     if not patches or not all(patch.kind == "plane" and parallel(patch) for patch in patches):
         return []
@@ -254,20 +259,20 @@ def _faces(patch: Patch, other: Patch) -> bool:
     """Whether another line holds the same pin from the opposite side."""
     side = 0 if patch.radii[0] > 0.0 else 1
     same = other.radii[side] > 0.0 and patch.surfaces[side] == other.surfaces[side]
-    return same and float((patch.normals @ other.normals.T).min()) < constants.OPPOSITE_COSINE
+    return same and float((patch.normals @ other.normals.T).min()) < OPPOSITE_COSINE
 
 
 def _probes(touch: _Touch, tolerance: float) -> Probes:
     """One at each point."""
     met, surfaces = touch.meeting, touch.surfaces if touch.first else touch.surfaces.swapped
-    reach = 0.5 * np.abs(met.gaps) + surfaces.slack + constants.PROBE_SPARE * tolerance
+    reach = 0.5 * np.abs(met.gaps) + surfaces.slack + PROBE_SPARE * tolerance
     return Probes.of(met.points, touch.normals(), met.gaps, reach, surfaces)
 
 
 def _patch(pair: PairView, touch: _Touch, holds: Flags) -> Patch:
     """The patch of the points that hold."""
     met, surfaces = touch.meeting, touch.surfaces
-    radius, zone = met.radius or surfaces.radii[0], constants.ZONE * pair.tolerance
+    radius, zone = met.radius or surfaces.radii[0], ZONE * pair.tolerance
     area = 2.0 * math.pi * radius * zone
     if touch.line:
         area = 2.0 * math.sqrt(2.0 * radius * zone) * met.spacing

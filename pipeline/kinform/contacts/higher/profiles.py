@@ -13,8 +13,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.contacts import constants
-from kinform.contacts.higher.closest_places import closest_places
+from kinform.contacts.constants import EXACT_GAP, MATING_REACH, TOUCH
+from kinform.contacts.higher.closest_places import CURVES_OPPOSED, closest_places
+from kinform.contacts.higher.constants import CAPTIVE, LINE_SAMPLES, SIGMAS, ZONE
 from kinform.contacts.higher.outlines import Curve, Segments, Sheet, curves, may_curve, segments
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.mating.charts import plane_basis
@@ -27,6 +28,32 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.tolerances import Tolerances
+
+DIRECTIONS_TRIED = 6
+"""Directions tried, those of the largest faces first."""
+DIRECTION_SINE = 1e-3
+"""Directions with at most this sine between them are tried once."""
+GRAIN = 1e-3
+"""Ends of segments within this are one point."""
+SHEET_RINGS = 6
+"""Rings of facets about the common box of two parts: as many segments settle a spline."""
+NEWTON_STEPS = 20
+"""Steps of Newton's method to where two curves are parallel."""
+CURVE_END_SPARE = math.radians(3.0)
+"""rad: a curve may end this much before it is parallel to the other: it goes on where it was cut."""
+SLIP_LEAST = 0.1
+"""Share of the shortest segment, or of the contact tolerance, by which points that touch may be off each other's
+normal."""
+ROUNDER = 0.2
+"""Curves touch along a line where they part from each other at least at this share of their own curvatures."""
+LENGTH_SHARED = 0.1
+"""Outlines touch along more than this."""
+DISTINCT_DISTANCE = 0.2
+"""Lines of contact nearer to each other than this, ..."""
+DISTINCT_COSINE = 0.9
+"""... with normals of at least this cosine, are one."""
+GAP_ROUNDING = 2e-3
+"""Lines of contact whose gaps differ by no more than this, or by two chord errors, touch alike."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,20 +108,20 @@ def _directions(near: tuple[NearSurfaces, NearSurfaces]) -> list[Array]:
     axes.sort(key=lambda item: (-item[0], *item[1].tolist()))
     out: list[Array] = []
     for _, axis in axes:
-        if all(norm(cross(axis, other)) > constants.DIRECTION_SINE for other in out):
+        if all(norm(cross(axis, other)) > DIRECTION_SINE for other in out):
             out.append(axis)
-        if len(out) == constants.DIRECTIONS_TRIED:
+        if len(out) == DIRECTIONS_TRIED:
             break
     return out
 
 
 def _meetings(pair: PairView, sheets: list[Sheet], direction: Array) -> list[_Meeting]:
     """Where the outlines across `direction` (3,) of these facets of a and of b meet."""
-    tolerance, tolerances, limit = pair.tolerance, pair.tolerances, constants.MATING_REACH * pair.tolerance
+    tolerance, tolerances, limit = pair.tolerance, pair.tolerances, MATING_REACH * pair.tolerance
     found: dict[int, Segments] = {}
     # of few facets none runs along it sooner than of many
     for k in sorted((0, 1), key=lambda k: len(sheets[k].facets)):
-        pieces = segments(pair.parts[k], sheets[k], direction, tolerances.alignment, constants.GRAIN * tolerance)
+        pieces = segments(pair.parts[k], sheets[k], direction, tolerances.alignment, GRAIN * tolerance)
         if pieces is None:
             return []
         found[k] = pieces
@@ -146,7 +173,7 @@ def _sheet(part: PartView, low: Array, high: Array, tolerances: Tolerances) -> S
     inside = np.zeros(len(part.vertices), dtype=bool)
     corners = [np.ascontiguousarray(column) for column in part.faces.T]
     fresh = chosen.nonzero()[0]
-    for _ in range(constants.SHEET_RINGS):
+    for _ in range(SHEET_RINGS):
         inside[part.faces[fresh]] = True
         around = inside[corners[0]] | inside[corners[1]] | inside[corners[2]]
         fresh = (around & ~chosen).nonzero()[0]
@@ -194,7 +221,7 @@ def _parallel_place(first: Curve, second: Curve, s: float, t: float) -> _Place |
     From the parameters s and t; None where the Jacobian is singular.
     """
     ends = (float(first.knots[-1]), float(second.knots[-1]))
-    for _ in range(constants.NEWTON_STEPS):
+    for _ in range(NEWTON_STEPS):
         (px, py), (ux, uy), kappa, speed = _at(first, s)
         (qx, qy), (wx, wy), lam, other_speed = _at(second, t)
         ax, ay, along = px - qx, py - qy, ux * wx + uy * wy
@@ -223,7 +250,7 @@ def _at(curve: Curve, s: float) -> tuple[tuple[float, float], tuple[float, float
 def _refined(first: Curve, second: Curve, s: float, t: float, tolerance: float) -> _Meeting | None:
     """The meeting of two curves near the parameters s and t, where they touch there as convex profiles do."""
     at = _parallel_place(first, second, s, t)
-    if at is None or not float(at.u @ at.w) <= constants.CURVES_OPPOSED:
+    if at is None or not float(at.u @ at.w) <= CURVES_OPPOSED:
         return None
     turn, kappa, lam = at.turn, at.kappa, at.lam
     mean = at.u - at.w
@@ -233,11 +260,11 @@ def _refined(first: Curve, second: Curve, s: float, t: float, tolerance: float) 
     slip = abs(float((at.q - at.p) @ mean))
     relative = float(kappa + lam)
     inner = max(tolerance, float(np.diff(first.knots).min()))
-    if abs(turn) > math.sin(constants.CURVE_END_SPARE):
+    if abs(turn) > math.sin(CURVE_END_SPARE):
         return None
-    if abs(gap) > constants.MATING_REACH * tolerance or slip > constants.SLIP_LEAST * inner:
+    if abs(gap) > MATING_REACH * tolerance or slip > SLIP_LEAST * inner:
         return None
-    if relative <= constants.ROUNDER * max(abs(kappa), abs(lam)):
+    if relative <= ROUNDER * max(abs(kappa), abs(lam)):
         return None
     i, j = first.segment(at.s), second.segment(at.t)
     shares = np.array([abs(kappa), abs(lam)]) / (abs(kappa) + abs(lam))
@@ -254,11 +281,11 @@ def _distinct(meetings: list[_Meeting], tolerance: float) -> list[_Meeting]:
     out: list[_Meeting] = []
     for met in sorted(meetings, key=lambda m: (m.doubt, m.gap, *m.point.tolist())):
         low, high = met.reach
-        if high - low <= constants.LENGTH_SHARED * tolerance:
+        if high - low <= LENGTH_SHARED * tolerance:
             continue
         if all(
-            float(np.linalg.norm(met.point - other.point)) > constants.DISTINCT_DISTANCE * tolerance
-            or float(met.normal @ other.normal) < constants.DISTINCT_COSINE
+            float(np.linalg.norm(met.point - other.point)) > DISTINCT_DISTANCE * tolerance
+            or float(met.normal @ other.normal) < DISTINCT_COSINE
             for other in out
         ):
             out.append(met)
@@ -268,12 +295,12 @@ def _distinct(meetings: list[_Meeting], tolerance: float) -> list[_Meeting]:
 def _nearest(meetings: list[_Meeting], tolerance: float) -> list[_Meeting]:
     """Those that touch. Where nothing touches, those that hold a tooth between them with equal play."""
     least = min(met.gap for met in meetings)
-    margin = max(2.0 * max(met.chord for met in meetings), constants.GAP_ROUNDING * tolerance)
+    margin = max(2.0 * max(met.chord for met in meetings), GAP_ROUNDING * tolerance)
     close = [met for met in meetings if met.gap <= max(least, 0.0) + margin]
-    limit = constants.TOUCH * tolerance
+    limit = TOUCH * tolerance
     if least > limit:
         opposed = any(float(x.normal @ y.normal) < 0.0 for x in close for y in close)
-        limit = constants.CAPTIVE * tolerance if opposed else limit
+        limit = CAPTIVE * tolerance if opposed else limit
     return sorted((m for m in close if abs(m.gap) <= limit), key=lambda m: (*m.point.tolist(),))
 
 
@@ -298,13 +325,13 @@ def _one_line(meetings: list[_Meeting]) -> list[_Meeting]:
 
 def _agree(one: _Meeting, two: _Meeting) -> bool:
     """Whether both lie on one line of action."""
-    allowed = constants.SIGMAS * (one.doubt + two.doubt) + 1e-6
+    allowed = SIGMAS * (one.doubt + two.doubt) + 1e-6
     if float(one.normal @ two.normal) < 0.0:
         return False
     angle = abs(float(one.normal[0] * two.normal[1] - one.normal[1] * two.normal[0]))
     apart = two.point - one.point
     off = abs(float(one.normal[0] * apart[1] - one.normal[1] * apart[0]))
-    place = constants.SIGMAS * (one.place + two.place)
+    place = SIGMAS * (one.place + two.place)
     return angle <= allowed and off <= allowed * float(np.linalg.norm(apart)) + place
 
 
@@ -312,21 +339,21 @@ def _patch(pair: PairView, met: _Meeting, direction: Array) -> Patch:
     """The line in which two outlines meet, along the direction."""
     plane = plane_basis(direction)
     low, high = met.reach
-    height = low + (high - low) * (np.arange(constants.LINE_SAMPLES) + 0.5) / constants.LINE_SAMPLES
+    height = low + (high - low) * (np.arange(LINE_SAMPLES) + 0.5) / LINE_SAMPLES
     points = met.point @ plane + height[:, None] * direction
     labels = [int(curve.labels[k]) for curve, k in zip(met.curves, met.segments, strict=True)]
     bends = [_radius(curve, met) for curve in met.curves]
     samples = TouchSamples(
         points,
-        np.tile(met.normal @ plane, (constants.LINE_SAMPLES, 1)),
-        np.full(constants.LINE_SAMPLES, met.gap),
-        2.0 * math.sqrt(2.0 * constants.ZONE * pair.tolerance / met.curvature) * (high - low) / constants.LINE_SAMPLES,
+        np.tile(met.normal @ plane, (LINE_SAMPLES, 1)),
+        np.full(LINE_SAMPLES, met.gap),
+        2.0 * math.sqrt(2.0 * ZONE * pair.tolerance / met.curvature) * (high - low) / LINE_SAMPLES,
         axis=direction,
         radii=(bends[0], bends[1]),
         uncertainty=(met.doubt, met.place),
         chord=met.chord,
     )
-    return touch_patch(pair, (labels[0], labels[1]), samples, constants.EXACT_GAP * pair.tolerance)
+    return touch_patch(pair, (labels[0], labels[1]), samples, EXACT_GAP * pair.tolerance)
 
 
 def _radius(curve: Curve, met: _Meeting) -> float:

@@ -12,9 +12,10 @@ import math
 
 import numpy as np
 
-from kinform.contacts import constants
+from kinform.contacts.constants import PROBE_SPARE, TOUCH
 from kinform.contacts.higher.beside import Beside, beside
 from kinform.contacts.higher.circles import Rim, rims_of
+from kinform.contacts.higher.constants import BALL_BORE_SAMPLES, RIM_TRIED, ZONE
 from kinform.contacts.higher.nearest import dips_of, evened, nearest
 from kinform.contacts.higher.sharp import ConvexEdges, convex_edges_of_first, on_surface
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
@@ -25,6 +26,10 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
+
+RIM_ENDS = 1e-6
+"""rad by which an edge of a rim may be longer, for rounding."""
+
 
 _ROUND = np.isin(KINDS, ("sphere", "cylinder", "cone", "torus"))
 _SEATED = np.isin(KINDS, ("sphere", "cone", "torus"))
@@ -72,7 +77,7 @@ def seats(pair: PairView, patches: list[Patch]) -> list[Patch]:
         rows = rows[_beside_any(view, rows)]
         edges = convex_edges_of_first(view) if len(rows) else None
         for touch in _of_view(view, edges, rows) if edges is not None else []:
-            if touch.spacing and len(touch.places) == constants.BALL_BORE_SAMPLES and touch.rim.closed:
+            if touch.spacing and len(touch.places) == BALL_BORE_SAMPLES and touch.rim.closed:
                 out.append(_patch(pair, touch, first))
     return out
 
@@ -84,7 +89,7 @@ def _of_view(view: PairView, edges: ConvexEdges, rows: Ints) -> list[_Touch]:
     low, high = _boxes(view, rows)
     out = []
     for rim in rims_of(view, edges, low, high):
-        known = rim.shift + view.near[1].point_uncertainty[rows] <= constants.TOUCH * view.tolerance
+        known = rim.shift + view.near[1].point_uncertainty[rows] <= TOUCH * view.tolerance
         beside_it = ((low <= rim.high) & (rim.low <= high)).all(axis=1)
         for row in rows[known & beside_it]:
             out += _touches(view, rim, int(row))
@@ -94,7 +99,7 @@ def _of_view(view: PairView, edges: ConvexEdges, rows: Ints) -> list[_Touch]:
 def _boxes(view: PairView, rows: Ints) -> tuple[Array, Array]:
     """Lowest and highest corners (n, 3) of where near surfaces of the second part may be touched."""
     near = view.near[1]
-    margin = (constants.TOUCH * view.tolerance + near.slacks[rows])[:, None]
+    margin = (TOUCH * view.tolerance + near.slacks[rows])[:, None]
     return near.lows[rows] - margin, near.highs[rows] + margin
 
 
@@ -109,8 +114,8 @@ def _beside_any(view: PairView, rows: Ints) -> Flags:
 
 def _touches(view: PairView, rim: Rim, row: int) -> list[_Touch]:
     """All round, or at points, or not at all."""
-    near, limit = view.near[1], constants.TOUCH * view.tolerance
-    angles = 2.0 * math.pi * np.arange(constants.RIM_TRIED) / constants.RIM_TRIED
+    near, limit = view.near[1], TOUCH * view.tolerance
+    angles = 2.0 * math.pi * np.arange(RIM_TRIED) / RIM_TRIED
     round_it = beside(near, row, rim.points(angles))
     if not -limit <= float(round_it.gaps.max()) or float(round_it.gaps.min()) > limit + rim.radius * angles[1]:
         return []
@@ -137,7 +142,7 @@ def _nearest(rim: Rim, near: NearSurfaces, row: int, angles: Array, there: Besid
     step = 2.0 * math.pi / len(angles)
     dips = dips.where(rim.has(dips.low + 0.5 * step, 0.5 * step))
     middle = nearest(rim, near, row, dips)
-    return middle[rim.has(middle, constants.RIM_ENDS)]
+    return middle[rim.has(middle, RIM_ENDS)]
 
 
 def _kept(view: PairView, rim: Rim, row: int, angles: Array, spacing: float) -> _Touch | None:
@@ -146,10 +151,10 @@ def _kept(view: PairView, rim: Rim, row: int, angles: Array, spacing: float) -> 
     places = rim.points(angles)
     found = beside(near, row, places)
     normals = evened(rim, angles, found.normals, KINDS[near.kinds[row]]) if spacing else found.normals
-    holds = found.within & (np.abs(found.gaps) <= constants.TOUCH * tolerance) & rim.rises(angles, normals)
+    holds = found.within & (np.abs(found.gaps) <= TOUCH * tolerance) & rim.rises(angles, normals)
     if not holds.any():
         return None
-    feet, reach = places - found.gaps[:, None] * found.normals, constants.PROBE_SPARE * tolerance
+    feet, reach = places - found.gaps[:, None] * found.normals, PROBE_SPARE * tolerance
     holds &= on_surface(view.b, feet, found.normals, int(near.ids[row]), reach)
     if not holds.any():
         return None
@@ -159,7 +164,7 @@ def _kept(view: PairView, rim: Rim, row: int, angles: Array, spacing: float) -> 
 def _patch(pair: PairView, touch: _Touch, first: bool) -> Patch:
     """The patch of a rim of the `first` part, or the second, on a round surface of the other."""
     near, row, rim = pair.near[1 if first else 0], touch.row, touch.rim
-    zone = constants.ZONE * pair.tolerance
+    zone = ZONE * pair.tolerance
     shift = rim.shift + float(near.point_uncertainty[row])
     other = int(near.ids[row])
     radius = float(near.radii[row]) if KINDS[near.kinds[row]] in ("sphere", "cylinder") else rim.radius

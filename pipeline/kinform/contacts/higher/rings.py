@@ -13,8 +13,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.contacts.constants import BALL_BORE_SAMPLES, RIM_TRIED
 from kinform.contacts.higher.beside import EXACT_KINDS, beside
+from kinform.contacts.higher.constants import BALL_BORE_SAMPLES, RIM_TRIED
 from kinform.contacts.higher.meeting import Meeting
 from kinform.contacts.higher.nearest import Circle, dips_of, evened, nearest
 from kinform.contacts.mating.charts import perpendicular

@@ -13,8 +13,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.contacts import constants
-from kinform.contacts.higher.points_and_lines import touches_between
+from kinform.contacts.constants import TOUCH
+from kinform.contacts.higher.constants import ROUND_KINDS
+from kinform.contacts.higher.points_and_lines import ACROSS_SINE, touches_between
 from kinform.contacts.search.pair_view import PairView, PartView
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.meshes.surface_table import SurfaceTable
@@ -22,7 +23,13 @@ from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 
-_ROUND = np.array([kind in constants.ROUND_KINDS for kind in KINDS])
+ROUND_PLACE = 1e-3
+"""Share of a part's span by which the axes of its surfaces may lie beside one, all of which it turns about."""
+ROUND_REST = 0.02
+"""Share of the area of a part that is round all over that may be anything: a mark, a centre, a scrap of a chamfer."""
+
+
+_ROUND = np.array([kind in ROUND_KINDS for kind in KINDS])
 _RACE = np.array([kind in ("cylinder", "cone") for kind in KINDS])
 """Which kinds are round, and which are races of rollers, by their numbers."""
 _SPHERE = KINDS.index("sphere")
@@ -46,7 +53,7 @@ def lines_beside_flanges(pair: PairView, patches: Sequence[Patch]) -> list[Patch
     if not flags.any():
         return []
     touches = touches_between(pair, flags & pair.overlap(pair.tolerance), play=True)
-    touch = constants.TOUCH * pair.tolerance
+    touch = TOUCH * pair.tolerance
     # with so much play it is not known where they touch
     return [
         replace(patch, one_sided=True, bends=False) if float(np.abs(patch.gaps).max()) > touch else patch
@@ -59,8 +66,8 @@ def _ends(patch: Patch, axis: Array, place: Array, span: float) -> bool:
     """Whether a plane lies across an axis through a place, or a ball is about a place on it, as well as the roller, of
     this span (m), is known to be round."""
     if patch.kind == "plane":
-        return norm(cross(patch.axis, axis)) < constants.ACROSS_SINE
-    return norm(cross(patch.point - place, axis)) < constants.ROUND_PLACE * span
+        return norm(cross(patch.axis, axis)) < ACROSS_SINE
+    return norm(cross(patch.point - place, axis)) < ROUND_PLACE * span
 
 
 def _round_all_over(part: PartView, surface: int) -> bool:
@@ -69,17 +76,17 @@ def _round_all_over(part: PartView, surface: int) -> bool:
     table, span = part.table, part.index.mesh.size.span
     axis, point = table.axes[surface], table.points[surface]
     if table.kinds[surface] == _SPHERE:
-        return _area(table, np.arange(len(table.kinds)) != surface) < constants.ROUND_REST * float(table.areas.sum())
-    aside = np.linalg.norm(cross(table.points - point, axis), axis=1) < constants.ROUND_PLACE * span
-    along = np.linalg.norm(cross(table.axes, axis), axis=1) < constants.ACROSS_SINE
+        return _area(table, np.arange(len(table.kinds)) != surface) < ROUND_REST * float(table.areas.sum())
+    aside = np.linalg.norm(cross(table.points - point, axis), axis=1) < ROUND_PLACE * span
+    along = np.linalg.norm(cross(table.axes, axis), axis=1) < ACROSS_SINE
     turns: Flags = _ROUND[table.kinds] & aside & (along | (table.kinds == _SPHERE))
     turns |= (table.kinds == _PLANE) & along
-    if _area(table, ~turns) >= constants.ROUND_REST * float(table.areas.sum()):
+    if _area(table, ~turns) >= ROUND_REST * float(table.areas.sum()):
         return False
     mesh = part.index.mesh
     away = np.linalg.norm(cross(mesh.vertices - point, axis), axis=1)
     widest = float(away[mesh.faces[part.surfaces.labels == surface]].max())
-    return float(away.max()) <= widest + constants.ROUND_PLACE * span
+    return float(away.max()) <= widest + ROUND_PLACE * span
 
 
 def _area(table: SurfaceTable, flags: Flags) -> float:

@@ -10,11 +10,11 @@ import math
 
 import numpy as np
 
-from kinform.contacts.constants import BALL_BORE_SAMPLES, ROLLER_SAMPLES, ROUND_AXIS
+from kinform.contacts.higher.constants import BALL_BORE_SAMPLES, ROLLER_SAMPLES
 from kinform.contacts.higher.meeting import Meeting
 from kinform.contacts.higher.rings import ring
 from kinform.contacts.higher.stations import evenly
-from kinform.contacts.higher.tapers import tapers
+from kinform.contacts.higher.tapers import ROUND_AXIS, tapers
 from kinform.contacts.mating.charts import perpendicular
 from kinform.contacts.search.pair_view import SurfacePair
 from kinform.foundation.algebra.vectors import cross

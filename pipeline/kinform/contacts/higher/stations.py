@@ -7,15 +7,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.contacts import constants
+from kinform.contacts.constants import TOUCH
+from kinform.contacts.higher.constants import ROLLER_SAMPLES
 from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array
 
+SHORT_PLANE = 0.5
+"""Share of the length of a roller below which samples stand only where the plane is under it."""
+
 
 def evenly(low: float, high: float) -> Array:
     """(n,) m: middles of equal shares of an extent."""
-    return low + (high - low) * (np.arange(constants.ROLLER_SAMPLES) + 0.5) / constants.ROLLER_SAMPLES
+    return low + (high - low) * (np.arange(ROLLER_SAMPLES) + 0.5) / ROLLER_SAMPLES
 
 
 def where_short(view: PairView, surfaces: SurfacePair) -> tuple[Array, float] | None:
@@ -27,7 +31,7 @@ def where_short(view: PairView, surfaces: SurfacePair) -> tuple[Array, float] | 
     size = float(np.linalg.norm(across))
     arms = view.b.vertices[view.b.faces[surfaces.facets[1]]] - surfaces.points[0]
     along, aside = arms @ axis, arms @ (across / size)
-    within = constants.TOUCH * view.tolerance
+    within = TOUCH * view.tolerance
     first, last = _in_strip(along, aside, within)
     first, last = np.clip(first, low, high), np.clip(last, low, high)
     order = np.lexsort((last, first))
@@ -36,12 +40,12 @@ def where_short(view: PairView, surfaces: SurfacePair) -> tuple[Array, float] | 
     first = np.maximum(first, np.concatenate([[low], np.maximum.accumulate(last)[:-1]]))
     lengths = np.maximum(last - first, 0.0)
     covered = float(lengths.sum())
-    if not 0.0 < covered < constants.SHORT_PLANE * (high - low):
+    if not 0.0 < covered < SHORT_PLANE * (high - low):
         return None
     ends = np.cumsum(lengths)
     at = evenly(0.0, covered)
     facet = np.minimum(ends.searchsorted(at, side="right"), len(ends) - 1)
-    return first[facet] + at - (ends - lengths)[facet], covered / constants.ROLLER_SAMPLES
+    return first[facet] + at - (ends - lengths)[facet], covered / ROLLER_SAMPLES
 
 
 def _in_strip(along: Array, aside: Array, within: float) -> tuple[Array, Array]:

@@ -7,13 +7,17 @@ import math
 
 import numpy as np
 
-from kinform.contacts.constants import FACING_OPPOSED, ROLLER_SAMPLES, ROUND_AXIS
+from kinform.contacts.constants import FACING_OPPOSED
 from kinform.contacts.higher.beside import beside
+from kinform.contacts.higher.constants import ROLLER_SAMPLES
 from kinform.contacts.higher.meeting import Meeting
 from kinform.contacts.search.pair_view import SurfacePair
 from kinform.foundation.algebra.vectors import cross, foot
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
+
+ROUND_AXIS = 1e-9
+"""Share of its radius by which a ball may be off the axis of a cone and be on it; the same of a unit axis."""
 
 
 @dataclass(frozen=True, eq=False)

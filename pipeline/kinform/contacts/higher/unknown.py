@@ -12,7 +12,8 @@ from dataclasses import replace
 import fcl
 import numpy as np
 
-from kinform.contacts import constants
+from kinform.contacts.constants import TOUCH
+from kinform.contacts.higher.constants import ZONE
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.pair_view import PairView, PartView, boxes_of
 from kinform.foundation.meshes.closest import distances_from
@@ -20,6 +21,10 @@ from kinform.foundation.meshes.fcl_adapter import UNIT, partial_model
 from kinform.foundation.meshes.proximity import near_boxes
 from kinform.model.arrays import Array, Ints
 from kinform.model.contacts import Patch
+
+NEAREST_SLACK = 1e-6
+"""Share of their size by which facets that are as near to a place as the nearest may be farther off: in corners and
+along edges there are several."""
 
 
 def unknown_touches(pair: PairView) -> list[Patch]:
@@ -47,7 +52,7 @@ def unknown_touches(pair: PairView) -> list[Patch]:
         points=place[None],
         normals=normal[None],
         gaps=np.array([gap]),
-        area=(constants.ZONE * pair.tolerance) ** 2,
+        area=(ZONE * pair.tolerance) ** 2,
         axis=None,
         radii=(0.0, 0.0),
         uncertainty=(np.pi / 2, pair.tolerance),
@@ -58,7 +63,7 @@ def unknown_touches(pair: PairView) -> list[Patch]:
 
 def _touches_within(pair: PairView, chords: float) -> float:
     """m up to which surfaces may touch whose facets stand off them by `chords` together."""
-    return constants.TOUCH * pair.tolerance + chords
+    return TOUCH * pair.tolerance + chords
 
 
 def _nearest(pair: PairView, facets: tuple[Ints, Ints]) -> tuple[float, Array]:
@@ -78,7 +83,7 @@ def _at(part: PartView, facets: Ints, place: Array, gap: float) -> tuple[int, Ar
     that are as near there."""
     corners = part.vertices[part.faces[facets]]
     away = distances_from(place, corners)
-    nearest = facets[away <= away.min() + constants.NEAREST_SLACK * (gap + float(np.ptp(corners, axis=(0, 1)).max()))]
+    nearest = facets[away <= away.min() + NEAREST_SLACK * (gap + float(np.ptp(corners, axis=(0, 1)).max()))]
     normals, labels = part.normals(nearest), part.surfaces.labels[nearest]
     mean = np.array([normals[labels == label].mean(axis=0) for label in np.unique(labels)]).mean(axis=0)
-    return int(labels[0]), mean if np.linalg.norm(mean) > constants.NEAREST_SLACK else normals[0]
+    return int(labels[0]), mean if np.linalg.norm(mean) > NEAREST_SLACK else normals[0]

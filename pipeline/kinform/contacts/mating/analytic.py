@@ -12,12 +12,37 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from kinform.contacts import constants
-from kinform.contacts.mating.charts import ConeChart, CylinderChart, PlaneChart, SphereChart, perpendicular
-from kinform.contacts.mating.mate import Axes, Mate, aligned, mean_axes, mean_direction, mean_position, radial_limit
+from kinform.contacts.constants import MATING_REACH
+from kinform.contacts.mating.charts import (
+    SEEN_FROM_AXIS,
+    ConeChart,
+    CylinderChart,
+    PlaneChart,
+    SphereChart,
+    perpendicular,
+)
+from kinform.contacts.mating.mate import (
+    MATING_OFFSET,
+    MATING_TILT,
+    Axes,
+    Mate,
+    aligned,
+    mean_axes,
+    mean_direction,
+    mean_position,
+    radial_limit,
+)
 from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.foundation.algebra.vectors import cross, dot, lengths, norm
 from kinform.model.arrays import Array, Flags
+
+FACE_SHARE = 0.5
+"""Share of the smaller extent of two faces beyond which a gap between them is none of contact."""
+TILT_LIKELY = 1.5
+"""Angles of axes up to this many times that are looked at."""
+LENS_WIDTH = 0.7
+"""Mean width of a lens between an arc and its chord, over the greatest (2/3), rounded up: polygons with
+different corners on one circle overlap in such lenses."""
 
 
 def analytic_mates(pair: PairView, reach: float) -> list[Mate]:
@@ -54,7 +79,7 @@ def _plane_mate(surfaces: SurfacePair, angle: float, tolerance: float) -> Mate |
     gap = above_a + above_b
     tilt = angle * norm(size)
     # the common box of two faces is thinnest across them: its middle side is their smaller extent
-    limit = constants.MATING_REACH * min(tolerance, constants.FACE_SHARE * sorted(size.tolist())[1])
+    limit = MATING_REACH * min(tolerance, FACE_SHARE * sorted(size.tolist())[1])
     if abs(gap) > limit + tilt:
         return None
     half = middle + 0.5 * (above_b - above_a) * normal
@@ -72,7 +97,7 @@ def _plane_mate(surfaces: SurfacePair, angle: float, tolerance: float) -> Mate |
         misalignment=angle,
         uncertainty=(turn, sum(surfaces.shifts)),
         mismatch=(sum(surfaces.turns), sum(surfaces.shifts)),
-        thin=min(constants.LENS_WIDTH * sum(surfaces.both("rims")), tolerance),
+        thin=min(LENS_WIDTH * sum(surfaces.both("rims")), tolerance),
     )
 
 
@@ -116,7 +141,7 @@ def cylinder_mate(pair: PairView, surfaces: SurfacePair) -> Mate | None:
 
 def _cone_mates(pair: PairView, overlap: Flags) -> Iterator[Mate]:
     """Tapers in sockets of the same half-angle among the surfaces flagged in `overlap` (s, t)."""
-    limit = constants.MATING_REACH * pair.tolerance
+    limit = MATING_REACH * pair.tolerance
     for surfaces in _nearly_coaxial(pair, overlap, "cone"):
         angles, side = surfaces.both("half_angles"), surfaces.sides[0]
         unlike = abs(angles[1] - angles[0])
@@ -167,7 +192,7 @@ def _sphere_mates(pair: PairView, overlap: Flags) -> Iterator[Mate]:
         gap = (radii[1] - radii[0]) * side
         offset = norm(second - first)
         limit = radial_limit(pair.play, min(radii))
-        spare = max(gap, 0.0) + min(sum(surfaces.shifts), pair.tolerance) + constants.MATING_OFFSET * pair.tolerance
+        spare = max(gap, 0.0) + min(sum(surfaces.shifts), pair.tolerance) + MATING_OFFSET * pair.tolerance
         if abs(gap) > limit or offset > spare:
             continue
         centre, shift = mean_position(first, second, surfaces.shifts)
@@ -199,7 +224,7 @@ def _nearly_coaxial(pair: PairView, overlap: Flags, kind: str) -> Iterator[Surfa
     rows, columns = rows[at], columns[of]
     cosine = np.abs(dot(a.axes[rows], b.axes[columns]))
     convex = a.sides[rows] * b.sides[columns] < 0.0
-    for k in np.flatnonzero(convex & (cosine > math.cos(constants.TILT_LIKELY * constants.MATING_TILT))):
+    for k in np.flatnonzero(convex & (cosine > math.cos(TILT_LIKELY * MATING_TILT))):
         yield pair.surfaces(rows[k], columns[k])
 
 
@@ -217,7 +242,7 @@ def _base(surfaces: SurfacePair, axes: Axes, radius: float) -> Array:
     """Azimuth that looks into the common box of the two surfaces, where it has one."""
     arm = surfaces.box()[0] - axes.point
     arm = arm - (arm @ axes.axis) * axes.axis
-    return perpendicular(axes.axis, arm if norm(arm) > constants.SEEN_FROM_AXIS * radius else None)
+    return perpendicular(axes.axis, arm if norm(arm) > SEEN_FROM_AXIS * radius else None)
 
 
 _MATES = {"plane": _plane_mates, "cylinder": _cylinder_mates, "cone": _cone_mates, "sphere": _sphere_mates}

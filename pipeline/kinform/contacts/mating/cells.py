@@ -14,13 +14,15 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.contacts import constants
 from kinform.foundation.algebra.vectors import lengths
 from kinform.foundation.joined import joined
 from kinform.foundation.meshes.boxes import middles
 from kinform.foundation.sorting import heads, numbered
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
+
+POINT_SAME = 1e-6
+"""Points of a region closer than this are one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,7 +209,7 @@ def _together(every: Sequence[Cells]) -> tuple[Ints, list[int]]:
 
 def _keys(points: Array, unit: float) -> NDArray[np.complex128]:
     """One number a point (n, 2) m, the same for points that are one."""
-    grid = np.ascontiguousarray(points / (constants.POINT_SAME * unit))
+    grid = np.ascontiguousarray(points / (POINT_SAME * unit))
     return np.rint(grid, out=grid).view(np.complex128)[:, 0]
 
 

@@ -13,12 +13,22 @@ from typing import Protocol
 
 import numpy as np
 
-from kinform.contacts.constants import CHART_ARC, CHART_FAR, HINT_LEAST, POLE_SEEN, SEEN_FROM_AXIS
 from kinform.foundation.algebra import vectors
 from kinform.foundation.algebra.vectors import cross, lengths, norm, times
 from kinform.foundation.meshes.boxes import middles
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
+
+CHART_ARC = math.radians(15.0)
+"""rad: angle that one sample of a curved surface may stand for."""
+CHART_FAR = 1e3
+"""Radii to which charts of cylinders and cones reach."""
+HINT_LEAST = 1e-6
+"""Share of a hint across an axis below which it says nothing."""
+POLE_SEEN = -0.97
+"""Least cosine from the pole of what Lambert's projection shows: beyond, facets would be torn apart."""
+SEEN_FROM_AXIS = 1e-3
+"""Share of the radius nearer than which to the axis or centre a point gives no direction to look in."""
 
 
 class Chart(Protocol):

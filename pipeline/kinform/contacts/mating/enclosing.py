@@ -13,9 +13,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.contacts import constants
+from kinform.contacts.constants import FACING_LEAST, MATING_REACH, TOUCH, TOUCHING
+from kinform.contacts.mating.constants import FREEFORM_ANGLE, SURELY_FACING
 from kinform.contacts.mating.facing import may_face
-from kinform.contacts.mating.patches import classify_fit
+from kinform.contacts.mating.patches import PATCH_AREA, classify_fit
 from kinform.contacts.mating.unread import MotionsLeft, motions_left, unread_surfaces
 from kinform.contacts.search.pair_view import PairView, boxes_of
 from kinform.foundation.algebra.screws import Frame
@@ -28,6 +29,24 @@ from kinform.foundation.sorting import among, distinct, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
+
+ENCLOSING_PROBES = 20_000
+"""Middles of facets of either part that are looked at, of those that may be near what they face: as good as all. Where
+they were 600 of 700, evenly by area, none need have been on a pin, and which were hung on the pose. Contacts of robots
+(so100, dog, sigmaban2019) take as long as then."""
+ENCLOSING_SAMPLES = 600
+"""Of these that face the other part, as many as a patch is made of."""
+STRAY_SHARE = 0.02
+"""Share of the area of all patches below which facets that do not touch hold nothing on their own: what joints are
+derived from leaves as much out."""
+FACING_ROUNDED = 1e-9
+"""By which the cosine of two facets may be off for rounding."""
+ENCLOSING_SPEED = 0.3
+"""Speed along its normal, as a share of that of its place, from which on a facet opposes a motion."""
+OPENS_AGAINST = 0.2
+"""Speed up to which a facet may be approached by a slide that opens all others, ..."""
+OPENS_SHARE = 0.02
+"""... and share of the area that may be approached faster."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,25 +83,23 @@ def enclosing_patches(pair: PairView, patches: list[Patch]) -> list[Patch]:
     """
     patches = _without_strays(patches, pair.tolerance)
     kinds = {patch.kind for patch in patches}
-    if not kinds or ("line" in kinds and kinds <= set(constants.TOUCHING)):
+    if not kinds or ("line" in kinds and kinds <= set(TOUCHING)):
         return []
-    unread = unread_surfaces(pair, patches, constants.MATING_REACH * pair.tolerance)
+    unread = unread_surfaces(pair, patches, MATING_REACH * pair.tolerance)
     if not may_face(pair, unread):
         return []
     near = _near(pair, unread)
     if near is None or not _encloses(near, patches, pair.tolerance):
         return []
-    return [_patch(pair, near.few(constants.ENCLOSING_SAMPLES))]
+    return [_patch(pair, near.few(ENCLOSING_SAMPLES))]
 
 
 def _without_strays(patches: list[Patch], tolerance: float) -> list[Patch]:
     """The patches without the small ones of facets that pass near a surface without touching it: alone, such a patch
     holds nothing, while with the facets beside it, or on the other side, it may be what encloses a part."""
-    little = constants.STRAY_SHARE * sum(patch.area for patch in patches)
+    little = STRAY_SHARE * sum(patch.area for patch in patches)
     return [
-        patch
-        for patch in patches
-        if not (patch.one_sided and patch.area < little and patch.gap > constants.TOUCH * tolerance)
+        patch for patch in patches if not (patch.one_sided and patch.area < little and patch.gap > TOUCH * tolerance)
     ]
 
 
@@ -100,7 +117,7 @@ def _near(pair: PairView, unread: Flags) -> _Near | None:
 def _facing(view: PairView, unread: Flags) -> _Near | None:
     """Those of the first part."""
     (own, other), (a, b) = view.near, view.parts
-    reach = constants.MATING_REACH * view.tolerance
+    reach = MATING_REACH * view.tolerance
     rows_ = np.flatnonzero(unread.any(axis=1))
     columns = np.flatnonzero(unread.any(axis=0))
     low = other.lows[columns].min(axis=0) - reach
@@ -122,12 +139,12 @@ def _facing(view: PairView, unread: Flags) -> _Near | None:
     able, region = _can_hit(view, points, normals, reach, unread, of_row, column)
     if not len(able):
         return None
-    some, weight = _evenly(areas[able], constants.ENCLOSING_PROBES)
+    some, weight = _evenly(areas[able], ENCLOSING_PROBES)
     able = able[some]
     points, normals, of_row = points[able], normals[able], of_row[able]
     hits = region.cast(b.to_part(points), b.turn_to_part(normals), np.full(len(points), reach))
     of_column = column[b.surfaces.labels[hits.facet]]
-    wanted = (hits.facing < -constants.FACING_LEAST) & (of_column >= 0)
+    wanted = (hits.facing < -FACING_LEAST) & (of_column >= 0)
     wanted[wanted] = unread[of_row[hits.probe[wanted]], of_column[wanted]]
     kept = np.flatnonzero(wanted)
     if not len(kept):
@@ -165,7 +182,7 @@ def _can_hit(
     probes, hit = met
     facing = dot(normals.take(probes, axis=0), b.normals(facets.take(hit)))
     kept = unread[of_row.take(probes), of_column.take(hit)]
-    kept &= facing < constants.FACING_ROUNDED - constants.FACING_LEAST
+    kept &= facing < FACING_ROUNDED - FACING_LEAST
     return distinct(probes[kept]), Region(b.index, facets[distinct(hit[kept])])
 
 
@@ -200,9 +217,9 @@ def _encloses(near: _Near, patches: list[Patch], tolerance: float) -> bool:
     for motion in motions:
         along = np.stack([own @ motion, other @ motion])
         way = np.sqrt(((velocities * motion[:, None]).sum(axis=1) ** 2).sum(axis=1))
-        large = np.abs(along).min(axis=0) > np.maximum(constants.ENCLOSING_SPEED * way, constants.SURELY_FACING)
+        large = np.abs(along).min(axis=0) > np.maximum(ENCLOSING_SPEED * way, SURELY_FACING)
         senses = [float(near.areas[large & (along * sense > 0.0).all(axis=0)].sum()) for sense in (1.0, -1.0)]
-        if min(senses) >= constants.PATCH_AREA * tolerance**2:
+        if min(senses) >= PATCH_AREA * tolerance**2:
             return True
     return False
 
@@ -213,11 +230,11 @@ def _opens(near: _Near, left: MotionsLeft) -> bool:
     slides = left.slides[:, 3:]
     mean = near.areas @ near.normals / near.areas.sum()
     away = slides.T @ (slides @ mean)
-    if np.linalg.norm(away) < constants.ENCLOSING_SPEED:
+    if np.linalg.norm(away) < ENCLOSING_SPEED:
         return False
     along = near.normals @ (away / np.linalg.norm(away))
-    against = float(near.areas[along < -constants.OPENS_AGAINST].sum())
-    return against <= constants.OPENS_SHARE * float(near.areas.sum())
+    against = float(near.areas[along < -OPENS_AGAINST].sum())
+    return against <= OPENS_SHARE * float(near.areas.sum())
 
 
 def _patch(pair: PairView, near: _Near) -> Patch:
@@ -242,7 +259,7 @@ def _patch(pair: PairView, near: _Near) -> Patch:
         radii=(0.0, 0.0),
         misalignment=0.0,
         offset=0.0,
-        uncertainty=(constants.FREEFORM_ANGLE, chord),
+        uncertainty=(FREEFORM_ANGLE, chord),
         chord=chord,
         fit=classify_fit(near.gaps, chord, 0.0, pair.tolerance),
     )

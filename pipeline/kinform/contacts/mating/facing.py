@@ -5,12 +5,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.contacts import constants
+from kinform.contacts.constants import MATING_REACH
 from kinform.contacts.search.pair_view import NearSurfaces, PairView
 from kinform.foundation.algebra.vectors import cross, dot, foot, lengths, norm
 from kinform.foundation.constants import SLIVER_WIDTH
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.surfaces import KINDS
+
+OPPOSED_LEVEL = 0.99999
+"""Cosine between opposed planes from which on they are as good as parallel, 0.26°."""
+FACING_NEVER = 0.25
+"""Cosine between normals of surfaces up to which none of their facets face each other, whose normals scatter: half of
+what a probe asks for."""
+
 
 _PLANE, _CYLINDER, _SPHERE = (KINDS.index(kind) for kind in ("plane", "cylinder", "sphere"))
 
@@ -29,9 +36,9 @@ def may_face(pair: PairView, unread: Flags) -> bool:
     sine = np.sqrt(np.maximum(1.0 - cosine * cosine, 0.0))
     flat, straight = (kinds == _PLANE) & (others == _PLANE), (kinds == _CYLINDER) & (others == _CYLINDER)
     across = ((kinds == _PLANE) & (others == _CYLINDER)) | ((kinds == _CYLINDER) & (others == _PLANE))
-    left = ~((flat & (cosine > -constants.FACING_NEVER)) | (across & (sine < constants.FACING_NEVER)))
+    left = ~((flat & (cosine > -FACING_NEVER)) | (across & (sine < FACING_NEVER)))
     rows, columns, straight = rows[left], columns[left], straight[left]
-    reach = constants.MATING_REACH * pair.tolerance
+    reach = MATING_REACH * pair.tolerance
     rest = np.flatnonzero(~straight)
     if len(rest):
         within = (1.0 + 2.0 * SLIVER_WIDTH) * reach + a.slacks[rows[rest]] + b.slacks[columns[rest]]
@@ -53,7 +60,7 @@ def _away(first: NearSurfaces, rows: Ints, second: NearSurfaces, columns: Ints) 
     plane = kinds == _PLANE
     cosine = dot(axes, second.axes[columns])
     radii, spare = second.radii[columns], np.zeros(len(rows))
-    level = plane & (others == _PLANE) & (cosine < -constants.OPPOSED_LEVEL)
+    level = plane & (others == _PLANE) & (cosine < -OPPOSED_LEVEL)
     # a plane that is not quite parallel is nearer at the ends of both parts
     tilt = np.sqrt(np.maximum(1.0 - cosine * cosine, 0.0))
     spare[level] = (tilt * _reach(first, second))[level]

@@ -13,9 +13,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.contacts import constants
+from kinform.contacts.constants import MATING_REACH
+from kinform.contacts.mating.constants import FREEFORM_ANGLE, SURELY_FACING
 from kinform.contacts.mating.mate import aligned, mean_axes, mean_direction
-from kinform.contacts.mating.patches import classify_fit
+from kinform.contacts.mating.patches import GAP_SCATTER, PATCH_AREA, SCATTER_CHORDS, classify_fit
 from kinform.contacts.search.narrow_phase import Probes, verify
 from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.foundation.algebra.vectors import cross, dot, widest_gap
@@ -26,10 +27,21 @@ from kinform.foundation.sorting import among, distinct
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 
+FREEFORM_KINDS = ("freeform", "torus", "revolution", "extrusion", "helicoid")
+"""Kinds whose contacts are found facet by facet."""
+TURNING_KINDS = ("torus", "revolution")
+"""Of these, those that turn on themselves about an axis."""
+FREEFORM_PROBES = 400
+"""Greatest number of probes from either side of a pair of surfaces."""
+FACETS_FACING = 0.93
+"""Facets rest on each other when their normals oppose within about 20°."""
+ENCLOSING_GAP = 0.95 * math.pi
+"""rad: normals about an axis with no wider gap point to all sides."""
+
 
 def freeform_patches(pair: PairView, overlap: Flags) -> list[Patch]:
     """Patches between freeform surfaces flagged in `overlap` (s, t), in the frame of the pair."""
-    rows, columns, flags = pair.of_kinds(overlap, *constants.FREEFORM_KINDS)
+    rows, columns, flags = pair.of_kinds(overlap, *FREEFORM_KINDS)
     probed = []
     for i, j, facing in _may_face(pair, rows, columns, flags):
         surfaces = pair.surfaces(rows[i], columns[j])
@@ -38,14 +50,14 @@ def freeform_patches(pair: PairView, overlap: Flags) -> list[Patch]:
             probed.append((surfaces, probes, shares))
     if not probed:
         return []
-    verdict = verify(pair, [probes for _, probes, _ in probed], constants.FACETS_FACING)
+    verdict = verify(pair, [probes for _, probes, _ in probed], FACETS_FACING)
     patches = []
     for (surfaces, probes, shares), holds, along_a, along_b, cosine in zip(
         probed, verdict.holds, verdict.along_a, verdict.along_b, verdict.cosine, strict=True
     ):
-        here = np.flatnonzero(holds & (np.abs(along_b - along_a) <= constants.MATING_REACH * pair.tolerance))
+        here = np.flatnonzero(holds & (np.abs(along_b - along_a) <= MATING_REACH * pair.tolerance))
         weights = shares[here]
-        if weights.sum() >= constants.PATCH_AREA * pair.tolerance**2:
+        if weights.sum() >= PATCH_AREA * pair.tolerance**2:
             gaps, middle = (along_b - along_a)[here], 0.5 * (along_a + along_b)[here]
             points = probes.points[here] + middle[:, None] * probes.normals[here]
             disagreement = float(weights @ np.arccos(np.clip(-cosine[here], -1.0, 1.0)) / float(weights.sum()))
@@ -64,7 +76,7 @@ def _may_face(pair: PairView, rows: Ints, columns: Ints, flags: Flags) -> list[t
     has one of the other in the box of its probe, that it faces, with such facets: no other probe meets anything."""
     if not flags.any():
         return []
-    reach = constants.MATING_REACH * pair.tolerance
+    reach = MATING_REACH * pair.tolerance
     facets, owners, slivers, boxes, normals = [], [], [], [], []
     some = flags.any(axis=1), flags.any(axis=0)
     for part, near, chosen, flagged in zip(pair.parts, pair.near, (rows, columns), some, strict=True):
@@ -85,7 +97,7 @@ def _may_face(pair: PairView, rows: Ints, columns: Ints, flags: Flags) -> list[t
             return [(int(i), int(j), None) for i, j in np.argwhere(flags)]
         one, two = met
         opposed = dot(normals[0].take(one, axis=0), normals[1].take(two, axis=0))
-        kept = (opposed < constants.SURELY_FACING - constants.FACETS_FACING) & flags[owners[0][one], owners[1][two]]
+        kept = (opposed < SURELY_FACING - FACETS_FACING) & flags[owners[0][one], owners[1][two]]
         keys.append((owners[0][one] * flags.shape[1] + owners[1][two])[kept])
         able.append(facets[side].take(met[side][kept]))
     out: list[tuple[int, int, _Facing]] = []
@@ -98,7 +110,7 @@ def _may_face(pair: PairView, rows: Ints, columns: Ints, flags: Flags) -> list[t
 def _probes(pair: PairView, surfaces: SurfacePair, facing: _Facing) -> tuple[Probes, Array]:
     """Probes at the middles of facets of both surfaces, and half the area (m²) each stands for, but those whose facets
     are not `facing`."""
-    reach = constants.MATING_REACH * pair.tolerance
+    reach = MATING_REACH * pair.tolerance
     middle, size = surfaces.box()
     low, high = middle - 0.5 * size - reach, middle + 0.5 * size + reach
     points, normals, shares = [], [], []
@@ -109,7 +121,7 @@ def _probes(pair: PairView, surfaces: SurfacePair, facing: _Facing) -> tuple[Pro
         inside = meeting_box(centres, centres, low, high)
         # facets without area have no normal
         within = np.nonzero(inside & (part.index.areas(facets) > 0.0))[0]
-        chosen = within[:: max(1, math.ceil(len(within) / constants.FREEFORM_PROBES))]
+        chosen = within[:: max(1, math.ceil(len(within) / FREEFORM_PROBES))]
         areas = part.index.areas(facets[chosen])
         total = float(part.index.areas(facets[within]).sum())
         able = slice(None) if facing is None else np.flatnonzero(among(facets[chosen], facing[k]))
@@ -148,7 +160,7 @@ def _patch(
         radii=(0.0, 0.0),
         misalignment=disagreement,
         offset=0.0,
-        uncertainty=(max(disagreement, constants.FREEFORM_ANGLE), surfaces.chord),
+        uncertainty=(max(disagreement, FREEFORM_ANGLE), surfaces.chord),
         chord=surfaces.chord,
         fit=classify_fit(gaps, surfaces.chord, 0.0, pair.tolerance),
     )
@@ -157,7 +169,7 @@ def _patch(
 def _turning(patch: Patch, pair: PairView, surfaces: SurfacePair) -> Patch:
     """The patch as one of two surfaces that turn about one axis, where they do: its normals then leave that turn
     exactly free."""
-    if not set(surfaces.kinds) <= set(constants.TURNING_KINDS):
+    if not set(surfaces.kinds) <= set(TURNING_KINDS):
         return patch
     axes = mean_axes(surfaces, patch.point)
     length = float(np.ptp(patch.points @ axes.axis))
@@ -192,8 +204,8 @@ def _sliding(patch: Patch, pair: PairView, surfaces: SurfacePair) -> Patch:
     if max(spread) > alignment or angle > alignment + 2.0 * uncertainty:
         return patch
     scatter = math.sqrt(float(patch.weights @ (patch.gaps - patch.gap) ** 2) / patch.area)
-    encloses = widest_gap(patch.normals, axis) < constants.ENCLOSING_GAP
-    if scatter > max(constants.GAP_SCATTER * pair.tolerance, constants.SCATTER_CHORDS * patch.chord) and not encloses:
+    encloses = widest_gap(patch.normals, axis) < ENCLOSING_GAP
+    if scatter > max(GAP_SCATTER * pair.tolerance, SCATTER_CHORDS * patch.chord) and not encloses:
         # two cams: they curve away from each other, and touch along a line
         return patch
     normals = patch.normals - (patch.normals @ axis)[:, None] * axis

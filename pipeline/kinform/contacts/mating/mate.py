@@ -6,17 +6,25 @@ uncertainties.
 
 from __future__ import annotations
 
+import math
 from dataclasses import field
 from functools import cached_property
 
 import numpy as np
 
-from kinform.contacts import constants
+from kinform.contacts.constants import MATING_REACH
 from kinform.contacts.mating.charts import Chart
-from kinform.contacts.search.pair_view import PairView, SurfacePair
+from kinform.contacts.search.pair_view import CLEARANCE_SHARE, PairView, SurfacePair
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
+
+HALF_RADIUS_SHARE = 3.0
+"""A radial gap of the radius divided by this is no fit."""
+MATING_TILT = math.radians(5.0)
+"""rad: no clearance excuses a greater angle between two mating axes."""
+MATING_OFFSET = 0.5
+"""By so much axes or centres of surfaces that mate may miss each other beyond the clearance."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,9 +72,7 @@ class Mate:
 def radial_limit(play: float, radius: float) -> float:
     """Greatest radial gap or overlap at which curved surfaces mate (m): real coaxial clearances grow
     with the radius, and a gap of a third of the radius is no fit. `play` (m) is that of the pair."""
-    return constants.MATING_REACH * min(
-        max(play, constants.CLEARANCE_SHARE * radius), radius / constants.HALF_RADIUS_SHARE
-    )
+    return MATING_REACH * min(max(play, CLEARANCE_SHARE * radius), radius / HALF_RADIUS_SHARE)
 
 
 def _shares(first: float, second: float) -> tuple[float, float]:
@@ -125,5 +131,5 @@ def aligned(pair: PairView, axes: Axes, clearance: float, length: float) -> bool
     """Whether two axes agree: to what the clearance allows over the engaged length, or within `alignment`."""
     spare = max(clearance, 0.0)
     tilt = pair.tolerances.alignment + 2.0 * axes.uncertainty[0] + 2.0 * spare / max(length, 1e-12)
-    offset = spare + min(2.0 * axes.uncertainty[1], pair.tolerance) + constants.MATING_OFFSET * pair.tolerance
-    return axes.misalignment <= min(tilt, constants.MATING_TILT) and axes.offset <= offset
+    offset = spare + min(2.0 * axes.uncertainty[1], pair.tolerance) + MATING_OFFSET * pair.tolerance
+    return axes.misalignment <= min(tilt, MATING_TILT) and axes.offset <= offset

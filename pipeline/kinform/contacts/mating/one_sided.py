@@ -14,16 +14,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from kinform.contacts.constants import (
-    ANALYTIC_KINDS,
-    CLEARLY,
-    FACING_OPPOSED,
-    GIVER_AREA,
-    MATING_REACH,
-    PLANES_TILTED,
-    SURELY_FACING,
-)
+from kinform.contacts.constants import CLEARLY, FACING_OPPOSED, GIVER_AREA, MATING_REACH
 from kinform.contacts.mating.charts import Chart, ConeChart, CylinderChart, PlaneChart, SphereChart, perpendicular
+from kinform.contacts.mating.constants import SURELY_FACING
 from kinform.contacts.mating.mate import Mate
 from kinform.contacts.search.pair_view import PairView, SurfacePair, boxes_of
 from kinform.foundation.algebra.vectors import dot, lengths
@@ -33,6 +26,12 @@ from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
+
+ANALYTIC_KINDS = ("plane", "cylinder", "cone", "sphere")
+"""Kinds of surfaces that give normals to others."""
+PLANES_TILTED = math.radians(3.0)
+"""rad: planes that oppose each other within this lie on each other badly; beyond, they meet at an edge."""
+
 
 _ANALYTIC = np.array([kind in ANALYTIC_KINDS for kind in KINDS])
 """Which kinds of surfaces have equations, by their numbers."""

@@ -13,7 +13,6 @@ from collections.abc import Sequence
 import numpy as np
 from manifold3d import CrossSection, FillRule, triangulate
 
-from kinform.contacts import constants
 from kinform.contacts.mating.cells import Cells, Cut, gathered, signed_areas
 from kinform.contacts.mating.charts import Chart
 from kinform.contacts.mating.regions import regions
@@ -21,6 +20,17 @@ from kinform.foundation.algebra.vectors import lengths
 from kinform.foundation.joined import joined
 from kinform.foundation.meshes.boxes import triangle_boxes
 from kinform.model.arrays import Array
+
+PATCH_BINS = 24
+"""Least number of bins of a patch, so that a blocked part of it can be told."""
+PATCH_RIM_POINTS = 96
+"""Greatest number of points that stand for the rim."""
+REGION_THIN = 0.01
+"""Regions thinner than this are lines, not patches."""
+REGION_SIMPLE = REGION_THIN * 0.1
+"""Corners of a region that are off by less than this are left out."""
+REGION_SMALL = 0.02
+"""Regions smaller than this share of the squared tolerance are points, not patches."""
 
 
 def _perimeter(polygons: list[Array]) -> float:
@@ -77,9 +87,9 @@ def _pieces(region: CrossSection, thin: float) -> list[list[Array]]:
     """The connected pieces of a region that are neither points nor narrower than `thin`, as polygons."""
     pieces = []
     for piece in region.decompose():
-        polygons = [np.asarray(p) for p in piece.simplify(constants.REGION_SIMPLE).to_polygons()]
+        polygons = [np.asarray(p) for p in piece.simplify(REGION_SIMPLE).to_polygons()]
         area = piece.area()
-        if polygons and area >= constants.REGION_SMALL and 2.0 * area >= thin * _perimeter(polygons):
+        if polygons and area >= REGION_SMALL and 2.0 * area >= thin * _perimeter(polygons):
             pieces.append(polygons)
     return pieces
 
@@ -89,7 +99,7 @@ def _rim(polygons: list[Array], flat: bool) -> Array:
     corners = np.concatenate(polygons)
     if flat:
         corners = np.concatenate([np.asarray(p) for p in CrossSection.hull_points(corners).to_polygons()])
-    every = math.ceil(len(corners) / constants.PATCH_RIM_POINTS)
+    every = math.ceil(len(corners) / PATCH_RIM_POINTS)
     return np.asarray(corners[::every])
 
 
@@ -110,11 +120,11 @@ def overlays(asked: Sequence[tuple[Chart, Array, Array, float, float]]) -> list[
 
 def _cut(region: CrossSection, chart: Chart, tolerance: float, thin: float) -> Cut | None:
     """One of them, whose region is in units of the tolerance, not yet gathered."""
-    wide = max(constants.REGION_THIN, thin / tolerance)
+    wide = max(REGION_THIN, thin / tolerance)
     pieces = _pieces(region, wide)
-    narrow = not pieces and wide > constants.REGION_THIN
+    narrow = not pieces and wide > REGION_THIN
     if narrow:
-        pieces = _pieces(region, constants.REGION_THIN)
+        pieces = _pieces(region, REGION_THIN)
     if not pieces:
         return None
     step = np.array(chart.step) / tolerance
@@ -125,6 +135,6 @@ def _cut(region: CrossSection, chart: Chart, tolerance: float, thin: float) -> C
         triangles.append(np.concatenate(pieces[number])[triangulate(pieces[number])])
     corners = np.concatenate(triangles)
     area = float(np.abs(signed_areas(corners)).sum())
-    size = np.minimum(step, math.sqrt(area / constants.PATCH_BINS))
+    size = np.minimum(step, math.sqrt(area / PATCH_BINS))
     rim = _rim([polygon for polygons in pieces for polygon in polygons], flat)
     return Cut(corners, size, rim, tolerance, narrow)

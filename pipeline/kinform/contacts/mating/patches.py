@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.contacts import constants
+from kinform.contacts.constants import EXACT_GAP, MATING_REACH, PROBE_SPARE
 from kinform.contacts.mating.cells import Cells, probed, quadratures
 from kinform.contacts.mating.mate import Mate
 from kinform.contacts.mating.overlay import overlays
@@ -16,6 +16,14 @@ from kinform.contacts.search.narrow_phase import Probes, verify_all
 from kinform.contacts.search.pair_view import PairView
 from kinform.model.arrays import Array, freeze
 from kinform.model.contacts import Patch
+
+GAP_SCATTER = 0.1
+"""Scatter of the measured gap of a face that rests on a plane, and of profiles that lie along each other."""
+SCATTER_CHORDS = 0.3
+"""The same on curved surfaces, as a share of the chord error, where that is more."""
+PATCH_AREA = 4.0
+"""Least area, in squared tolerances, of patches that are measured by facets: less is a stray touch of two rounded
+edges."""
 
 
 def mated_patches(pair: PairView, mates: list[Mate]) -> list[Patch]:
@@ -63,10 +71,10 @@ def _rests(mate: Mate, cells: Cells, gaps: Array, tolerance: float) -> bool:
     area = float(shares.sum())
     mean = float(shares @ gaps) / area
     scatter = math.sqrt(float(shares @ (gaps - mean) ** 2) / area)
-    allowed = constants.GAP_SCATTER * tolerance
+    allowed = GAP_SCATTER * tolerance
     if mate.kind not in ("plane", "other"):
-        allowed = max(allowed, constants.SCATTER_CHORDS * mate.surfaces.chord)
-    return area >= constants.PATCH_AREA * tolerance**2 and (mate.kind == "other" or scatter <= allowed)
+        allowed = max(allowed, SCATTER_CHORDS * mate.surfaces.chord)
+    return area >= PATCH_AREA * tolerance**2 and (mate.kind == "other" or scatter <= allowed)
 
 
 def _cells(mates: Sequence[tuple[PairView, Mate]]) -> list[Cells | None]:
@@ -96,7 +104,7 @@ def _probes(mate: Mate, flat: Array, tolerance: float) -> Probes:
     """At points (n, 2) of the chart, on the surface half-way between the two."""
     points = mate.chart.lift(flat)
     gaps = mate.gaps(points)
-    reach = 0.5 * np.abs(gaps) + mate.slack + constants.PROBE_SPARE * tolerance
+    reach = 0.5 * np.abs(gaps) + mate.slack + PROBE_SPARE * tolerance
     return Probes.of(points, mate.sign * mate.chart.normals(points), gaps, reach, mate.surfaces)
 
 
@@ -106,7 +114,7 @@ def classify_fit(gaps: Array, chord: float, uncertainty: float, tolerance: float
     Beyond chord errors and uncertainty: clearance, or interference. No gap at all, as far as the surfaces
     are known: touch. Everything between, and patches with both: transition.
     """
-    exact = uncertainty + constants.EXACT_GAP * tolerance
+    exact = uncertainty + EXACT_GAP * tolerance
     low, high = float(gaps.min()), float(gaps.max())
     if low >= -exact and high <= exact:
         return "touch"
@@ -155,7 +163,7 @@ def _patch(pair: PairView, mate: Mate, narrow: bool, measured: Array | None, fla
         mismatch=mate.mismatch,
         chord=chord,
         fit=classify_fit(gaps, chord, mate.uncertainty[1], pair.tolerance),
-        tolerance=mate.limit / constants.MATING_REACH,
+        tolerance=mate.limit / MATING_REACH,
         narrow=narrow,
     )
 

@@ -12,12 +12,14 @@ from itertools import accumulate
 import numpy as np
 from manifold3d import CrossSection, FillRule
 
-from kinform.contacts import constants
-from kinform.contacts.mating.cells import signed_areas
+from kinform.contacts.mating.cells import POINT_SAME, signed_areas
 from kinform.foundation.alike import numbered_alike
 from kinform.foundation.joined import joined
 from kinform.foundation.sorting import numbered
 from kinform.model.arrays import Array, Ints
+
+MANY_TRIANGLES = 64
+"""Triangles of which the outline is quicker to unite than all of them."""
 
 
 def regions(flats: Sequence[Array], units: Sequence[float]) -> list[CrossSection]:
@@ -36,7 +38,7 @@ def regions(flats: Sequence[Array], units: Sequence[float]) -> list[CrossSection
     for k, (i, j) in enumerate(zip(ends[:-1], ends[1:], strict=True)):
         if loops[k] is None:
             own = flat[i:j]
-            loops[k] = _outline(own) if j - i > constants.MANY_TRIANGLES else list(np.ascontiguousarray(own))
+            loops[k] = _outline(own) if j - i > MANY_TRIANGLES else list(np.ascontiguousarray(own))
     return [CrossSection(outline, FillRule.Positive) for outline in loops]
 
 
@@ -46,7 +48,7 @@ def _simple_outlines(flat: Array, owner: Ints, count: int) -> list[list[Array] |
     do, and there are far fewer of them. Each from its lowest corner on, and by that; None of sets in which several
     edges leave one corner."""
     points, of_point = flat.reshape(-1, 2), np.repeat(owner, 3)
-    cells = np.round(points / constants.POINT_SAME)
+    cells = np.round(points / POINT_SAME)
     cells += 0.0  # one zero
     first, corner = numbered_alike([*np.ascontiguousarray(cells.T).view(np.uint64), of_point.view(np.uint64)])
     leaving, reaching, times = _one_way(corner)
@@ -94,7 +96,7 @@ def _one_way(corner: Ints) -> tuple[Ints, Ints, Ints]:
 
 def _outline(flat: Array) -> list[Array]:
     """The same of one set (n, 3, 2), whatever leaves its corners."""
-    cells = np.round(flat.reshape(-1, 2) / constants.POINT_SAME)
+    cells = np.round(flat.reshape(-1, 2) / POINT_SAME)
     order = np.lexsort((cells[:, 1], cells[:, 0]))
     fresh = np.r_[True, (cells[order[1:]] != cells[order[:-1]]).any(axis=1)]
     renamed = np.empty(len(order), np.int64)

@@ -12,15 +12,31 @@ import math
 
 import numpy as np
 
-from kinform.contacts import constants
 from kinform.contacts.mating.charts import plane_basis
 from kinform.contacts.mating.mate import Axes, aligned, mean_axes
-from kinform.contacts.mating.patches import classify_fit
+from kinform.contacts.mating.patches import PATCH_AREA, classify_fit
 from kinform.contacts.search.pair_view import PairView, PartView, SurfacePair
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
+
+PITCH_SAME = 2e-3
+"""Relative difference of two pitches that are meant as one; less where the engagement is long."""
+THREAD_AXIS_VAGUE = 0.02
+"""rad: what is known no better than this about its axis is no thread that mates."""
+THREAD_FACETS = 400
+"""Greatest number of facets of either side that give samples."""
+PROFILE_SHARES = np.array([1.0, 3.0, 5.0]) / 6.0
+"""Where samples lie on the profile of a facet: the middles of its thirds."""
+FLANK_NEIGHBOURS = 24
+"""Samples of the other side that are held against each."""
+FLANK_HELIX_WEIGHT = 0.1
+"""Weight of the distance along the helix in looking for these."""
+FLANKS_FACING = -0.7
+"""Greatest cosine between the normals of two flanks that lie on each other."""
+FLANK_GAP = 0.15
+"""Greatest gap of two flanks, in pitches: beyond, neither is the other's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,10 +81,10 @@ def _fit(pair: PairView, surfaces: SurfacePair) -> tuple[Axes, float, float] | N
     turns = engaged / max(abs(first), 1e-12)
     apart = abs(first - second)
     pitch = 0.5 * (first + second)
-    limit = constants.FLANK_GAP * abs(pitch)
-    if max(surfaces.turns) > constants.THREAD_AXIS_VAGUE:
+    limit = FLANK_GAP * abs(pitch)
+    if max(surfaces.turns) > THREAD_AXIS_VAGUE:
         return None
-    if apart > constants.PITCH_SAME * abs(first) or apart * max(turns, 1.0) > limit:
+    if apart > PITCH_SAME * abs(first) or apart * max(turns, 1.0) > limit:
         return None
     return (axes, pitch, limit) if aligned(pair, axes, limit, engaged) else None
 
@@ -88,7 +104,7 @@ def _patch(pair: PairView, surfaces: SurfacePair) -> Patch | None:
         np.concatenate([getattr(side, name) for side in samples])
         for name in ("points", "azimuth", "height", "gaps", "area")
     )
-    if not len(flat) or areas.sum() < constants.PATCH_AREA * pair.tolerance**2:
+    if not len(flat) or areas.sum() < PATCH_AREA * pair.tolerance**2:
         return None
     normal = np.concatenate([samples[0].normal, -samples[1].normal])
     base, aside = plane_basis(axes.axis)
@@ -175,8 +191,8 @@ class _Samples:
 
 def _places(profile: _Profile, pitch: float) -> tuple[Ints, Array, Array, Array, Array]:
     """Facet, point (2,), normal (3,), azimuth and height of the samples of every facet."""
-    facet = np.repeat(np.arange(len(profile.area)), len(constants.PROFILE_SHARES))
-    share = np.tile(constants.PROFILE_SHARES, len(profile.area))
+    facet = np.repeat(np.arange(len(profile.area)), len(PROFILE_SHARES))
+    share = np.tile(PROFILE_SHARES, len(profile.area))
     points = profile.select(facet).at(share)
     azimuth = profile.azimuth[facet]
     normal = profile.normal[facet].copy()
@@ -190,7 +206,7 @@ def _resting(mine: _Profile, other: _Profile, pitch: float, limit: float) -> _Sa
     """Samples of one side that lie within `limit` (m) of the other side's profile, and half their areas."""
     from scipy.spatial import cKDTree
 
-    kept = np.arange(0, len(mine.area), max(1, math.ceil(len(mine.area) / constants.THREAD_FACETS)))
+    kept = np.arange(0, len(mine.area), max(1, math.ceil(len(mine.area) / THREAD_FACETS)))
     share = len(mine.area) / max(len(kept), 1)
     facet, points, normal, azimuth, height = _places(mine.select(kept), pitch)
     if not len(facet) or not len(other.area):
@@ -202,12 +218,10 @@ def _resting(mine: _Profile, other: _Profile, pitch: float, limit: float) -> _Sa
 
     def embedded(places: Array, heights: Array) -> Array:
         turn = np.mod(places[:, 1], lead)
-        return np.stack(
-            [places[:, 0], np.where(turn >= lead, 0.0, turn), constants.FLANK_HELIX_WEIGHT * (heights - low)], axis=1
-        )
+        return np.stack([places[:, 0], np.where(turn >= lead, 0.0, turn), FLANK_HELIX_WEIGHT * (heights - low)], axis=1)
 
     tree = cKDTree(embedded(their_points, their_height), boxsize=[far, lead, far])
-    count = min(constants.FLANK_NEIGHBOURS, len(their_points))
+    count = min(FLANK_NEIGHBOURS, len(their_points))
     _, near = tree.query(embedded(points, height), k=count)
     near = near.reshape(len(points), count)
     line = theirs[near]
@@ -222,7 +236,7 @@ def _resting(mine: _Profile, other: _Profile, pitch: float, limit: float) -> _Sa
     foot = np.einsum("ijk,ijk->ij", from_start, along) / length**2
     beside = np.abs(height[:, None] - their_height[near]) - other.reach[line] - mine.reach[kept][facet][:, None]
     good = (
-        (np.einsum("ijk,ijk->ij", np.broadcast_to(normal[:, None], opposite.shape), opposite) < constants.FLANKS_FACING)
+        (np.einsum("ijk,ijk->ij", np.broadcast_to(normal[:, None], opposite.shape), opposite) < FLANKS_FACING)
         & (np.abs(gap) <= limit)
         & (foot >= -1e-6)
         & (foot <= 1.0 + 1e-6)
@@ -230,5 +244,5 @@ def _resting(mine: _Profile, other: _Profile, pitch: float, limit: float) -> _Sa
     )
     best = np.argmin(np.where(good, np.abs(gap), np.inf), axis=1)
     holds = np.flatnonzero(good.any(axis=1))
-    area = 0.5 * share * mine.area[kept][facet] / len(constants.PROFILE_SHARES)
+    area = 0.5 * share * mine.area[kept][facet] / len(PROFILE_SHARES)
     return _Samples(points[holds], normal[holds], azimuth[holds], height[holds], gap[holds, best[holds]], area[holds])

@@ -11,13 +11,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.contacts import constants
 from kinform.contacts.search.pair_view import PairView
 from kinform.foundation.algebra.screws import Frame, rows
 from kinform.foundation.algebra.vectors import cross
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
+
+ENCLOSED_HELD = 0.02
+"""Singular value below which patches leave a motion that is to be looked at, turn of a unit twist below which it
+slides, and speed along its normal, as a share of that of its place, above which a point or a line holds a motion."""
 
 
 def unread_surfaces(pair: PairView, patches: Sequence[Patch], reach: float) -> Flags:
@@ -67,8 +70,8 @@ def motions_left(patches: Sequence[Patch], frame: Frame) -> MotionsLeft:
     )
     triangle = np.linalg.qr(held, mode="r") if len(held) > 6 else held
     _, values, right = np.linalg.svd(np.vstack([triangle, np.zeros((6, 6))]))
-    left = right[:6][values[:6] < constants.ENCLOSED_HELD]
+    left = right[:6][values[:6] < ENCLOSED_HELD]
     _, turning, mixed = np.linalg.svd(left[:, :3].T, full_matrices=True)
-    count = int(np.count_nonzero(turning > constants.ENCLOSED_HELD))
+    count = int(np.count_nonzero(turning > ENCLOSED_HELD))
     across = mixed @ left
     return MotionsLeft(frame, across[count:], across[:count] / turning[:count, None])

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.contacts import constants
+from kinform.contacts.constants import TOUCHING
+from kinform.contacts.overlap.constants import EXACT_OVERLAP
 from kinform.contacts.search.pair_view import PairView, PartView
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.meshes.apart import keep_apart
@@ -14,6 +15,15 @@ from kinform.foundation.meshes.probes import Region, crossings_of
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
+
+CURVED_FIRST = 20_000
+"""Facets of a part up to which those of its round surfaces in contact are asked first whether they cross others."""
+PARTING_STEPS = 60
+"""Steps of Frank and Wolfe's method."""
+PARTING_LEAST = 0.1
+"""Least speed at which parts leave all their plane contacts that counts as leaving them, of 1."""
+PARTING_TRIED = 0.9
+"""Share of what counts as an overlap by which parts are moved to see whether they are then free."""
 
 
 def boundaries_cross(asked: Sequence[tuple[PairView, list[Patch]]]) -> list[bool | None]:
@@ -57,12 +67,12 @@ class _Moves:
 
 def _moves(pair: PairView, patches: list[Patch]) -> _Moves:
     """Those of a pair."""
-    least = constants.EXACT_OVERLAP * pair.tolerance
+    least = EXACT_OVERLAP * pair.tolerance
     shift = least * _SHIFT
     apart = parting(patches)
     if apart is None:
         return _Moves(np.zeros(3), [shift, -shift], True)
-    return _Moves(constants.PARTING_TRIED * least * apart, [np.zeros(3), shift, -shift], False)
+    return _Moves(PARTING_TRIED * least * apart, [np.zeros(3), shift, -shift], False)
 
 
 def _clear(pairs: dict[int, PairView]) -> set[int]:
@@ -70,7 +80,7 @@ def _clear(pairs: dict[int, PairView]) -> set[int]:
     asked = []
     for pair in pairs.values():
         first, second = (part.corners(part.probed) for part in pair.parts)
-        asked.append((first, second, constants.EXACT_OVERLAP * norm(_SHIFT) * pair.tolerance))
+        asked.append((first, second, EXACT_OVERLAP * norm(_SHIFT) * pair.tolerance))
     return {k for k, far in zip(pairs, keep_apart(asked), strict=True) if far}
 
 
@@ -97,7 +107,7 @@ def _curved(pair: PairView, patches: list[Patch]) -> tuple[Region, Region] | Non
     tight = [
         patch for patch in patches if patch.kind in ("cylinder", "cone", "sphere") and 2.0 * patch.gap <= patch.chord
     ]
-    if not tight or max(len(part.faces) for part in pair.parts) > constants.CURVED_FIRST:
+    if not tight or max(len(part.faces) for part in pair.parts) > CURVED_FIRST:
         return None
     ids = [{patch.surfaces[k] for patch in tight} for k in (0, 1)]
     out = []
@@ -115,7 +125,7 @@ def _may_overlap(pair: PairView) -> bool:
     if not (a.part.solid and b.part.solid):
         return False
     low, high = np.maximum(a.low, b.low), np.minimum(a.high, b.high)
-    return not (high - low).min() < constants.EXACT_OVERLAP * pair.tolerance
+    return not (high - low).min() < EXACT_OVERLAP * pair.tolerance
 
 
 def _moved(a: PartView, b: PartView, move: Array) -> tuple[Region, Region, Array]:
@@ -132,18 +142,18 @@ def parting(patches: list[Patch]) -> Array | None:
 
     The point of least norm in the hull of the normals, by Frank and Wolfe's method.
     """
-    touching = [patch.normals for patch in patches if patch.kind in constants.TOUCHING]
+    touching = [patch.normals for patch in patches if patch.kind in TOUCHING]
     normals = np.concatenate(
         [np.array([patch.axis for patch in patches if patch.kind == "plane"]).reshape(-1, 3), *touching]
     )
     if not len(normals):
         return None
     nearest = np.add.reduce(normals, axis=0) / len(normals)
-    for _ in range(constants.PARTING_STEPS):
+    for _ in range(PARTING_STEPS):
         step = normals[np.argmin(normals @ nearest)] - nearest
         gain = -float(step @ nearest)
         if gain <= 1e-9:
             break
         nearest = nearest + min(1.0, gain / float(step @ step)) * step
     length = float(np.linalg.norm(nearest))
-    return nearest / length if length > constants.PARTING_LEAST else None
+    return nearest / length if length > PARTING_LEAST else None

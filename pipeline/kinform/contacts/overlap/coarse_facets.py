@@ -14,7 +14,6 @@ from functools import cached_property
 
 import numpy as np
 
-from kinform.contacts import constants
 from kinform.contacts.search.pair_view import PartView, near_facets
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.constants import STANDOFF_EDGES
@@ -24,6 +23,12 @@ from kinform.foundation.meshes.closest import distances_between
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances
+
+BEYOND_FACETS = 2.5
+"""Times what a facet stands off by which its surface may go on beside it, as where it ends at another at 22°."""
+COARSE_AT_ONCE = 4_000_000
+"""Points times facets near all of them of which it is asked at once which are near each other: 0.1 s, 0.1 GB."""
+
 
 _FREE = [KINDS.index(kind) for kind in ("helicoid", "revolution", "extrusion", "freeform")]
 """Kinds whose chord errors are estimates."""
@@ -90,9 +95,9 @@ class _Side:
         # the nearest facet is no farther beside what it may stand off, and so none counts that is
         beyond = np.minimum(beyond, self.part.depths(points)[0] + self.floor)
         low, high = points - np.abs(beyond)[:, None], points + np.abs(beyond)[:, None]
-        margin = (1.0 + constants.BEYOND_FACETS) * self.most
+        margin = (1.0 + BEYOND_FACETS) * self.most
         facets, least, most = near_facets(self.part, low.min(axis=0) - margin, high.max(axis=0) + margin)
-        reach = (1.0 + constants.BEYOND_FACETS) * self.bounds[self.part.surfaces.labels[facets]][:, None]
+        reach = (1.0 + BEYOND_FACETS) * self.bounds[self.part.surfaces.labels[facets]][:, None]
         boxes = least - reach, most + reach
         for at, beside in _meeting((low, high), boxes, np.arange(len(points)), np.arange(len(facets))):
             np.minimum.at(out, at, self._beyond(points[at], facets[beside], beyond[at]))
@@ -105,7 +110,7 @@ class _Side:
         corners = part.vertices.take(part.faces[facets], axis=0)
         away = distances_between(points, corners)
         bounds = self.bounds[part.surfaces.labels[facets]]
-        near = np.flatnonzero(away <= (1.0 + constants.BEYOND_FACETS) * bounds + beyond)
+        near = np.flatnonzero(away <= (1.0 + BEYOND_FACETS) * bounds + beyond)
         away, height = away[near], np.abs(dot(points[near] - corners[near, 0], part.normals(facets[near])))
         # how facets bend is not asked where it does not matter
         some = _less(away, height, bounds[near]) <= beyond[near]
@@ -134,7 +139,7 @@ def _meeting(first: Boxes, second: Boxes, one: Ints, two: Ints) -> Iterator[tupl
     if len(one) == 1:
         yield np.repeat(one, len(two)), two
         return
-    if len(one) * len(two) <= constants.COARSE_AT_ONCE:
+    if len(one) * len(two) <= COARSE_AT_ONCE:
         met = meeting_boxes((low, high), (second[0].take(two, axis=0), second[1].take(two, axis=0)))
         if met is not None:
             yield one[met[0]], two[met[1]]
@@ -147,5 +152,5 @@ def _meeting(first: Boxes, second: Boxes, one: Ints, two: Ints) -> Iterator[tupl
 def _less(away: Array, height: Array, standing: Array) -> Array:
     """(k,) m: distances of points from facets less what these stand off; `height` is that above their planes, in which
     their surfaces go on beside them."""
-    beside = np.sqrt(np.maximum(away * away - height * height, 0.0)) - constants.BEYOND_FACETS * standing
+    beside = np.sqrt(np.maximum(away * away - height * height, 0.0)) - BEYOND_FACETS * standing
     return np.asarray(np.hypot(height, np.maximum(beside, 0.0)) - standing)

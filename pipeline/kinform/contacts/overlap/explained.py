@@ -14,19 +14,24 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.contacts import constants
-from kinform.contacts.overlap.boundaries import parting
+from kinform.contacts.constants import TOUCHING
+from kinform.contacts.overlap.boundaries import PARTING_TRIED, parting
+from kinform.contacts.overlap.constants import EXACT_OVERLAP
 from kinform.contacts.overlap.samples import Allowance
-from kinform.contacts.overlap.shrunk import outward
+from kinform.contacts.overlap.shrunk import SHELL_TRIED, outward
 from kinform.contacts.overlap.solids import bounds_volume
 from kinform.contacts.search.pair_view import PairView, PartView
-from kinform.foundation.constants import CROSSED_FEW, CROSSED_MOST
 from kinform.foundation.meshes.boxes import middles
-from kinform.foundation.meshes.slivers import Met, met_among, near_swept
+from kinform.foundation.meshes.slivers import CROSSED_FEW, CROSSED_MOST, Met, met_among, near_swept
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
+
+SURELY_EXPLAINED = 0.9
+"""Share of the depth that surfaces which mate explain by which facets are moved to see whether all is explained: pieces
+of the overlap are then thinner, too, than what their surfaces explain, as no two sides of one are further apart."""
+
 
 _PLANE = KINDS.index("plane")
 
@@ -112,7 +117,7 @@ def _question(pair: PairView, patches: list[Patch]) -> _Question | None:
         return None
     if not all(bounds_volume(part.index.mesh) for part in pair.parts):
         return None
-    least = constants.EXACT_OVERLAP * pair.tolerance
+    least = EXACT_OVERLAP * pair.tolerance
     allowance = Allowance.of(pair, patches, least)
     rounds = [patch for patch in allowance.mates.values() if patch.kind != "plane"]
     if not rounds or not all(_of_round_surfaces(pair, patch) for patch in rounds):
@@ -123,9 +128,9 @@ def _question(pair: PairView, patches: list[Patch]) -> _Question | None:
     facets = (parts[0].probed, parts[1].probed)
     if len(facets[0]) * len(facets[1]) > CROSSED_FEW:
         return None
-    depth = constants.SURELY_EXPLAINED * min(_explained_by(patch, allowance) for patch in rounds)
+    depth = SURELY_EXPLAINED * min(_explained_by(patch, allowance) for patch in rounds)
     apart = parting(patches)
-    shift = np.zeros(3) if apart is None else (sides[1] - sides[0]) * constants.PARTING_TRIED * least * apart
+    shift = np.zeros(3) if apart is None else (sides[1] - sides[0]) * PARTING_TRIED * least * apart
     inwards, less = (most - float(np.linalg.norm(shift)) for most in (depth, min(depth, alone[sides[1]] + least)))
     if inwards <= 0.0 or less < 0.0 or depth > min(part.clear for part in parts):
         return None
@@ -146,7 +151,7 @@ def _question(pair: PairView, patches: list[Patch]) -> _Question | None:
         moved_less=second - less * off,
         shift=shift,
         mating=(mating[0], mating[1]),
-        cut_off=not any(patch.kind in constants.TOUCHING for patch in rounds),
+        cut_off=not any(patch.kind in TOUCHING for patch in rounds),
     )
 
 
@@ -173,7 +178,7 @@ def _explained_by(patch: Patch, allowance: Allowance) -> float:
 def _tried(part: PartView) -> Ints:
     """Facets of which it is asked whether they are inside the other part: one of each shell, and some of one alone."""
     shells = part.index.shells
-    return shells if len(shells) > 1 else np.arange(0, len(part.faces), -(-len(part.faces) // constants.SHELL_TRIED))
+    return shells if len(shells) > 1 else np.arange(0, len(part.faces), -(-len(part.faces) // SHELL_TRIED))
 
 
 def _outside(outer: PartView, points: Array, inner: PartView) -> bool:

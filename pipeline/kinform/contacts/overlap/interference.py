@@ -12,16 +12,30 @@ import math
 
 import numpy as np
 
-from kinform.contacts import constants
+from kinform.contacts.overlap.constants import EXACT_OVERLAP
 from kinform.contacts.overlap.samples import Allowance, Samples, inset, joined_samples, measured, measured_on
 from kinform.contacts.overlap.shrunk import are_within
-from kinform.contacts.overlap.slight import counts_of, is_slight
+from kinform.contacts.overlap.slight import DEPTH_SAMPLES, counts_of, is_slight
 from kinform.contacts.overlap.solids import Piece, SolidStore, bounds_volume
 from kinform.contacts.search.pair_view import PairView, PartView, near_facets
 from kinform.foundation.meshes.boxes import middles
 from kinform.foundation.meshes.parity import winding
 from kinform.model.arrays import Array, Flags, Ints, freeze
 from kinform.model.contacts import Interference, Patch
+
+SURELY_INSIDE = 0.75
+"""How often the facets of an open mesh go round a point that counts as inside: of a round gap in them, as wide as it is
+deep, less is seen, and what lies nearer to the gap has no depth that is known."""
+BESIDE_DEEPEST = 100
+"""Points beside the deepest one that are measured too."""
+CUT_FEW = 1500
+"""Facets of either part up to which a cut takes no longer, 2 ms, than it takes to see that none is needed, where round
+surfaces touch and one mostly is."""
+THINNER = 0.25
+"""Share of what counts as an overlap by which a solid is made thinner to see that it shares nothing with another. No
+depth is more than that then, and no ball that both share is larger, so that pieces of the overlap are no thicker than
+half of what counts: their volume is no more than their area by the radius of that ball."""
+
 
 Overlaps = tuple[Interference | None, Interference | None]
 """The overlap of a pair that is sure, and, where there is none, one that is possible."""
@@ -31,14 +45,14 @@ def find_interference(pair: PairView, patches: list[Patch], solids: SolidStore, 
     """Overlap of two solids beyond the chord errors of their surfaces, in the frame of the pair; `crosses` as
     `boundaries_cross` says."""
     a, b = pair.parts
-    least = constants.EXACT_OVERLAP * pair.tolerance
+    least = EXACT_OVERLAP * pair.tolerance
     if crosses is None or not (crosses or _holds(a, b) or _holds(b, a)):
         return None, None
     closed = bounds_volume(a.index.mesh) and bounds_volume(b.index.mesh)
     # facets of round surfaces cross by their chord errors as a rule
     cross = any(patch.kind != "plane" for patch in patches)
-    few = cross and max(len(part.faces) for part in pair.parts) <= constants.CUT_FEW
-    if closed and not few and are_within(a, b, constants.THINNER * least):
+    few = cross and max(len(part.faces) for part in pair.parts) <= CUT_FEW
+    if closed and not few and are_within(a, b, THINNER * least):
         return None, None
     allowance = Allowance.of(pair, patches, least)
     overlap = solids.overlap(a, b, allowance.floor**3) if closed else None
@@ -69,7 +83,7 @@ def _surely(part: PartView, points: Array, crossed: Flags) -> Flags:
     """(n,) which of some points (n, 3), that are inside of a part by counting crossings, are so for sure."""
     out = crossed.copy()
     if not part.index.mesh.health.watertight and out.any():
-        out[out] = np.abs(winding(part.index.mesh, part.to_part(points[out]))) > constants.SURELY_INSIDE
+        out[out] = np.abs(winding(part.index.mesh, part.to_part(points[out]))) > SURELY_INSIDE
     return out
 
 
@@ -98,7 +112,7 @@ def _deepest(a: PartView, b: PartView, piece: Piece, samples: Samples, deep: Fla
     best = int(np.argmax(np.where(deep, samples.depth, -math.inf)))
     points, part, facet = _points_of(piece)
     off = np.linalg.norm(points - samples.points[best], axis=1)
-    beside = np.lexsort((np.arange(len(off)), off))[: constants.BESIDE_DEEPEST]
+    beside = np.lexsort((np.arange(len(off)), off))[:BESIDE_DEEPEST]
     more = measured_on(a, b, points[beside], part[beside], facet[beside])
     return max(float(samples.depth[best]), float(more.depth.max()))
 
@@ -182,7 +196,7 @@ def _crossed(owner: PartView, other: PartView) -> tuple[Array, Ints]:
     corners = owner.vertices.take(owner.faces[near], axis=0)
     points, facets = inset(corners, middles(corners)), np.concatenate([near, np.repeat(near, 3)])
     within = np.nonzero(((points > other.low) & (points < other.high)).all(axis=1))[0]
-    chosen = within[:: max(1, math.ceil(len(within) / constants.DEPTH_SAMPLES))]
+    chosen = within[:: max(1, math.ceil(len(within) / DEPTH_SAMPLES))]
     points, facets = points[chosen], facets[chosen]
     inside = other.index.contains(other.to_part(points))
     return points[inside], facets[inside].astype(np.int64)

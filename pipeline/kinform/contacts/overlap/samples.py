@@ -5,13 +5,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.contacts import constants
+from kinform.contacts.constants import MATING_REACH
 from kinform.contacts.overlap.coarse_facets import CoarseFacets
 from kinform.contacts.presses import beyond_press
 from kinform.contacts.search.pair_view import PairView, PartView
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
+
+SHELL_INSET = 0.98
+"""Points just inside the corners of a facet are at this share of the way to them from its middle."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +94,7 @@ class Allowance:
         mated = bool(mates) and not any(beyond_press(patch) for patch in mates)
         mated &= bool(
             (
-                (samples.depth[deep] <= constants.MATING_REACH * self.tolerance)
+                (samples.depth[deep] <= MATING_REACH * self.tolerance)
                 & (at_mate[deep] | (samples.depth[deep] <= pressed))
             ).all()
         )
@@ -131,6 +134,4 @@ def joined_samples(samples: list[Samples]) -> Samples:
 
 def inset(corners: Array, middle: Array) -> Array:
     """(4 n, 3) the middles (n, 3) of facets (n, 3, 3), and points just inside their corners."""
-    return np.concatenate(
-        [middle, (constants.SHELL_INSET * corners + (1.0 - constants.SHELL_INSET) * middle[:, None]).reshape(-1, 3)]
-    )
+    return np.concatenate([middle, (SHELL_INSET * corners + (1.0 - SHELL_INSET) * middle[:, None]).reshape(-1, 3)])

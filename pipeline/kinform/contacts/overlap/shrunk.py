@@ -13,12 +13,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.contacts import constants
 from kinform.contacts.search.pair_view import PartView
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.meshes.boxes import facet_boxes, meeting_box, middles
 from kinform.foundation.meshes.slivers import crossing
 from kinform.model.arrays import Array, Ints
+
+SHELL_TRIED = 16
+"""Facets of a shell of which one that is not at the surface of another solid tells whether the shell is in it."""
 
 
 def are_within(a: PartView, b: PartView, least: float) -> bool:
@@ -48,7 +50,7 @@ def _outside(inner: PartView, outer: PartView, least: float) -> bool:
     if one:
         if ((inner.low < low) | (inner.high > high)).any():
             return True
-        tried = np.arange(0, len(inner.faces), -(-len(inner.faces) // constants.SHELL_TRIED))
+        tried = np.arange(0, len(inner.faces), -(-len(inner.faces) // SHELL_TRIED))
     points = middles(inner.vertices.take(inner.faces[tried], axis=0))
     points = points[((points > low) & (points < high)).all(axis=1)]
     if not len(points) or (one and len(points) < len(tried)):

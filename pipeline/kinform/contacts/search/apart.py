@@ -14,11 +14,19 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.contacts import constants
+from kinform.contacts.constants import CYLINDER_EXACT, MATING_REACH
 from kinform.contacts.search.pair_view import PairView, PartView, near_facets
 from kinform.foundation.meshes.apart import keep_apart
 from kinform.model.arrays import Array, Flags
 from kinform.model.surfaces import KINDS
+
+APART_FACETS = 10_000
+"""Facets of a part up to which it is asked whether it keeps apart from another: no chain of facets of one plane makes a
+turn of so few."""
+TOUCHING_WITHIN = 0.6
+"""Facets on both sides of a point in which parts touch are within this of each other, and what they stand off their
+surfaces: `CAPTIVE`, and thrice `PROBE_SPARE`."""
+
 
 _CYLINDER = KINDS.index("cylinder")
 
@@ -35,7 +43,7 @@ def _distance(pair: PairView) -> float | None:
     """m: parts whose facets keep it do not touch; None of large parts, and where threads meet, whose flanks may be
     further apart."""
     a, b = pair.near
-    if max(len(part.faces) for part in pair.parts) > constants.APART_FACETS:
+    if max(len(part.faces) for part in pair.parts) > APART_FACETS:
         return None
     if "helicoid" in a.present and "helicoid" in b.present:
         return None
@@ -43,8 +51,8 @@ def _distance(pair: PairView) -> float | None:
     slacks = pair.a.table.slack + pair.b.table.slack
     beside = float(a.slacks.max(initial=0.0)) + float(b.slacks.max(initial=0.0))
     outlines = sum(bulges) + slacks if any(bulges) else 0.0
-    points = constants.TOUCHING_WITHIN * pair.tolerance + beside
-    return max(constants.MATING_REACH * pair.tolerance + outlines, points)
+    points = TOUCHING_WITHIN * pair.tolerance + beside
+    return max(MATING_REACH * pair.tolerance + outlines, points)
 
 
 def bulge_of(part: PartView, smooth: float) -> float:
@@ -56,7 +64,7 @@ def bulge_of(part: PartView, smooth: float) -> float:
 def exact_cylinders(part: PartView) -> Flags:
     """(s,) which surfaces are cylinders whose fit is better than any curve through their vertices."""
     table = part.table
-    return np.asarray((table.kinds == _CYLINDER) & (table.residuals < constants.CYLINDER_EXACT * table.chords))
+    return np.asarray((table.kinds == _CYLINDER) & (table.residuals < CYLINDER_EXACT * table.chords))
 
 
 def _facets(pair: PairView, far: float) -> tuple[Array, Array]:

@@ -14,7 +14,7 @@ from itertools import accumulate
 
 import numpy as np
 
-from kinform.contacts.constants import BETWEEN_MARGIN, BETWEEN_SHARE, FACING_LEAST
+from kinform.contacts.constants import FACING_LEAST
 from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.joined import joined
@@ -22,6 +22,11 @@ from kinform.foundation.meshes.probes import Cast, Hits, cast_all
 from kinform.foundation.sorting import heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
+
+BETWEEN_MARGIN = 0.01
+"""What lies this close to one of the two facets that a probe meets is not between them."""
+BETWEEN_SHARE = 0.05
+"""The same as a share of the distance of the two facets."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from kinform.contacts.constants import CLEARANCE_SHARE, FEW_BESIDE, MATING_REACH, MOST_SURFACES, OVERLAPS_KEPT
+from kinform.contacts.constants import MATING_REACH
 from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.meshes.boxes import boxes_within, facet_boxes, meeting_box
 from kinform.foundation.meshes.index import MeshIndex, MeshStore
@@ -27,6 +27,16 @@ from kinform.model.assembly import Part
 from kinform.model.names import PartName
 from kinform.model.surfaces import KINDS, MeshSurfaces
 from kinform.model.tolerances import Tolerances
+
+CLEARANCE_SHARE = 0.03
+"""Share of its radius that a shaft may be smaller than its bore, where that is more than the contact tolerance."""
+FEW_BESIDE = 1000
+"""Facets in the common box of two parts up to which all are taken for near: to look closer takes as long as FCL's model
+of the rest."""
+MOST_SURFACES = 3000
+"""Surfaces of one part that a pair looks at: a bound of memory for crumpled meshes."""
+OVERLAPS_KEPT = 200_000
+"""Surfaces times surfaces of a pair up to which it is kept which come near each other: 0.2 MB."""
 
 
 @dataclass(frozen=True, eq=False)

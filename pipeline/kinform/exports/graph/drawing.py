@@ -11,7 +11,6 @@ from html import escape
 
 import numpy as np
 
-from kinform.exports import constants
 from kinform.exports.graph.layout import box_centres
 from kinform.foundation.graphs.cycles import short_cycles
 from kinform.foundation.graphs.graph import blocks
@@ -19,6 +18,32 @@ from kinform.foundation.words import counted, one_line
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Kinematics
+
+LETTER_WIDTH = 7.3
+"""px, of a letter on average."""
+LINE_HEIGHT = 18.0
+"""px, of a line of the legend."""
+MARGIN = 30.0
+"""px, around the drawing."""
+EDGE_LENGTH = 105.0
+"""px, of a joint between two bodies: its symbol stands clear of both."""
+SYMBOL_RADIUS = 10.5
+"""px, of the circle with the letter of a joint."""
+SYMBOL_PLACES = (0.5, 0.6, 0.4, 0.7, 0.3, 0.8, 0.2)
+"""Shares of a joint's line at which its symbol may stand, the best first."""
+CLEARANCE = 0.8
+"""Share of its radius by which a symbol keeps clear of boxes."""
+MOST_CLEARED = 600
+"""Bodies up to which the symbols keep clear of boxes: the search takes bodies times joints."""
+MOST_LOOPS = 40
+"""Loops up to which they are numbered; more marks cannot be told apart."""
+MOST_BODIES = 150
+"""Bodies of the largest graph in a page: a larger one cannot be read there."""
+LONGEST_NAME = 30
+"""Letters of a name in a page."""
+PANEL = (320.0, 470.0)
+"""px, width and height of the room of the graph in a page."""
+
 
 SYMBOLS = {
     "fixed": "F", "revolute": "R", "prismatic": "P", "cylindrical": "C", "spherical": "S", "planar": "E",
@@ -64,7 +89,7 @@ class _Drawing:
     @property
     def extent(self) -> Array:
         """(2,) px."""
-        return np.asarray((self.at + self.sizes / 2).max(axis=0, initial=0.0) + constants.MARGIN)
+        return np.asarray((self.at + self.sizes / 2).max(axis=0, initial=0.0) + MARGIN)
 
 
 def _drawing(kinematics: Kinematics, names: list[str], extra: float, *, upright: bool = False) -> _Drawing:
@@ -72,24 +97,23 @@ def _drawing(kinematics: Kinematics, names: list[str], extra: float, *, upright:
     index = {body.name: n for n, body in enumerate(kinematics.bodies)}
     edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in kinematics.joints]
     ground = next((n for n, body in enumerate(kinematics.bodies) if body.ground), 0)
-    sizes = np.array([[constants.LETTER_WIDTH * len(name) + extra, 30.0] for name in names]).reshape(-1, 2)
+    sizes = np.array([[LETTER_WIDTH * len(name) + extra, 30.0] for name in names]).reshape(-1, 2)
     at = (
-        box_centres(sizes[:, ::-1], edges, ground, constants.EDGE_LENGTH)[:, ::-1]
+        box_centres(sizes[:, ::-1], edges, ground, EDGE_LENGTH)[:, ::-1]
         if upright
-        else box_centres(sizes, edges, ground, constants.EDGE_LENGTH)
+        else box_centres(sizes, edges, ground, EDGE_LENGTH)
     )
-    return _Drawing(kinematics, names, sizes, at + constants.MARGIN, edges, _loops(kinematics, edges))
+    return _Drawing(kinematics, names, sizes, at + MARGIN, edges, _loops(kinematics, edges))
 
 
 def graph_svg(kinematics: Kinematics) -> str:
     """The graph as one SVG: ground hatched, ambiguous joints dashed, drivers of freedoms filled, loops numbered."""
     drawing = _drawing(kinematics, [one_line(body.name) for body in kinematics.bodies], 22.0)
     extent, legend = drawing.extent, graph_legend(kinematics)
-    width = max(float(extent[0]), constants.LETTER_WIDTH * max(map(len, legend)) + 2 * constants.MARGIN)
-    height = float(extent[1]) + constants.LINE_HEIGHT * len(legend) + constants.MARGIN
+    width = max(float(extent[0]), LETTER_WIDTH * max(map(len, legend)) + 2 * MARGIN)
+    height = float(extent[1]) + LINE_HEIGHT * len(legend) + MARGIN
     texts = [
-        f'<text x="{constants.MARGIN:.0f}" y="{extent[1] + constants.LINE_HEIGHT * (n + 1):.1f}" class="legend">'
-        f"{escape(text)}</text>"
+        f'<text x="{MARGIN:.0f}" y="{extent[1] + LINE_HEIGHT * (n + 1):.1f}" class="legend">{escape(text)}</text>'
         for n, text in enumerate(legend)
     ]
     head = (
@@ -116,14 +140,12 @@ def graph_panel(kinematics: Kinematics, colours: Sequence[str]) -> str:
 
     They carry their numbers as data-body and data-joint. Empty where the graph is too large to be read.
     """
-    if not 0 < len(kinematics.bodies) <= constants.MOST_BODIES:
+    if not 0 < len(kinematics.bodies) <= MOST_BODIES:
         return ""
     names = [one_line(body.name) for body in kinematics.bodies]
-    names = [
-        name if len(name) <= constants.LONGEST_NAME else name[: constants.LONGEST_NAME - 1] + "…" for name in names
-    ]
+    names = [name if len(name) <= LONGEST_NAME else name[: LONGEST_NAME - 1] + "…" for name in names]
     both = [_drawing(kinematics, names, 36.0, upright=upright) for upright in (True, False)]
-    drawing = min(both, key=lambda d: float((d.extent / constants.PANEL).max()))
+    drawing = min(both, key=lambda d: float((d.extent / PANEL).max()))
     width, height = drawing.extent
     return (
         f'<svg class="graph" viewBox="0 0 {width:.0f} {height:.0f}" width="{width:.0f}" height="{height:.0f}" '
@@ -203,7 +225,7 @@ def _loops(kinematics: Kinematics, edges: list[tuple[int, int]]) -> list[_Loop]:
             members = [block[k] for k, _ in cycle]
             around = tuple(sorted({n for k in members for n in edges[k]}))
             out.append(_Loop(around, held.get(frozenset(names[k] for k in members), 0)))
-    return out if len(out) <= constants.MOST_LOOPS else []
+    return out if len(out) <= MOST_LOOPS else []
 
 
 def _trimmed(start: Array, end: Array, size: Array) -> Array:
@@ -221,10 +243,10 @@ def _ends(at: Array, sizes: Array, edge: tuple[int, int]) -> tuple[Array, Array]
 def _middle(at: Array, sizes: Array, edge: tuple[int, int]) -> Array:
     """Where the symbol of the joint stands: half-way, or beside that where a box is in the way."""
     first, second = _ends(at, sizes, edge)
-    if len(at) <= constants.MOST_CLEARED:
-        for share in constants.SYMBOL_PLACES:
+    if len(at) <= MOST_CLEARED:
+        for share in SYMBOL_PLACES:
             place = first + share * (second - first)
-            if not (np.abs(at - place) < sizes / 2 + constants.CLEARANCE * constants.SYMBOL_RADIUS).all(axis=1).any():
+            if not (np.abs(at - place) < sizes / 2 + CLEARANCE * SYMBOL_RADIUS).all(axis=1).any():
                 return np.asarray(place)
     return np.asarray((first + second) / 2)
 
@@ -239,7 +261,7 @@ def _box(name: str, centre: Array, size: Array, ground: bool, colour: str = "") 
     x, y = centre - size / 2
     frame = f'x="{x:.1f}" y="{y:.1f}" width="{size[0]:.1f}" height="{size[1]:.1f}" rx="4"'
     box = f'<rect class="body" {frame}/>'
-    wide = constants.LETTER_WIDTH * len(name) + 6.0
+    wide = LETTER_WIDTH * len(name) + 6.0
     if ground:
         plate = f'x="{centre[0] - wide / 2:.1f}" y="{centre[1] - 9:.1f}" width="{wide:.1f}" height="18"'
         box += f'<rect class="ground" {frame}/><rect class="plate" {plate}/>'
@@ -257,7 +279,7 @@ def _symbol(centre: Array, joint: Joint, drives: bool) -> str:
     dash = f' stroke-dasharray="{DASHES[joint.status]}"' if joint.status in DASHES else ""
     return (
         f'<g><title>{escape(one_line(_about(joint)))}</title><circle class="symbol{" drives" if drives else ""}" '
-        f'cx="{x:.1f}" cy="{y:.1f}" r="{constants.SYMBOL_RADIUS}"{dash}/>'
+        f'cx="{x:.1f}" cy="{y:.1f}" r="{SYMBOL_RADIUS}"{dash}/>'
         f'<text class="letter" x="{x:.1f}" y="{y + 4.3:.1f}" text-anchor="middle">{SYMBOLS[joint.type]}</text></g>'
     )
 

@@ -10,9 +10,25 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.exports import constants
 from kinform.foundation.graphs.graph import Edge, neighbours
 from kinform.model.arrays import Array
+
+MOST_STRESSED = 250
+"""Nodes of a component; larger ones stay in layers, as majorisation takes their square in memory."""
+MOST_ROUNDS = 200
+"""Steps of majorisation, and rounds of pushing boxes apart."""
+STILL = 0.05
+"""px: a step of majorisation that moves no node by more is the last."""
+LEAST_OVERLAP = 0.5
+"""px: boxes that are nearer to each other than they may be by less stay where they are."""
+CROWDED = 9
+"""Nodes with more neighbours are hubs, whose edges are longer."""
+HUB_EXPONENT = 0.75
+"""The edge of a hub grows with this power of its neighbours over CROWDED; tried on the fixtures."""
+WIDTH_SHARE = 0.25
+"""Share of both widths by which boxes beside each other are to be further apart than their edges say."""
+GAP = 26.0
+"""px, least space between two boxes."""
 
 
 def box_centres(sizes: Array, edges: Sequence[Edge], first: int, spacing: float) -> Array:
@@ -27,12 +43,12 @@ def box_centres(sizes: Array, edges: Sequence[Edge], first: int, spacing: float)
         inner = [(index[a], index[b]) for a, b in edges if a in index]
         boxes = sizes[members]
         at = _layers(depth, boxes, spacing)
-        if 2 < len(members) <= constants.MOST_STRESSED:
+        if 2 < len(members) <= MOST_STRESSED:
             at = _least_stress(at, inner, spacing, boxes)
         at = _apart(at, boxes)
         low = (at - boxes / 2).min(axis=0)
         out[members] = at - low + (left, 0.0)
-        left += float((at + boxes / 2).max(axis=0)[0] - low[0]) + 2 * constants.GAP
+        left += float((at + boxes / 2).max(axis=0)[0] - low[0]) + 2 * GAP
     return out
 
 
@@ -60,7 +76,7 @@ def _layers(depth: Sequence[int], boxes: Array, spacing: float) -> Array:
     at = np.zeros((len(depth), 2))
     for level in range(max(depth) + 1):
         row = [n for n, d in enumerate(depth) if d == level]
-        wide = boxes[row, 0] + constants.GAP
+        wide = boxes[row, 0] + GAP
         at[row, 0] = np.cumsum(wide) - 0.5 * wide - 0.5 * wide.sum()
         at[row, 1] = -spacing * level
     return at
@@ -70,19 +86,19 @@ def _least_stress(at: Array, edges: Sequence[Edge], spacing: float, boxes: Array
     """Least Σ (distance on paper − ideal)² / ideal², by majorisation from where the nodes are."""
     far = _distances(len(at), edges) * spacing
     # boxes are wide: what lies beside each other needs more room than what lies above
-    far = far + constants.WIDTH_SHARE * (boxes[:, 0][:, None] + boxes[:, 0][None])
+    far = far + WIDTH_SHARE * (boxes[:, 0][:, None] + boxes[:, 0][None])
     np.fill_diagonal(far, 1.0)
     weight = 1.0 / far**2
     np.fill_diagonal(weight, 0.0)
     laplacian = np.diag(weight.sum(axis=1)) - weight
     inverse = np.linalg.pinv(laplacian)
     at = at + 1e-3 * spacing * np.stack([np.cos(np.arange(len(at))), np.sin(1.7 * np.arange(len(at)))], axis=1)
-    for _ in range(constants.MOST_ROUNDS):
+    for _ in range(MOST_ROUNDS):
         apart = np.linalg.norm(at[:, None] - at[None], axis=2)
         pull = weight * far / np.maximum(apart, 1e-9)
         np.fill_diagonal(pull, 0.0)
         better = inverse @ ((np.diag(pull.sum(axis=1)) - pull) @ at)
-        if float(np.abs(better - at).max()) < constants.STILL:
+        if float(np.abs(better - at).max()) < STILL:
             break
         at = better
     return _upright(at)
@@ -100,7 +116,7 @@ def _upright(at: Array) -> Array:
 def _distances(nodes: int, edges: Sequence[Edge]) -> Array:
     """(n, n) edges on a shortest path; those of hubs are longer, or their neighbours find no place."""
     near = neighbours(nodes, edges)
-    long = [max(1.0, len(around) / constants.CROWDED) ** constants.HUB_EXPONENT for around in near]
+    long = [max(1.0, len(around) / CROWDED) ** HUB_EXPONENT for around in near]
     out = np.zeros((nodes, nodes))
     for start in range(nodes):
         distance = {start: 0.0}
@@ -117,14 +133,14 @@ def _distances(nodes: int, edges: Sequence[Edge]) -> Array:
 def _apart(at: Array, boxes: Array) -> Array:
     """Overlapping boxes pushed apart along the direction that needs less."""
     at = at.copy()
-    if len(at) > constants.MOST_STRESSED:
+    if len(at) > MOST_STRESSED:
         return at
-    need = 0.5 * (boxes[:, None] + boxes[None]) + constants.GAP
-    for _ in range(constants.MOST_ROUNDS):
+    need = 0.5 * (boxes[:, None] + boxes[None]) + GAP
+    for _ in range(MOST_ROUNDS):
         delta = at[None] - at[:, None]
         over = need - np.abs(delta)
         over[np.arange(len(at)), np.arange(len(at))] = -1.0
-        first, second = np.nonzero(np.triu((over > constants.LEAST_OVERLAP).all(axis=2), 1))
+        first, second = np.nonzero(np.triu((over > LEAST_OVERLAP).all(axis=2), 1))
         if not len(first):
             break
         for i, j in zip(first.tolist(), second.tolist(), strict=True):

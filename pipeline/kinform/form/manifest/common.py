@@ -10,8 +10,12 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
-from kinform.form.constants import LARGEST_NUMBER, NAME_LENGTH, PATH_LENGTH
+from kinform.form.constants import LARGEST_NUMBER, NAME_LENGTH
 from kinform.frozen import dataclass
+
+PATH_LENGTH = 4095
+"""Characters of the path of a file: what Linux takes."""
+
 
 Finite = Annotated[float, Field(ge=-LARGEST_NUMBER, le=LARGEST_NUMBER, allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, le=LARGEST_NUMBER, allow_inf_nan=False)]

@@ -6,10 +6,15 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from kinform.form.constants import COUNT_MOST, COUPLED_MOST, ROWS_MOST
 from kinform.form.manifest.common import Finite, JointType, Name, NonNegative, Positive, Reference, Table, Vector
-from kinform.form.manifest.requirements import Require
+from kinform.form.manifest.requirements import ROWS_MOST, Require
 from kinform.form.manifest.springs import Bushing, GasSpring, PointSpring
+
+COUNT_MOST = 1_000_000
+"""The largest mobility that can be stated: more than six times the parts that a design may have."""
+COUPLED_MOST = 16
+"""Joints of one stated coupling: a compound planetary train has at most as many; each is a column of its row."""
+
 
 Share = Annotated[Finite, Field(gt=0.0, le=1.0)]
 

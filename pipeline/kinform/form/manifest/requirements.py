@@ -6,8 +6,11 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from kinform.form.constants import ROWS_MOST
 from kinform.form.manifest.common import Finite, Name, NonNegative, Pair, Positive, Quantity, Reference, Table, Vector
+
+ROWS_MOST = 10_000
+"""Rows of a law that is written in the manifest; longer ones are CSV files."""
+
 
 Length = Quantity("length")
 Angle = Quantity("angle")

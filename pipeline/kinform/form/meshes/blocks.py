@@ -5,7 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from kinform.form.constants import BLOCK_BYTES
+BLOCK_BYTES = 1 << 18
+"""Bytes of a text that are taken apart at a time: where each line is a letter they take 40 MB then."""
+
 
 SPACE = re.compile(rb"\s")
 NEWLINE = re.compile(rb"\r\n|\r|\n")

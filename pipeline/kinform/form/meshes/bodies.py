@@ -5,13 +5,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.form.constants import INSIDE, WELD_SHARE
+from kinform.form.meshes.constants import WELD_SHARE
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh
 from kinform.form.meshes.weld import merge_close, merge_exact, used_only
 from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.foundation.meshes.edges import edge_table
 from kinform.foundation.meshes.shells import shells_of
 from kinform.model.arrays import Array, Ints
+
+INSIDE = 0.5
+"""Winding number above which a point lies in a shell: it is 1 inside and 0 outside."""
 
 
 def named_bodies(raw: RawMesh) -> dict[str, RawMesh]:

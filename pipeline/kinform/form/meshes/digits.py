@@ -12,8 +12,19 @@ from collections.abc import Collection, Iterable, Sequence
 
 import numpy as np
 
-from kinform.form.constants import DIGITS_LEAST, DIGITS_READ, LARGE_COORDINATES, LAST_DIGIT_USED
 from kinform.model.arrays import Array, Ints
+
+LARGE_COORDINATES = 0.1
+"""Share of the largest coordinate from which on a coordinate is as coarse as it: one decimal digit."""
+DIGITS_READ = 2000
+"""Coordinates of a text whose digits are looked at."""
+DIGITS_LEAST = 5
+"""Digits from which on the largest coordinates can have been cut: no writer keeps fewer, and parts of whole or half
+millimetres, up to some metres, have fewer."""
+LAST_DIGIT_USED = 0.5
+"""Share of the coordinates that use the last digit, above which it is where they were rounded: nine in ten of rounded
+numbers do."""
+
 
 _NUMBER = re.compile(r"[+-]?(\d*)\.?(\d*)(?:[eEdD]([+-]?\d+))?$")
 

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.form.constants import EPS32, FAR, FLAT, SLIVER, SMALLEST_MESH, WELD_SHARE, WELD_STEPS
+from kinform.form.meshes.constants import WELD_SHARE
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh
 from kinform.form.meshes.repeated import taken_once
 from kinform.form.meshes.weld import merge_close, merge_exact, used_only
@@ -21,6 +21,21 @@ from kinform.foundation.processes import Crash, apart
 from kinform.foundation.words import counted
 from kinform.model.arrays import Array, Ints, freeze
 from kinform.model.assembly import Mesh, MeshHealth
+
+SMALLEST_MESH = 1e-12
+"""Diagonal (m) of the smallest mesh: an atom is a hundred times larger, and cubes of its lengths are still numbers."""
+EPS32 = 2.0**-23
+"""Relative step of single precision: no mesh is taken to be known better than that, at its own size."""
+FLAT = 1e-9
+"""A solid thinner than this share of its size has no volume."""
+SLIVER = 1e-24
+"""Squared altitude of a degenerate facet, in squares of its longest side."""
+WELD_STEPS = 2.0
+"""The same in steps of the last place of the largest coordinate, where that is more: copies of one corner that were
+rounded apart differ by one in each direction."""
+FAR = 8.0
+"""A mesh whose middle lies this many of its diagonals from the origin of its file, along one axis, is moved to its own:
+nearer ones lose no more than four bits, of the 29 that doubles have more than single precision."""
 
 
 def build_mesh(raw: RawMesh, metres: float, weld: float | None, *, path: str, body: str | None, solid: bool) -> Mesh:

@@ -15,12 +15,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.form.constants import CUT_CORNERS, FACE_BYTES, FAULTS_KEPT, FAULTS_SHOWN, LARGEST_NUMBER
+from kinform.form.constants import LARGEST_NUMBER
 from kinform.form.meshes.blocks import NEWLINE, blocks, coordinate, with_newlines
+from kinform.form.meshes.constants import FAULTS_SHOWN
 from kinform.form.meshes.digits import written_step
-from kinform.form.meshes.polygons import triangulate
+from kinform.form.meshes.polygons import CUT_CORNERS, triangulate
 from kinform.form.meshes.raw import REEXPORT, Fault, Labelling, MeshError, RawMesh, is_coordinate
 from kinform.foundation.words import counted
+
+FACE_BYTES = 4 * 1024 * 1024
+"""Of one line of an OBJ that states a vertex or a face: a million corners. Each takes sixty bytes while it is read."""
+FAULTS_KEPT = 1000
+"""Faults of one mesh file that are kept, to find those of the first lines among them; a file with more is read no
+further."""
+
 
 _SKIPPED = frozenset(
     b"vt vn vp s l p usemtl mtllib usemap maplib lod mg bevel c_interp d_interp shadow_obj trace_obj".split()

@@ -9,9 +9,17 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.form.constants import CUT_AREA, CUT_CORNERS, FAULTS_SHOWN, NO_TRIANGLE
+from kinform.form.meshes.constants import FAULTS_SHOWN
 from kinform.foundation.algebra.vectors import perpendicular
 from kinform.model.arrays import Array, Ints
+
+NO_TRIANGLE = 1e-9
+"""Share of a polygon's area below which a triangle is no triangle: a fan with such ones is not taken."""
+CUT_CORNERS = 10_000
+"""Corners of a concave polygon at most: cutting takes time as their square, 0.8 s for one of so many that crosses
+itself, 2.1 s for one of 16,000. Convex ones are fans, and may have any number."""
+CUT_AREA = 1e-6
+"""Share of a polygon's area that its triangles may miss or have twice."""
 
 
 def triangulate(vertices: Array, corners: Ints, sizes: Ints) -> tuple[Ints, Ints, Ints]:

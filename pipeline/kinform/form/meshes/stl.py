@@ -15,8 +15,9 @@ from operator import itemgetter
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.form.constants import FAULTS_SHOWN, LARGEST_NUMBER
+from kinform.form.constants import LARGEST_NUMBER
 from kinform.form.meshes.blocks import SPACE, blocks, coordinate, with_newlines
+from kinform.form.meshes.constants import FAULTS_SHOWN
 from kinform.form.meshes.digits import written_step
 from kinform.form.meshes.raw import REEXPORT, Fault, Labelling, MeshError, RawMesh, is_coordinate, soup
 from kinform.foundation.words import counted

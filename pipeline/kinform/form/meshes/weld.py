@@ -10,11 +10,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.form.constants import CROWD, SAMPLED_CROWDS
 from kinform.form.meshes.raw import Fault, MeshError
 from kinform.foundation.alike import numbered_alike
 from kinform.foundation.meshes.near import Near
 from kinform.model.arrays import Array, Ints
+
+SAMPLED_CROWDS = 500
+"""Vertices whose surroundings are counted before they are welded."""
+CROWD = 50
+"""Mean number of others within the welding distance of a vertex, above which a mesh would collapse."""
+
 
 _LINES = np.array([[0.57735, 0.51763, 0.63144], [-0.70143, 0.37291, 0.60741]])
 _LINES /= np.linalg.norm(_LINES, axis=1)[:, None]

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from kinform.errors import InputError, Problem
-from kinform.form.constants import PARTS_MOST, SCOPES_DEEP, SCOPES_MOST, SYMMETRIC, UNIT_QUATERNION
+from kinform.form.constants import PARTS_MOST
 from kinform.form.files import DesignFiles, MeshUse, earlier_meshes, no_file
 from kinform.form.manifest.common import Posed
 from kinform.form.manifest.parts import Group as GroupTable
@@ -38,6 +38,16 @@ from kinform.model.descriptions import Description
 from kinform.model.function import Function, SimulationRequest
 from kinform.model.names import PartName
 from kinform.model.tolerances import Tolerances
+
+SCOPES_MOST = 10_000
+"""Sub-assemblies of a design, counted each time that they are placed: of files that place each other twice there could
+be more than atoms."""
+SCOPES_DEEP = 32
+"""Sub-assemblies in each other."""
+UNIT_QUATERNION = 1e-6
+"""A quaternion whose length is off by more than this was not meant as a rotation."""
+SYMMETRIC = 1e-9
+"""Relative difference up to which the two halves of an inertia are alike: what twelve printed digits lose."""
 
 
 def load(path: str | Path, *, allow_outside: bool = False, reading: Reading = AS_IT_IS) -> Assembly:

@@ -9,9 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
-from kinform.form.constants import LARGEST_NUMBER, TABLE_BYTES, VALUE_LENGTH
+from kinform.form.constants import LARGEST_NUMBER, VALUE_LENGTH
 from kinform.form.readers.open_manifest import Scope
 from kinform.foundation.texts import TextError, read_text
+
+TABLE_BYTES = 8 << 20
+"""Bytes of a CSV file: half a million rows. A row of 8 bytes takes 300 as numbers, so that all take 300 MB."""
 
 
 def law_rows(scope: Scope, path: Path, shown: str) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -13,20 +13,25 @@ from pathlib import Path
 import numpy as np
 from pydantic import TypeAdapter
 
-from kinform.form.constants import SIBLING_BYTES, SIBLINGS_MOST
-from kinform.form.descriptions.coverage import coverage_of
-from kinform.form.descriptions.facts import Facts
-from kinform.form.descriptions.meshes import MeshFiles, files_below
-from kinform.form.descriptions.robot import Shape, Solid
-from kinform.form.descriptions.tables import shape_table
 from kinform.form.files import DesignFiles, is_mesh
 from kinform.form.manifest.parts import ShapeTable
 from kinform.form.meshes.primitives import primitive
 from kinform.form.meshes.raw import MeshError
 from kinform.form.readers.open_manifest import Scope
+from kinform.formats.description.coverage import coverage_of
+from kinform.formats.description.facts import Facts
+from kinform.formats.description.mesh_files import MeshFiles, files_below
+from kinform.formats.description.robot import Shape, Solid
+from kinform.formats.description.tables import shape_table
 from kinform.model.arrays import Array
 from kinform.model.assembly import Part
 from kinform.model.descriptions import Coverage, DescribedJoint, DescribedLink, Description, LooseMesh
+
+SIBLINGS_MOST = 300
+"""Files of a package that are looked through for the names of meshes, at most."""
+SIBLING_BYTES = 4 * 1024 * 1024
+"""Of each of these files, at most."""
+
 
 _TEXTS = (".urdf", ".xacro", ".xml", ".sdf", ".mjcf", ".toml", ".launch", ".py", ".gazebo", ".world")
 """Suffixes of files that may name the meshes of a package."""

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from kinform.form.constants import LARGEST_NUMBER, OUTPUTS, PARALLEL_AXES
+from kinform.form.constants import LARGEST_NUMBER
 from kinform.form.files import DesignFiles
 from kinform.form.readers.csv_tables import law_rows
 from kinform.form.readers.drive_keys import complain_of_drive, efficiencies
@@ -31,6 +31,12 @@ from kinform.model.function import (
     MaterialFriction,
     SimulationRequest,
 )
+
+PARALLEL_AXES = 1e-6
+"""Sine of the angle between the two axes of a universal joint below which they are one."""
+OUTPUTS = 1_000_000
+"""Output times of a run: more would fill the memory before anything is solved."""
+
 
 NEEDED = {
     "axis": ("revolute", "prismatic", "cylindrical", "planar", "screw", "universal"),

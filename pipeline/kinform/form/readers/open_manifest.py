@@ -32,7 +32,7 @@ from kinform.model.arrays import Array
 from kinform.model.assembly import Source
 
 if TYPE_CHECKING:
-    from kinform.form.descriptions.facts import Facts
+    from kinform.formats.description.facts import Facts
 
 
 @dataclass(frozen=True, eq=False)

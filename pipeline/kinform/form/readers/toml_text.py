@@ -11,8 +11,13 @@ import tomllib
 from collections.abc import Iterator
 from typing import Any
 
-from kinform.form.constants import BARE_LENGTH, MANIFEST_DEPTH
 from kinform.foundation.words import counted
+
+MANIFEST_DEPTH = 8
+"""Tables in tables, arrays in arrays, and keys between dots: schema 1 goes six deep."""
+BARE_LENGTH = 255
+"""Characters of a bare key, a number or a date in TOML: doubles take 25 at most, and names have quotes."""
+
 
 _KEY = r"(?:[A-Za-z0-9_+:-]++|\"(?:[^\"\\\n]|\\.)*+\"|'[^'\n]*+')"
 _TOKEN = re.compile(

@@ -15,12 +15,13 @@ from typing import Any
 
 import numpy as np
 
-from kinform.form.constants import LARGEST_NUMBER, SCENE_DEEP, SCENE_NODES, SCENE_XML_BYTES
-from kinform.form.descriptions.poses import about, pose
+from kinform.form.constants import LARGEST_NUMBER
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate, prevailing
+from kinform.form.scenes.constants import SCENE_XML_BYTES
 from kinform.form.scenes.declarations import refuse_declarations
-from kinform.form.scenes.scene import EXPORT, Node, Scene
+from kinform.form.scenes.scene import EXPORT, SCENE_DEEP, SCENE_NODES, Node, Scene
 from kinform.form.sources import AS_IT_IS, Reading
+from kinform.formats.description.poses import about, pose
 from kinform.foundation.colours import told
 from kinform.foundation.words import counted
 from kinform.model.arrays import Array

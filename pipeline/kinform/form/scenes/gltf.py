@@ -17,7 +17,6 @@ from urllib.parse import unquote
 
 import numpy as np
 
-from kinform.form.constants import SCENE_TEXT_BYTES
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate, prevailing
 from kinform.form.scenes.scene import EXPORT, Node, Scene
 from kinform.form.sources import AS_IT_IS, Reading
@@ -26,6 +25,10 @@ from kinform.foundation.meant import in_quotes
 from kinform.foundation.regular import not_a_file
 from kinform.foundation.words import counted
 from kinform.model.arrays import Array, Ints
+
+SCENE_TEXT_BYTES = 64 * 1024 * 1024
+"""Largest JSON of a glTF: 10,000 nodes have a tenth of it, and what is parsed takes ten times as much memory."""
+
 
 _TYPES = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _COLUMNS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}

@@ -10,12 +10,20 @@ from pathlib import Path
 
 import numpy as np
 
-from kinform.form.constants import PARTS_MOST, SCENE_DEEP, SCENE_NODES, SHEAR, UNSCALED
-from kinform.form.descriptions.tree import distinct
+from kinform.form.constants import PARTS_MOST, SHEAR
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, prevailing
+from kinform.formats.description.tree import distinct
 from kinform.foundation.meant import in_quotes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
+
+SCENE_DEEP = 64
+"""Nodes of a scene in each other: twice what sub-assemblies may have, for each may have a frame of its own."""
+SCENE_NODES = 400_000
+"""Nodes that a scene places, counted each time that they are: four for each of the parts that a design may have."""
+UNSCALED = 1e-5
+"""Relative difference up to which a scale is 1, as rotations in single precision have it."""
+
 
 EXPORT = "export the file again"
 """The remedy where nothing else helps."""

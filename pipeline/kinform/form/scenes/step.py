@@ -12,14 +12,7 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
-from kinform.form.constants import (
-    STEP_BYTES,
-    STEP_EDGES,
-    STEP_END,
-    STEP_MEMORY,
-    STEP_STATED_TURN,
-    STEP_TURN,
-)
+from kinform.form.constants import STEP_TURN
 from kinform.form.meshes.raw import Fault, MeshError
 from kinform.form.scenes.gltf import read_gltf
 from kinform.form.scenes.scene import EXPORT, Scene
@@ -27,6 +20,21 @@ from kinform.form.sources import AS_IT_IS, Reading
 from kinform.foundation.meant import first_names, in_quotes
 from kinform.foundation.processes import Crash, in_own_process
 from kinform.foundation.words import counted
+
+STEP_BYTES = 1 << 30
+"""Largest STEP file that is read: the largest public ones have a quarter of it, and OpenCASCADE takes twenty times as
+much memory."""
+STEP_END = 4096
+"""Bytes at either end of a STEP file in which its first and last keyword stand: comments and blanks may be around."""
+STEP_MEMORY = 12 << 30
+"""Bytes of memory that the tessellation of a STEP file may take: beyond, it fails with a message, not the machine."""
+STEP_EDGES = 0.005
+"""Largest distance of facets from surfaces, as a share of the size of edges: not a length, for what is fine for a watch
+takes all memory for a ship (a ball of 10 m, at 0.01 mm, more than 20 GB)."""
+STEP_STATED_TURN = 0.25
+"""As STEP_TURN, where a deviation is stated: still 25 facets round a circle, for 12 are as few as fits know a cylinder
+by."""
+
 
 AGAIN = "export it again, as AP214 or AP242"
 _PREFIXES = {b"$": "m", b".MILLI.": "mm", b".CENTI.": "cm", b".MICRO.": "um"}

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinform.form.constants import SCENE_XML_BYTES
 from kinform.form.meshes.digits import written_step
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate, prevailing
+from kinform.form.scenes.constants import SCENE_XML_BYTES
 from kinform.form.scenes.declarations import refuse_declarations
 from kinform.form.scenes.scene import EXPORT, Node, Scene
 from kinform.form.sources import AS_IT_IS, Reading

@@ -12,9 +12,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.foundation.algebra.vectors import box, cross, norm
-from kinform.foundation.constants import ROUNDINGS
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
+
+ROUNDINGS = 8.0
+"""Roundings of a coordinate in what follows from a few: positions of parts, what is measured on them, and twists."""
 
 
 @dataclass(frozen=True, eq=False)

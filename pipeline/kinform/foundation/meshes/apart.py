@@ -12,19 +12,22 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.foundation.constants import (
-    APART_AT_ONCE,
-    APART_MOST,
-    APART_ROUNDED,
-    APART_SOME,
-    APART_TOGETHER,
-    BOXES_MATRIX,
-)
 from kinform.foundation.joined import joined
-from kinform.foundation.meshes.box_pairs import meeting_boxes
+from kinform.foundation.meshes.box_pairs import BOXES_MATRIX, meeting_boxes
 from kinform.foundation.meshes.boxes import triangle_boxes
 from kinform.foundation.meshes.slivers import sides_of
 from kinform.model.arrays import Array, Flags, Ints
+
+APART_MOST = 20
+"""Pairs of triangles near each other, in all triangles, beyond which it is not asked whether all keep apart."""
+APART_SOME = 32
+"""Of these at most so many are asked first."""
+APART_TOGETHER = 50_000
+"""Pairs of triangles of several sets that are brought together, 10 MB."""
+APART_AT_ONCE = 4096
+"""Pairs of triangles that are looked at in one pass."""
+APART_ROUNDED = 1e-6
+"""Share of a distance by which what keeps it is further apart."""
 
 
 def keep_apart(asked: Sequence[tuple[Array, Array, float]]) -> list[bool]:

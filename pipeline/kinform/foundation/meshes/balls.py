@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.constants import BALL_PARTS, BALL_SHARE
 from kinform.foundation.meshes.divided import inner_weights, longest_sides
 from kinform.foundation.meshes.near import Nearest
 from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh
+
+BALL_SHARE = 0.012
+"""Share of a mesh's diagonal that balls about its facets are as small as."""
+BALL_PARTS = 6
+"""Divisions of a facet's side for it at most."""
 
 
 class Balls:

@@ -8,18 +8,26 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.constants import (
-    BESIDE_MOST,
-    BOXES_COMPARED,
-    BOXES_EXACT,
-    BOXES_MATRIX,
-    BOXES_MOST,
-    SLAB,
-    SLABS_MOST,
-)
 from kinform.foundation.joined import joined
 from kinform.foundation.meshes.boxes import FlatBoxes, meeting_box
 from kinform.model.arrays import Array, Ints
+
+BOXES_MATRIX = 600_000
+"""Boxes times boxes up to which all are compared, however many of either kind there are."""
+SLAB = 600_000
+"""Boxes times boxes that are looked at in one slab, of those that can meet at all: as many as are all compared."""
+SLABS_MOST = 100
+"""Slabs in all: the horns of so101's motors have 30."""
+BOXES_COMPARED = 1_500_000
+"""The same where there are not very many of either: 1 ms; a grid takes from 0.5 ms to 4."""
+BOXES_EXACT = 20_000
+"""The same up to which they are compared as they are: steps of a scale take 0.04 ms to be made."""
+BOXES_MOST = 50_000
+"""Boxes of either kind up to which a grid is made of them."""
+BESIDE_MOST = 100_000
+"""Pairs in common cells up to which they are compared: a few milliseconds, in which FCL makes a tree of a thousand
+facets."""
+
 
 Boxes = tuple[Array, Array]
 """Lower and upper corners (n, 3)."""

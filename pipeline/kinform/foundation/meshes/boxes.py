@@ -9,9 +9,43 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation import constants
 from kinform.foundation.sorting import ascending
 from kinform.model.arrays import Array, Flags, Ints
+
+CHUNK = 48
+"""Facets of a chunk."""
+OFTEN = 128
+"""Questions that are cheaper to answer without chunks than the chunks are to make: they take as long as 100 to 200 of
+them, of 20,000 facets and of 400,000."""
+CHUNKED_LEAST = 16_000
+"""Facets up to which all are asked as quickly as chunks are: 0.02 ms."""
+COLUMNS_MOST = 200_000
+"""Facets up to which the sides of their boxes are kept by columns as well, of which numpy compares as many in a third
+of the time: 10 MB."""
+GRID_FINEST = 512
+"""Cells along the side of a grid, at most."""
+GRID_LISTED = 12
+"""Cells of a grid that a facet is listed in on average, at most, ..."""
+GRID_LISTED_LEAST = 4096
+"""... and these in all, which cost nothing."""
+UNLISTED = 32
+"""Comparisons of points with boxes, a facet, that cost less than a grid."""
+FOLLOWED = 2
+"""Such comparisons that a point beside a box along one axis takes to be compared along the other."""
+COMPARED_MOST = 8000
+"""So many comparisons of points with boxes take no longer than to find out which need not be compared."""
+FOLLOWED_AT_ONCE = 500_000
+"""Of which so many, and those of one box, are compared at once: 30 MB."""
+SIZE_OCTAVES = 20
+"""Octaves of size that facets are sorted by."""
+PLACE_BITS = 10
+"""Bits of a coordinate along the Z-curve that facets are sorted along."""
+ROWS_TOGETHER = 64
+"""Rows of an array that are looked at as one for the least and the greatest of its columns."""
+BOXES_AT_ONCE = 200_000
+"""Boxes times boxes up to which all are compared with all: blocks of fewer take longer."""
+BOXES_A_BLOCK = 64
+"""Neighbouring boxes of which more are compared together, with what comes near them."""
 
 
 def bounds(points: NDArray[np.floating]) -> tuple[Array, Array]:
@@ -20,8 +54,8 @@ def bounds(points: NDArray[np.floating]) -> tuple[Array, Array]:
     Rows are taken together to wide ones first: numpy goes through narrow ones a hundred times slower.
     """
     count, width = points.shape
-    wide = count // constants.ROWS_TOGETHER * constants.ROWS_TOGETHER
-    together = np.ascontiguousarray(points[:wide]).reshape(-1, constants.ROWS_TOGETHER * width)
+    wide = count // ROWS_TOGETHER * ROWS_TOGETHER
+    together = np.ascontiguousarray(points[:wide]).reshape(-1, ROWS_TOGETHER * width)
     rest = points[wide:]
     low = np.concatenate([together.min(axis=0).reshape(-1, width), rest]) if wide else rest
     high = np.concatenate([together.max(axis=0).reshape(-1, width), rest]) if wide else rest
@@ -70,12 +104,12 @@ def boxes_within(first: tuple[Array, Array], second: tuple[Array, Array], margin
     """(n, m) whether boxes come within `margin` of each other along every axis: lowest and highest corners (n, d) of
     the first kind, (m, d) of the second. Many are compared in blocks of neighbours with what their box comes near."""
     (low_a, high_a), (low_b, high_b) = first, second
-    if len(low_a) * len(low_b) <= constants.BOXES_AT_ONCE:
+    if len(low_a) * len(low_b) <= BOXES_AT_ONCE:
         return _within(low_a, high_a, low_b, high_b, margin)
     out = np.zeros((len(low_a), len(low_b)), bool)
     order = together(low_a, high_a)
-    for start in range(0, len(order), constants.BOXES_A_BLOCK):
-        rows = order[start : start + constants.BOXES_A_BLOCK]
+    for start in range(0, len(order), BOXES_A_BLOCK):
+        rows = order[start : start + BOXES_A_BLOCK]
         low, high = low_a[rows], high_a[rows]
         columns = np.flatnonzero(_within(low.min(axis=0)[None], high.max(axis=0)[None], low_b, high_b, margin)[0])
         if len(columns):
@@ -104,22 +138,22 @@ class FacetBoxes:
     def meeting(self, low: Array, high: Array) -> Ints:
         """Facets whose boxes meet the box from `low` to `high` (d,), ascending."""
         self._asked += 1
-        if self._asked <= constants.OFTEN or len(self.low) <= constants.CHUNKED_LEAST:
+        if self._asked <= OFTEN or len(self.low) <= CHUNKED_LEAST:
             return np.flatnonzero(self._meeting(low, high))
         if self._order is None:
             self._columns = None
             self._order = together(self.low, self.high)
-            self._starts = np.arange(0, len(self.low), constants.CHUNK)
+            self._starts = np.arange(0, len(self.low), CHUNK)
             self._chunk_low = np.minimum.reduceat(self.low[self._order], self._starts)
             self._chunk_high = np.maximum.reduceat(self.high[self._order], self._starts)
         chunks = np.flatnonzero(meeting_box(self._chunk_low, self._chunk_high, low, high))
-        at = (self._starts[chunks, None] + np.arange(constants.CHUNK)).ravel()
+        at = (self._starts[chunks, None] + np.arange(CHUNK)).ravel()
         facets = np.sort(self._order[at[at < len(self._order)]])
         return np.asarray(facets[meeting_box(self.low[facets], self.high[facets], low, high)])
 
     def _meeting(self, low: Array, high: Array) -> Flags:
         """(n,) of all boxes, asked column by column where these can be kept."""
-        if len(self.low) > constants.COLUMNS_MOST:
+        if len(self.low) > COLUMNS_MOST:
             return meeting_box(self.low, self.high, low, high)
         if self._columns is None:
             self._columns = np.ascontiguousarray(self.low.T), np.ascontiguousarray(self.high.T)
@@ -133,20 +167,20 @@ class FlatBoxes:
     def __init__(self, low: Array, high: Array, tops: Array | None = None):
         self.low, self.high, self._tops = low, high, tops
         self._sides = [np.ascontiguousarray(side) for side in (*low.T, *high.T)]
-        self._left = constants.UNLISTED * len(low)
+        self._left = UNLISTED * len(low)
         """Comparisons that cost less than the list does."""
 
     def _list(self) -> None:
         low, high = self.low, self.high
         self._origin = low.min(axis=0, initial=np.inf)
         whole = np.maximum(high.max(axis=0, initial=-np.inf) - self._origin, 1e-300)
-        side = int(np.clip(2.0 * np.sqrt(len(low)), 1, constants.GRID_FINEST))
+        side = int(np.clip(2.0 * np.sqrt(len(low)), 1, GRID_FINEST))
         while True:
             self._cell, self._side = whole / side, side
             left, lower, right, upper = (self._cells(column, k % 2) for k, column in enumerate(self._sides))
             wide, tall = right - left + 1, upper - lower + 1
             listed = int((wide * tall).sum())
-            if side == 1 or listed <= constants.GRID_LISTED * len(low) + constants.GRID_LISTED_LEAST:
+            if side == 1 or listed <= GRID_LISTED * len(low) + GRID_LISTED_LEAST:
                 break
             side = (side + 1) // 2
         # each box by the columns of cells that it covers, and each of these by its cells
@@ -189,7 +223,7 @@ class FlatBoxes:
     def _among(self, points: Array, heights: Array | None) -> tuple[Ints, Ints] | None:
         """As above by comparison with all boxes about the points; None where that has come to cost more than a list."""
         left, lower, right, upper = self._sides
-        if len(points) * len(left) <= constants.COMPARED_MOST:
+        if len(points) * len(left) <= COMPARED_MOST:
             self._left -= len(points) * len(left)
             return self._compared(points, heights) if self._left > 0 else None
         (least_x, least_y), (most_x, most_y) = points.min(axis=0, initial=np.inf), points.max(axis=0, initial=-np.inf)
@@ -206,7 +240,7 @@ class FlatBoxes:
             ranges.append((begin, places.searchsorted(self._sides[2 + axis].take(near), side="right") - begin))
         numbers = [int(number.sum()) for _, number in ranges]
         axis = 0 if numbers[0] <= numbers[1] else 1
-        self._left -= len(left) + constants.FOLLOWED * numbers[axis]
+        self._left -= len(left) + FOLLOWED * numbers[axis]
         if self._left <= 0:
             return None
         which, box = self._along(points, axis, orders[axis], near, *ranges[axis])
@@ -230,7 +264,7 @@ class FlatBoxes:
         that are so many `number` (m,) in their `order` (n,) from `begin` (m,) on, and are in it."""
         low, high = (self._sides[k + 1 - axis].take(near) for k in (0, 2))
         ends, out = np.cumsum(number), []
-        blocks = range(0, int(ends[-1]) if len(ends) else 0, constants.FOLLOWED_AT_ONCE)
+        blocks = range(0, int(ends[-1]) if len(ends) else 0, FOLLOWED_AT_ONCE)
         cuts = [*ends.searchsorted(list(blocks), side="right").tolist(), len(near)] if len(blocks) else [0, len(near)]
         for i, j in pairwise(cuts):
             box = np.repeat(np.arange(i, j), number[i:j])
@@ -269,17 +303,13 @@ def together(low: Array, high: Array) -> Ints:
         return np.zeros(0, np.int64)
     size = (high - low).max(axis=1)
     whole = max(float((bounds(high)[1] - bounds(low)[0]).max()), 1e-300)
-    octave = np.clip(np.floor(np.log2(np.maximum(size, 1e-12 * whole) / whole)), -constants.SIZE_OCTAVES, 0).astype(
-        np.int64
-    )
+    octave = np.clip(np.floor(np.log2(np.maximum(size, 1e-12 * whole) / whole)), -SIZE_OCTAVES, 0).astype(np.int64)
     return np.lexsort((_places(low, high), -octave)).astype(np.int64)
 
 
 def along_curve(low: Array, high: Array) -> Ints:
     """An order of boxes (n, d) in which neighbours lie together, whatever their size: along a Z-curve."""
-    return (
-        ascending(_places(low, high), 1 << (low.shape[1] * constants.PLACE_BITS)) if len(low) else np.zeros(0, np.int64)
-    )
+    return ascending(_places(low, high), 1 << (low.shape[1] * PLACE_BITS)) if len(low) else np.zeros(0, np.int64)
 
 
 def _places(low: Array, high: Array) -> Ints:
@@ -288,13 +318,13 @@ def _places(low: Array, high: Array) -> Ints:
     whole = max(float((bounds(high)[1] - least).max()), 1e-300)
     spread, code = _spread(dimensions), np.zeros(len(low), np.int64)
     for axis in range(dimensions):
-        place = (0.5 * (low[:, axis] + high[:, axis]) - least[axis]) / whole * 2.0**constants.PLACE_BITS
-        code |= spread[np.clip(place, 0, 2**constants.PLACE_BITS - 1).astype(np.int64)] << axis
+        place = (0.5 * (low[:, axis] + high[:, axis]) - least[axis]) / whole * 2.0**PLACE_BITS
+        code |= spread[np.clip(place, 0, 2**PLACE_BITS - 1).astype(np.int64)] << axis
     return code
 
 
 @cache
 def _spread(apart: int) -> Ints:
     """(2^PLACE_BITS,) numbers with their bits that far apart."""
-    numbers = np.arange(1 << constants.PLACE_BITS)
-    return np.asarray(sum(((numbers >> bit) & 1) << (apart * bit) for bit in range(constants.PLACE_BITS)))
+    numbers = np.arange(1 << PLACE_BITS)
+    return np.asarray(sum(((numbers >> bit) & 1) << (apart * bit) for bit in range(PLACE_BITS)))

@@ -13,10 +13,20 @@ import math
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
-from kinform.foundation.constants import BENDS_LEAST, BENDS_MOST, BENDS_PLANES, BULGE
 from kinform.foundation.meshes.surface_table import SurfaceTable
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.surfaces import KINDS
+
+BULGE = 0.35
+"""Share of a chord by which a smooth curve may stand off it: cubic curves through 32° and lengths of one to three come
+to 0.3 at worst."""
+BENDS_LEAST = 1e-12
+"""By which the cosine between two planes is less than 1 where they are no continuation of each other."""
+BENDS_MOST = 1.05
+"""Share of the angle of a smooth edge up to which planes may meet smoothly, as an outline is not quite across them."""
+BENDS_PLANES = 1000
+"""Planes from which on it is not asked which of them do."""
+
 
 _PLANE = KINDS.index("plane")
 

@@ -11,12 +11,24 @@ from functools import cached_property
 
 import numpy as np
 
-from kinform.foundation.constants import AS_NEAR, CLOSEST_MOST, CLOSEST_ROUNDING, CLOSEST_SIFTED, CLOSEST_SOME
 from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import meeting_box, triangle_boxes
 from kinform.foundation.meshes.near import Nearest
 from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
+
+# meshes/closest
+AS_NEAR = 1e-9
+"""Share of their distance by which facets may be farther than the nearest and still as near, ..."""
+CLOSEST_ROUNDING = 1e-15
+"""... and share of the largest coordinate."""
+CLOSEST_SOME = 60_000
+"""Points times the corners that bound how far they are off: nearer bounds cost more than they leave to be measured."""
+CLOSEST_MOST = 1_000_000
+"""Points times the facets near each up to which all are measured: 0.1 s, and 0.2 GB."""
+CLOSEST_SIFTED = 8
+"""Facets near each point from which on it is asked first which of their boxes are no farther than the nearest facet:
+that takes a tenth of measuring them, and leaves a few."""
 
 
 class Triangles:

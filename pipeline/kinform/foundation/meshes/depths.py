@@ -9,13 +9,23 @@ import fcl
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
-from kinform.foundation.constants import DEPTH_FACETS, DEPTH_PART, DEPTH_POINTS, MODEL_WORTH, SLIVER_HEIGHT
 from kinform.foundation.meshes.boxes import along_curve, facet_boxes
 from kinform.foundation.meshes.closest import distances_between
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, partial_model, point_model
 from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
+
+DEPTH_FACETS = 128
+"""Facets of a group."""
+MODEL_WORTH = 1.0
+"""Questions to groups, a facet, that cost as much as a model of all facets: 8 us each, as what it takes a facet."""
+DEPTH_PART = 16
+"""Facets of a part of a group."""
+DEPTH_POINTS = 2048
+"""Points that are asked together which facets they are near: 40 MB where 200 parts of groups are about each."""
+SLIVER_HEIGHT = 1e-6
+"""Share of a facet's longest side: of a lower one the plane may be off by more than 1e-9 of that."""
 
 
 class Depths:

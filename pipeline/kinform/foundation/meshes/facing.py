@@ -6,7 +6,6 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
-from kinform.foundation.constants import FACING_AT_ONCE
 from kinform.foundation.joined import joined
 from kinform.foundation.meshes.box_pairs import meeting_in_slabs
 from kinform.foundation.meshes.boxes import meeting_box, triangle_boxes
@@ -14,6 +13,9 @@ from kinform.foundation.meshes.closest import distances_between
 from kinform.foundation.meshes.proximity import near_boxes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
+
+FACING_AT_ONCE = 20_000
+"""Pairs of facets that are measured at once: 20 MB."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,15 +8,6 @@ import fcl
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross_columns, dot
-from kinform.foundation.constants import (
-    ABOUT,
-    EPS32,
-    KEPT_EDGES,
-    KEPT_SPANS,
-    KEPT_TRIANGLES,
-    LARGE_MESH,
-    MOST_EXPECTED,
-)
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.balls import Balls
 from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
@@ -26,7 +17,7 @@ from kinform.foundation.meshes.depths import Depths
 from kinform.foundation.meshes.edges import SharedEdges, shared_edges
 from kinform.foundation.meshes.fcl_adapter import fcl_model, partial_model
 from kinform.foundation.meshes.parity import Inside
-from kinform.foundation.meshes.probes import Region
+from kinform.foundation.meshes.probes import KEPT_TRIANGLES, Region
 from kinform.foundation.meshes.proximity import near_boxes
 from kinform.foundation.meshes.rings import Ring, RingRow, ring_rows
 from kinform.foundation.meshes.standoffs import standoffs
@@ -36,6 +27,19 @@ from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
 from kinform.model.tolerances import Tolerances
+
+KEPT_EDGES = 200_000
+"""Facets up to which the shared edges of a mesh are kept: 10 MB."""
+LARGE_MESH = 1_000_000
+"""Facets from which on a model of all of them, half a gigabyte, is made only where one of some does not do."""
+ABOUT = 0.02
+"""Distance from another part, in diagonals of a large mesh, within which its facets are expected to be asked for."""
+MOST_EXPECTED = 0.8
+"""Share of its facets above which a model of all is made, which does for every other part."""
+KEPT_SPANS = 200_000
+"""Facets up to which the spans of a mesh are kept: 5 MB; of more those that are asked for are computed anew."""
+EPS32 = 2.0**-23
+"""Relative rounding of single precision, in which STL files store coordinates."""
 
 
 class MeshIndex:

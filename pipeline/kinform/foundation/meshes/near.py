@@ -13,8 +13,19 @@ from typing import Any
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
-from kinform.foundation.constants import FEW_PAIRS, LINE, MEASURED, MEASURED_BESIDE, SHARED_PAIRS
 from kinform.model.arrays import Array, Ints
+
+LINE = np.array([0.57735, 0.51763, 0.63144, 0.44317])
+"""(4,) direction along which no designer lays an edge."""
+FEW_PAIRS = 1 << 16
+"""Pairs that share a place up to which all of them are measured: in all, ..."""
+SHARED_PAIRS = 2
+"""... and a point."""
+MEASURED = 1 << 21
+"""Distances to points of one set that are measured before a tree is made: 0.02 s, a tenth of what importing trees
+takes."""
+MEASURED_BESIDE = 1 << 17
+"""The same where trees are imported already: a few times what making one takes."""
 
 
 class Near:

@@ -8,10 +8,14 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, perpendicular
-from kinform.foundation.constants import RAYS, SEEN_AT_ONCE
 from kinform.foundation.meshes.boxes import FlatBoxes, facet_boxes
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
+
+RAYS = np.array([[0.577, 0.523, 0.627], [-0.67, 0.31, 0.675], [0.21, -0.83, 0.517]])
+"""(3, 3) directions along which no designer lays an edge."""
+SEEN_AT_ONCE = 4096
+"""Points times the facets whose solid angles are had at once: what is had of them stays in the cache."""
 
 
 class Ray:

@@ -19,7 +19,7 @@ import numpy as np
 
 from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.algebra.vectors import cross, dot, lengths, times
-from kinform.foundation.constants import HITS_A_PROBE, KEPT_TRIANGLES, MET_AT_ONCE, SLIVER_WIDTH, STEEP_LEAST
+from kinform.foundation.constants import SLIVER_WIDTH
 from kinform.foundation.joined import joined
 from kinform.foundation.meshes.boxes import facet_boxes, triangle_boxes
 from kinform.foundation.meshes.closest import Triangles
@@ -29,6 +29,15 @@ from kinform.foundation.sorting import distinct
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
+
+HITS_A_PROBE = 256
+"""Facets that one probe may hit on average."""
+STEEP_LEAST = 1e-3
+"""Least cosine between a probe and a facet's normal at which the place where they meet is known."""
+KEPT_TRIANGLES = 50_000
+"""Facets up to which the corners of a mesh, or of those near another part, are kept, and their boxes: 6 MB."""
+MET_AT_ONCE = 100_000
+"""Triangles of which a model is made at a time, a kilobyte each, to ask whether they meet a mesh."""
 
 
 class Facets(Protocol):

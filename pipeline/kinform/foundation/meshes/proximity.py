@@ -8,9 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.constants import CELLS_LEAST, CELLS_MOST
 from kinform.foundation.meshes.boxes import meeting_box
 from kinform.model.arrays import Array, Flags, Ints
+
+CELLS_MOST = 48
+"""Most cells along the longest side of the common box."""
+CELLS_LEAST = 8
+"""Least; between them a quarter of the root of the number of boxes is added."""
 
 
 def near_boxes(low_a: Array, high_a: Array, low_b: Array, high_b: Array, margin: float) -> tuple[Flags, Flags]:

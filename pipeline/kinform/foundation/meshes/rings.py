@@ -13,7 +13,6 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from kinform.foundation import constants
 from kinform.foundation.algebra.vectors import canonical, cross, dot, lengths, normalised, perpendicular, widest_gap
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import SharedEdges
@@ -23,6 +22,36 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import KINDS, MeshSurfaces
+
+RING_FEW = 6
+"""Up to so many flats a ring is round only where ..."""
+RING_EVEN = 0.05
+"""... their distances from the axis differ by no more than this share of that of the corners: those of a box do not."""
+RING_SIDES = 3
+"""Flats of a ring, at least."""
+RING_TURN = (np.radians(20.0), np.radians(125.0))
+"""rad between two neighbours of a ring: of a triangle they differ by 120°; below 32° strips are found to be round, but
+not where three of them are left."""
+RING_PARALLEL = np.radians(1.0)
+"""rad by which the ridges of one ring differ in direction."""
+RING_ASKEW = np.radians(5.0)
+"""rad by which the edge of two flats may leave the line in which their planes meet: vertices scatter."""
+RING_ROUND = 5e-3
+"""Share of their distance from the axis by which corners of a ring differ."""
+RING_NOISES = 4.0
+"""The same in standard deviations of scattered vertices: one corner in 16,000 is beyond."""
+RING_OPEN = np.radians(200.0)
+"""rad: the widest angle about the axis without a flat. Half a ring, as of a half-bearing, goes round enough."""
+RING_DIRECTIONS = 24
+"""Directions of ridges that are looked at, the longest first: crumpled meshes have thousands."""
+RING_SPARE = 1e-3
+"""Share by which a row of flats misses a limit of the above before it is left out at first sight: sums about a middle
+are good to far less."""
+RING_FLAT = 1e-8
+"""Corners whose spread across their length is no more than the root of this share of it are on a line at first sight:
+beyond, sums about their middle keep eight digits."""
+MOST_RINGS = 64
+"""Rings along one direction that are looked at, those of the longest ridges."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,13 +136,13 @@ def ring_rows(
     """The rows of flats that may be rings among the planes of a mesh with the table of its surfaces, these shared edges
     (by corner), and surfaces (k, 2) that share some, by direction, sense and lowest facet."""
     plane = table.kinds == KINDS.index("plane")
-    if plane.sum() < constants.RING_SIDES or not _any_bent(table, borders, plane):
+    if plane.sum() < RING_SIDES or not _any_bent(table, borders, plane):
         return ()
     piece, ridges = _ridges(mesh, surfaces, table, edges, plane)
     family = _families(ridges)
     shared = (family >= 0).nonzero()[0]
     ridges, family = ridges.where(shared), family.take(shared)
-    if len(family) < constants.RING_SIDES - 1:
+    if len(family) < RING_SIDES - 1:
         return ()
     label = np.zeros(int(piece.max()) + 1, np.int64)
     label[piece] = surfaces.labels
@@ -133,7 +162,7 @@ def ring_rows(
 def _bent(sine: Array, cosine: Array) -> Flags:
     """(n,) whether planes turn by an angle of that sine and cosine as flats of a ring do."""
     angle = np.arctan2(sine, cosine)
-    return np.asarray((angle > constants.RING_TURN[0]) & (angle < constants.RING_TURN[1]))
+    return np.asarray((angle > RING_TURN[0]) & (angle < RING_TURN[1]))
 
 
 def _any_bent(table: SurfaceTable, borders: Ints, plane: Flags) -> bool:
@@ -162,7 +191,7 @@ def _ridges(
     edges, one, two = edges.where(between.take(bent)), one.take(bent, axis=0), two.take(bent, axis=0)
     along = edges.along(vertices)
     length, direction = lengths(along), across.take(bent, axis=0) / np.maximum(sine.take(bent), 1e-300)[:, None]
-    straight = np.abs(dot(along, direction)) > np.cos(constants.RING_ASKEW) * length
+    straight = np.abs(dot(along, direction)) > np.cos(RING_ASKEW) * length
     kept = (straight & (length > 0.0)).nonzero()[0]
     convex = edges.convexity(vertices, one, two) > 0.0
     ridges = _Ridges(piece.take(edges.sides).T, edges.ends, direction, length, convex)
@@ -174,11 +203,11 @@ def _families(ridges: _Ridges) -> Ints:
     those that too few share."""
     out = np.full(len(ridges.length), -1)
     left = np.argsort(-ridges.length, kind="stable")
-    for number in range(constants.RING_DIRECTIONS):
-        if len(left) < constants.RING_SIDES:
+    for number in range(RING_DIRECTIONS):
+        if len(left) < RING_SIDES:
             break
         directions = ridges.direction.take(left, axis=0)
-        along = np.abs(directions @ directions[0]) > np.cos(constants.RING_PARALLEL)
+        along = np.abs(directions @ directions[0]) > np.cos(RING_PARALLEL)
         out[left[along]] = 2 * number
         left = left[~along]
     out[(out >= 0) & ~ridges.convex] += 1
@@ -213,11 +242,11 @@ def _rows_of_flats(ridges: _Ridges, family: Ints) -> list[_Row]:
     of_family = np.zeros(total, np.int64)
     of_family[of_edge] = family
     weight = np.bincount(of_edge, ridges.length, total)
-    wide = np.flatnonzero(np.bincount(group, minlength=total) >= constants.RING_SIDES)
+    wide = np.flatnonzero(np.bincount(group, minlength=total) >= RING_SIDES)
     wide = wide[np.lexsort((-weight[wide], of_family[wide]))]
     # the longest of each family
     first = np.searchsorted(of_family[wide], of_family[wide])
-    wide = np.sort(wide[np.arange(len(wide)) - first < constants.MOST_RINGS])
+    wide = np.sort(wide[np.arange(len(wide)) - first < MOST_RINGS])
     wide = wide[_closed(number, of_edge, len(nodes))[wide]]
     edges, pieces = _members(of_edge, wide), _members(group, wide)
     return [_Row(nodes[p] % count, ridges, e) for e, p in zip(edges, pieces, strict=True)]
@@ -280,7 +309,7 @@ def _circles(mesh: Mesh, rows: list[_Row]) -> _Circles:
     sums = np.add.reduceat(np.stack([x * x, x * y, y * y, x * square, y * square, square], axis=1), starts)
     xx, xy, yy, xs, ys, s = sums.T
     determinant = xx * yy - xy * xy
-    determinant[determinant <= constants.RING_FLAT * (xx + yy) ** 2] = np.nan
+    determinant[determinant <= RING_FLAT * (xx + yy) ** 2] = np.nan
     one, two = 0.5 * (yy * xs - xy * ys) / determinant, 0.5 * (xx * ys - xy * xs) / determinant
     radius = np.sqrt(s / number + one * one + two * two)
     apart = np.hypot(x - one.take(row), y - two.take(row))
@@ -322,13 +351,13 @@ def _first_sights(mesh: Mesh, table: SurfaceTable, rows: list[_Row], label: Ints
 def _may_be_round(sights: _Sights, noise: float) -> Flags:
     """(r,) rows that are not left out at first sight: most are boxes, pockets and steps."""
     circles, (low, high) = sights.circles, sights.reach
-    few = np.array([len(planes) <= constants.RING_FEW for planes in sights.planes])
-    spare = 1.0 + constants.RING_SPARE
+    few = np.array([len(planes) <= RING_FEW for planes in sights.planes])
+    spare = 1.0 + RING_SPARE
     with np.errstate(invalid="ignore"):
-        out = ~(circles.off > spare * (constants.RING_ROUND * circles.radius + constants.RING_NOISES * noise))
-        out &= ~(low < -constants.RING_SPARE * circles.radius)
-        out &= ~(few & (high - low > spare * constants.RING_EVEN * circles.radius))
-        out &= ~(sights.open > constants.RING_OPEN + constants.RING_SPARE)
+        out = ~(circles.off > spare * (RING_ROUND * circles.radius + RING_NOISES * noise))
+        out &= ~(low < -RING_SPARE * circles.radius)
+        out &= ~(few & (high - low > spare * RING_EVEN * circles.radius))
+        out &= ~(sights.open > RING_OPEN + RING_SPARE)
     return np.asarray(out)
 
 
@@ -358,11 +387,11 @@ def _ring(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, row: _Row, labels: In
     (x, y, rest), *_ = np.linalg.lstsq(matrix, dot(flat, flat), rcond=None)
     corner = float(np.sqrt(max(rest + x * x + y * y, 0.0)))
     off = float(np.abs(np.hypot(flat[:, 0] - x, flat[:, 1] - y) - corner).max())
-    if off > constants.RING_ROUND * corner + constants.RING_NOISES * surfaces.noise:
+    if off > RING_ROUND * corner + RING_NOISES * surfaces.noise:
         return None
     planes = [surfaces.surfaces[k] for k in labels]
     normals = np.array([plane.axis for plane in planes])
-    if widest_gap(normals, axis) > constants.RING_OPEN:
+    if widest_gap(normals, axis) > RING_OPEN:
         return None
     point = middle + x * u + y * v
     side = 1 if ridges.convex[0] else -1
@@ -370,7 +399,7 @@ def _ring(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, row: _Row, labels: In
     if reach.min() <= 0.0:
         # the walls and the rims of a hole make a ring too, inside out
         return None
-    if len(planes) <= constants.RING_FEW and reach.max() - reach.min() > constants.RING_EVEN * corner:
+    if len(planes) <= RING_FEW and reach.max() - reach.min() > RING_EVEN * corner:
         # the corners of every box are on a circle
         return None
     facets = np.flatnonzero(np.isin(piece, row.pieces))
@@ -386,5 +415,5 @@ def _ring(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, row: _Row, labels: In
         surfaces=labels,
         facets=facets,
         turn=median([plane.axis_uncertainty for plane in planes]),
-        shift=max(off / constants.RING_NOISES, median([plane.point_uncertainty for plane in planes])),
+        shift=max(off / RING_NOISES, median([plane.point_uncertainty for plane in planes])),
     )

@@ -9,14 +9,23 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
-from kinform.foundation.constants import CROSSING_SHARE, PROBE_PARTS, RAYS, SHELL_DEPTH, SHELL_PROBES
 from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
 from kinform.foundation.meshes.divided import inner_weights
-from kinform.foundation.meshes.parity import Ray
+from kinform.foundation.meshes.parity import RAYS, Ray
 from kinform.foundation.meshes.shells import shells_of
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
+
+SHELL_PROBES = 32
+"""Facets of a shell that are probed, ..."""
+PROBE_PARTS = 3
+"""... each in the middles of the triangles that it is divided into along each side: finds what is as large as a few
+hundredths of a shell."""
+SHELL_DEPTH = 1e-3
+"""How far from a facet it is probed, in the longest side of the shell's facets: fits are shallower, walls thicker."""
+CROSSING_SHARE = 0.02
+"""Share of a shell's area that may lie in others: screws in bores that are too narrow do."""
 
 
 @dataclass(frozen=True)

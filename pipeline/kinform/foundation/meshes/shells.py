@@ -10,10 +10,12 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
-from kinform.foundation.constants import SAME_ANGLE
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import EdgeTable, unsorted_edge_table
 from kinform.model.arrays import Array, Flags, Ints
+
+SAME_ANGLE = 1e-7
+"""rad: facets about an edge within this are coincident."""
 
 
 def shells_of(vertices: Array, faces: Ints, edges: EdgeTable | None = None) -> Ints:

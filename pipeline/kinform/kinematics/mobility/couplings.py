@@ -13,17 +13,22 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.meshes.edges import shared_edges
 from kinform.frozen import dataclass
-from kinform.kinematics.axes.higher_pairs import is_higher
-from kinform.kinematics.constants import FIXED_RATIO, TOOTHED_TURNS
-from kinform.kinematics.loops.assembly_closure import Closure
-from kinform.kinematics.loops.joint_graph import JointGraph
+from kinform.kinematics.joints.axes.higher_pairs import is_higher
+from kinform.kinematics.joints.pair.touches import TOUCHING
 from kinform.kinematics.mobility.teeth import Side, meshing
-from kinform.kinematics.pair.touches import TOUCHING
+from kinform.mechanism.first_order import Closure
+from kinform.mechanism.joint_graph import JointGraph
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Mesh
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, Coupling, Joint, Meshing
 from kinform.model.names import BodyName, JointName, PartName
+
+FIXED_RATIO = 1e-6
+"""Relative: rates that keep their ratio to this are coupled."""
+TOOTHED_TURNS = 1.75
+"""Full turns of the convex edges of an outline from which on it has teeth."""
+
 
 SINGLE = ("revolute", "prismatic", "screw")
 """Joints of one freedom, whose values a ratio compares."""

@@ -20,12 +20,24 @@ from kinform.foundation.graphs.graph import UnionFind, blocks
 from kinform.foundation.in_step import in_step
 from kinform.foundation.words import counted, listed
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import LEAST_FRAME, MOST_BATCH_NUMBERS, MOST_BLOCK_WORK, MOST_STATEMENTS, MOVING_JOINT
-from kinform.kinematics.loops.loop_kinematics import LoopSystem, loop_system
+from kinform.kinematics.constants import LEAST_FRAME
 from kinform.kinematics.mobility.local_dimension import LocalMotions, local_motions_of_each
 from kinform.kinematics.mobility.second_order import first_order
+from kinform.mechanism.loop_system import LoopSystem, loop_system
 from kinform.model.kinematics import Coupling, FiniteCertificate, Joint
 from kinform.model.names import JointName
+
+MOST_BLOCK_WORK = 5e8
+"""Multiplications of one singular value decomposition of a block; above it the block is not tried. A mesh of
+300 hinges has 5e7, one of 250 ball joints about 5e8."""
+MOST_BATCH_NUMBERS = 200_000
+"""Squares of freedoms of blocks that are tried in step: 10,000 four-bars, but no two blocks of 500 hinges, whose
+matrices would take the memory of both."""
+MOVING_JOINT = 1e-3
+"""Share of the fastest rate from which on a joint is named as moving."""
+MOST_STATEMENTS = 4
+"""Blocks whose statements are told one by one."""
+
 
 PLACED = ("revolute", "screw", "cylindrical", "spherical", "universal")
 """Joints whose point says where the mechanism is."""

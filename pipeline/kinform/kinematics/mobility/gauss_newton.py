@@ -12,11 +12,23 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.frozen import dataclass
-from kinform.kinematics import constants
-from kinform.kinematics.loops.loop_kinematics import Form, LoopSystem, stacked
-from kinform.kinematics.mobility.second_order import Pose
-from kinform.kinematics.mobility.truncation import regular_solution, truncated_solution
+from kinform.kinematics.mobility.second_order import SLOW_ITERATIONS, Pose
+from kinform.kinematics.mobility.truncation import FINEST_VALUE, regular_solution, truncated_solution
+from kinform.mechanism.loop_system import Form, LoopSystem, stacked
 from kinform.model.arrays import Array
+
+FAST_ITERATIONS = 12
+"""Gauss–Newton iterations where convergence is quadratic."""
+FAST_CHANGE = 1e-9
+"""Change after which such a solve has converged."""
+SLOW_CHANGE = 1e-11
+"""Change after which a full solve has."""
+LONGEST_CHANGE = 0.5
+"""Share of a step that one iteration may change at most."""
+REDUCED_RATES = 60
+"""Rates of a block from which on its closure is made triangular before its singular values are asked: at 100 to 420
+rates the two take 0.6 of the time of one, at 40 nine tenths."""
+
 
 Ends = tuple[Array, Array, Array]
 """Configurations (D, n) that close the loops as well as Gauss–Newton can, their residuals (D,) and Jacobians
@@ -42,7 +54,7 @@ class Walk:
     def alone(self) -> bool:
         """Whether its solutions are found one by one, or by products whose last bit depends on how many there are."""
         system = self.pose.system
-        return system.coordinates >= constants.REDUCED_RATES or len(system.ties) > 0
+        return system.coordinates >= REDUCED_RATES or len(system.ties) > 0
 
 
 def ends(walks: Sequence[Walk]) -> list[Ends]:
@@ -73,13 +85,13 @@ def solve(system: LoopSystem, start: Array, step: float, pose: Pose | None = Non
     """
     q = start.copy()
     active = np.arange(len(q))
-    for _ in range(constants.SLOW_ITERATIONS if pose is None else constants.FAST_ITERATIONS):
+    for _ in range(SLOW_ITERATIONS if pose is None else FAST_ITERATIONS):
         closed = system.at(active).close(q[active])
         change = -solutions(closed.jacobian, closed.residual, pose)
         size = np.linalg.norm(change, axis=1)
-        change *= np.minimum(1.0, constants.LONGEST_CHANGE * step / np.maximum(size, 1e-300))[:, None]
+        change *= np.minimum(1.0, LONGEST_CHANGE * step / np.maximum(size, 1e-300))[:, None]
         q[active] += change
-        active = active[size > (constants.SLOW_CHANGE if pose is None else constants.FAST_CHANGE)]
+        active = active[size > (SLOW_CHANGE if pose is None else FAST_CHANGE)]
         if not len(active):
             break
     closed = system.close(q)
@@ -91,7 +103,7 @@ def solutions(jacobian: Array, missed: Array, pose: Pose | None) -> Array:
     that count at a pose beside."""
     jacobian, missed = reduced(jacobian, missed)
     count = jacobian.shape[2]
-    if count < constants.REDUCED_RATES or jacobian.shape[1] != count:
+    if count < REDUCED_RATES or jacobian.shape[1] != count:
         return _by_singular_values(jacobian, missed, pose)
     if pose is not None:
         found = [truncated_solution(*equations, pose.free) for equations in zip(jacobian, missed, strict=True)]
@@ -108,7 +120,7 @@ def solutions(jacobian: Array, missed: Array, pose: Pose | None) -> Array:
 def _by_singular_values(jacobian: Array, missed: Array, pose: Pose | None) -> Array:
     """See `solutions`."""
     left, values, right = np.linalg.svd(jacobian, full_matrices=False)
-    used = values > constants.FINEST_VALUE * values.max(axis=1, initial=1e-300, keepdims=True)
+    used = values > FINEST_VALUE * values.max(axis=1, initial=1e-300, keepdims=True)
     if pose is not None:
         used[:, pose.rank :] = False
     parts = np.einsum("dri,dr->di", left, missed)
@@ -121,7 +133,7 @@ def reduced(jacobian: Array, residual: Array) -> tuple[Array, Array]:
     the residual along the left ones (Golub and Van Loan, Matrix Computations, 5.3), without these reflections
     themselves. Rows without entries, half of those of planar loops, say nothing."""
     count = jacobian.shape[2]
-    if count < constants.REDUCED_RATES or jacobian.shape[1] <= count:
+    if count < REDUCED_RATES or jacobian.shape[1] <= count:
         return jacobian, residual
     used = np.asarray(jacobian.any(axis=(0, 2)))
     if np.count_nonzero(used) <= count:

@@ -8,12 +8,14 @@ from collections.abc import Collection, Mapping
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross
-from kinform.kinematics.constants import PRESERVED_SHARE
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.kinematics import Joint
 from kinform.model.surfaces import MeshSurfaces
+
+PRESERVED_SHARE = 0.03
+"""A patch mates along a motion whose velocity is within this share of tangential to it."""
 
 
 def joint_twist(joint: Joint) -> Array:

@@ -7,6 +7,7 @@ spins does not. They count as freedoms of the assembly, and not as effective one
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -16,11 +17,11 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, rotation, scaled, span, twist_at_origin
 from kinform.foundation.algebra.vectors import cross, dot, norm, sine, widest_gap
 from kinform.frozen import dataclass
-from kinform.kinematics import constants
-from kinform.kinematics.bodies.stated_joints import pair_between
-from kinform.kinematics.loops.joint_graph import JointGraph
-from kinform.kinematics.pair.evidence import COAXIAL
-from kinform.kinematics.pair.touches import TOUCHING
+from kinform.kinematics.constants import INTENDED_AXIS
+from kinform.kinematics.joints.bodies.stated_joints import pair_between
+from kinform.kinematics.joints.pair.evidence import COAXIAL
+from kinform.kinematics.joints.pair.touches import TOUCHING
+from kinform.mechanism.joint_graph import JointGraph
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Patch
@@ -28,6 +29,18 @@ from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
 from kinform.model.names import BodyName, PartName
 from kinform.model.surfaces import MeshSurfaces
+
+IDLE_MIDDLE = 0.2
+"""Distance of the middle of a face from an axis, over that of its points, beyond which it does not turn onto itself,
+..."""
+IDLE_OPEN = math.radians(60.0)
+"""... and angle about the axis without any of it."""
+IDLE_AXIS = 1e-3
+"""Sine between axes, and part of a unit turn outside a joint's freedoms, that is none."""
+IDLE_PLACE = 1e-4
+"""Share of the assembly's size by which axes and centres may lie apart."""
+INTENDED_PLACE = 1e-2
+"""... and share of the assembly's size by which its place may."""
 
 
 def touching_balls(
@@ -127,7 +140,7 @@ def _idle_turns(held: _Held) -> Array:
     for axis, point in lines:
         twist = rotation(axis, point, frame)
         if (
-            all(norm(twist - free @ (free.T @ twist)) < constants.IDLE_AXIS for free in spaces)
+            all(norm(twist - free @ (free.T @ twist)) < IDLE_AXIS for free in spaces)
             and all(_goes_all_round(patch, axis, point) for patch in patches if patch.kind == "plane")
             and not any(_names(wanted, axis, point, leaf, held.size) for wanted in held.intended)
         ):
@@ -155,7 +168,7 @@ def _candidates(patches: Sequence[Patch], size: float) -> list[tuple[Array, Arra
     for k, a in enumerate(centres):
         for b in centres[:k]:
             far = norm(b - a)
-            if far > constants.IDLE_PLACE * size:
+            if far > IDLE_PLACE * size:
                 lines.append(((b - a) / far, a))
     if centres and not lines:
         lines = [(e, centres[0]) for e in np.eye(3)]
@@ -165,10 +178,10 @@ def _candidates(patches: Sequence[Patch], size: float) -> list[tuple[Array, Arra
 def _turns_about(patch: Patch, axis: Array, point: Array, size: float) -> bool:
     """Does the surface of the patch turn onto itself about the axis?"""
     if patch.kind == "plane":
-        return sine(patch.axis, axis) <= constants.IDLE_AXIS
-    if patch.kind != "sphere" and (patch.kind not in COAXIAL or sine(patch.axis, axis) >= constants.IDLE_AXIS):
+        return sine(patch.axis, axis) <= IDLE_AXIS
+    if patch.kind != "sphere" and (patch.kind not in COAXIAL or sine(patch.axis, axis) >= IDLE_AXIS):
         return False
-    return norm(cross(patch.point - point, axis)) <= abs(patch.gap) + constants.IDLE_PLACE * size
+    return norm(cross(patch.point - point, axis)) <= abs(patch.gap) + IDLE_PLACE * size
 
 
 def _goes_all_round(patch: Patch, axis: Array, point: Array) -> bool:
@@ -177,9 +190,9 @@ def _goes_all_round(patch: Patch, axis: Array, point: Array) -> bool:
     arm = patch.points - point
     arm = arm - np.outer(arm @ axis, axis)
     reach = float(patch.weights @ np.sqrt(dot(arm, arm)))
-    if norm(patch.weights @ arm) > constants.IDLE_MIDDLE * reach:
+    if norm(patch.weights @ arm) > IDLE_MIDDLE * reach:
         return False
-    return widest_gap(arm, axis) < constants.IDLE_OPEN
+    return widest_gap(arm, axis) < IDLE_OPEN
 
 
 def _names(wanted: IntendedJoint, axis: Array, point: Array, leaf: bool, size: float) -> bool:
@@ -191,5 +204,5 @@ def _names(wanted: IntendedJoint, axis: Array, point: Array, leaf: bool, size: f
         return True
     if wanted.type not in ("revolute", "cylindrical", "screw") or wanted.axis is None or wanted.point is None:
         return False
-    parallel = sine(wanted.axis, axis) < constants.INTENDED_AXIS
-    return parallel and norm(cross(wanted.point - point, axis)) < constants.INTENDED_PLACE * size
+    parallel = sine(wanted.axis, axis) < INTENDED_AXIS
+    return parallel and norm(cross(wanted.point - point, axis)) < INTENDED_PLACE * size

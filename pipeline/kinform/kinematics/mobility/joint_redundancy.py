@@ -14,13 +14,21 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, rows, scaled, span
 from kinform.foundation.algebra.vectors import cross, dot, norm
 from kinform.foundation.graphs.graph import UnionFind
-from kinform.kinematics.constants import FEW_OF_SITE, HELD_TWICE, NAMED_CONTACT_AXIS, SITE_GAP
-from kinform.kinematics.pair.evidence import COAXIAL
+from kinform.kinematics.joints.pair.evidence import COAXIAL
 from kinform.kinematics.wording import Locked, locked_text, locked_wrenches, rows_too_many
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint, Redundancy
 from kinform.model.tolerances import Tolerances
+
+NAMED_CONTACT_AXIS = 0.02
+"""Directions of contacts this near (sine) to an axis of the world have its name: contacts are not snapped."""
+SITE_GAP = 0.25
+"""Patches whose gap is below this share of the radius of the smaller one belong together."""
+FEW_OF_SITE = 4
+"""One of so many samples is looked at before all are, where patches may lie together."""
+HELD_TWICE = 1e-9
+"""1 − cosine of directions that two sites both hold."""
 
 
 def redundancy(

@@ -24,10 +24,10 @@ from kinform.foundation.algebra.screws import bracket
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.in_step import in_step
 from kinform.frozen import dataclass
-from kinform.kinematics import constants
-from kinform.kinematics.loops.loop_kinematics import LoopSystem
+from kinform.kinematics.constants import CLOSED
 from kinform.kinematics.mobility.gauss_newton import Ends, Walk, ends, solve
 from kinform.kinematics.mobility.second_order import (
+    SLOW_ITERATIONS,
     Pose,
     complement,
     independent,
@@ -35,7 +35,49 @@ from kinform.kinematics.mobility.second_order import (
     second_order,
     units,
 )
+from kinform.mechanism.loop_system import LoopSystem
 from kinform.model.arrays import Array
+
+UNBALANCED = 1e-4
+"""Curvature that is none."""
+SEED = 20000
+"""Of the random mixes of freedoms that are stepped along: the same in every run."""
+MIXES = 3
+"""Mixes of the freedoms, all of which must be kept: one could by chance lie in a branch of its own."""
+MANY_MIXES = 6
+"""Mixes at a singular pose, beside the freedoms themselves."""
+BRANCH_MIXES = 2
+"""Mixes at a pose that lies on one branch, as far as is known."""
+STEP_SIZES = (0.05, 0.01, 0.002)
+"""rad, and shares of the block's size: near a singular pose a long step leaves the neighbourhood."""
+STEPPED_RANK = 1e-6
+"""Relative singular value below which a freedom counts as free at a stepped pose, whose loops are closed to
+rounding."""
+STEPPED_RANK_EXACT = 1e-9
+"""The same where the loops close to rounding over the whole step: nothing of the axes' misfit is in it."""
+CLOSURE_ROUNDING = 1e-13
+"""Rounding of a closure."""
+HIGHER_ORDER = 0.3
+"""What a half stride leaves of a whole one's residual: more is misfit, which grows with the step, less an obstruction
+of higher order."""
+STEP_KEPT = 0.9
+"""Share of a step that is left when the motion is real."""
+STEP_LOST = 0.1
+"""Share that is left when it is none."""
+STEP_ASTRAY = 2.0
+"""Steps that end farther than this many steps away lead elsewhere."""
+STEP_ASIDE = 0.2
+"""Share of a step that may go aside within a smooth branch."""
+CONE_SHARE = 0.05
+"""Relative singular value from which on the ends of steps span a direction of the tangent cone."""
+MOST_BRANCHES = 8
+"""Branches that are told apart."""
+SAME_BRANCH = 0.95
+"""Least cosine between the freedoms of two poses of one branch."""
+BRANCH_STEP = 0.1
+"""Share of the distance from the pose by which a branch is stepped along."""
+MOST_STEP_WORK = 2e10
+"""Multiplications that the steps at a singular pose may take; a block that needs more stays undecided."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,15 +127,15 @@ def _local_motions(pose: Pose) -> Steps[LocalMotions]:
     count, none = pose.freedoms, np.zeros((0, pose.system.coordinates))
     if count == 0:
         return LocalMotions(0, 0, none, stepped=0)
-    rng = np.random.default_rng(constants.SEED)
-    mixes = units(rng.normal(size=(1 if _submersion(pose) else constants.MIXES, count)))
+    rng = np.random.default_rng(SEED)
+    mixes = units(rng.normal(size=(1 if _submersion(pose) else MIXES, count)))
     if count == 1:
         mixes = np.unique(mixes, axis=0)  # forth and back are all that there is
     mixes = mixes @ pose.free
     bends = np.linalg.norm(pose.obstruction(mixes), axis=1)
-    for step in constants.STEP_SIZES:
-        closed = yield from _regular(pose, mixes, step, constants.STEP_SIZES[0])
-        if closed is not None and bends.max() > constants.UNBALANCED:
+    for step in STEP_SIZES:
+        closed = yield from _regular(pose, mixes, step, STEP_SIZES[0])
+        if closed is not None and bends.max() > UNBALANCED:
             why = "steps close, but the second-order test finds an obstruction"
             return LocalMotions(count, None, none, (count,), step, *closed, count, "obstructed", why)
         if closed is not None:
@@ -119,24 +161,24 @@ def _regular(pose: Pose, mixes: Array, stride: float, step: float) -> Steps[tupl
     """(least share kept of a stride, greatest residual) if walks of length `step` along mixes (D, n) close with
     the rank of the pose and find that rank again; else None. However short the strides, the walk goes on to the
     full step: obstructions of third and higher order cannot be told from rounding nearby."""
-    q, kept, closed = pose.q, 1.0, max(constants.CLOSED, pose.system.rounding)
+    q, kept, closed = pose.q, 1.0, max(CLOSED, pose.system.rounding)
     for _ in range(round(step / stride)):
         ahead = q + stride * mixes
         q, residual, jacobian = yield Walk(pose, ahead, stride)
         kept = min(kept, 1.0 - float(np.abs(((ahead - q) * mixes).sum(axis=1)).max()) / stride)
-        if residual.max() > closed * step or kept < constants.STEP_KEPT:
+        if residual.max() > closed * step or kept < STEP_KEPT:
             return None
     worst = float(residual.max())
     # where the numbers of the place leave more unknown, what is missed may be that
-    misfit = worst > max(constants.CLOSURE_ROUNDING, pose.system.rounding * step)
+    misfit = worst > max(CLOSURE_ROUNDING, pose.system.rounding * step)
     if misfit:
         # it grows with the step where axes are off, an obstruction of third or higher order with its powers
         _, half, _ = yield Walk(pose, pose.q + 0.5 * stride * mixes, stride)
-        if float(half.max()) < constants.HIGHER_ORDER * worst * stride / step:
+        if float(half.max()) < HIGHER_ORDER * worst * stride / step:
             return None
     values = np.linalg.svd(jacobian, compute_uv=False)
     beyond = values[:, pose.rank :].max(initial=0.0) / max(values.max(), 1e-300)
-    zero = constants.STEPPED_RANK if misfit else constants.STEPPED_RANK_EXACT
+    zero = STEPPED_RANK if misfit else STEPPED_RANK_EXACT
     return (kept, worst) if beyond < max(zero, pose.system.rounding) else None
 
 
@@ -160,10 +202,10 @@ def _spread(pose: Pose, directions: Array, step: float) -> _Spread:
     q, residual, _ = solve(pose.system, start, step)
     moved = (q - pose.q) @ pose.free.T / step
     kept = np.linalg.norm(moved, axis=1)
-    closed = residual < max(constants.CLOSED, pose.system.rounding) * step
-    stays = closed & (kept > constants.STEP_LOST) & (np.linalg.norm(q - start, axis=1) < constants.STEP_ASTRAY * step)
+    closed = residual < max(CLOSED, pose.system.rounding) * step
+    stays = closed & (kept > STEP_LOST) & (np.linalg.norm(q - start, axis=1) < STEP_ASTRAY * step)
     _, values, right = np.linalg.svd(moved[stays], full_matrices=False)
-    cone = right[: int(np.count_nonzero(values > constants.CONE_SHARE * values.max(initial=0.0)))] @ pose.free
+    cone = right[: int(np.count_nonzero(values > CONE_SHARE * values.max(initial=0.0)))] @ pose.free
     return _Spread(
         q[stays],
         cone,
@@ -177,14 +219,14 @@ def _smooth(pose: Pose, cone: Array, step: float, rng: np.random.Generator) -> b
     """Is every step within the cone kept, so that the cone is the tangent space of one smooth branch?"""
     if not len(cone):
         return True
-    mixes = units(rng.normal(size=(constants.MIXES, len(cone)))) @ cone
+    mixes = units(rng.normal(size=(MIXES, len(cone)))) @ cone
     q, residual, _ = solve(pose.system, pose.q + step * mixes, step)
     kept = ((q - pose.q) * mixes).sum(axis=1) / step
     aside = np.linalg.norm((q - pose.q) @ pose.free.T / step - kept[:, None] * (mixes @ pose.free.T), axis=1)
     return bool(
-        residual.max() < max(constants.CLOSED, pose.system.rounding) * step
-        and kept.min() > constants.STEP_KEPT
-        and aside.max() < constants.STEP_ASIDE
+        residual.max() < max(CLOSED, pose.system.rounding) * step
+        and kept.min() > STEP_KEPT
+        and aside.max() < STEP_ASIDE
     )
 
 
@@ -192,18 +234,13 @@ def _singular(pose: Pose, rng: np.random.Generator) -> LocalMotions:
     """Motions at a pose that is not regular: steps of two sizes have to agree with each other, and with the second
     order. What they found is told with the reason where they do not."""
     order, along = second_order(pose, rng)
-    directions = np.concatenate(
-        [along, pose.free, units(rng.normal(size=(constants.MANY_MIXES, pose.freedoms))) @ pose.free]
-    )
+    directions = np.concatenate([along, pose.free, units(rng.normal(size=(MANY_MIXES, pose.freedoms))) @ pose.free])
     none = np.zeros((0, pose.system.coordinates))
     rows, columns = 6 * len(pose.system.loops), pose.system.coordinates
-    if (
-        2.0 * len(directions) * constants.SLOW_ITERATIONS * rows * columns * min(rows, columns)
-        > constants.MOST_STEP_WORK
-    ):
+    if 2.0 * len(directions) * SLOW_ITERATIONS * rows * columns * min(rows, columns) > MOST_STEP_WORK:
         why = "the pose is singular, and the block too large for the steps that would tell its branches"
         return LocalMotions(pose.freedoms, None, none, order=order, reason=why)
-    wide, narrow = constants.STEP_SIZES[:2]
+    wide, narrow = STEP_SIZES[:2]
     first, second = (_explore(pose, directions, step, rng) for step in (wide, narrow))
     reason = ""
     if second.dimension is None:
@@ -232,17 +269,17 @@ def _explore(pose: Pose, directions: Array, step: float, rng: np.random.Generato
     doubt = "the loops did not close after a step" if spread.undecided else ""
     if _smooth(pose, spread.cone, step, rng):
         count = len(spread.cone)
-        stepped = [Pose.at(pose.system, q, constants.STEPPED_RANK).freedoms for q in spread.ends[:1]]
+        stepped = [Pose.at(pose.system, q, STEPPED_RANK).freedoms for q in spread.ends[:1]]
         measured = step, spread.kept, spread.residual, max(stepped, default=None)
         return LocalMotions(pose.freedoms, count, lost, (count,) if count else (), *measured, reason=doubt)
     poses: list[Pose] = []
     dimensions: list[int | None] = []
     for end in spread.ends:
-        there = Pose.at(pose.system, end, constants.STEPPED_RANK)
-        fresh = len(poses) < constants.MOST_BRANCHES or all(there.freedoms != other.freedoms for other in poses)
+        there = Pose.at(pose.system, end, STEPPED_RANK)
+        fresh = len(poses) < MOST_BRANCHES or all(there.freedoms != other.freedoms for other in poses)
         if fresh and not any(_same(there, other) for other in poses):
             poses.append(there)
-            dimensions.append(_dimension(there, constants.BRANCH_STEP * norm(end - pose.q), rng))
+            dimensions.append(_dimension(there, BRANCH_STEP * norm(end - pose.q), rng))
     decided = [] if None in dimensions else [d for d in dimensions if d is not None]
     if not decided:
         doubt = "a branch is singular itself"
@@ -258,7 +295,7 @@ def _dimension(pose: Pose, step: float, rng: np.random.Generator) -> int | None:
     count = pose.freedoms
     if count == 0:
         return 0
-    mixes = units(rng.normal(size=(constants.BRANCH_MIXES, count))) @ pose.free
+    mixes = units(rng.normal(size=(BRANCH_MIXES, count))) @ pose.free
     if in_step([_regular(pose, mixes, step, step)], ends)[0] is not None:
         return count
     more = units(rng.normal(size=(count + 3, count))) @ pose.free
@@ -273,4 +310,4 @@ def _same(a: Pose, b: Pose) -> bool:
     if a.freedoms == 0:
         return True
     cosines = np.linalg.svd(a.free @ b.free.T, compute_uv=False)
-    return bool(cosines.min() > constants.SAME_BRANCH)
+    return bool(cosines.min() > SAME_BRANCH)

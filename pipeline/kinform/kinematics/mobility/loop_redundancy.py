@@ -15,13 +15,18 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, scaled, span
 from kinform.foundation.algebra.vectors import cross, cross_matrix
 from kinform.foundation.graphs.cycles import Cycle
-from kinform.kinematics.constants import CLOSED, EXACT_WRENCH, FEW_RATES, MOST_NAMED, MOST_SORTED_LOOPS
-from kinform.kinematics.loops.assembly_closure import Closure
-from kinform.kinematics.loops.block_closure import Block, axes_frame, loop_matrix
+from kinform.kinematics.constants import CLOSED
 from kinform.kinematics.mobility.joint_redundancy import redundancy
-from kinform.kinematics.wording import Locked, axis_word, locked_text, locked_wrenches, rows_too_many
+from kinform.kinematics.wording import EXACT_WRENCH, Locked, axis_word, locked_text, locked_wrenches, rows_too_many
+from kinform.mechanism.block_rates import FEW_RATES, Block, axes_frame, loop_matrix
+from kinform.mechanism.first_order import Closure
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Redundancy
+
+MOST_SORTED_LOOPS = 60
+"""Up to so many loops in a block, what they hold together is told apart."""
+MOST_NAMED = 12
+"""So many bodies or joints are named in a text."""
 
 
 def redundancies_of_loops(joints: Sequence[Joint], closure: Closure, size: float) -> tuple[Redundancy, ...]:

@@ -14,22 +14,26 @@ import numpy as np
 from kinform.foundation.algebra.vectors import canonical, cross, foot, norm
 from kinform.foundation.graphs.graph import Forest, forest
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import (
-    AT_REST,
-    EXCHANGED,
-    NO_PITCH,
-    NO_TURN,
-    NO_TWIST,
-    PITCH_ROUNDING,
-    RATE_ROUNDING,
-    SAME_RATES,
-)
-from kinform.kinematics.loops.assembly_closure import Closure
-from kinform.kinematics.loops.block_closure import Solution
-from kinform.kinematics.loops.joint_graph import JointGraph
+from kinform.kinematics.constants import AT_REST
+from kinform.mechanism.block_rates import RATE_ROUNDING, Solution
+from kinform.mechanism.first_order import Closure
+from kinform.mechanism.joint_graph import JointGraph
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Freedom, Kinematics
 from kinform.model.names import BodyName, JointName
+
+SAME_RATES = 1e-2
+"""An idle turn is one of the assembly's freedoms when it is within this share of one."""
+NO_TURN = 1e-10
+"""Turn (rad/s) that is none, as a share of a velocity over the size of the assembly; rounding."""
+NO_PITCH = 1e-6
+"""m a turn that is none, as a share of the size of the assembly; a choice: a fine thread has 1e-2 of its screw."""
+PITCH_ROUNDING = 1e-13
+"""The same as a share of the distance of the axis from the origin: what products of doubles lose."""
+EXCHANGED = 0.1
+"""Rate in an idle turn from which on a driver may give way to it."""
+NO_TWIST = 1e-12
+"""Largest component of a relative twist that is none."""
 
 
 def named_freedoms(

@@ -13,9 +13,22 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.frozen import dataclass
-from kinform.kinematics import constants
-from kinform.kinematics.loops.loop_kinematics import Form, LoopSystem, stacked
+from kinform.kinematics.constants import CLOSED, RCOND
+from kinform.mechanism.loop_system import Form, LoopSystem, stacked
 from kinform.model.arrays import Array
+
+BALANCED = 1e-6
+"""Curvature (of unit freedoms) that is rounding."""
+MOST_TESTED_FREEDOMS = 40
+"""Freedoms of a block up to which directions that pass the second-order test are looked for."""
+SLOW_ITERATIONS = 60
+"""Gauss–Newton iterations where convergence is linear: halving, at a simple singularity."""
+MOST_PASSING = 12
+"""Directions that pass the second-order test that are followed."""
+SAME_LINE = 0.999
+"""Cosine above which two of them are one."""
+COMPLEMENT = 1e-6
+"""Singular value below which a direction has no part in a space."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +45,7 @@ class Pose:
     system: LoopSystem
 
     @staticmethod
-    def at(system: LoopSystem, q: Array, tolerance: float = constants.CLOSED) -> Pose:
+    def at(system: LoopSystem, q: Array, tolerance: float = CLOSED) -> Pose:
         """The pose at the closed configuration q (n,); relative `tolerance` of its rank."""
         return _poses([system], system, q[None], tolerance)[0]
 
@@ -57,7 +70,7 @@ def reference_poses(systems: Sequence[LoopSystem]) -> list[Pose]:
     for members in alike.values():
         of_form = [systems[k] for k in members]
         q = np.zeros((len(of_form), of_form[0].coordinates))
-        out |= zip(members, _poses(of_form, stacked(of_form, [1] * len(of_form)), q, constants.CLOSED), strict=True)
+        out |= zip(members, _poses(of_form, stacked(of_form, [1] * len(of_form)), q, CLOSED), strict=True)
     return [out[k] for k in range(len(systems))]
 
 
@@ -87,37 +100,35 @@ def second_order(pose: Pose, rng: np.random.Generator) -> tuple[str, Array]:
     """
     count = pose.freedoms
     none = np.zeros((0, pose.free.shape[1]))
-    if count > constants.MOST_TESTED_FREEDOMS:
+    if count > MOST_TESTED_FREEDOMS:
         bends = np.linalg.norm(pose.obstruction(units(rng.normal(size=(6, count))) @ pose.free), axis=1)
-        return ("extends" if bends.max() < constants.BALANCED else "", none)
+        return ("extends" if bends.max() < BALANCED else "", none)
     i, j = np.triu_indices(count)
     bent = pose.obstruction(np.concatenate([pose.free[i] + pose.free[j], pose.free[i] - pose.free[j]]))
     flat = 0.25 * (bent[: len(i)] - bent[len(i) :])
     # fewer forms with the same zeros
     _, values, right = np.linalg.svd(flat.T, full_matrices=False)
-    flat = (values[:, None] * right)[values > constants.BALANCED]
+    flat = (values[:, None] * right)[values > BALANCED]
     if not len(flat):
         return "extends", none
     forms = np.zeros((len(flat), count, count))
     forms[:, i, j] = forms[:, j, i] = flat
     if len(forms) == 1:
         values = np.linalg.eigvalsh(forms[0])
-        if values[0] > constants.BALANCED or values[-1] < -constants.BALANCED:
+        if values[0] > BALANCED or values[-1] < -BALANCED:
             return "obstructed", none
     u = units(rng.normal(size=(8 + 4 * count, count)))
-    for _ in range(constants.SLOW_ITERATIONS):
+    for _ in range(SLOW_ITERATIONS):
         value = np.einsum("pij,di,dj->dp", forms, u, u)
         slope = 2.0 * np.einsum("pij,dj->dpi", forms, u)
-        u = units(u - np.einsum("dip,dp->di", np.linalg.pinv(slope, rcond=constants.RCOND), value))
+        u = units(u - np.einsum("dip,dp->di", np.linalg.pinv(slope, rcond=RCOND), value))
     left = np.linalg.norm(np.einsum("pij,di,dj->dp", forms, u, u), axis=1)
-    passing = u[left < constants.BALANCED]
+    passing = u[left < BALANCED]
     if not len(passing):
         return "obstructed", none
     distinct: list[Array] = []
     for direction in passing:
-        if len(distinct) < constants.MOST_PASSING and all(
-            abs(float(direction @ other)) < constants.SAME_LINE for other in distinct
-        ):
+        if len(distinct) < MOST_PASSING and all(abs(float(direction @ other)) < SAME_LINE for other in distinct):
             distinct.append(direction)
     return "partly", np.array(distinct) @ pose.free
 
@@ -125,7 +136,7 @@ def second_order(pose: Pose, rng: np.random.Generator) -> tuple[str, Array]:
 def independent(twists: Array) -> Array:
     """Orthonormal basis (r, m) of what the rows (n, m) span."""
     _, values, right = np.linalg.svd(twists, full_matrices=False)
-    return right[: int(np.count_nonzero(values > constants.CLOSED * values.max(initial=0.0)))]
+    return right[: int(np.count_nonzero(values > CLOSED * values.max(initial=0.0)))]
 
 
 def complement(space: Array, part: Array) -> Array:
@@ -133,7 +144,7 @@ def complement(space: Array, part: Array) -> Array:
     if not len(part):
         return space
     _, values, right = np.linalg.svd(part @ space.T)
-    return right[int(np.count_nonzero(values > constants.COMPLEMENT)) :] @ space
+    return right[int(np.count_nonzero(values > COMPLEMENT)) :] @ space
 
 
 def units(vectors: Array) -> Array:

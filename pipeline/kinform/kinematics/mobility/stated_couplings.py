@@ -12,13 +12,15 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.algebra.vectors import norm
-from kinform.kinematics.constants import INDEPENDENT_ROW
-from kinform.kinematics.loops.assembly_closure import Closure
-from kinform.kinematics.loops.block_closure import Solution
+from kinform.mechanism.block_rates import Solution
+from kinform.mechanism.first_order import Closure
 from kinform.model.arrays import Array
 from kinform.model.function import Function, IntendedJoint
 from kinform.model.kinematics import Joint, Mobility
 from kinform.model.names import BodyName
+
+INDEPENDENT_ROW = 1e-9
+"""Share of the largest entry below which what is left of a row is rounding."""
 
 
 def coupling_rows(

@@ -16,18 +16,25 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross, norm, perpendicular
 from kinform.foundation.sorting import heads, median
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import (
-    EVEN_TEETH,
-    FEWEST_TEETH,
-    IN_PLANE,
-    RATIO_AGREES,
-    ROUNDED_LEVEL,
-    TIP_MARGIN,
-    TOOTH_POSES,
-)
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
 from kinform.model.kinematics import Meshing
+
+EVEN_TEETH = 0.03
+"""Share of the pitch by which teeth may stand elsewhere than at even distances, or leave the constant ratio:
+tessellated involutes of five points a flank stay below a third of it, straight flanks on wheels do not."""
+FEWEST_TEETH = 5
+"""Teeth of a whole wheel, and teeth in a row of a rack or a sector, from which on they are teeth and no cams."""
+TOOTH_POSES = 24
+"""Poses in which the sections are held against each other while one tooth passes."""
+IN_PLANE = 1e-3
+"""rad: axes that are parallel or perpendicular to this lie in one plane."""
+RATIO_AGREES = 0.01
+"""Relative: what the ratio at one pose, from the normals of the flanks, may differ from that of the teeth."""
+TIP_MARGIN = 1.02
+"""Teeth up to this share of the other wheel's tip radius are within its reach."""
+ROUNDED_LEVEL = 1e-9
+"""Share of the greatest radius by which the end of an edge may be beyond a level that it meets, for rounding."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,8 +12,16 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import norm
-from kinform.kinematics import constants
 from kinform.model.arrays import Array
+
+INVERSE_ITERATIONS = 8
+"""Inverse iterations for the singular vectors that do not count: with a gap each gains digits by the square of it."""
+CONVERGED_VECTORS = 1e-14
+"""Share of a matrix that may be missing from its product with singular vectors that have converged."""
+LEAST_DIAGONAL = 1e-250
+"""Share of a triangle below which nothing can be divided by what is on its diagonal."""
+FINEST_VALUE = 1e-12
+"""Relative singular value that a full solve still uses: near a singularity of fourth order they are that small."""
 
 
 def regular_solution(triangle: Array, right: Array) -> Array | None:
@@ -22,11 +30,11 @@ def regular_solution(triangle: Array, right: Array) -> Array | None:
     from scipy.linalg import solve_triangular
 
     size = norm(triangle)
-    if float(np.abs(np.diag(triangle)).min()) <= constants.FINEST_VALUE * size:
+    if float(np.abs(np.diag(triangle)).min()) <= FINEST_VALUE * size:
         return None
     inverse = solve_triangular(triangle, np.eye(len(triangle)), check_finite=False)
     # the norms of Frobenius are no less than the largest singular values of both
-    if not constants.FINEST_VALUE * size * norm(inverse) < 1.0:
+    if not FINEST_VALUE * size * norm(inverse) < 1.0:
         return None
     return np.asarray(solve_triangular(triangle, right, check_finite=False))
 
@@ -37,19 +45,19 @@ def truncated_solution(triangle: Array, right: Array, left_out: Array) -> Array 
     from scipy.linalg import solve_triangular
 
     size = norm(triangle)
-    if float(np.abs(np.diag(triangle)).min()) <= constants.LEAST_DIAGONAL * size:
+    if float(np.abs(np.diag(triangle)).min()) <= LEAST_DIAGONAL * size:
         return None
     inner = left_out.T
-    for _ in range(constants.INVERSE_ITERATIONS):
+    for _ in range(INVERSE_ITERATIONS):
         outer = np.linalg.qr(solve_triangular(triangle, inner, trans="T", check_finite=False))[0]
         inner = np.linalg.qr(solve_triangular(triangle, outer, check_finite=False))[0]
         image, preimage = triangle @ inner, triangle.T @ outer
         missed = norm(image - outer @ (outer.T @ image)) + norm(preimage - inner @ (inner.T @ preimage))
-        if missed < constants.CONVERGED_VECTORS * size:
+        if missed < CONVERGED_VECTORS * size:
             break
     else:
         return None
     x = solve_triangular(triangle, right - outer @ (outer.T @ right), check_finite=False)
     x = x - inner @ (inner.T @ x)
     # a singular value that counts, but is hardly one
-    return np.asarray(x) if norm(x) * constants.FINEST_VALUE * size < norm(right) else None
+    return np.asarray(x) if norm(x) * FINEST_VALUE * size < norm(right) else None

@@ -14,7 +14,6 @@ from kinform.foundation.graphs.graph import UnionFind, shortest_path
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_model, fcl_pose
 from kinform.foundation.words import counted, quoted
 from kinform.frozen import dataclass
-from kinform.kinematics.partition import constants
 from kinform.kinematics.partition.contact import PartPair
 from kinform.kinematics.partition.graph import Graph, graph_of, stated_merger
 from kinform.kinematics.partition.labelling import Labelling, Margin, label_all, margins
@@ -26,6 +25,21 @@ from kinform.model.contacts import Contacts
 from kinform.model.function import IntendedJoint
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces
+
+EITHER = 25.0
+"""Margin up to which a part may go either way: less than the price of a flange."""
+EITHER_WAY = 150.0
+"""The same without what suggests that parts are fastened, where joints may part all that would be parted: half a flat
+beside the axis, more than three journals. Horns are screwed to what they drive or to what drives them, and screw holes
+line up either way. On 17 robots the greatest of a part whose author put it elsewhere is 70, and no part's lies between
+120 and 200: with 300 as many are listed for nothing as for a reason."""
+HELD_ACROSS = 250.0
+"""Price beyond which contact that was parted, a flat beside the axis or more, says that bodies guessed from different
+names are not sure."""
+NEAREST_TRIED = 6
+"""Of so many parts whose boxes are nearest to one that touches nothing, the nearest surface is looked for."""
+NAMED_HOLDS = 3
+"""Of the parts that hold another in its body, or that it was parted from, so many are named."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +65,7 @@ class Placed:
     @property
     def unclear(self) -> bool:
         """Whether it could go either way."""
-        return self.either or self.margin < constants.EITHER
+        return self.either or self.margin < EITHER
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +134,7 @@ def _placed(assembly: Assembly, graph: Graph, labelling: Labelling) -> dict[Part
             continue
         m = margin.get(piece, Margin(float("inf"), None, (), moves=False))
         along = tuple(sorted(part for n in m.along for part in members[n] if part != name))
-        placed[name] = Placed(name, label, "cut", m.cost, m.label, along, m.plain < constants.EITHER_WAY)
+        placed[name] = Placed(name, label, "cut", m.cost, m.label, along, m.plain < EITHER_WAY)
     models: dict[PartName, fcl.BVHModel] = {}
     for cluster in _touching(graph, lost):
         ways = [(*found, name) for name in cluster if (found := _nearest(assembly, name, known, models)) is not None]
@@ -150,7 +164,7 @@ def _doubtful(graph: Graph, labelling: Labelling) -> set[int]:
     out: set[int] = set(graph.open)
     for edge in graph.edges if graph.guessed else ():
         first, second = (labelling.labels[end] for end in edge.ends)
-        if first is not None and second is not None and edge.price(first, second) > constants.HELD_ACROSS:
+        if first is not None and second is not None and edge.price(first, second) > HELD_ACROSS:
             out |= {first, second, *graph.guessed}
     return out | {body for ends in graph.sides if out & set(ends) for body in ends}
 
@@ -167,10 +181,10 @@ def _evidence(graph: Graph, placed: Mapping[PartName, Placed], one: Placed, stan
     words = []
     for side, what in ((inside, "held by"), (across, "parted from")):
         names = [name for _, name in sorted(side)]
-        rest = len(names) - constants.NAMED_HOLDS
+        rest = len(names) - NAMED_HOLDS
         more = f" and {counted(rest, 'more part')}" if rest > 0 else ""
         if names:
-            words.append(f"{what} {quoted(names[: constants.NAMED_HOLDS])}{more}")
+            words.append(f"{what} {quoted(names[:NAMED_HOLDS])}{more}")
     if standard is not None:
         words.append(f"{standard.kind}: {standard.evidence}")
     return "; ".join(words)
@@ -212,7 +226,7 @@ def _nearest(
             apart.append((gap, middle, other))
     own = _object(assembly, name, models)
     best: tuple[float, PartName] | None = None
-    for gap, _, other in sorted(apart)[: constants.NEAREST_TRIED]:
+    for gap, _, other in sorted(apart)[:NEAREST_TRIED]:
         if best is None or gap <= best[0]:
             with at_work_on(name, other):
                 distance = fcl_distance(own, _object(assembly, other, models))

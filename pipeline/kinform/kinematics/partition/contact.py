@@ -13,11 +13,51 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot, lengths, norm, widest_gap
 from kinform.frozen import dataclass
-from kinform.kinematics.partition import constants
+from kinform.kinematics.partition.constants import COAXIAL, COAXIAL_OFF
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.function import IntendedJoint
 from kinform.model.names import PartName
+
+OPPOSED = 0.03
+"""Share of the local speed that a normal may oppose, and still slide on itself."""
+SLOW = 1e-4
+"""The same as a share of the greatest speed in the contact: near the axis nothing moves."""
+OPPOSED_AREA = 0.05
+"""Share of the area between two parts that may oppose a joint that parts them: scraps decide nothing."""
+OPPOSED_SOME = 5
+"""One of so many points of a contact is asked about all joints before all are: a fifth has several times that share."""
+JOURNAL = 40.0
+"""Price of parting a journal, a collar or a guide."""
+LOOSE_JOURNAL = 35.0
+"""The same of one with play: a pin turns where it is loose and stays where it is tight. Less than `EITHER` below a
+journal, so that it is listed: which side a pin goes with is for its maker to say."""
+LOOSE = 2e-3
+"""Play of a journal as a share of its radius from which it is loose: a running fit (ISO 286, H7/g6) has as much from
+10 mm down."""
+FACE_ROUND = 30.0
+"""Price of parting a face that goes round the axis, without a journal. Less than a journal: most models end at a flush
+face, and what is inside of a servo is its own. With 1 for the journal 155 of 204 bodies of 17 robots came out whole,
+with 40 168, on no robot fewer; whichever robot is left out, the others choose 40."""
+SERRATED = 100.0
+"""Price of parting serrations about the axis: those of a servo's output turn with what they drive."""
+FLAT_BESIDE = 300.0
+"""Price of parting a flat beside the axis."""
+FLAT_APART = 50.0
+"""The same of one that does not touch: the tip of a screw over the face of a motor."""
+APART = 0.05
+"""Gap of a flat from which it does not touch, as a share of the root of its area."""
+JOURNAL_OFF = 0.7
+"""Share of its reach by which the middle of a round patch may lie beside the axis that it goes round: half of one."""
+FACE_OFF = 0.5
+"""The same of other faces."""
+GUIDED_ROUND = np.radians(181.0)
+"""rad: normals of a guide leave no wider gap round it than this."""
+ROLLING = 1.0
+"""Price of parting what touches at points or along lines only: balls, rollers, teeth hold nothing together."""
+NUMBERS_AT_ONCE = 8192
+"""Joints times points of a contact that are looked at together: their columns stay in the cache."""
+
 
 PartPair = tuple[PartName, PartName]
 
@@ -152,7 +192,7 @@ class Contact:
         if not asked.numbers or total <= 0.0:
             return {}
         if all(patch.kind not in UNKNOWN for patch in self.patches):  # serrations would not count
-            many = len(asked.first) * len(self.points) > constants.NUMBERS_AT_ONCE
+            many = len(asked.first) * len(self.points) > NUMBERS_AT_ONCE
             among = np.flatnonzero(~self._surely_opposed(asked.first)) if many else np.arange(len(asked.first))
             opposed = self._opposed(asked.first[among])
             little = np.flatnonzero(self._little(opposed))
@@ -168,7 +208,7 @@ class Contact:
         may = np.flatnonzero(self._little(opposed & ~serrated)).tolist()
         numbers = [asked.numbers[k] for k in among.tolist()]
         if self.slight:
-            return dict.fromkeys([numbers[k] for k in may], constants.ROLLING)
+            return dict.fromkeys([numbers[k] for k in may], ROLLING)
         round_ = dict(zip(about.tolist(), self._round(axes, opposed[about], serrated[about]), strict=True))
         out = {}
         for k in may:
@@ -176,7 +216,7 @@ class Contact:
             if k in round_:
                 out[numbers[k]] = round_[k]
             elif asked.joints[one].type == "planar":
-                out[numbers[k]] = constants.JOURNAL  # a flat across its normal, wherever it lies
+                out[numbers[k]] = JOURNAL  # a flat across its normal, wherever it lies
             else:
                 out[numbers[k]] = self._guided(asked.joints[one], opposed[k])
         return out
@@ -204,13 +244,13 @@ class Contact:
     def _surely_opposed(self, motions: Array) -> Flags:
         """(k,) of which of k motions (k, 6) some of the points tell that they press on, or leave, more than next to
         none of the area, or that it is not `_little`: of thousands of joints most are elsewhere, and do."""
-        some = slice(None, None, constants.OPPOSED_SOME)
+        some = slice(None, None, OPPOSED_SOME)
         middle, radius = self.ball
         way = motions[:, 3:] + cross(motions[:, :3], np.broadcast_to(middle, (len(motions), 3)))
         # no point of the ball is faster
         fastest = (1.0 + 1e-9) * (lengths(way) + lengths(motions[:, :3]) * radius)
         area = self._pressed(motions, self.points[some], self.normals[some], fastest) @ self.weights[some]
-        return np.asarray(area > (1.0 + 1e-6) * constants.OPPOSED_AREA * float(self.weights.sum()))
+        return np.asarray(area > (1.0 + 1e-6) * OPPOSED_AREA * float(self.weights.sum()))
 
     def _opposed(self, motions: Array) -> Flags:
         """(k, n) whether each of k motions (k, 6) presses on each point or leaves it."""
@@ -227,14 +267,14 @@ class Contact:
             forth, side, up = u + (q * z - r * y), v + (r * x - p * z), w + (p * y - q * x)
             pace = np.sqrt(forth * forth + side * side + up * up)
             most = pace.max(axis=1, initial=0.0, keepdims=True) if fastest is None else fastest[some, None]
-            bound = constants.OPPOSED * pace + constants.SLOW * most
+            bound = OPPOSED * pace + SLOW * most
             np.greater(np.abs(forth * a + up * c + side * b), bound, out=out[some])
         return out
 
     def _little(self, flags: Flags) -> Flags:
         """(k,) whether the points of each of k rows of flags (k, n) have next to none of the area."""
         area, total = flags @ self.weights, float(self.weights.sum())
-        limit = constants.OPPOSED_AREA * total
+        limit = OPPOSED_AREA * total
         for k in np.flatnonzero(np.abs(area - limit) <= 1e-9 * total):
             area[k] = self.weights[flags[k]].sum()  # shares that are meant to be equal hang on no order
         return np.asarray(area <= limit)
@@ -246,7 +286,7 @@ class Contact:
         if not unknown.any() or not len(axes.centres):
             return np.zeros((len(axes.centres), len(self.points)), dtype=bool)
         counts = np.diff([*self._first.tolist(), len(self.points)])
-        return np.asarray(np.repeat(unknown & (self._off(axes) < constants.FACE_OFF), counts, axis=1))
+        return np.asarray(np.repeat(unknown & (self._off(axes) < FACE_OFF), counts, axis=1))
 
     def _off(self, axes: Axes) -> Array:
         """(k, patches that have points) how far the middle of each patch lies beside each axis, or centre, as a share
@@ -278,8 +318,8 @@ class Contact:
         size = np.array([max(patch.radii, default=0.0) for patch in patches])
         u, v, w = np.array([patch.axis for patch in patches]).T[:, None]
         sphere = np.array([patch.kind == "sphere" for patch in patches], dtype=bool)
-        lies = np.where(axes.ball[:, None], sphere, np.abs(u * p + v * q + w * r) > np.cos(constants.COAXIAL))
-        return np.asarray(turning & ((off < constants.JOURNAL_OFF) | (lies & (far < constants.COAXIAL_OFF * size))))
+        lies = np.where(axes.ball[:, None], sphere, np.abs(u * p + v * q + w * r) > np.cos(COAXIAL))
+        return np.asarray(turning & ((off < JOURNAL_OFF) | (lies & (far < COAXIAL_OFF * size))))
 
     def _round(self, axes: Axes, opposed: Flags, serrated: Flags) -> list[float]:
         """The price along a turn about each axis: do patches go round it, or its centre?"""
@@ -287,25 +327,25 @@ class Contact:
             return []
         patches = [self.patches[k] for k in self._filled]
         pressed = np.logical_or.reduceat(opposed, self._first, axis=1)
-        counts = ~pressed & (self._areas >= constants.OPPOSED_AREA * float(self.weights.sum()))
+        counts = ~pressed & (self._areas >= OPPOSED_AREA * float(self.weights.sum()))
         off = self._off(axes)
         journals = counts & self._journals(axes, off)
         journal = journals.any(axis=1)
         firm = (journals & [not _loose(patch) for patch in patches]).any(axis=1)
         apart = ([_apart(patch) for patch in patches] | ~counts).all(axis=1)
-        round_it = ((off < constants.FACE_OFF) | ~counts).all(axis=1)
-        flat = np.where(apart, constants.FLAT_APART, constants.FLAT_BESIDE)
-        price = np.where(journal | round_it, constants.FACE_ROUND, flat)
-        price = np.where(journal & round_it, np.where(firm, constants.JOURNAL, constants.LOOSE_JOURNAL), price)
+        round_it = ((off < FACE_OFF) | ~counts).all(axis=1)
+        flat = np.where(apart, FLAT_APART, FLAT_BESIDE)
+        price = np.where(journal | round_it, FACE_ROUND, flat)
+        price = np.where(journal & round_it, np.where(firm, JOURNAL, LOOSE_JOURNAL), price)
         held = (opposed & serrated).any(axis=1)
-        return [float(one) for one in np.where(held, np.maximum(price, constants.SERRATED), price)]
+        return [float(one) for one in np.where(held, np.maximum(price, SERRATED), price)]
 
     def _guided(self, joint: IntendedJoint, opposed: Flags) -> float:
         """The price along a slide: do faces that run along it stand round it?"""
         assert joint.axis is not None
         axis = joint.axis / norm(joint.axis)
         gap = widest_gap(self.normals[~opposed], axis)
-        return constants.JOURNAL if gap < constants.GUIDED_ROUND else constants.FLAT_BESIDE
+        return JOURNAL if gap < GUIDED_ROUND else FLAT_BESIDE
 
 
 def _squares(columns: Sequence[Array]) -> Array:
@@ -315,15 +355,15 @@ def _squares(columns: Sequence[Array]) -> Array:
 
 def _blocks(rows: int, wide: int) -> list[slice]:
     """Rows that stay in the cache together."""
-    step = max(1, constants.NUMBERS_AT_ONCE // max(wide, 1))
+    step = max(1, NUMBERS_AT_ONCE // max(wide, 1))
     return [slice(k, k + step) for k in range(0, rows, step)]
 
 
 def _apart(patch: Patch) -> bool:
     """Whether a flat has a gap that is wide by its own size."""
-    return patch.kind == "plane" and patch.gap > patch.chord + constants.APART * patch.area**0.5
+    return patch.kind == "plane" and patch.gap > patch.chord + APART * patch.area**0.5
 
 
 def _loose(patch: Patch) -> bool:
     """Whether a journal has play that its facets do not explain."""
-    return patch.gap > patch.chord + constants.LOOSE * max(patch.radii, default=0.0)
+    return patch.gap > patch.chord + LOOSE * max(patch.radii, default=0.0)

@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence, Set
 
 from kinform.frozen import dataclass
-from kinform.kinematics.partition import constants
+from kinform.kinematics.partition.constants import PARTED, TOUCH_WORTH
 from kinform.kinematics.partition.labelling import Edge, Labels, labels_of, regions
 
 Joined = tuple[int, ...]
@@ -229,10 +229,10 @@ def _share(
             continue
         price, pair = edge.price(first, second), (min(first, second), max(first, second))
         parted[pair] = parted.get(pair, 0) + whole(price)
-        dear |= price > constants.PARTED
+        dear |= price > PARTED
         if price >= edge.broken:
             broken.append(edge.ends)
-        if (first, second) in edge.parted and edge.plain(first, second) <= constants.PARTED + constants.TOUCH_WORTH:
+        if (first, second) in edge.parted and edge.plain(first, second) <= PARTED + TOUCH_WORTH:
             about.append((pair, edge.ends))
     return Share(candidates, parted, sum(parted.values()), dear, tuple(about), tuple(broken))
 

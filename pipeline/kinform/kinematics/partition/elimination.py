@@ -12,8 +12,15 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from kinform.kinematics.partition import constants
 from kinform.model.arrays import Array
+
+CLEARLY_LESS = 1e-4
+"""Cost by which the best labels are better than all others where no solver can take others for as good: a hundred times
+what the integer program may miss. Sums of prices are known to 1e-10."""
+MOST_IN_TABLE = 50_000
+"""Numbers in a table of costs, of all labels of a few nodes together, up to which nodes are eliminated: beyond, the
+integer program is as quick."""
+
 
 _Table = tuple[tuple[int, ...], Array, Array]
 """Nodes, ascending, with the least and the second least cost by their labels, an axis a node."""
@@ -40,7 +47,7 @@ def clear_labels(own: Array, pairs: Mapping[tuple[int, int], Array]) -> list[int
         rest = np.minimum(second.min(axis=axis), two.take(1, axis))
         tables.append((around[:axis] + around[axis + 1 :], np.asarray(two.take(0, axis)), rest))
     _, best, rest = _sum(tables, wide)
-    if not float(rest) - float(best) > constants.CLEARLY_LESS:
+    if not float(rest) - float(best) > CLEARLY_LESS:
         return None
     labels: dict[int, int] = {}
     for node, (around, least, _) in zip(reversed(order), reversed(kept), strict=True):
@@ -59,7 +66,7 @@ def _order(nodes: int, pairs: Mapping[tuple[int, int], Array], wide: int) -> lis
     while left:
         node = min(left, key=lambda one: (len(beside[one]), one))
         near = beside[node]
-        if wide ** (len(near) + 1) > constants.MOST_IN_TABLE:
+        if wide ** (len(near) + 1) > MOST_IN_TABLE:
             return None
         for one in near:
             beside[one] |= near

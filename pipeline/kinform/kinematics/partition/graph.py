@@ -10,8 +10,8 @@ import numpy as np
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.frozen import dataclass
-from kinform.kinematics.bodies.merging import Merger
-from kinform.kinematics.partition import constants
+from kinform.kinematics.joints.bodies.merging import Merger
+from kinform.kinematics.partition.constants import TOUCH_WORTH
 from kinform.kinematics.partition.contact import PartPair
 from kinform.kinematics.partition.labelling import Edge, Labels
 from kinform.kinematics.partition.loops import Loops
@@ -196,7 +196,7 @@ def _edges(
         ends = (piece_of[pair[0]], piece_of[pair[1]])
         if ends[0] == ends[1]:
             continue
-        touch = constants.TOUCH_WORTH * area[pair] / largest
+        touch = TOUCH_WORTH * area[pair] / largest
         table: dict[Labels, float] = {}
         for joint, price in parted.items():
             cost = price + touch

@@ -14,11 +14,18 @@ from itertools import islice
 import numpy as np
 
 from kinform.foundation.graphs.graph import UnionFind
-from kinform.kinematics.partition import constants
+from kinform.kinematics.partition.constants import FASTENED, PARTED
 from kinform.kinematics.partition.cuts import Change, Cut, Cuts, Joined, whole
 from kinform.kinematics.partition.labelling import Edge, Labels
 from kinform.kinematics.partition.loops import Loops
 from kinform.model.arrays import Array
+
+MOVES_TRIED = 6
+"""Of the bodies that a name may be moved to, so many are tried: those that contact joins most firmly."""
+MOST_CUTS = 600
+"""So many ways of joining names are cut at most; then the best so far is taken."""
+LOOK_AHEAD = 4
+"""Up to so many sets of joints that hang together all ways of joining their names are looked at."""
 
 
 class Joining:
@@ -55,7 +62,7 @@ class Joining:
                 if pair not in known:
                     known[pair] = self.cuts.joining(cut, *pair)
                 self.look_at(cut.now, pair)
-            if sum(sets.find(label) == label for label in range(len(cut.now))) <= constants.LOOK_AHEAD:
+            if sum(sets.find(label) == label for label in range(len(cut.now))) <= LOOK_AHEAD:
                 gain, pair = min((self.least(self.after(cut, pair)) - cut.cost, pair[::-1]) for pair in ways)
             else:
                 gain, pair = min((known[pair].cost, pair[::-1]) for pair in ways)
@@ -78,7 +85,7 @@ class Joining:
 
     def look_at(self, now: Joined, pair: Labels | None = None) -> None:
         """Count the ways of joining labels that were looked at, with these two bodies joined, up to the most."""
-        if len(self._looked_at) <= constants.MOST_CUTS:
+        if len(self._looked_at) <= MOST_CUTS:
             self._looked_at.add(now if pair is None else tuple(pair[0] if one == pair[1] else one for one in now))
 
     def moved(self, cut: Cut) -> tuple[Cut | None, set[int]]:
@@ -91,7 +98,7 @@ class Joining:
         for label, body in enumerate(cut.now):
             if len(cut.bodies[body]) == 1:
                 continue
-            if len(self._looked_at) > constants.MOST_CUTS:
+            if len(self._looked_at) > MOST_CUTS:
                 return None, close
             apart = self.cuts.after(cut, self.cuts.leaving(cut, label))
             self.look_at(apart.now)
@@ -99,9 +106,9 @@ class Joining:
                 way = self.cuts.joining(apart, *pair)
                 self.look_at(way.now)
                 dearer = apart.cost + way.cost - cut.cost
-                if dearer <= -whole(constants.FASTENED["holes"]):
+                if dearer <= -whole(FASTENED["holes"]):
                     return self.cuts.after(apart, way), close
-                if dearer < whole(constants.PARTED):
+                if dearer < whole(PARTED):
                     close |= _differing(cut.now, way.now)
         return None, close
 
@@ -124,7 +131,7 @@ class Joining:
         sets = self.hanging(cut.now)
 
         def few(pairs: Iterable[Labels]) -> list[Labels]:
-            return list(islice((pair for pair in pairs if self.joins(cut, sets, pair)), constants.MOVES_TRIED))
+            return list(islice((pair for pair in pairs if self.joins(cut, sets, pair)), MOVES_TRIED))
 
         across = sorted((-cost, pair) for pair, (_, cost) in cut.parted.items())
         return list(dict.fromkeys([*few(pair for _, pair in across), *few(self.firmest(cut))]))

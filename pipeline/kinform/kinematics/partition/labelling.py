@@ -15,9 +15,16 @@ import numpy as np
 
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.frozen import dataclass
-from kinform.kinematics.partition import constants
 from kinform.kinematics.partition.elimination import clear_labels
 from kinform.model.arrays import Array
+
+JAMMED = 25.0
+"""Price of such a contact between two bodies that stated joints connect, beside: it is in the way of the joint, and
+that of others is not. Less than any face, so that it only decides between a face and a journal; what it decides is
+listed."""
+MOST_SECONDS = 60.0
+"""s: what the integer program may take before the best answer so far is taken and said to be unproven."""
+
 
 Labels = tuple[int, int]
 
@@ -46,7 +53,7 @@ class Edge:
     def jam(self, first: int, second: int) -> float:
         """What of that is there because it is in the way of joints."""
         jams = first != second and (first, second) in self.jointed and (first, second) not in self.parted
-        return constants.JAMMED if jams else 0.0
+        return JAMMED if jams else 0.0
 
     def plain(self, first: int, second: int) -> float:
         """The same by contact alone, whatever suggests that its ends are fastened."""
@@ -181,7 +188,7 @@ def _solve(
         for one, other in (ends for ends in pairs if edge.jam(*ends)):
             both = (place[first] * wide + number[one], place[second] * wide + number[other])
             constrain([(both[0], 1.0), (both[1], 1.0), (len(cost), -1.0)], -np.inf, 1.0)
-            cost.append(constants.JAMMED)
+            cost.append(JAMMED)
     whole = np.zeros(len(cost))
     whole[: len(members) * wide] = 1
     answer = milp(
@@ -191,7 +198,7 @@ def _solve(
         ),
         integrality=whole,
         bounds=Bounds(0.0, 1.0),
-        options={"time_limit": constants.MOST_SECONDS, "mip_rel_gap": 0.0},
+        options={"time_limit": MOST_SECONDS, "mip_rel_gap": 0.0},
     )
     if answer.x is None:
         return dict.fromkeys(members, candidates[0]), False

@@ -12,10 +12,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from kinform.foundation.algebra.vectors import norm
-from kinform.kinematics.bodies.extents import Extents
-from kinform.kinematics.bodies.merging import Merger
-from kinform.kinematics.partition import constants
+from kinform.kinematics.joints.bodies.extents import Extents
+from kinform.kinematics.joints.bodies.merging import Merger
+from kinform.kinematics.partition.constants import SAME_AXIS
 from kinform.kinematics.partition.proposals import Proposal, propose
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
@@ -23,6 +25,9 @@ from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Body, LeftOut
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces
+
+ALONG_STATED = np.cos(SAME_AXIS)
+"""Cosine of the angle between such an axis and that of a joint that is stated from which they are one."""
 
 
 def left_out(
@@ -55,7 +60,7 @@ def _same(one: Proposal, joint: IntendedJoint, near: float) -> bool:
     which has no place, along it."""
     if one.axis is None or joint.axis is None:
         return joint.point is None or _off(one, joint) <= near
-    if abs(float(one.axis @ joint.axis)) < constants.ALONG_STATED * norm(joint.axis):
+    if abs(float(one.axis @ joint.axis)) < ALONG_STATED * norm(joint.axis):
         return False
     return joint.point is None or _off(one, joint) <= near
 

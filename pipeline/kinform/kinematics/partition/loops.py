@@ -17,9 +17,12 @@ from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.graphs.cycles import Cycle, short_cycles
 from kinform.foundation.graphs.graph import blocks
 from kinform.frozen import dataclass
-from kinform.kinematics.loops.block_closure import axes_frame, loop_matrix
-from kinform.kinematics.partition import constants
+from kinform.mechanism.block_rates import axes_frame, loop_matrix
 from kinform.model.arrays import Array
+
+CLOSED_SHARE = 1e-3
+"""Share of the largest up to which singular values, and rates, of stated joints round a loop count as zero: axes are
+written with three digits or more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,11 +51,9 @@ class Loops:
         cycles = short_cycles(len(local), [(local[edges[k][0]], local[edges[k][1]]) for k in block])
         frame = axes_frame(spaces, self.size)
         norms = np.concatenate([np.linalg.norm(scaled(space.T, frame), axis=0) for space in spaces])
-        rates = np.abs(null_space(loop_matrix(spaces, cycles, frame, norms), constants.CLOSED_SHARE)).max(
-            0, initial=0.0
-        )
+        rates = np.abs(null_space(loop_matrix(spaces, cycles, frame, norms), CLOSED_SHARE)).max(0, initial=0.0)
         start = np.cumsum([0, *map(len, spaces)])
-        locked = [k for k in range(len(block)) if rates[start[k] : start[k + 1]].max() < constants.CLOSED_SHARE]
+        locked = [k for k in range(len(block)) if rates[start[k] : start[k + 1]].max() < CLOSED_SHARE]
         loose = {k for cycle in cycles if _more_rates(cycle, spaces, frame) for k, _ in cycle} if locked else set()
         return set(locked) <= loose
 
@@ -60,10 +61,10 @@ class Loops:
 def _more_rates(cycle: Cycle, spaces: Sequence[Array], frame: Frame) -> bool:
     """Whether a loop has more rates than its twists and their brackets span."""
     twists = np.hstack([scaled(spaces[k].T, frame) for k, _ in cycle]) / frame.length
-    basis = span(twists / np.linalg.norm(twists, axis=0), constants.CLOSED_SHARE)
+    basis = span(twists / np.linalg.norm(twists, axis=0), CLOSED_SHARE)
     while True:
         more = [bracket(one, other) for one in basis.T for other in basis.T]
-        wider = span(np.column_stack([basis, *more]), constants.CLOSED_SHARE)
+        wider = span(np.column_stack([basis, *more]), CLOSED_SHARE)
         if wider.shape[1] == basis.shape[1]:
             return int(twists.shape[1]) > int(basis.shape[1])
         basis = wider

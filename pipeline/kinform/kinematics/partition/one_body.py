@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from kinform.foundation.graphs.graph import UnionFind
-from kinform.kinematics.partition import constants
+from kinform.kinematics.partition.constants import PARTED
 from kinform.kinematics.partition.joining import Joining
 from kinform.kinematics.partition.labelling import Edge, Labels
 from kinform.kinematics.partition.loops import Loops
@@ -43,7 +43,7 @@ def one_body(
         sets.union(one.find(node), node)
     inside = {sets.find(node): [label] for node, label in seeds.items()}
     for price, ends in holds:
-        if price <= constants.PARTED:
+        if price <= PARTED:
             break
         a, b = (sets.find(end) for end in ends)
         first, second = inside.get(a, []), inside.get(b, [])

@@ -22,14 +22,22 @@ from kinform.errors import OpenSidesError, Problem
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import forest
 from kinform.foundation.words import counted, length, number, quoted
-from kinform.kinematics.partition import constants
+from kinform.kinematics.partition.constants import BROKEN, COAXIAL
 from kinform.kinematics.partition.contact import ROUND
-from kinform.kinematics.partition.ways import Names, Way, Ways
+from kinform.kinematics.partition.ways import ONLY_WAY, Names, Way, Ways
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import FoundSides
 from kinform.model.names import PartName
+
+FAR_ALONG = 0.2
+"""Share of the assembly's size beyond which contact along an axis is too far from the joint's point to be taken unseen:
+the true ones of ten robots lie within 0.094 (0 mostly), the wrong one of the hand that asked for this at 0.67."""
+ROUNDS = 4
+"""So many times the ways of joints round a loop are looked for, each beside those of the others."""
+WAYS_NAMED = 4
+"""So many ways of parting are named where it is not clear which is meant."""
 
 
 def with_sides(assembly: Assembly, contacts: Contacts) -> tuple[Assembly, tuple[FoundSides, ...]]:
@@ -98,7 +106,7 @@ def _together(
     may part, no two could change their places, and each is clear when all others are known."""
     fixed = dict(stated) | {k: way.names for k, way in taken.items()}
     guess: dict[int, Way] = {}
-    for _ in range(constants.ROUNDS):
+    for _ in range(ROUNDS):
         before = {k: way.names for k, way in guess.items()}
         for k in waiting:
             if k not in taken:
@@ -113,7 +121,7 @@ def _together(
     known = fixed | {k: way.names for k, way in guess.items()}
     cost = ways.parted(known).cost
     swapped = (known | {j: known[k], k: known[j]} for j, k in combinations(sorted(guess), 2))
-    if cost >= constants.BROKEN or any(ways.parted(one).cost - cost < constants.ONLY_WAY for one in swapped):
+    if cost >= BROKEN or any(ways.parted(one).cost - cost < ONLY_WAY for one in swapped):
         return {}
     return guess if _confirmed(ways, stated, whole) == set(whole) else {}
 
@@ -122,7 +130,7 @@ def _clear(ways: Ways, joint: int, known: Mapping[int, Names]) -> tuple[Way, flo
     """The only way of parting, with by how much the next is dearer; None where it is not clear."""
     found = ways.ways(joint, known)
     before, after = ways.parted(known), ways.parted(dict(known) | {joint: found[0].names}) if found else None
-    if after is None or after.cost - before.cost >= constants.BROKEN or not ways.divides(before, after):
+    if after is None or after.cost - before.cost >= BROKEN or not ways.divides(before, after):
         return None
     ahead = found[1].cost - found[0].cost if len(found) > 1 else np.inf
     named = {ways.assembly.parts_of(name)[0] for name in ways.joints[joint].between if name}
@@ -130,8 +138,8 @@ def _clear(ways: Ways, joint: int, known: Mapping[int, Names]) -> tuple[Way, flo
     lone = [name for side in found[0].bodies if len(side) == 1 for name in side - named]
     if any(ways.round(joint, name) for name in lone) and ways.held_about(joint, found[0]):
         return None
-    far = found[0].beyond > constants.FAR_ALONG * ways.size
-    if far or ahead < constants.ONLY_WAY or ways.elsewhere(joint, known, found[0]):
+    far = found[0].beyond > FAR_ALONG * ways.size
+    if far or ahead < ONLY_WAY or ways.elsewhere(joint, known, found[0]):
         return None
     return found[0], ahead
 
@@ -149,10 +157,10 @@ def _problem(ways: Ways, joint: int, known: Mapping[int, Names]) -> Problem:
         return Problem(what, it.file or None, it.line, "name a part of either side in `between`, or correct its place")
     base = ways.parted(known).cost
     lines = []
-    for way in found[: constants.WAYS_NAMED]:
+    for way in found[:WAYS_NAMED]:
         first, second = way.names
         far = f", {length(way.beyond, units, 3)} along the axis from its point" if way.beyond > 0.0 else ""
-        breaks = way.cost - base >= constants.BROKEN
+        breaks = way.cost - base >= BROKEN
         lines.append(f"'{first}' from '{second}'{far}{', which breaks contact that no joint may part' * breaks}")
     more = len(found) - len(lines)
     ways_ = f"{counted(len(found), 'way')} of parting may be meant" if len(found) > 1 else "the only way of parting is"
@@ -173,7 +181,7 @@ def _nearest(ways: Ways, joint: IntendedJoint) -> str:
         if joint.axis is None:
             if patch.kind != "sphere":
                 continue
-        elif patch.kind == "sphere" or abs(float(patch.axis @ joint.axis)) < np.cos(constants.COAXIAL):
+        elif patch.kind == "sphere" or abs(float(patch.axis @ joint.axis)) < np.cos(COAXIAL):
             continue
         else:
             arm = arm - (arm @ joint.axis) * joint.axis

@@ -14,12 +14,16 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, norm, perpendicular
 from kinform.frozen import dataclass
-from kinform.kinematics.partition import constants
-from kinform.kinematics.partition.contact import Asked, PartPair, contact_of_pairs
+from kinform.kinematics.partition.constants import BROKEN, FASTENED
+from kinform.kinematics.partition.contact import JOURNAL, LOOSE_JOURNAL, Asked, PartPair, contact_of_pairs
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch, Suggestion
 from kinform.model.function import IntendedJoint
 from kinform.model.names import PartName
+
+GRAZED = 300.0
+"""The same of one at points or along lines: it holds no more than a flat beside the axis does. With 100 as many joints
+of rings of bodies are found without any name as with 20000, but one that is asked."""
 
 
 def joint_twists(joint: IntendedJoint) -> Array | None:
@@ -87,7 +91,7 @@ class Prices:
         turning: dict[PartName, set[int]] = {}
         for pair, parted in self.by_joint.items():
             hint = self.hints.get(pair, 0.0)
-            about = {k for k, price in parted.items() if constants.LOOSE_JOURNAL <= price - hint <= constants.JOURNAL}
+            about = {k for k, price in parted.items() if LOOSE_JOURNAL <= price - hint <= JOURNAL}
             for name in pair:
                 turning.setdefault(name, set()).update(about)
         return [
@@ -115,7 +119,7 @@ def prices(
     for pair, contact in contact_of_pairs(patches).items():
         hint = hints.get(pair, 0.0)
         by_joint[pair] = {number: cost + hint for number, cost in contact.costs(asked).items()}
-        held[pair] = (constants.GRAZED if contact.slight else constants.BROKEN) + hint
+        held[pair] = (GRAZED if contact.slight else BROKEN) + hint
         slight |= {pair} if contact.slight else set()
     return Prices(by_joint, held, hints, frozenset(slight))
 
@@ -124,7 +128,7 @@ def hints_of(suggestions: Sequence[Suggestion]) -> dict[PartPair, float]:
     """What parting pairs costs beside, as something suggests that they are fastened."""
     out: dict[PartPair, float] = {}
     for suggestion in suggestions:
-        worth = constants.FASTENED.get(suggestion.kind)
+        worth = FASTENED.get(suggestion.kind)
         if worth is not None:
             out[suggestion.parts] = max(out.get(suggestion.parts, 0.0), worth)
     return out

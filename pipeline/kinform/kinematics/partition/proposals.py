@@ -18,8 +18,8 @@ from kinform.foundation.algebra.vectors import canonical_sign, norm
 from kinform.foundation.words import counted, quoted
 from kinform.frozen import dataclass
 from kinform.kinematics.part_volumes import volumes
-from kinform.kinematics.partition import constants
 from kinform.kinematics.partition.bodies import partition
+from kinform.kinematics.partition.constants import FASTENED, SAME_AXIS
 from kinform.kinematics.partition.contact import ROUND, Asked, Contact, PartPair, contact_of_pairs, near_each
 from kinform.kinematics.partition.known_axes import KnownAxes
 from kinform.kinematics.partition.parting import hints_of, joint_twists
@@ -31,6 +31,17 @@ from kinform.model.contacts import Contacts, Patch
 from kinform.model.function import IntendedJoint
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces
+
+PROPOSED = (100.0, 310.0, np.inf)
+"""Greatest prices of parting a pair at which a joint is looked for where no function is: journals, faces round the axis
+and serrations; where that parts nothing, flats beside it, too; then all that the turn leaves free."""
+BESIDE = 0.1
+"""Of several pairs of bodies on one axis, those are proposed whose smaller side is at least this share of the largest
+such: legs on one hip axis, and not the rings of their bearings."""
+SAME_AXIS_OFF = 0.02
+"""The same of their distance, as a share of the smaller journal's reach."""
+SAME_CENTRE = 1e-6
+"""m: balls on one pin that differ by less are one, seen from two contacts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,8 +88,8 @@ def propose(
     pairs = contact_of_pairs(contacts.patches)
     hints = hints_of(contacts.suggestions)
     axes = _candidates(contacts.patches)
-    screws = {pair: 0.0 if worth <= constants.FASTENED["spigot"] else worth for pair, worth in hints.items()}
-    free = _freed_near(axes, pairs, screws, constants.PROPOSED[0])
+    screws = {pair: 0.0 if worth <= FASTENED["spigot"] else worth for pair, worth in hints.items()}
+    free = _freed_near(axes, pairs, screws, PROPOSED[0])
     known = [[name for name in names if name in volume] for names in together]
     graph = TouchingParts(parts, sorted(pairs), volume, [names for names in known if len(names) > 1])
     standard = standard_parts(assembly, surfaces)
@@ -94,8 +105,8 @@ def propose(
         own = borne[number] - holders
         return [both for both in several if all(own & set(s) and not standard.keys() >= set(s) for s in both)]
 
-    for most in constants.PROPOSED:
-        first = most == constants.PROPOSED[0]
+    for most in PROPOSED:
+        first = most == PROPOSED[0]
         # a screw may be a pivot, but nothing that holds may be parted for that
         wanted = [
             number
@@ -125,7 +136,7 @@ def propose(
     out = []
     for k, ((joint, sides, touching), share) in enumerate(zip(ways, shares, strict=True)):
         largest, twice = max(shares[other] for other in of_one[k]), alike[k] - of_one[k]
-        if not twice and share >= constants.BESIDE * largest:
+        if not twice and share >= BESIDE * largest:
             assert joint.point is not None
             turned = sides if not ground & set(sides[1]) else sides[::-1]
             moved = graph.size(turned[1]) / total
@@ -173,7 +184,7 @@ def _as_ball(
         patches = [patch for pair in own for patch in pairs[pair].patches if patch.kind in ROUND]
         balls = [_joint("spherical", None, patch.point) for patch in patches if patch.kind == "sphere"]
         reach = max((max(patch.radii) for patch in patches), default=0.0)
-        one = all(_same(balls[0], other, constants.SAME_AXIS_OFF * reach) for other in balls)
+        one = all(_same(balls[0], other, SAME_AXIS_OFF * reach) for other in balls)
         if balls and one and len(balls) == len(patches):
             return balls[0]
     return joint
@@ -189,7 +200,7 @@ def _once(proposals: Sequence[Proposal]) -> list[Proposal]:
     out: list[Proposal] = []
     for one in proposals:
         balls = [other for other in out if one.axis is None and other.axis is None]
-        balls = [other for other in balls if float(np.linalg.norm(one.point - other.point)) <= constants.SAME_CENTRE]
+        balls = [other for other in balls if float(np.linalg.norm(one.point - other.point)) <= SAME_CENTRE]
         if not any(set(one.sides) & set(other.sides) for other in balls):
             out.append(one)
     return out
@@ -202,7 +213,7 @@ def _of_one(joints: Sequence[IntendedJoint]) -> list[set[int]]:
         places.setdefault(id(joint), set()).add(k)
     balls = [k for k, joint in enumerate(joints) if joint.axis is None]
     return [
-        places[id(joint)] | {k for k in balls if joint.axis is None and _same(joint, joints[k], constants.SAME_CENTRE)}
+        places[id(joint)] | {k for k in balls if joint.axis is None and _same(joint, joints[k], SAME_CENTRE)}
         for joint in joints
     ]
 
@@ -217,7 +228,7 @@ def _candidates(patches: Sequence[Patch]) -> list[IntendedJoint]:
         reach = norm(np.ptp(patch.points, axis=0)) or 1e-6
         axis = None if patch.kind == "sphere" else patch.axis * canonical_sign(patch.axis)
         joint = _joint("spherical" if axis is None else "revolute", axis, patch.point)
-        off = constants.SAME_AXIS_OFF * reach
+        off = SAME_AXIS_OFF * reach
         if not any(_same(joint, out[k], off) for k in known.near(patch.point, axis, off)):
             out.append(joint)
             known.add(patch.point, axis)
@@ -233,7 +244,7 @@ def _same(one: IntendedJoint, other: IntendedJoint, off: float) -> bool:
     apart = one.point - other.point
     if one.axis is None or other.axis is None:
         return one.type == other.type and norm(apart) <= off
-    if abs(float(one.axis @ other.axis)) < np.cos(constants.SAME_AXIS):
+    if abs(float(one.axis @ other.axis)) < np.cos(SAME_AXIS):
         return False
     return norm(apart - (apart @ other.axis) * other.axis) <= off
 

@@ -9,10 +9,16 @@ import numpy as np
 
 from kinform.foundation.graphs.components import roots
 from kinform.frozen import dataclass
-from kinform.kinematics.partition import constants
 from kinform.kinematics.partition.contact import PartPair
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.names import PartName
+
+PROPOSED_SHARE = 0.001
+"""The same of a joint that is proposed. On 17 robots 118 of 118 proposals are true with it, 106 of 106 with 0.002."""
+OF_A_PART = 0.5
+"""The same of both, of the part in which an m³ of the assembly lies on average: it is less where there are more than
+some 250 and 500 of one size."""
+
 
 Sides = tuple[tuple[PartName, ...], tuple[PartName, ...]]
 """The parts of two bodies."""
@@ -23,7 +29,7 @@ def substantial(volumes: Array, share: float) -> float:
     no more than `constants.OF_A_PART` of the part in which an m³ of the assembly lies on average. Without that, none of
     a thousand equal links would be one."""
     whole = float(volumes.sum())
-    return min(share * whole, constants.OF_A_PART * float((volumes * volumes).sum()) / max(whole, 1e-300))
+    return min(share * whole, OF_A_PART * float((volumes * volumes).sum()) / max(whole, 1e-300))
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +66,7 @@ class TouchingParts:
 
     @cached_property
     def _least(self) -> float:
-        return substantial(self._volumes, constants.PROPOSED_SHARE)
+        return substantial(self._volumes, PROPOSED_SHARE)
 
     def sides(self, own: frozenset[PartPair], cut: frozenset[PartPair]) -> list[Sides]:
         """The pairs of bodies that pairs of a joint (`own`) lie between once all of `cut` is parted, the larger one

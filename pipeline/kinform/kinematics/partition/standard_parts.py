@@ -15,12 +15,32 @@ import numpy as np
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.words import counted
 from kinform.frozen import dataclass
-from kinform.kinematics.partition import constants
+from kinform.kinematics.partition.constants import COAXIAL, COAXIAL_OFF
 from kinform.kinematics.partition.standard_names import kind_by_name
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Part
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces, Surface
+
+BALL_AREA = 0.9
+"""Share of its area that is one sphere, of a ball."""
+ALL_ROUND = np.radians(300.0)
+"""rad: what of a cylinder is there at least where it tells what a part is."""
+TURNED = 0.9
+"""Share of its area that lies about one axis, across it or flat along it, of screws, nuts, washers and pins."""
+WASHER_HEIGHT = 0.3
+"""Height of a washer at most, as a share of its outer radius."""
+NUT_HEIGHT = 1.3
+"""Height of a nut at most, by its width across flats: beyond, it is a spacer."""
+HEAD = (1.25, 2.6)
+"""Radius of a screw's head by that of its shank: 1.5 to 2.2 in the standards."""
+SHANK = 1.0
+"""Length of a screw's shank at least, by its radius."""
+PIN_LENGTH = 2.0
+"""Length of a pin at least, by its radius."""
+HEXAGON = 0.02
+"""By how much the cosine between faces of a hexagon may be off."""
+
 
 HOLDERS = ("screw", "nut", "washer", "rivet", "circlip")
 """Kinds that hold other parts together; pins may be pivots."""
@@ -61,13 +81,13 @@ def _by_name(name: str) -> StandardPart | None:
 def by_shape(surfaces: Sequence[Surface], copies: int) -> StandardPart | None:
     """By its surfaces, and by how many parts are like it."""
     total = sum(surface.area for surface in surfaces)
-    if sum(s.area for s in surfaces if s.kind == "sphere" and s.side > 0) > constants.BALL_AREA * total:
+    if sum(s.area for s in surfaces if s.kind == "sphere" and s.side > 0) > BALL_AREA * total:
         return StandardPart("ball", f"a sphere, {counted(copies, 'copy', 'copies')}") if copies >= 3 else None
-    round_ = [s for s in surfaces if s.kind == "cylinder" and s.sweep > constants.ALL_ROUND]
+    round_ = [s for s in surfaces if s.kind == "cylinder" and s.sweep > ALL_ROUND]
     if not round_:
         return None
     main = max(round_, key=lambda s: s.area)
-    if _turned(surfaces, main) < constants.TURNED * total:
+    if _turned(surfaces, main) < TURNED * total:
         return None
     rods = [s for s in round_ if s.side > 0 and _coaxial(s, main)]
     bores = [s for s in round_ if s.side < 0 and _coaxial(s, main)]
@@ -76,26 +96,21 @@ def by_shape(surfaces: Sequence[Surface], copies: int) -> StandardPart | None:
     if not rods:
         flats = _flats(surfaces, main)
         wide = 2.0 * max(flats, default=0.0)
-        nut = (
-            len(bores) == 1
-            and hexagon
-            and len(flats) == 6
-            and _reach(surfaces, main.axis) < constants.NUT_HEIGHT * wide
-        )
+        nut = len(bores) == 1 and hexagon and len(flats) == 6 and _reach(surfaces, main.axis) < NUT_HEIGHT * wide
         return StandardPart("nut", f"a hexagon with a bore, {many}") if nut and copies >= 2 else None
     high, low = max(s.radius for s in rods), min(s.radius for s in rods)
     length = max(s.extent[1] - s.extent[0] for s in rods if s.radius == low)
     whole = _reach(surfaces, main.axis)
     if bores:
-        flat = whole < constants.WASHER_HEIGHT * high and len(rods) == len(bores) == 1 and not hexagon
+        flat = whole < WASHER_HEIGHT * high and len(rods) == len(bores) == 1 and not hexagon
         return StandardPart("washer", f"a flat ring, {many}") if flat and copies >= 3 else None
-    head = constants.HEAD[0] * low <= high <= constants.HEAD[1] * low and length >= constants.SHANK * low
+    head = HEAD[0] * low <= high <= HEAD[1] * low and length >= SHANK * low
     if head and (hexagon or copies >= 3):
         drive = "with a hexagon, " if hexagon else ""
         return StandardPart("screw", f"a head and a shank, {drive}{many}")
-    if hexagon and len(rods) == 1 and length >= constants.SHANK * low and copies >= 2:
+    if hexagon and len(rods) == 1 and length >= SHANK * low and copies >= 2:
         return StandardPart("screw", f"a hexagon and a shank, {many}")
-    if len(rods) == 1 and whole >= constants.PIN_LENGTH * high and copies >= 3 and not hexagon:
+    if len(rods) == 1 and whole >= PIN_LENGTH * high and copies >= 3 and not hexagon:
         only = sum(s.area for s in surfaces if s.kind in ("cylinder", "plane", "cone", "torus"))
         plain = only > 0.98 * total and len([s for s in surfaces if s.kind == "plane"]) == 2
         return StandardPart("pin", f"a plain rod, {many}") if plain else None
@@ -122,7 +137,7 @@ def _turned(surfaces: Sequence[Surface], main: Surface) -> float:
         elif s.kind in ("cylinder", "cone", "torus", "revolution", "helicoid"):
             gap = s.point - main.point
             off = norm(gap - (gap @ main.axis) * main.axis)
-            on = off < constants.COAXIAL_OFF * main.radius and abs(float(s.axis @ main.axis)) > 0.999
+            on = off < COAXIAL_OFF * main.radius and abs(float(s.axis @ main.axis)) > 0.999
             area += s.area if on else 0.0
         elif s.kind == "sphere":
             gap = s.point - main.point
@@ -133,17 +148,17 @@ def _turned(surfaces: Sequence[Surface], main: Surface) -> float:
 def _coaxial(one: Surface, other: Surface) -> bool:
     gap = one.point - other.point
     off = norm(gap - (gap @ other.axis) * other.axis)
-    return abs(float(one.axis @ other.axis)) > np.cos(constants.COAXIAL) and off < constants.COAXIAL_OFF * one.radius
+    return abs(float(one.axis @ other.axis)) > np.cos(COAXIAL) and off < COAXIAL_OFF * one.radius
 
 
 def _hexagon(surfaces: Sequence[Surface], axis: Array) -> bool:
     """Whether six planes stand round the axis, at equal distances, 60° from each other."""
-    beside = [s for s in surfaces if s.kind == "plane" and abs(float(s.axis @ axis)) < np.sin(constants.COAXIAL)]
+    beside = [s for s in surfaces if s.kind == "plane" and abs(float(s.axis @ axis)) < np.sin(COAXIAL)]
     if len(beside) < 6:
         return False
     for first in beside:
         turned = [float(s.axis @ first.axis) for s in beside]
-        if all(any(abs(t - c) < constants.HEXAGON for t in turned) for c in (1.0, 0.5, -0.5, -1.0)):
+        if all(any(abs(t - c) < HEXAGON for t in turned) for c in (1.0, 0.5, -0.5, -1.0)):
             return len(turned) >= 6
     return False
 

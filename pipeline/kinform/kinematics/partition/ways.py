@@ -16,9 +16,9 @@ import numpy as np
 from kinform.foundation.algebra.vectors import norm, perpendicular
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.frozen import dataclass
-from kinform.kinematics.bodies.merging import Merger
+from kinform.kinematics.joints.bodies.merging import Merger
 from kinform.kinematics.part_volumes import volumes
-from kinform.kinematics.partition import constants
+from kinform.kinematics.partition.constants import PARTED
 from kinform.kinematics.partition.contact import PartPair, contact_of_pairs
 from kinform.kinematics.partition.graph import graph_of, stated_merger
 from kinform.kinematics.partition.labelling import Labels, label_all
@@ -28,6 +28,19 @@ from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.function import IntendedJoint
 from kinform.model.names import PartName
+
+SUBSTANTIAL = 0.002
+"""Share of the assembly's volume that either side of a joint has at least where it does not name its sides."""
+ALIKE = 0.3
+"""Share of the smallest side by which two ways of parting differ at most that are one: by a ring, a horn, screws."""
+ONLY_WAY = 1000.0
+"""Price by which every other way of parting is dearer than the one that is taken where a joint does not name its sides:
+that of a pocket. Beyond it something would be parted that is fastened. Holes round a journal (400) are no such, as the
+horns of servos have them: by 340 and 400 wrong ways were cheaper on a public robot, where batteries lie on the axis."""
+ROUND_OFF = 0.1
+"""A part goes round an axis where the middle of its surface lies beside it by less than this share of its spread, and
+its spread differs by less than this share from one direction to another."""
+
 
 Names = tuple[PartName, PartName]
 Bodies = tuple[frozenset[PartName], frozenset[PartName]]
@@ -151,7 +164,7 @@ class Ways:
                 other = (names[body], way.names[1]) if k == 0 else (way.names[0], names[body])
                 found = self.parted(dict(known) | {number: other})
                 ends = {found.body[name] for name in way.names}
-                if ends == set(found.sides[number]) and found.cost - parted.cost < constants.ONLY_WAY:
+                if ends == set(found.sides[number]) and found.cost - parted.cost < ONLY_WAY:
                     out.append(self._way(other, found, found.sides[number], way.beyond))
         return [one for one in out if not self.alike(one, way)]
 
@@ -194,7 +207,7 @@ class Ways:
             if number in parted
             and all(name.startswith(prefix) for name in pair)
             and (not turns or self.contact[pair].near(joint))
-            and ((turns and flats) or self._own(number, pair) <= constants.PARTED)
+            and ((turns and flats) or self._own(number, pair) <= PARTED)
         ]
 
     def _own(self, number: int, pair: PartPair) -> float:
@@ -209,7 +222,7 @@ class Ways:
         named part on a side."""
         joint = self.joints[number]
         named = self.assembly.parts_of(joint.between[0])[0] if joint.between[0] else None
-        least = substantial(np.array(list(self.volume.values())), constants.SUBSTANTIAL)
+        least = substantial(np.array(list(self.volume.values())), SUBSTANTIAL)
         out: list[Way] = []
         for way in sorted(ways, key=lambda one: (one.cost, one.names)):
             if named is not None and not any(named in side for side in way.bodies):
@@ -224,7 +237,7 @@ class Ways:
         smallest = min(self._size(side) for side in (*one.bodies, *other.bodies))
         (a, b), (c, d) = one.bodies, other.bodies
         odd = min(self._size((a ^ c) | (b ^ d)), self._size((a ^ d) | (b ^ c)))
-        return odd < constants.ALIKE * smallest
+        return odd < ALIKE * smallest
 
     def divides(self, before: Parted, after: Parted) -> bool:
         """Whether each body with a joint is next to all of one body without it, and there is one more at most: else it
@@ -236,7 +249,7 @@ class Ways:
             if body is not None:
                 of = shares.setdefault(body, {})
                 of[before.body[name]] = of.get(before.body[name], 0.0) + self.volume.get(name, 0.0)
-        return all(max(of.values()) >= (1.0 - constants.ALIKE) * sum(of.values()) for of in shares.values())
+        return all(max(of.values()) >= (1.0 - ALIKE) * sum(of.values()) for of in shares.values())
 
     def held_about(self, number: int, way: Way) -> bool:
         """Whether others touch about the axis as well that a way does not part: the joint might be there."""
@@ -255,8 +268,8 @@ class Ways:
         middle = areas @ across / areas.sum()
         spread = np.linalg.eigvalsh((across - middle).T @ ((across - middle) * areas[:, None]) / areas.sum())
         off = norm(middle)
-        even = float(spread[0]) > (1.0 - constants.ROUND_OFF) * float(spread[1])
-        return even and off < constants.ROUND_OFF * float(spread[1]) ** 0.5
+        even = float(spread[0]) > (1.0 - ROUND_OFF) * float(spread[1])
+        return even and off < ROUND_OFF * float(spread[1]) ** 0.5
 
     def _size(self, names: frozenset[PartName]) -> float:
         return sum(self.volume.get(name, 0.0) for name in sorted(names))

@@ -15,8 +15,30 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.frozen import dataclass
-from kinform.kinematics import constants
+from kinform.kinematics.separation.constants import CONE_HELD
 from kinform.model.arrays import Array, Flags, Ints
+
+CONE_FREE = 1e-4
+"""Speeds over the size of a unit twist below which rows do not move: rounding of meshes and of HiGHS."""
+LEAST_ROW = 1e-3
+"""Length below which what is left of a unit row says nothing."""
+EQUAL_ROWS = 1e-6
+"""A row counts as tight below this, and two rows as one."""
+SURELY_HELD = 1e-5
+"""Singular value of what is held in a block from which on HiGHS, whose rows are good to 1e-7, moves nothing so."""
+SURELY_STILL = 1e-7
+"""Share of a row that what is held leaves below which it opens by less than counts: LARGEST_TWIST times it is 5e-5."""
+CERTIFICATE_SHARE = 1e-6
+"""Least λ over the greatest of a certificate."""
+NEWTON_STEPS = 25
+"""Newton steps; certificates are found within a few."""
+LONGEST_STEP = 2.0
+"""Change of an exponent that one Newton step may make at most."""
+FAR_EXPONENT = 40.0
+"""Exponent at which the sum has evidently no minimum."""
+MOST_RAYS = 48
+"""Rays at an intermediate step beyond which there are too many to list."""
+
 
 _MIX = np.array([0x2C1B3C6D, 0x9E3779B1, 0x85EBCA77, 0xC2B2AE3D, 0x27D4EB2F, 0x165667B1, 0x5BD1E995], dtype=np.int64)
 """Odd factors by which rows that are not equal hardly ever sum up to the same."""
@@ -41,14 +63,14 @@ def unit_rows(rows: Array) -> Array:
 def unit_rows_of(rows: Array, group: Ints) -> tuple[Array, Ints]:
     """As `unit_rows`, of rows (n, d) that each belong to a group (n,), and the groups of those that are left."""
     size = np.sqrt(np.einsum("ij,ij->i", rows, rows))
-    long = size > constants.LEAST_ROW
+    long = size > LEAST_ROW
     if not long.all():
         rows, size, group = rows[long], size[long], group[long]
     rows = rows / size[:, None]
     if len(rows) < 2:
         return rows, group
     keys = np.empty((len(rows), rows.shape[1] + 1), dtype=np.int64)
-    keys[:, 0], keys[:, 1:] = group, np.rint(rows / constants.EQUAL_ROWS)
+    keys[:, 0], keys[:, 1:] = group, np.rint(rows / EQUAL_ROWS)
     order = (keys @ _MIX[: keys.shape[1]]).argsort(kind="stable")
     ordered = keys[order]
     again = (ordered[1:] == ordered[:-1]).all(axis=1)
@@ -69,7 +91,7 @@ def split_directions(rows: Array) -> tuple[Array, Array]:
     if not len(rows):
         return np.zeros((rows.shape[1], 0)), np.eye(rows.shape[1])
     values, vectors = np.linalg.eigh(rows.T @ rows)
-    moved = values > constants.CONE_FREE**2 * len(rows)
+    moved = values > CONE_FREE**2 * len(rows)
     return vectors[:, moved], vectors[:, ~moved]
 
 
@@ -86,13 +108,13 @@ def held_for_certain(pairs: Sequence[Array]) -> Flags:
     counts = np.array([len(pairs[k]) for k in active])
     system = grams(rows, np.ones(len(rows)), counts)
     values, vectors = np.linalg.eigh(system)
-    loose = values < constants.CONE_FREE**2 * counts[:, None]
+    loose = values < CONE_FREE**2 * counts[:, None]
     still = np.einsum("pik,pk,pjk->pij", vectors, loose.astype(float), vectors)
     size = rows.shape[1]
     at = np.zeros((len(active), size))
-    for step_number in range(constants.NEWTON_STEPS):
+    for step_number in range(NEWTON_STEPS):
         exponent = np.einsum("ij,ij->i", rows, np.repeat(at, counts, axis=0))
-        weight = np.exp(-np.clip(exponent, -constants.FAR_EXPONENT, constants.FAR_EXPONENT))
+        weight = np.exp(-np.clip(exponent, -FAR_EXPONENT, FAR_EXPONENT))
         start = np.concatenate([[0], np.cumsum(counts)[:-1]])
         pull = np.add.reduceat(weight[:, None] * rows, start, axis=0)
         pull -= np.einsum("pij,pj->pi", still, pull)
@@ -102,13 +124,11 @@ def held_for_certain(pairs: Sequence[Array]) -> Flags:
         change = np.einsum("ij,ij->i", rows, np.repeat(step, counts, axis=0))
         certificate = weight * (1.0 - change)
         # where all rows agree on a side the certificate cancels to rounding: it must keep some of its weight
-        proven = np.minimum.reduceat(certificate, start) > constants.CERTIFICATE_SHARE * np.maximum.reduceat(
-            weight, start
-        )
+        proven = np.minimum.reduceat(certificate, start) > CERTIFICATE_SHARE * np.maximum.reduceat(weight, start)
         held[active[proven]] = True
         longest = np.maximum.reduceat(np.abs(change), start)
-        at = at + step * np.minimum(1.0, constants.LONGEST_STEP / np.maximum(longest, 1e-300))[:, None]
-        keep = ~proven & (np.maximum.reduceat(np.abs(exponent), start) < constants.FAR_EXPONENT)
+        at = at + step * np.minimum(1.0, LONGEST_STEP / np.maximum(longest, 1e-300))[:, None]
+        keep = ~proven & (np.maximum.reduceat(np.abs(exponent), start) < FAR_EXPONENT)
         if not keep.any():
             break
         chosen = np.repeat(keep, counts)
@@ -133,7 +153,7 @@ def nothing_opens_in_each(programs: Sequence[tuple[Array, Array]]) -> list[bool]
     for size in {of.shape[1] for of in inner if len(of)}:
         members = [k for k, of in enumerate(inner) if len(of) and of.shape[1] == size]
         values = np.linalg.eigvalsh([inner[k].T @ inner[k] for k in members]) / [[len(inner[k])] for k in members]
-        unsure = np.any((values > constants.SURELY_STILL**2) & (values < constants.CONE_FREE**2), axis=1)
+        unsure = np.any((values > SURELY_STILL**2) & (values < CONE_FREE**2), axis=1)
         clear = [k for k, doubt in zip(members, unsure, strict=True) if not doubt]
         for k, held in zip(clear, held_for_certain([inner[k] for k in clear]), strict=True):
             out[k] = bool(held)
@@ -147,7 +167,7 @@ def _free(programs: Sequence[tuple[Array, Array]]) -> list[Array]:
         members = [k for k, (_, fixed) in enumerate(programs) if fixed.shape == shape]
         _, values, right = np.linalg.svd(np.array([programs[k][1] for k in members]))
         free = np.ones(right.shape[:2], dtype=np.bool_)
-        free[:, : values.shape[1]] = values < constants.SURELY_HELD
+        free[:, : values.shape[1]] = values < SURELY_HELD
         for k, motions, chosen in zip(members, right, free, strict=True):
             out[k] = motions[chosen]
     return out
@@ -156,7 +176,7 @@ def _free(programs: Sequence[tuple[Array, Array]]) -> list[Array]:
 def _scaled(rows: Array) -> Array:
     """The rows (n, d) that move for certain, at length one."""
     size = np.linalg.norm(rows, axis=1)
-    moves = size > constants.SURELY_STILL
+    moves = size > SURELY_STILL
     return np.asarray(rows[moves] / size[moves, None])
 
 
@@ -185,9 +205,9 @@ def opening(rows: Array) -> Opening:
     if primal.status != 0:
         return Opening(None, np.zeros(6), 0.0)
     speed = float((inner @ primal.x).max())
-    if speed > constants.CONE_HELD:
+    if speed > CONE_HELD:
         return Opening(False, basis @ primal.x, speed)
-    if speed >= constants.CONE_FREE:
+    if speed >= CONE_FREE:
         return Opening(None, basis @ primal.x, speed)
     dual = linprog(np.ones(len(inner)), A_eq=inner.T, b_eq=np.zeros(inner.shape[1]), bounds=(1.0, None), method="highs")
     return Opening(True if dual.status == 0 else None, np.zeros(6), speed)
@@ -214,7 +234,7 @@ def extreme_rays(rows: Array, opposed: Array | None = None) -> Array | None:
     while rest:
         # the row that most rays violate cuts most away
         speeds = rays @ inner[rest].T
-        broken = (speeds < -constants.EQUAL_ROWS).sum(axis=0)
+        broken = (speeds < -EQUAL_ROWS).sum(axis=0)
         done += [k for k, n in zip(rest, broken, strict=True) if n == 0]
         rest = [k for k, n in zip(rest, broken, strict=True) if n > 0]
         if not rest:
@@ -246,11 +266,11 @@ def _independent(inner: Array) -> list[int]:
 def _cut(rays: Array, inner: Array, done: Sequence[int], row: Array) -> Array | None:
     """The rays after one more row: those inside, and where edges of the cone cross it."""
     speed = rays @ row
-    inside, outside = np.flatnonzero(speed > constants.EQUAL_ROWS), np.flatnonzero(speed < -constants.EQUAL_ROWS)
-    kept = rays[speed >= -constants.EQUAL_ROWS]
+    inside, outside = np.flatnonzero(speed > EQUAL_ROWS), np.flatnonzero(speed < -EQUAL_ROWS)
+    kept = rays[speed >= -EQUAL_ROWS]
     if not len(inside):
         return kept
-    tight = np.abs(rays @ inner[list(done)].T) <= constants.EQUAL_ROWS
+    tight = np.abs(rays @ inner[list(done)].T) <= EQUAL_ROWS
     common = (tight[inside][:, None] & tight[outside][None]).reshape(-1, tight.shape[1])
     a, b = (x.ravel() for x in np.meshgrid(inside, outside, indexing="ij"))
     enough = common.sum(axis=1) >= rays.shape[1] - 2
@@ -261,6 +281,6 @@ def _cut(rays: Array, inner: Array, done: Sequence[int], row: Array) -> Array | 
     a, b = a[neighbours], b[neighbours]
     new = rays[b] * speed[a][:, None] - rays[a] * speed[b][:, None]
     new /= np.maximum(np.linalg.norm(new, axis=1), 1e-300)[:, None]
-    if len(kept) + len(new) > constants.MOST_RAYS:
+    if len(kept) + len(new) > MOST_RAYS:
         return None
     return np.vstack([kept, new])

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, rows, scaled
-from kinform.kinematics.pair.extremes import extreme_samples
+from kinform.kinematics.joints.pair.extremes import extreme_samples
 from kinform.model.arrays import Array, Ints
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, ConstraintMatrix, Joint

@@ -14,9 +14,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.foundation.graphs.graph import UnionFind
-from kinform.kinematics.constants import CONE_HELD, LARGEST_TWIST, STILL_LIFTED
+from kinform.kinematics.separation.constants import CONE_HELD
 from kinform.kinematics.separation.contact_rows import Cone
 from kinform.model.arrays import Array, Ints
+
+LARGEST_TWIST = 1.0 / CONE_HELD
+"""Bound of twist components where a pair opens by 1: what opens slower does not open for certain."""
+STILL_LIFTED = 1e-10
+"""Speed of a row, of a slide of 1, that is none: LARGEST_TWIST times it is less than HiGHS admits."""
+
 
 _Ends = tuple[int, int]
 

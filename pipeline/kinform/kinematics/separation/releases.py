@@ -10,12 +10,20 @@ from kinform.foundation.algebra.screws import Frame, twist_at_origin
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.records import altered
 from kinform.frozen import dataclass
-from kinform.kinematics import constants
-from kinform.kinematics.separation.cone import extreme_rays, held_for_certain, opening, unit_rows
+from kinform.kinematics.constants import SAME_DIRECTION
+from kinform.kinematics.separation.cone import CONE_FREE, extreme_rays, held_for_certain, opening, unit_rows
+from kinform.kinematics.separation.constants import CONE_HELD
 from kinform.kinematics.separation.contact_rows import Cone
 from kinform.kinematics.wording import direction_words
 from kinform.model.arrays import Array, Flags
 from kinform.model.kinematics import Joint, Release
+
+MOST_RELEASES = 12
+"""Extreme directions up to which each is told."""
+MIDDLE_STEPS = 200
+"""Steps in which a direction inside a cone of very many extreme directions is looked for."""
+MIDDLE_STRIDE = 0.1
+"""Speed that such a step gives to the worst row."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +70,7 @@ def _straight(cones: Sequence[Cone]) -> list[Array]:
     for count in {len(cone.fixed) for cone in cones} - {0}:
         members = [k for k, cone in enumerate(cones) if len(cone.fixed) == count]
         _, values, right = np.linalg.svd(np.array([cones[k].fixed[:, 3:] for k in members]), full_matrices=True)
-        held = np.count_nonzero(values > constants.SAME_DIRECTION, axis=1).tolist()
+        held = np.count_nonzero(values > SAME_DIRECTION, axis=1).tolist()
         for k, rank, directions in zip(members, held, right, strict=True):
             out[k] = directions[rank:].T
     return out
@@ -76,11 +84,11 @@ def _leaving_of(cone: Cone, straight: Array, turns: bool) -> Leaving:
         if lp.held:
             return Leaving(held=True)
         if lp.held is None:
-            bounds = f"between none (< {constants.CONE_FREE:g}) and certain (> {constants.CONE_HELD:g})"
+            bounds = f"between none (< {CONE_FREE:g}) and certain (> {CONE_HELD:g})"
             return Leaving(None, held_reason=f"contact opens at {lp.speed:.2g} of the motion: {bounds}")
     rays = extreme_rays(cone.rows, cone.opposed) if turns else None
     releases = [release_of(np.concatenate([np.zeros(3), d]), cone.frame, extreme=not many) for d in slides]
-    if rays is not None and len(rays) <= constants.MOST_RELEASES:
+    if rays is not None and len(rays) <= MOST_RELEASES:
         others = [ray for ray in rays if not _slides_off(ray, cone, slides)]
         releases += sorted((release_of(ray, cone.frame) for ray in others), key=_order)
     elif not releases:
@@ -103,11 +111,11 @@ def _slides(cone: Cone, straight: Array) -> tuple[Array, bool]:
         rays = _middle(normals)
         return rays @ straight.T, True
     # pure slides must break contact in fact, not by rounding
-    rays = rays[(rays @ normals.T).max(axis=1, initial=0.0) > constants.CONE_HELD] if len(rays) else none
+    rays = rays[(rays @ normals.T).max(axis=1, initial=0.0) > CONE_HELD] if len(rays) else none
     if not len(rays):
         return none, False
     rays = _distinct(rays @ straight.T) if len(rays) > 1 else rays @ straight.T
-    if len(rays) > constants.MOST_RELEASES:
+    if len(rays) > MOST_RELEASES:
         middle = rays.sum(axis=0)
         return (middle / norm(middle))[None], True
     return rays[np.lexsort(np.round(rays, 6).T)[::-1]] if len(rays) > 1 else rays, False
@@ -116,19 +124,19 @@ def _slides(cone: Cone, straight: Array) -> tuple[Array, bool]:
 def _middle(normals: Array) -> Array:
     """The direction (1, t) farthest inside a cone of very many extreme directions; (0, t) where it has no inside."""
     mean = normals.mean(axis=0)
-    for _ in range(constants.MIDDLE_STEPS):
+    for _ in range(MIDDLE_STEPS):
         speed = normals @ mean
         worst = int(speed.argmin())
-        if speed[worst] > constants.CONE_HELD * norm(mean):
+        if speed[worst] > CONE_HELD * norm(mean):
             return np.asarray(mean / norm(mean))[None]
-        mean = mean + normals[worst] * (constants.MIDDLE_STRIDE - speed[worst])
+        mean = mean + normals[worst] * (MIDDLE_STRIDE - speed[worst])
     return np.zeros((0, normals.shape[1]))
 
 
 def _distinct(rays: Array) -> Array:
     kept: list[Array] = []
     for ray in rays:
-        if all(norm(ray - other) > constants.SAME_DIRECTION for other in kept):
+        if all(norm(ray - other) > SAME_DIRECTION for other in kept):
             kept.append(ray)
     return np.array(kept)
 
@@ -139,7 +147,7 @@ def _slides_off(ray: Array, cone: Cone, slides: Array) -> bool:
     for slide in slides:
         shadow = basis @ (basis[3:].T @ slide)
         size = norm(shadow)
-        if size > constants.SAME_DIRECTION and norm(shadow / size - ray) < constants.SAME_DIRECTION:
+        if size > SAME_DIRECTION and norm(shadow / size - ray) < SAME_DIRECTION:
             return True
     return False
 
@@ -154,7 +162,7 @@ def release_of(ray: Array, frame: Frame, *, extreme: bool = True) -> Release:
     no sum of other releases."""
     omega, velocity = ray[:3] / frame.length, ray[3:]
     turning = norm(ray[:3])
-    if turning < constants.SAME_DIRECTION * norm(ray):
+    if turning < SAME_DIRECTION * norm(ray):
         direction = velocity / norm(velocity)
         twist = np.concatenate([np.zeros(3), direction])
         return Release("slide", twist, direction, None, extreme, f"lift off along {direction_words(direction)}")
@@ -164,7 +172,7 @@ def release_of(ray: Array, frame: Frame, *, extreme: bool = True) -> Release:
     point = frame.centre + cross(omega, velocity) / rate**2
     twist = (twist_at_origin(ray[:, None], frame) / rate).ravel()
     about = direction_words(direction)
-    if abs(lead) < constants.SAME_DIRECTION * frame.length:
+    if abs(lead) < SAME_DIRECTION * frame.length:
         return Release("turn", twist, direction, point, extreme, f"tip about {about}")
     sense = "along" if lead > 0.0 else "against"
     return Release("screw", twist, direction, point, extreme, f"turn about {about} while sliding {sense} it")

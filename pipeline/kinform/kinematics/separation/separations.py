@@ -24,18 +24,11 @@ from kinform.foundation.graphs.graph import UnionFind, blocks
 from kinform.foundation.in_step import in_step
 from kinform.frozen import dataclass
 from kinform.kinematics.answers import Answers, ask
-from kinform.kinematics.constants import (
-    CONE_HELD,
-    LARGEST_TWIST,
-    MOST_CERTIFIED,
-    MOST_IN_STEP,
-    MOST_OPENING_ROWS,
-    MOST_TOGETHER,
-    ROUNDED_ROW,
-)
+from kinform.kinematics.constants import MOST_IN_STEP
 from kinform.kinematics.separation.cone import nothing_opens_in_each, rows_beside, split_directions, unit_rows
+from kinform.kinematics.separation.constants import CONE_HELD
 from kinform.kinematics.separation.contact_rows import Cone, ContactRows, is_stated
-from kinform.kinematics.separation.lifting import lifts_apart
+from kinform.kinematics.separation.lifting import LARGEST_TWIST, lifts_apart
 from kinform.kinematics.separation.releases import certainly_held, leaving_of_each, release_of
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
@@ -44,6 +37,17 @@ from kinform.model.names import BodyName, JointName
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
+
+MOST_CERTIFIED = 120
+"""Components of twists up to which it is first asked whether anything opens in a block: dense algebra of a
+millisecond, where importing and calling a linear program takes hundreds."""
+MOST_OPENING_ROWS = 12_000
+"""Rows of one block's program beyond which it would take minutes: 400 bricks in a wall, 5,000 rows, take 3 s."""
+ROUNDED_ROW = 1e-7
+"""Entries of unit rows below this are rounding to HiGHS, which with them may not end: a hand of 146 parts did not in
+ten minutes."""
+MOST_TOGETHER = 8
+"""Bodies up to which those are told that leave together."""
 
 
 @dataclass(frozen=True, eq=False)

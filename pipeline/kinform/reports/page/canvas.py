@@ -12,9 +12,19 @@ from numpy.typing import NDArray
 
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
-from kinform.reports import constants
 from kinform.reports.page.figures import Figure, Floats, Samples, bands, dot
 from kinform.reports.page.raster import View
+
+FINER = 2
+"""Pixels of the drawing to a pixel of the picture, each way."""
+OUTLINE_STEP = 6.0
+"""px: where depth changes by more from one pixel to the next, there is an outline; and what is nearer by more,
+covers."""
+OUTLINE_COSINE = 0.86
+"""Cosine of the change of direction from one pixel to the next above which there is none (31°)."""
+OUTLINE_SHADE = 0.52
+"""Brightness of outlines."""
+
 
 Colour = tuple[float, float, float]
 Shown = Sequence[tuple[Figure, Colour]]
@@ -86,13 +96,13 @@ def _drawn(view: View, figures: Shown) -> Floats:
             normal[c].ravel()[at] = item.samples.normal[c].ravel()[places]
             image[c].ravel()[at] = np.minimum(np.float32(figures[k][1][c]) * light, 1.0)
         image[3].ravel()[at] = 1.0
-    _outline(image, near, owner, normal, constants.OUTLINE_STEP / view.scale)
+    _outline(image, near, owner, normal, OUTLINE_STEP / view.scale)
     return np.moveaxis(image, 0, 2)
 
 
 def coarse(view: View) -> View:
     """The view without the finer pixels: enough for what is faint."""
-    step = constants.FINER
+    step = FINER
     return View(view.target, view.scale / step, view.width // step, view.height // step)
 
 
@@ -151,7 +161,7 @@ def _outline(image: Floats, near: Array, owner: NDArray[np.int16], normal: Float
         for axis in (0, 1):
             here = tuple(slice(None, -1) if k == axis else slice(None) for k in (0, 1))
             there = tuple(slice(1, None) if k == axis else slice(None) for k in (0, 1))
-            turned = dot(turn[:, *here], turn[:, *there]) < constants.OUTLINE_COSINE
+            turned = dot(turn[:, *here], turn[:, *there]) < OUTLINE_COSINE
             with np.errstate(invalid="ignore"):  # nothing beside nothing
                 turned |= np.abs(depth[here] - depth[there]) > step
             changed = (part[here] != part[there]) | (turned & (part[here] >= 0))
@@ -159,7 +169,7 @@ def _outline(image: Floats, near: Array, owner: NDArray[np.int16], normal: Float
             line[more][there] |= changed
     line &= owner >= 0
     for colour in image[:3]:
-        np.multiply(colour, np.float32(constants.OUTLINE_SHADE), out=colour, where=line)
+        np.multiply(colour, np.float32(OUTLINE_SHADE), out=colour, where=line)
 
 
 def over(front: Floats, back: Floats, weight: float, faint: float = 1.0) -> Floats:
@@ -178,10 +188,10 @@ def over(front: Floats, back: Floats, weight: float, faint: float = 1.0) -> Floa
 
 def smaller(image: Floats) -> Floats:
     """Each block of finer pixels as one, colours by their weight."""
-    height, width = (n // constants.FINER for n in image.shape[:2])
+    height, width = (n // FINER for n in image.shape[:2])
     out = np.empty((4, height, width), np.float32)
-    for band in bands(height, constants.FINER * constants.FINER * width):
-        fine = image[constants.FINER * band.start : constants.FINER * band.stop]
+    for band in bands(height, FINER * FINER * width):
+        fine = image[FINER * band.start : FINER * band.stop]
         weight = out[3][band] = _blocks(fine[..., 3])
         weight = np.maximum(weight, np.float32(1e-9))
         for k in range(3):
@@ -196,8 +206,5 @@ def whole_numbers(image: Floats) -> NDArray[np.uint8]:
 
 def _blocks(fine: Floats) -> Floats:
     """Mean of each block of finer pixels."""
-    steps = range(constants.FINER)
-    return np.asarray(
-        sum(fine[i :: constants.FINER, j :: constants.FINER] for i in steps for j in steps)
-        / np.float32(constants.FINER**2)
-    )
+    steps = range(FINER)
+    return np.asarray(sum(fine[i::FINER, j::FINER] for i in steps for j in steps) / np.float32(FINER**2))

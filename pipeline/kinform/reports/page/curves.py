@@ -14,7 +14,21 @@ import numpy as np
 
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
-from kinform.reports import constants
+
+PLOT_WIDTH, PLOT_HEIGHT = 380.0, 168.0
+"""px, of a plot."""
+PLOT_LEFT, PLOT_RIGHT, PLOT_TOP, PLOT_BOTTOM = 54.0, 366.0, 12.0, 142.0
+"""px, of the area of the curves."""
+MOST_COLUMNS = 300
+"""Columns of a curve; in each the least and the greatest value are kept."""
+MOST_EVENTS = 40
+"""Collisions that are marked in a plot."""
+TICKS = 4.0
+"""Steps of a scale at least about so many, before they are made round."""
+ROUND_STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
+"""Round steps of a scale, times a power of ten."""
+FLAT = 1e-9
+"""Curves that vary by less than this share of their values are flat lines."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,61 +56,54 @@ def plot_svg(plot: Plot, time: Array, events: Sequence[tuple[float, str]] = ()) 
     start, end = float(time[0]), float(time[-1])
 
     def x(t: Any) -> Any:
-        return constants.PLOT_LEFT + (t - start) / ((end - start) or 1.0) * (constants.PLOT_RIGHT - constants.PLOT_LEFT)
+        return PLOT_LEFT + (t - start) / ((end - start) or 1.0) * (PLOT_RIGHT - PLOT_LEFT)
 
     def y(value: Any) -> Any:
-        return constants.PLOT_BOTTOM - (value - low) / ((high - low) or 1.0) * (
-            constants.PLOT_BOTTOM - constants.PLOT_TOP
-        )
+        return PLOT_BOTTOM - (value - low) / ((high - low) or 1.0) * (PLOT_BOTTOM - PLOT_TOP)
 
-    across, upright = (constants.PLOT_LEFT, constants.PLOT_RIGHT), (constants.PLOT_TOP, constants.PLOT_BOTTOM)
+    across, upright = (PLOT_LEFT, PLOT_RIGHT), (PLOT_TOP, PLOT_BOTTOM)
     parts = []
     for tick in ticks:
         parts += [
             line("grid", across, (y(tick), y(tick))),
-            text(constants.PLOT_LEFT - 6, y(tick) + 3.5, number(tick), "end"),
+            text(PLOT_LEFT - 6, y(tick) + 3.5, number(tick), "end"),
         ]
     for share, anchor in ((0.0, "start"), (0.5, "middle"), (1.0, "end")):
         label = number(start + share * (end - start)) + (" s" if share == 1.0 else "")
         parts.append(
             text(
-                constants.PLOT_LEFT + share * (constants.PLOT_RIGHT - constants.PLOT_LEFT),
-                constants.PLOT_BOTTOM + 16,
+                PLOT_LEFT + share * (PLOT_RIGHT - PLOT_LEFT),
+                PLOT_BOTTOM + 16,
                 label,
                 anchor,
             )
         )
     for label, value in plot.limits:
         at = y(value)
-        inside = at + (11.0 if at < (constants.PLOT_TOP + constants.PLOT_BOTTOM) / 2 else -4.0)
-        side, anchor = (
-            (constants.PLOT_LEFT + 4.0, "start") if label.startswith("found") else (constants.PLOT_RIGHT, "end")
-        )
+        inside = at + (11.0 if at < (PLOT_TOP + PLOT_BOTTOM) / 2 else -4.0)
+        side, anchor = (PLOT_LEFT + 4.0, "start") if label.startswith("found") else (PLOT_RIGHT, "end")
         named = escape(f"{label} {number(value)}{plot.unit}")
         parts += [line("limit", across, (at, at)), text(side, inside, named, anchor)]
-    for moment, event in events[: constants.MOST_EVENTS]:
+    for moment, event in events[:MOST_EVENTS]:
         sign = f"✕<title>{escape(event)}</title>"
         parts.append(line("event", (x(moment), x(moment)), upright))
-        parts.append(text(x(moment), constants.PLOT_TOP - 2, sign, "middle", "tick event-sign"))
+        parts.append(text(x(moment), PLOT_TOP - 2, sign, "middle", "tick event-sign"))
     parts += [
         f'<path class="curve curve-{k}" d="{_path(x(time), y(series.values))}"/>'
         for k, series in enumerate(plot.series)
     ]
-    several, below = len(plot.series) > 1, constants.PLOT_HEIGHT + 8
+    several, below = len(plot.series) > 1, PLOT_HEIGHT + 8
     for k, series in enumerate(plot.series if several else ()):
-        at = constants.PLOT_LEFT + 104.0 * k
+        at = PLOT_LEFT + 104.0 * k
         parts.append(line(f"curve curve-{k}", (at, at + 18), (below, below)))
-        parts.append(text(at + 23, constants.PLOT_HEIGHT + 12, escape(series.label)))
-    parts.append(
-        f'<line class="cursor" visibility="hidden" x1="0" x2="0" '
-        f'y1="{constants.PLOT_TOP}" y2="{constants.PLOT_BOTTOM}"/>'
-    )
+        parts.append(text(at + 23, PLOT_HEIGHT + 12, escape(series.label)))
+    parts.append(f'<line class="cursor" visibility="hidden" x1="0" x2="0" y1="{PLOT_TOP}" y2="{PLOT_BOTTOM}"/>')
     spoken = escape(_spoken_text(plot, start, end, events), quote=True)
     return (
         f'<figure class="plot"><figcaption>{escape(plot.title)} <span>{escape(plot.unit)}</span></figcaption>'
-        f'<svg viewBox="0 0 {constants.PLOT_WIDTH:.0f} {constants.PLOT_HEIGHT + (18 if several else 0):.0f}" '
-        f'role="img" aria-label="{spoken}" data-from="{start!r}" data-to="{end!r}" data-left="{constants.PLOT_LEFT}" '
-        f'data-right="{constants.PLOT_RIGHT}">{"".join(parts)}</svg></figure>'
+        f'<svg viewBox="0 0 {PLOT_WIDTH:.0f} {PLOT_HEIGHT + (18 if several else 0):.0f}" '
+        f'role="img" aria-label="{spoken}" data-from="{start!r}" data-to="{end!r}" data-left="{PLOT_LEFT}" '
+        f'data-right="{PLOT_RIGHT}">{"".join(parts)}</svg></figure>'
     )
 
 
@@ -117,7 +124,7 @@ def _spoken_text(plot: Plot, start: float, end: float, events: Sequence[tuple[fl
             name = f"{series.label}: " if series.label else ""
             texts.append(f"{name}{number(float(finite.min()))} to {number(float(finite.max()))} {plot.unit}")
     limits = "".join(f", {label} {number(value)} {plot.unit}" for label, value in plot.limits)
-    happens = "".join(f", at {number(moment)} s {event}" for moment, event in events[: constants.MOST_EVENTS])
+    happens = "".join(f", at {number(moment)} s {event}" for moment, event in events[:MOST_EVENTS])
     return f"{plot.title} from {number(start)} to {number(end)} s: {'; '.join(texts)}{limits}{happens}"
 
 
@@ -126,12 +133,12 @@ def ticks_of(plot: Plot) -> list[float]:
     every = np.concatenate([s.values for s in plot.series] + [np.array([v for _, v in plot.limits])])
     every = every[np.isfinite(every)]
     low, high = (float(every.min()), float(every.max())) if len(every) else (0.0, 1.0)
-    if high - low <= constants.FLAT * max(abs(low), abs(high), 1e-12):
+    if high - low <= FLAT * max(abs(low), abs(high), 1e-12):
         pad = abs(high) * 0.5 or 1.0
         low, high = low - pad, high + pad
-    raw = (high - low) / constants.TICKS
+    raw = (high - low) / TICKS
     power = 10.0 ** math.floor(math.log10(raw))
-    step = next(m * power for m in constants.ROUND_STEPS if m * power >= 0.999 * raw)
+    step = next(m * power for m in ROUND_STEPS if m * power >= 0.999 * raw)
     first, last = math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9)
     return [k * step if k else 0.0 for k in range(first, last + 1)]
 
@@ -150,9 +157,9 @@ def _path(x: Array, y: Array) -> str:
 
 
 def _kept_samples(y: Array) -> Sequence[int]:
-    if len(y) <= 2 * constants.MOST_COLUMNS:
+    if len(y) <= 2 * MOST_COLUMNS:
         return range(len(y))
-    edges = np.linspace(0, len(y), constants.MOST_COLUMNS + 1).astype(int)
+    edges = np.linspace(0, len(y), MOST_COLUMNS + 1).astype(int)
     kept = {0, len(y) - 1}
     for a, b in zip(edges[:-1], edges[1:], strict=True):
         piece = np.where(np.isfinite(y[a:b]), y[a:b], 0.0)

@@ -14,10 +14,13 @@ from kinform.function import as_intended, designers_joints
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.findings import SEVERITIES, RuleOutcome
 from kinform.model.kinematics import Joint, Kinematics
-from kinform.reports.constants import MOST_LISTED_PATCHES
 from kinform.reports.page.phrases import assumption, joint_sentence, patch_words
 from kinform.reports.page.subjects import wanted_names
 from kinform.reports.phrases import rule_counts, severity_counts, verdict_line, verdict_told, where
+
+MOST_LISTED_PATCHES = 14
+"""Patches that a joint lists; the rest are counted."""
+
 
 SIGNS = {"error": "✕", "warning": "▲", "note": "●"}
 

@@ -15,9 +15,17 @@ from numpy.typing import NDArray
 
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
-from kinform.reports import constants
 from kinform.reports.page.meshes import Shape
 from kinform.reports.page.raster import AXES, Buffers, View, rasterise
+
+MOST_SAMPLED = 4_000_000
+"""Samples of a whole shape: 80 MB. Of larger ones, ..."""
+WHOLE_OF_SEEN = 4
+"""... and of those that have so many times as many as a picture shows of them, as of a machine beside the screw that it
+is about, only what the picture shows is drawn."""
+BAND = 1 << 15
+"""Pixels that are shaded at once: they stay in the processor's cache."""
+
 
 Floats = NDArray[np.float32]
 
@@ -68,7 +76,7 @@ class Figure:
         scale = max(view.scale, self._finest)
         for fine in (scale, view.scale) if self._is_seen(view) else ():
             grid = self._grid(fine, self.box)
-            if grid[2] * grid[3] <= constants.MOST_SAMPLED:
+            if grid[2] * grid[3] <= MOST_SAMPLED:
                 if fine not in self._drawn:
                     self._drawn[fine] = self._draw(fine, *grid)
                 return self._drawn[fine]
@@ -80,7 +88,7 @@ class Figure:
         (_, _, width, height), (_, _, wide, high) = (
             self._grid(view.scale, box) for box in (self.box, self._seen(view))
         )
-        return width * height <= min(constants.WHOLE_OF_SEEN * wide * high, constants.MOST_SAMPLED)
+        return width * height <= min(WHOLE_OF_SEEN * wide * high, MOST_SAMPLED)
 
     def _seen(self, view: View) -> Array:
         """(2, 2) what the view shows of the box; of nothing, a place."""
@@ -150,7 +158,7 @@ def dot(a: Array | Floats, b: Array | Floats) -> Array:
 
 def bands(height: int, width: int) -> Iterator[slice]:
     """Rows in portions that stay in the processor's cache: a picture at once takes more than twice the time."""
-    step = max(1, constants.BAND // max(width, 1))
+    step = max(1, BAND // max(width, 1))
     for start in range(0, height, step):
         yield slice(start, min(start + step, height))
 

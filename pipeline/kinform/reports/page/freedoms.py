@@ -7,6 +7,7 @@ closed by Gauss–Newton steps with the driver held. What does not close is not 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from functools import cached_property, reduce
 
@@ -17,7 +18,37 @@ from kinform.foundation.graphs.graph import forest
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.model.kinematics import Freedom, Joint, Kinematics
-from kinform.reports import constants
+from kinform.reports.page.constants import SHOWN_TURN, SIDE_FRAMES
+
+FINEST_TURN = math.radians(3.0)
+"""rad, of one step: the eye sees larger ones as jumps."""
+FULL_TURN = 2.0 * math.pi
+"""rad: no turn is shown further."""
+SHOWN_SLIDE = 0.14
+"""Greatest slide of such a driver as a share of the assembly's size; a choice."""
+FOLLOWER_TURN = 1.4
+"""No joint turns further than this times SHOWN_TURN at the rates of the start."""
+LARGE_SHARE = 0.25
+"""Share of the way that assemblies go whose motion is shown at first order only."""
+CLOSED = 1e-5
+"""rad, and share of the size, by which a loop may miss."""
+CLOSED_WELL = 1e-8
+"""At this gap no further step is taken: a thousandth of what may be missed."""
+MOST_CLOSING_STEPS = 8
+"""Gauss–Newton steps; from a neighbouring pose three or four are usual."""
+SLOPE_RANK = 1e-7
+"""Singular values of the slopes below this share of the greatest count as zero: the slopes of loops that are nearly
+closed are known to about the square root of what they miss."""
+FREEDOM_RANK = 1e-7
+"""Pivots of joint rates below this share of the greatest count as zero."""
+LEAST_MOVE = 1e-6
+"""Share of the size by which a body moves that is said to move."""
+LEAST_RATE_ERROR = 1e-9
+"""A coordinate whose rate differs from ±1 by less is the driver's; rates are exact up to rounding."""
+MOST_COORDINATES = 240
+"""Assemblies with loops and more joint coordinates than this are shown at first order only: closing them is slow."""
+MOST_FREEDOMS = 60
+"""Freedoms that are shown."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,14 +87,11 @@ def freedom_motions(kinematics: Kinematics, size: float, spans: Mapping[str, Spa
     rates = linkage.rates(freedoms)
     led = [found for freedom in kinematics.mobility.named if (found := linkage.led(freedom)) is not None]
     if led:
-        out = [linkage.shown(own, driver) for own, driver in led[: constants.MOST_FREEDOMS]]
-        return out + _loose(kinematics, freedoms, len(led), rates, size)[: constants.MOST_FREEDOMS - len(out)]
+        out = [linkage.shown(own, driver) for own, driver in led[:MOST_FREEDOMS]]
+        return out + _loose(kinematics, freedoms, len(led), rates, size)[: MOST_FREEDOMS - len(out)]
     drivers, mixes = _drivers(rates, linkage.turning, size)
-    out = [
-        linkage.shown(mix @ rates, driver)
-        for driver, mix in list(zip(drivers, mixes, strict=True))[: constants.MOST_FREEDOMS]
-    ]
-    return out + _loose(kinematics, freedoms, len(drivers), rates, size)[: constants.MOST_FREEDOMS - len(out)]
+    out = [linkage.shown(mix @ rates, driver) for driver, mix in list(zip(drivers, mixes, strict=True))[:MOST_FREEDOMS]]
+    return out + _loose(kinematics, freedoms, len(drivers), rates, size)[: MOST_FREEDOMS - len(out)]
 
 
 def _drivers(rates: Array, turning: Array, size: float) -> tuple[list[int], Array]:
@@ -75,7 +103,7 @@ def _drivers(rates: Array, turning: Array, size: float) -> tuple[list[int], Arra
     weighted = rates * np.where(turning, 1.0, 1.0 / size)
     _, triangle, order = qr(weighted, mode="economic", pivoting=True)
     diagonal = np.abs(np.diag(triangle))
-    rank = int(np.count_nonzero(diagonal > constants.FREEDOM_RANK * max(float(diagonal.max(initial=0.0)), 1e-300)))
+    rank = int(np.count_nonzero(diagonal > FREEDOM_RANK * max(float(diagonal.max(initial=0.0)), 1e-300)))
     chosen = np.sort(order[:rank])
     return [int(k) for k in chosen], np.asarray(np.linalg.pinv(rates[:, chosen]), dtype=np.float64)
 
@@ -89,8 +117,8 @@ def _loose(kinematics: Kinematics, freedoms: Array, driven: int, rates: Array, s
     for mix in still:
         twists = np.einsum("m,mbi->bi", mix, freedoms)
         extent = max(float(np.abs(twists[:, 3:]).max()) / size, float(np.abs(twists[:, :3]).max()), 1e-300)
-        shares = np.linspace(-1.0, 1.0, 2 * constants.SIDE_FRAMES + 1)
-        poses = np.array([[displacement(t * constants.SHOWN_SLIDE * s / extent) for t in twists] for s in shares])
+        shares = np.linspace(-1.0, 1.0, 2 * SIDE_FRAMES + 1)
+        poses = np.array([[displacement(t * SHOWN_SLIDE * s / extent) for t in twists] for s in shares])
         turns = bool(np.abs(twists[:, :3]).max() * size > np.abs(twists[:, 3:]).max())
         note = "no joint connects what moves to ground"
         shown.append(Showing(None, turns, _moving(kinematics, poses, size), poses, shares, note))
@@ -98,7 +126,7 @@ def _loose(kinematics: Kinematics, freedoms: Array, driven: int, rates: Array, s
 
 
 def _moving(kinematics: Kinematics, poses: Array, size: float) -> tuple[str, ...]:
-    far = np.abs(poses - np.eye(4)).max(axis=(0, 2, 3)) > constants.LEAST_MOVE * max(size, 1e-300)
+    far = np.abs(poses - np.eye(4)).max(axis=(0, 2, 3)) > LEAST_MOVE * max(size, 1e-300)
     return tuple(body.name for body, moves in zip(kinematics.bodies, far, strict=True) if moves)
 
 
@@ -142,7 +170,7 @@ class _Linkage:
                 return None
             at = int(self.start[number[name]]) + coordinate
             rates[at] = rate
-            if name == freedom.driver and abs(abs(rate) - 1.0) < constants.LEAST_RATE_ERROR:
+            if name == freedom.driver and abs(abs(rate) - 1.0) < LEAST_RATE_ERROR:
                 driver = at if driver is None else driver
         return None if driver is None else (rates, driver)
 
@@ -155,11 +183,7 @@ class _Linkage:
         poses, shares, note, ends = [], [], "", []
         for sign, end in ((-1.0, span.lower), (1.0, span.upper)):
             reach = self._reach(rates, turns, end)
-            many = (
-                max(constants.SIDE_FRAMES, int(np.ceil(reach / constants.FINEST_TURN)))
-                if turns
-                else constants.SIDE_FRAMES
-            )
+            many = max(SIDE_FRAMES, int(np.ceil(reach / FINEST_TURN))) if turns else SIDE_FRAMES
             steps = np.linspace(0.0, 1.0, many + 1)
             followed, why = self._followed(rates, driver, sign * reach * steps)
             note = note or why
@@ -175,20 +199,18 @@ class _Linkage:
     def _reach(self, rates: Array, turns: bool, end: float | None) -> float:
         """How far the driver goes to one side (rad or m, positive)."""
         if end is not None:
-            return float(min(abs(end), constants.FULL_TURN if turns else self.size))
-        reach = float(constants.SHOWN_TURN if turns else constants.SHOWN_SLIDE * self.size)
+            return float(min(abs(end), FULL_TURN if turns else self.size))
+        reach = float(SHOWN_TURN if turns else SHOWN_SLIDE * self.size)
         return float(
             min(
                 reach,
-                constants.FOLLOWER_TURN
-                * constants.SHOWN_TURN
-                / max(float(np.abs(rates[self.turning]).max(initial=0.0)), 1e-300),
+                FOLLOWER_TURN * SHOWN_TURN / max(float(np.abs(rates[self.turning]).max(initial=0.0)), 1e-300),
             )
         )
 
     def _followed(self, rates: Array, driver: int, steps: Array) -> tuple[Array, str]:
         """Poses (S, B, 4, 4) at the driver's steps; the last closed pose again where loops do not close."""
-        large = bool(self.chords) and len(self.screws) > constants.MOST_COORDINATES
+        large = bool(self.chords) and len(self.screws) > MOST_COORDINATES
         q, poses, note = np.zeros(len(self.screws)), [self.poses(np.zeros(len(self.screws)))], ""
         for before, now in zip(steps[:-1], steps[1:], strict=True):
             if note:
@@ -196,7 +218,7 @@ class _Linkage:
                 continue
             q = q + (now - before) * rates
             if large:
-                q = constants.LARGE_SHARE * now * rates
+                q = LARGE_SHARE * now * rates
             elif self.chords:
                 closed = self._closed(q, driver)
                 if closed is None:
@@ -288,16 +310,16 @@ class _Linkage:
         """The nearest closed configuration with the driver where it is."""
         free = np.array([i for i in range(len(q)) if i != driver])
         unit = np.where(self.turning, 1.0, self.size)
-        for left in range(constants.MOST_CLOSING_STEPS, -1, -1):
+        for left in range(MOST_CLOSING_STEPS, -1, -1):
             steps = self._steps(q)
             across = self._across(steps)
             poses = self._moved(across)
             missing = self._missing(across, poses)
             most = float(np.abs(missing).max())
-            if not left or most < constants.CLOSED_WELL:
+            if not left or most < CLOSED_WELL:
                 break
             slope = self._slopes(steps, poses)[:, free] * unit[free]
-            step = np.linalg.lstsq(slope, -missing, rcond=constants.SLOPE_RANK)[0]
+            step = np.linalg.lstsq(slope, -missing, rcond=SLOPE_RANK)[0]
             q = q.copy()
             q[free] += step * unit[free]
-        return q if most < constants.CLOSED else None
+        return q if most < CLOSED else None

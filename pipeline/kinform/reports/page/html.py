@@ -22,12 +22,11 @@ from markupsafe import Markup, escape
 from kinform.design import Design
 from kinform.exports.graph.drawing import graph_legend, graph_panel
 from kinform.model.kinematics import Body
-from kinform.reports.constants import FIT_COLOURS, MOST_PICTURES
 from kinform.reports.page import agreement, facts, intended
-from kinform.reports.page.pictures import Artist
+from kinform.reports.page.pictures import MOST_PICTURES, Artist
 from kinform.reports.page.plots import plot_groups
 from kinform.reports.page.scene import Scene
-from kinform.reports.page.scene_data import embedded_scene
+from kinform.reports.page.scene_data import FIT_COLOURS, embedded_scene
 from kinform.version import __version__
 
 

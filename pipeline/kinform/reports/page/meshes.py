@@ -5,6 +5,7 @@ Which facets belong together the recovered surfaces say; where there are none, t
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 
 import numpy as np
@@ -16,7 +17,11 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
-from kinform.reports.constants import CREASE, LINE_ANGLE
+
+CREASE = math.radians(32.0)
+"""rad: facets that meet at more than this are not shaded as one surface; polygons of twelve sides still are."""
+LINE_ANGLE = math.radians(18.0)
+"""rad: edges between two surfaces that meet at more than this are drawn."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,9 +20,11 @@ from kinform.model.arrays import Array
 from kinform.model.collisions import Collision, RangeEnd
 from kinform.model.names import PartName
 from kinform.model.simulation import Simulation
-from kinform.reports.constants import MOST_FRAMES
 from kinform.reports.page.freedoms import Showing, Span, freedom_motions
 from kinform.reports.page.subjects import wanted_names
+
+MOST_FRAMES = 600
+"""Poses of a simulated motion that are embedded; of longer ones an even choice."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,8 +12,10 @@ from kinform.foundation.at_work import at_work_on
 from kinform.foundation.processes import threads_ran
 from kinform.model.assembly import Part
 from kinform.model.contacts import Interference
-from kinform.reports.constants import MOST_OVERLAPS
 from kinform.reports.page.meshes import Shape, shape_of_facets
+
+MOST_OVERLAPS = 200
+"""Overlaps that are cut out; further ones are marked at their place alone."""
 
 
 def overlap_shapes(design: Design) -> list[Shape | None]:

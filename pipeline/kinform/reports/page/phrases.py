@@ -10,7 +10,10 @@ from kinform.model.assembly import Assembly, Assumption
 from kinform.model.contacts import Patch
 from kinform.model.function import Requirement
 from kinform.model.kinematics import Joint
-from kinform.reports.constants import LEAST_GAP
+
+LEAST_GAP = 1e-7
+"""m: smaller gaps are not told; meshes are seldom finer."""
+
 
 ANGLES = ("half_angle", "angle_tolerance")
 LENGTHS = ("tolerance", "distance")

@@ -15,13 +15,41 @@ import numpy as np
 
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
-from kinform.reports import constants
-from kinform.reports.page.canvas import Shown, coarse, layer, nearness, over, paint, smaller, whole_numbers
+from kinform.reports.constants import FINDING_MARGIN, FINDING_SHIFT, FINDING_ZOOM, OVERLAP_COLOUR
+from kinform.reports.page.canvas import (
+    FINER,
+    OUTLINE_STEP,
+    Shown,
+    coarse,
+    layer,
+    nearness,
+    over,
+    paint,
+    smaller,
+    whole_numbers,
+)
 from kinform.reports.page.figures import Figure
 from kinform.reports.page.focus import Focus
-from kinform.reports.page.raster import AXES, View, png, view_of
+from kinform.reports.page.raster import AXES, VIEW_MARGIN, View, png, view_of
 from kinform.reports.page.scene import Scene
 from kinform.reports.page.strokes import dashed, polylines, rgb, ring, strokes_of
+
+MOST_PICTURES = 24
+"""Errors and warnings with a picture on the page; the others can be shown in the interactive view."""
+OVERVIEW_WIDTH, OVERVIEW_HEIGHT = 960, 600
+"""px, of the picture of the whole."""
+PICTURE_WIDTH, PICTURE_HEIGHT = 480, 320
+"""px, of the picture of a finding."""
+SIGNS_MARGIN = 1.5
+"""The same where only signs of joints are drawn."""
+FAINT = 0.22
+"""Weight of what a finding is not about."""
+GLASS = 0.35
+"""Weight of a part that stands before the place where it meets another."""
+TINT = 0.4
+"""Share of red in parts that meet."""
+OVERLAP_WEIGHT, FINDING_OVERLAP_WEIGHT = 0.75, 0.8
+"""Weights of overlaps over the whole, and over what a finding is about."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +76,7 @@ class Artist:
         self.drawn: dict[int, bytes] = {}
         self.wholes: dict[tuple[int, int], bytes] = {}
 
-    def overview(self, width: int = constants.OVERVIEW_WIDTH, height: int = constants.OVERVIEW_HEIGHT) -> bytes:
+    def overview(self, width: int = OVERVIEW_WIDTH, height: int = OVERVIEW_HEIGHT) -> bytes:
         """The whole assembly with the axes of its joints, overlaps in red, as PNG; drawn once of each size."""
         if (width, height) not in self.wholes:
             self.wholes[width, height] = self._overview(width, height)
@@ -60,8 +88,8 @@ class Artist:
             return png(np.zeros((height, width, 4), np.uint8))
         view = _whole_view(figures, signs, width, height)
         image = layer(view, figures)
-        paint(image, view, self._red(lambda parts: True), constants.OVERLAP_WEIGHT)
-        polylines(image, [view.project(stroke)[:, :2] for stroke in signs], 2.0 * constants.FINER)
+        paint(image, view, self._red(lambda parts: True), OVERLAP_WEIGHT)
+        polylines(image, [view.project(stroke)[:, :2] for stroke in signs], 2.0 * FINER)
         return png(whole_numbers(smaller(image)))
 
     def _whole(self) -> tuple[Shown, list[Array]]:
@@ -83,10 +111,10 @@ class Artist:
         """Tell figures how fine the errors and warnings of a page, and the whole, will want them, so that each is drawn
         once for all."""
         report = self.scene.design.report
-        whole = _whole_view(*self._whole(), constants.OVERVIEW_WIDTH, constants.OVERVIEW_HEIGHT)
+        whole = _whole_view(*self._whole(), OVERVIEW_WIDTH, OVERVIEW_HEIGHT)
         for figure in self.known.values():
             figure.expect(whole)
-        findings = report.findings[: constants.MOST_PICTURES] if report else ()
+        findings = report.findings[:MOST_PICTURES] if report else ()
         for finding, focus in zip(findings, self.scene.focuses, strict=False):
             if finding.severity != "note" and focus.movement < 0:
                 stage = self._stage(focus)
@@ -111,42 +139,42 @@ class Artist:
             return None
         view = view_of(
             np.concatenate([figure.box for figure, _ in figures]),
-            constants.FINER * constants.PICTURE_WIDTH,
-            constants.FINER * constants.PICTURE_HEIGHT,
-            margin=constants.FINDING_MARGIN,
+            FINER * PICTURE_WIDTH,
+            FINER * PICTURE_HEIGHT,
+            margin=FINDING_MARGIN,
         )
         place = None if focus.place is None else AXES @ focus.place
         if place is not None:
             view = replace(
                 view,
-                target=(1.0 - constants.FINDING_SHIFT) * view.target + constants.FINDING_SHIFT * place,
-                scale=constants.FINDING_ZOOM * view.scale,
+                target=(1.0 - FINDING_SHIFT) * view.target + FINDING_SHIFT * place,
+                scale=FINDING_ZOOM * view.scale,
             )
         return _Stage(figures, self._figures(rest, moved), moved, frozenset(chosen), place, view)
 
     def _finding(self, focus: Focus) -> bytes:
         stage = self._stage(focus)
         if stage is None:
-            return png(np.zeros((constants.PICTURE_HEIGHT, constants.PICTURE_WIDTH, 4), np.uint8))
+            return png(np.zeros((PICTURE_HEIGHT, PICTURE_WIDTH, 4), np.uint8))
         view, place = stage.view, stage.place
         before = [
             item for item in stage.chosen if focus.meeting and place is not None and _covers(view, item[0], place)
         ]
         image = layer(view, [item for item in stage.chosen if item not in before] or before)
         if 0 < len(before) < len(stage.chosen):
-            paint(image, view, before, constants.GLASS)
+            paint(image, view, before, GLASS)
         red = self._red(lambda both: not stage.moved and set(both) <= stage.names)
-        paint(image, view, red, constants.FINDING_OVERLAP_WEIGHT)
+        paint(image, view, red, FINDING_OVERLAP_WEIGHT)
         for joint in self.scene.joints:
             if joint.name in focus.joints and joint.axis is not None and not stage.moved:
                 point, size = self.scene.sign_of(joint)
                 ends_of_axis = np.array([point - 1.6 * size * joint.axis, point + 1.6 * size * joint.axis])
-                dashed(image, view.project(ends_of_axis @ AXES.T)[:, :2], 2.0 * constants.FINER)
+                dashed(image, view.project(ends_of_axis @ AXES.T)[:, :2], 2.0 * FINER)
         if place is not None:
-            ring(image, view.project(place[None])[0, :2], 15.0 * constants.FINER, 2.0 * constants.FINER)
+            ring(image, view.project(place[None])[0, :2], 15.0 * FINER, 2.0 * FINER)
         image = smaller(image)
         if stage.others:
-            image = over(image, layer(coarse(view), stage.others), 1.0, constants.FAINT)
+            image = over(image, layer(coarse(view), stage.others), 1.0, FAINT)
         return png(whole_numbers(image))
 
     def _figures(
@@ -162,8 +190,7 @@ class Artist:
             colour = rgb(self.scene.colours[body])
             if part.name in meeting:
                 colour = tuple(
-                    (1.0 - constants.TINT) * own + constants.TINT * red
-                    for own, red in zip(colour, rgb(constants.OVERLAP_COLOUR), strict=True)
+                    (1.0 - TINT) * own + TINT * red for own, red in zip(colour, rgb(OVERLAP_COLOUR), strict=True)
                 )  # type: ignore[assignment]
             away = (moved or {}).get(self.scene.bodies[body].name)
             figure = self.known.get(part.name) if away is None else None
@@ -179,7 +206,7 @@ class Artist:
 
     def _red(self, wanted: Callable[[tuple[str, str]], bool]) -> Shown:
         """Overlaps of the wanted pairs of parts."""
-        return [(figure, rgb(constants.OVERLAP_COLOUR)) for both, figure in self._overlaps if wanted(both)]
+        return [(figure, rgb(OVERLAP_COLOUR)) for both, figure in self._overlaps if wanted(both)]
 
     @cached_property
     def _overlaps(self) -> list[tuple[tuple[str, str], Figure]]:
@@ -195,13 +222,13 @@ def _whole_view(figures: Shown, signs: list[Array], width: int, height: int) -> 
     """From where everything is seen."""
     return view_of(
         np.concatenate([*signs, *(figure.box for figure, _ in figures)]),
-        constants.FINER * width,
-        constants.FINER * height,
-        constants.VIEW_MARGIN if figures else constants.SIGNS_MARGIN,
+        FINER * width,
+        FINER * height,
+        VIEW_MARGIN if figures else SIGNS_MARGIN,
     )
 
 
 def _covers(view: View, figure: Figure, place: Array) -> bool:
     """Whether the figure stands between the eye and the place, given in the axes of the eye."""
     x, y, near = view.project(place[None])[0]
-    return nearness(view, figure, int(x), int(y)) > float(near + constants.OUTLINE_STEP / view.scale)
+    return nearness(view, figure, int(x), int(y)) > float(near + OUTLINE_STEP / view.scale)

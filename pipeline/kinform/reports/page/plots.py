@@ -14,12 +14,16 @@ from kinform.foundation.units import metres_per
 from kinform.function import designers_joints, stated_ranges
 from kinform.model.arrays import Ints
 from kinform.model.simulation import Simulation
-from kinform.reports import constants
 from kinform.reports.page.curves import Plot, Series, number, plot_svg
 from kinform.reports.page.sizing import SIZED, sizing_svgs
 from kinform.reports.page.spectra import AROUND, METHOD, envelope_plots, spectrum_svg
 from kinform.reports.page.subjects import wanted_names
 from kinform.reports.values.runs import coordinates
+
+MOST_PLOTS = 48
+"""Plots of one group."""
+MOST_SPECTRA = 24
+"""Spectra, and envelopes, of a page."""
 
 
 def plot_groups(design: Design) -> list[tuple[str, list[str], str]]:
@@ -40,18 +44,14 @@ def plot_groups(design: Design) -> list[tuple[str, list[str], str]]:
     out = []
     for heading, found in groups:
         if found:
-            left = (
-                f"{len(found) - constants.MOST_PLOTS} more are in the results file."
-                if len(found) > constants.MOST_PLOTS
-                else ""
-            )
-            out.append((heading, [plot_svg(plot, run.time, events) for plot in found[: constants.MOST_PLOTS]], left))
+            left = f"{len(found) - MOST_PLOTS} more are in the results file." if len(found) > MOST_PLOTS else ""
+            out.append((heading, [plot_svg(plot, run.time, events) for plot in found[:MOST_PLOTS]], left))
     sized = sizing_svgs(design, run, titles)
     if sized:
         out.append(("Effort over speed of the drives", sized, ""))
-    repeating = [*_sensors(design, run), *_driven(run, titles)][: constants.MOST_SPECTRA]
+    repeating = [*_sensors(design, run), *_driven(run, titles)][:MOST_SPECTRA]
     spectra = [svg for svg in (spectrum_svg(plot, run.time) for plot in repeating) if svg]
-    enveloped = [plot for one in repeating for plot in envelope_plots(one, run.time)][: constants.MOST_SPECTRA]
+    enveloped = [plot for one in repeating for plot in envelope_plots(one, run.time)][:MOST_SPECTRA]
     if spectra:
         out.append(("Spectra of sensors and drives", spectra, METHOD))
     if enveloped:

@@ -12,8 +12,11 @@ from kinform.frozen import dataclass
 from kinform.kinematics import stated_proposals
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Body
-from kinform.reports import constants
+from kinform.reports.page.constants import SHOWN_TURN, SIDE_FRAMES
 from kinform.reports.page.movements import Movement
+
+MOST_PROPOSED_PARTS = 400
+"""Joints are proposed on the page of assemblies of so many parts at most: beyond, looking takes longer than drawing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +35,7 @@ def proposed(design: Design, bodies: tuple[Body, ...]) -> list[ProposedJoint]:
     """Joints that may be meant where no function is stated, the largest moved share first. None of assemblies of more
     than `MOST_PROPOSED_PARTS` parts, and none that would tear a body apart."""
     function, many = design.assembly.function, len(design.assembly.parts)
-    if design.contacts is None or function.joints or function.complete or many > constants.MOST_PROPOSED_PARTS:
+    if design.contacts is None or function.joints or function.complete or many > MOST_PROPOSED_PARTS:
         return []
     out = []
     for joint, one in stated_proposals(design.assembly, design.surfaces, design.contacts):
@@ -49,8 +52,8 @@ def _turned(joint: IntendedJoint, moved: tuple[str, ...]) -> Movement:
     assert joint.point is not None
     axis = np.array([0.0, 0.0, 1.0]) if joint.axis is None else joint.axis
     screw = np.concatenate([axis, np.cross(joint.point, axis)])
-    shares = np.linspace(-1.0, 1.0, 2 * constants.SIDE_FRAMES + 1)
-    poses = np.array([displacement(share * constants.SHOWN_TURN * screw) for share in shares])
+    shares = np.linspace(-1.0, 1.0, 2 * SIDE_FRAMES + 1)
+    poses = np.array([displacement(share * SHOWN_TURN * screw) for share in shares])
     turns = np.repeat(quaternions(poses[:, :3, :3])[:, None], len(moved), axis=1)
     return Movement(
         kind="proposal",
@@ -61,5 +64,5 @@ def _turned(joint: IntendedJoint, moved: tuple[str, ...]) -> Movement:
         places=np.repeat(poses[:, None, :3, 3], len(moved), axis=1),
         turns=turns,
         joint=joint.name,
-        ends=(-constants.SHOWN_TURN, constants.SHOWN_TURN),
+        ends=(-SHOWN_TURN, SHOWN_TURN),
     )

@@ -6,9 +6,11 @@ import re
 
 from kinform.design import Design
 from kinform.foundation.progress import Progress
-from kinform.reports.constants import MOST_PICTURE_FILES
 from kinform.reports.page import agreement, facts
 from kinform.reports.page.pictures import Artist
+
+MOST_PICTURE_FILES = 40
+"""Findings that the summary tells, the worst first; errors and warnings among them get a picture."""
 
 
 def page_pictures(artist: Artist, notes: bool = False, progress: Progress | None = None) -> dict[str, bytes]:

@@ -13,13 +13,25 @@ from kinform.function.body_titles import body_titles
 from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh
 from kinform.model.kinematics import Body, Joint
-from kinform.reports.constants import BODY_COLOURS, EMPTY_BOX, GROUND_COLOUR, LEAST_SIGN, MOST_SIGN, SIGN_SIZE
 from kinform.reports.page.focus import Focus, focus_of
 from kinform.reports.page.meshes import Shape, shape_of
 from kinform.reports.page.movements import Movement, movements_of
 from kinform.reports.page.overlaps import overlap_shapes
 from kinform.reports.page.proposed import ProposedJoint, proposed
 from kinform.reports.page.subjects import wanted_names
+
+GROUND_COLOUR = "#8b929c"
+"""Of the body that is ground."""
+BODY_COLOURS = (
+    "#6b9ac4", "#d39a5b", "#79ab83", "#b08abf", "#c9807a", "#6fb0ae", "#bda956", "#8a92cf", "#c78ca9", "#94a86a",
+)  # fmt: skip
+"""Of the other bodies, one after the other and again from the first."""
+SIGN_SIZE = 1.25
+"""A joint's sign over half the extent of its contact."""
+LEAST_SIGN, MOST_SIGN = 0.045, 0.16
+"""Shares of the assembly's size between which a sign stays."""
+EMPTY_BOX = 0.05
+"""m, to each side of a scene that is a point."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,8 +13,7 @@ from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
-from kinform.reports import constants
-from kinform.reports.constants import BOX_MARGIN, FIT_COLOURS, MOST_SAMPLES, OVERLAP_COLOUR
+from kinform.reports.constants import EYE_RISE, EYE_TURN, FINDING_MARGIN, FINDING_SHIFT, FINDING_ZOOM, OVERLAP_COLOUR
 from kinform.reports.page.focus import Focus
 from kinform.reports.page.meshes import Shape
 from kinform.reports.page.movements import Movement
@@ -22,6 +21,13 @@ from kinform.reports.page.packing import Blob, quantised
 from kinform.reports.page.phrases import joint_sentence, patch_words
 from kinform.reports.page.scene import Scene
 from kinform.reports.values.plain import fields, plain
+
+FIT_COLOURS = {"clearance": "#3f7fbf", "touch": "#2e9e76", "transition": "#c9962b", "interference": "#c2410c"}
+"""Of contact patches by their fit."""
+MOST_SAMPLES = 400
+"""Samples of one contact patch that are drawn; of larger ones an even choice."""
+BOX_MARGIN = 0.02
+"""Share of the assembly's size by which contact samples may leave its box."""
 
 
 def embedded_scene(scene: Scene) -> tuple[dict[str, Any], str]:
@@ -68,11 +74,11 @@ def embedded_scene(scene: Scene) -> tuple[dict[str, Any], str]:
         ],
         "findings": [_finding(finding, focus) for finding, focus in zip(found, scene.focuses, strict=True)],
         "look": {
-            "turn": constants.EYE_TURN,
-            "rise": constants.EYE_RISE,
-            "margin": constants.FINDING_MARGIN,
-            "zoom": constants.FINDING_ZOOM,
-            "shift": constants.FINDING_SHIFT,
+            "turn": EYE_TURN,
+            "rise": EYE_RISE,
+            "margin": FINDING_MARGIN,
+            "zoom": FINDING_ZOOM,
+            "shift": FINDING_SHIFT,
         },
         "motions": [
             _movement(scene, blob, movement)

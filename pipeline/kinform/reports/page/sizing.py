@@ -16,8 +16,21 @@ from kinform.design import Design
 from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array
 from kinform.model.simulation import DriveUse, Simulation
-from kinform.reports import constants
-from kinform.reports.page.curves import Plot, Series, line, number, text, ticks_of
+from kinform.reports.page.constants import MOST_POINTS
+from kinform.reports.page.curves import (
+    PLOT_BOTTOM,
+    PLOT_HEIGHT,
+    PLOT_LEFT,
+    PLOT_RIGHT,
+    PLOT_TOP,
+    PLOT_WIDTH,
+    Plot,
+    Series,
+    line,
+    number,
+    text,
+    ticks_of,
+)
 
 SIZED = ("motion", "effort", "servo", "dc_motor")
 """Kinds of drives that a motor or cylinder stands for."""
@@ -44,23 +57,23 @@ def _figure(title: str, use: DriveUse, speeds: Array, efforts: Array, speed_unit
 
     def x(value: float) -> float:
         share = (value - across[0]) / (across[-1] - across[0])
-        return constants.PLOT_LEFT + share * (constants.PLOT_RIGHT - constants.PLOT_LEFT)
+        return PLOT_LEFT + share * (PLOT_RIGHT - PLOT_LEFT)
 
     def y(value: float) -> float:
         share = (value - upright[0]) / (upright[-1] - upright[0])
-        return constants.PLOT_BOTTOM - share * (constants.PLOT_BOTTOM - constants.PLOT_TOP)
+        return PLOT_BOTTOM - share * (PLOT_BOTTOM - PLOT_TOP)
 
-    sides, ends = (constants.PLOT_LEFT, constants.PLOT_RIGHT), (constants.PLOT_TOP, constants.PLOT_BOTTOM)
+    sides, ends = (PLOT_LEFT, PLOT_RIGHT), (PLOT_TOP, PLOT_BOTTOM)
     parts = []
     for tick in upright:
         parts += [line("grid", sides, (y(tick), y(tick)))]
-        parts += [text(constants.PLOT_LEFT - 6, y(tick) + 3.5, number(tick), "end")]
+        parts += [text(PLOT_LEFT - 6, y(tick) + 3.5, number(tick), "end")]
     parts.append(line("grid", (x(0.0), x(0.0)), ends))
     for tick, anchor in ((across[0], "start"), (across[-1], "end")):
         said = number(tick) + (f" {speed_unit}" if tick == across[-1] else "")
-        parts.append(text(x(tick), constants.PLOT_BOTTOM + 16, said, anchor))
+        parts.append(text(x(tick), PLOT_BOTTOM + 16, said, anchor))
     parts += [line("limit", sides, (y(use.rms), y(use.rms)))]
-    parts += [text(constants.PLOT_RIGHT, y(use.rms) - 4.0, f"RMS {number(use.rms)}", "end")]
+    parts += [text(PLOT_RIGHT, y(use.rms) - 4.0, f"RMS {number(use.rms)}", "end")]
     parts.append(f'<path class="curve curve-0" d="{_course(x, y, speeds, efforts)}"/>')
     name = f"{title}: {use.kind.replace('_', ' ')}"
     facts = (
@@ -69,7 +82,7 @@ def _figure(title: str, use: DriveUse, speeds: Array, efforts: Array, speed_unit
     )
     return (
         f'<figure class="plot"><figcaption>{escape(name)} <span>{escape(f"{unit} over {speed_unit}; {facts}")}</span>'
-        f'</figcaption><svg viewBox="0 0 {constants.PLOT_WIDTH:.0f} {constants.PLOT_HEIGHT:.0f}" role="img" '
+        f'</figcaption><svg viewBox="0 0 {PLOT_WIDTH:.0f} {PLOT_HEIGHT:.0f}" role="img" '
         f'aria-label="{escape(f"{name}, effort over speed: {facts}", quote=True)}">{"".join(parts)}</svg></figure>'
     )
 
@@ -77,7 +90,7 @@ def _figure(title: str, use: DriveUse, speeds: Array, efforts: Array, speed_unit
 def _course(x: Callable[[float], float], y: Callable[[float], float], speeds: Array, efforts: Array) -> str:
     """The path through the points of the run, thinned evenly where there are many."""
     keep: Sequence[int] = range(len(speeds))
-    if len(speeds) > constants.MOST_POINTS:
-        spread = np.linspace(0, len(speeds) - 1, constants.MOST_POINTS).round().astype(int).tolist()
+    if len(speeds) > MOST_POINTS:
+        spread = np.linspace(0, len(speeds) - 1, MOST_POINTS).round().astype(int).tolist()
         keep = sorted({*spread, int(np.abs(efforts).argmax()), int(np.abs(speeds).argmax())})
     return "M" + "L".join(f"{x(float(speeds[k])):.1f} {y(float(efforts[k])):.1f}" for k in keep)

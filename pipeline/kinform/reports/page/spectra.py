@@ -9,9 +9,31 @@ from html import escape
 import numpy as np
 
 from kinform.model.arrays import Array
-from kinform.reports import constants
-from kinform.reports.page.curves import Plot, Series, line, number, text
+from kinform.reports.page.constants import MOST_POINTS
+from kinform.reports.page.curves import (
+    MOST_COLUMNS,
+    PLOT_BOTTOM,
+    PLOT_HEIGHT,
+    PLOT_LEFT,
+    PLOT_RIGHT,
+    PLOT_TOP,
+    PLOT_WIDTH,
+    Plot,
+    Series,
+    line,
+    number,
+    text,
+)
 from kinform.simulation import Spectrum, amplitude_spectrum, envelope
+
+SPECTRUM_DECADES = 4
+"""Decades of amplitude that a spectrum shows: sensors are rarely better, and the lobes of the window fade
+below."""
+LEAST_FREQUENCIES = 24
+"""Frequencies that a spectrum shows at least; else twice as many as stand above its lowest decade."""
+NO_SPECTRUM = 1e-9
+"""Share of the greatest value below which amplitudes are rounding."""
+
 
 METHOD = (
     "Amplitudes of sines, of what is left without a straight line, under a Hann window over the whole run; between two "
@@ -31,31 +53,31 @@ def spectrum_svg(plot: Plot, time: Array) -> str:
     drawn = [(label, spectrum) for label, spectrum in found if spectrum is not None]
     top = max((float(spectrum.amplitude.max()) for _, spectrum in drawn), default=0.0)
     size = max(float(np.nanmax(np.abs(series.values), initial=0.0)) for series in plot.series)
-    if not top > constants.NO_SPECTRUM * size:
+    if not top > NO_SPECTRUM * size:
         return ""
     high = math.ceil(math.log10(top))
-    low = high - constants.SPECTRUM_DECADES
+    low = high - SPECTRUM_DECADES
     whole = drawn[0][1].frequency
     seen = max(int(np.flatnonzero(spectrum.amplitude > 10.0**low).max(initial=0)) for _, spectrum in drawn)
-    last = float(whole[min(max(2 * seen, constants.LEAST_FREQUENCIES), len(whole) - 1)])
+    last = float(whole[min(max(2 * seen, LEAST_FREQUENCIES), len(whole) - 1)])
     x, y = _scales(last, low, high)
-    several, below = len(drawn) > 1, constants.PLOT_HEIGHT + 8
+    several, below = len(drawn) > 1, PLOT_HEIGHT + 8
     parts = _axes(x, y, last, low, high)
     for k, (label, spectrum) in enumerate(drawn):
         if not spectrum.amplitude.max() > 10.0**low:
             continue
         parts.append(f'<path class="curve curve-{k % 3}" d="{_course((x, y), spectrum, last, 10.0**low)}"/>')
         if several:
-            at = constants.PLOT_LEFT + 104.0 * k
+            at = PLOT_LEFT + 104.0 * k
             parts.append(line(f"curve curve-{k % 3}", (at, at + 18), (below, below)))
-            parts.append(text(at + 23, constants.PLOT_HEIGHT + 12, escape(label)))
+            parts.append(text(at + 23, PLOT_HEIGHT + 12, escape(label)))
     lines = "; ".join(filter(None, (_lines(label, spectrum, plot.unit) for label, spectrum in drawn)))
     lower = f"; up to {number(float(whole[-1]))} Hz less than {number(10.0**low)}" if last < whole[-1] else ""
     spoken = f"{plot.title}, amplitude in {plot.unit} from 0 to {number(last)} Hz: {lines or 'no line'}{lower}"
     return (
         f'<figure class="plot"><figcaption>{escape(plot.title)} <span>{escape(f"{plot.unit}; {lines}".strip("; "))}'
-        f'</span></figcaption><svg viewBox="0 0 {constants.PLOT_WIDTH:.0f} '
-        f'{constants.PLOT_HEIGHT + (18 if several else 0):.0f}" role="img" '
+        f'</span></figcaption><svg viewBox="0 0 {PLOT_WIDTH:.0f} '
+        f'{PLOT_HEIGHT + (18 if several else 0):.0f}" role="img" '
         f'aria-label="{escape(spoken, quote=True)}">{"".join(parts)}</svg></figure>'
     )
 
@@ -64,11 +86,11 @@ def _scales(last: float, low: int, high: int) -> _Scales:
     """px of a frequency (Hz), and of an amplitude."""
 
     def x(frequency: float) -> float:
-        return constants.PLOT_LEFT + frequency / last * (constants.PLOT_RIGHT - constants.PLOT_LEFT)
+        return PLOT_LEFT + frequency / last * (PLOT_RIGHT - PLOT_LEFT)
 
     def y(amplitude: float) -> float:
         share = (math.log10(max(amplitude, 10.0**low)) - low) / (high - low)
-        return constants.PLOT_BOTTOM - share * (constants.PLOT_BOTTOM - constants.PLOT_TOP)
+        return PLOT_BOTTOM - share * (PLOT_BOTTOM - PLOT_TOP)
 
     return x, y
 
@@ -76,11 +98,11 @@ def _scales(last: float, low: int, high: int) -> _Scales:
 def _axes(x: Callable[[float], float], y: Callable[[float], float], last: float, low: int, high: int) -> list[str]:
     parts = []
     for power in range(low, high + 1):
-        parts.append(line("grid", (constants.PLOT_LEFT, constants.PLOT_RIGHT), (y(10.0**power),) * 2))
-        parts.append(text(constants.PLOT_LEFT - 6, y(10.0**power) + 3.5, number(10.0**power), "end"))
+        parts.append(line("grid", (PLOT_LEFT, PLOT_RIGHT), (y(10.0**power),) * 2))
+        parts.append(text(PLOT_LEFT - 6, y(10.0**power) + 3.5, number(10.0**power), "end"))
     for share, anchor in ((0.0, "start"), (0.5, "middle"), (1.0, "end")):
         said = number(share * last) + (" Hz" if share == 1.0 else "")
-        parts.append(text(x(share * last), constants.PLOT_BOTTOM + 16, said, anchor))
+        parts.append(text(x(share * last), PLOT_BOTTOM + 16, said, anchor))
     return parts
 
 
@@ -88,8 +110,8 @@ def _course(scales: _Scales, spectrum: Spectrum, last: float, floor: float) -> s
     """The path through the amplitudes up to the last frequency; of long spectra the greatest of each column."""
     shown = spectrum.frequency <= last
     frequency, amplitude = spectrum.frequency[shown], np.maximum(spectrum.amplitude[shown], floor)
-    if len(amplitude) > constants.MOST_POINTS:
-        edges = np.linspace(0, len(amplitude), constants.MOST_COLUMNS + 1).astype(int)
+    if len(amplitude) > MOST_POINTS:
+        edges = np.linspace(0, len(amplitude), MOST_COLUMNS + 1).astype(int)
         keep = [a + int(amplitude[a:b].argmax()) for a, b in zip(edges[:-1], edges[1:], strict=True)]
         frequency, amplitude = frequency[keep], amplitude[keep]
     x, y = scales

@@ -11,7 +11,14 @@ from numpy.typing import NDArray
 from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array, Ints
 from kinform.model.kinematics import Joint
-from kinform.reports.constants import ARC_PIECES, MOST_AT_ONCE, SIGNAL_COLOUR
+
+SIGNAL_COLOUR = "#e8590c"
+"""Of what a finding is about."""
+ARC_PIECES = 28
+"""Pieces of an arc."""
+MOST_AT_ONCE = 50_000
+"""Pixels of pieces of lines that are looked at in one pass: with more they no longer fit in the processor's cache."""
+
 
 Image = NDArray[np.float32]
 """(height, width, 4)."""

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.simulation.constants import CLOSING_PIVOT, PASS
 from kinform.simulation.kernel.loops import gather
 
 from kinform.simulation.kernel.layout import (  # isort: skip
@@ -20,6 +19,12 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     REFERENCE,
     Nums, Work,
 )  # fmt: skip
+
+CLOSING_PIVOT = 0.3
+"""Pivots of the joints that close loops are taken first while they are larger than this: a choice."""
+PASS = 200
+"""Multiplications a rate of one pass of articulated bodies along the tree (`kernel.choice.way`). Counted; with it the
+two ways take as long as each other where they are said to."""
 
 
 def choose(ints: Ints, nums: Nums, work: Work) -> None:

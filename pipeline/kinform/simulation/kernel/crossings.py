@@ -17,15 +17,6 @@ from __future__ import annotations
 import math
 
 from kinform.model.arrays import Ints
-from kinform.simulation.constants import (
-    CORNER_TURN,
-    CROSSING_AHEAD,
-    CROSSING_CLEAR,
-    CROSSING_PASSED,
-    NEAREST_APPROACH,
-    SLOPES_ALIKE,
-    WIDEST_GAP,
-)
 
 from kinform.simulation.kernel.layout import (  # isort: skip
     COUNTS, SCALE, COEFFICIENTS, STAGES,
@@ -33,6 +24,23 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     NOW, CROSSING, SPAN, MARGINS, NARROW,
     Row, Nums, Work,
 )  # fmt: skip
+
+CORNER_TURN = 0.05
+"""Curvature of the motion times the margin from which on it turns from one branch of the loops into another. At the
+tip of such a corner it is 0.2 to 3, wherever lengths differ by 1e-12 to 1e-3 of themselves; where branches cross it is
+the margin times the curvature of either, below 0.005."""
+WIDEST_GAP = 0.4667
+"""Share of the step: middle of the widest gap between evaluations, from a third to three fifths."""
+CROSSING_CLEAR = 0.08
+"""A share of the step: evaluations nearer to a singular pose than this are to be avoided."""
+CROSSING_AHEAD = 1.2
+"""A pose so far, in steps, is near the step's end."""
+SLOPES_ALIKE = 0.5
+"""Slopes of a line agree when the lesser is more than this share of the greater."""
+CROSSING_PASSED = 0.05
+"""Share of the step: a pose nearer ahead than this is as good as passed."""
+NEAREST_APPROACH = 0.2
+"""Least share of the way to a singular pose that a step towards it goes: a choice."""
 
 
 def alike(a: float, b: float) -> float:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from kinform.model.arrays import Ints
-from kinform.simulation.constants import FACTORS_STALE, MOST_CORRECTIONS, SLOW_CORRECTION, TORN_GAP
 from kinform.simulation.kernel.articulated import resist
 from kinform.simulation.kernel.forces import between, drive, law, loads, meter
 from kinform.simulation.kernel.loops import gained, gap_of
@@ -19,6 +18,15 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     CHOSEN, WAY, FORCE, ACC, NEED, GAP, KEPT, PULLED,
     Row, Table, Index, Nums, Work,
 )  # fmt: skip
+
+TORN_GAP = 1e-4
+"""Rows that depended on others leave a gap (rad, or lengths) at most as large as the rank overlooks."""
+SLOW_CORRECTION = 0.05
+"""Corrections that leave more than this share of a gap are made by new factors."""
+FACTORS_STALE = 1e-9
+"""rad, or lengths: a correction of a gap so small moves so little that the factors serve once more."""
+MOST_CORRECTIONS = 10
+"""Corrections of a pose; they converge in three or four."""
 
 
 def impose(links: Index, columns: Index, values: Table, pieces: Table, t: float, y: Row, first: int) -> None:

@@ -10,34 +10,10 @@ from __future__ import annotations
 import math
 
 from kinform.model.arrays import Ints
-from kinform.simulation.constants import (
-    CROSSING_AROUND,
-    CROSSING_NARROWINGS,
-    EASY_ERROR,
-    ERROR_ROOT,
-    GREATEST_GROWTH,
-    HOPELESS_ERROR,
-    LAID_ALIKE,
-    LEAST_REAL_MARGIN,
-    LEAST_SHRINK,
-    LEAST_SHRINK_AT_CROSSING,
-    MOST_LAYINGS,
-    REAL_ROUGHNESS,
-    REOPENED_SHRINK,
-    ROUNDING_NOISE,
-    ROUNDINGS_EVERY,
-    SAFETY,
-    SHORTEST_CLOSING_STEP,
-    SHORTEST_STEP,
-    STABLE_DECAY,
-    STOP_HALVINGS,
-    STOP_PARTS,
-    STOP_PASSED,
-    TURN_HALVINGS,
-)
+from kinform.simulation.constants import STOP_HALVINGS, STOP_PASSED
 from kinform.simulation.kernel.crossings import laid, tip, turns_corner
 from kinform.simulation.kernel.equations import derivative, project
-from kinform.simulation.kernel.steps import interpolate, prepare, roundings, slope, try_step
+from kinform.simulation.kernel.steps import ROUNDING_NOISE, interpolate, prepare, roundings, slope, try_step
 
 from kinform.simulation.kernel.layout import (  # isort: skip
     COUNTS, STOPS, VECTORS, STAGES, TIMES, OUT,
@@ -49,6 +25,47 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     DONE, PAUSED, STUCK, STIFFENED, MASSLESS, OPENED, STOPPED, SPENT, WORN, TAKEN, REJECTED, TURNED, NEARING,
     Row, Counts, Nums, Work,
 )  # fmt: skip
+
+SAFETY = 0.9
+"""Share of the step that would just keep the tolerance: what Hairer's DOP853 takes."""
+ERROR_ROOT = 0.125
+"""The error of a step of order 8 grows with this root's inverse power, the eighth, of its length."""
+LEAST_SHRINK = 0.2
+"""Share of a step below which the next is not made after an error, however great: a choice."""
+LEAST_SHRINK_AT_CROSSING = 0.6
+"""The same near a singular pose, where the error may be that of one evaluation: a choice."""
+HOPELESS_ERROR = 1e30
+"""Error over the tolerance from which on its root tells nothing, and the least share is taken."""
+GREATEST_GROWTH = 2.5
+"""Greatest growth of a step: with more, one can land far outside the region of stability unnoticed."""
+EASY_ERROR = 0.4
+"""Error over the tolerance below which a step that was cut short does not shorten the next: a choice."""
+SHORTEST_STEP = 1e-13
+"""Share of the time (of 1 s at least) below which a step is none: a few hundred roundings of the time."""
+REOPENED_SHRINK = 0.25
+"""Share of a step to try where loops could not be closed at its end: a choice."""
+SHORTEST_CLOSING_STEP = 1e-9
+"""s: steps so short that still leave loops open end the run."""
+STABLE_DECAY = 3.0
+"""Step times the fastest decay: the method is stable up to about 6."""
+REAL_ROUGHNESS = 10.0
+"""Times the noise of accelerations that a change of slopes has to be to count as a decay: a choice."""
+LEAST_REAL_MARGIN = 1e-6
+"""Margin below which the noise of accelerations is not taken to grow further: bounds a quotient."""
+MOST_LAYINGS = 4
+"""Times that a step is laid anew to avoid a singular pose."""
+LAID_ALIKE = 0.01
+"""Share of a step: one that differs by less from the last is not worth trying."""
+ROUNDINGS_EVERY = 20
+"""Steps after which roundings are looked at again."""
+STOP_PARTS = 4
+"""Parts of a step in which a joint turns back at most once: steps are far shorter than what moves in them."""
+TURN_HALVINGS = 40
+"""Halvings of a part of a step to find where a joint turns: to 1e-12 of it, enough where the curve is flat."""
+CROSSING_AROUND = 0.1
+"""Share of the step about the place where a singular pose is expected, within which it is."""
+CROSSING_NARROWINGS = 12
+"""Times that this is narrowed, to two thirds each."""
 
 
 def sample(ints: Ints, nums: Nums, work: Work, clock: Row, t: float, y: Row, out: Row) -> None:

@@ -8,7 +8,6 @@ order dependent d, free i, led l the loops say x_d = g − B x_il; motions E = (
 from __future__ import annotations
 
 from kinform.model.arrays import Ints
-from kinform.simulation.constants import PIVOT_SWAP
 from kinform.simulation.kernel.vectors import along, cross, dot, place, six
 
 from kinform.simulation.kernel.layout import (  # isort: skip
@@ -17,6 +16,9 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     GAP, PIVOT, REFERENCE, KEPT,
     Row, Table, Index, Nums, Work,
 )  # fmt: skip
+
+PIVOT_SWAP = 1.5
+"""Rows change places for a pivot so many times as large: order is no matter of the mathematics."""
 
 
 def line_of(frame: Row, tip: Row, length: float, axis: int) -> tuple[float, float, float, float, float, float]:

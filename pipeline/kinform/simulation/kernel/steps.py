@@ -9,14 +9,6 @@ from __future__ import annotations
 import math
 
 from kinform.model.arrays import Ints
-from kinform.simulation.constants import (
-    CLOSED_SHARE,
-    DISTURBANCE,
-    LEAST_NOISY_MARGIN,
-    ROUGHER_SLOPES,
-    ROUNDING_NOISE,
-    THIRD_ORDER_SHARE,
-)
 from kinform.simulation.kernel.equations import derivative, project, torn
 from kinform.simulation.kernel.masses import energies
 
@@ -27,6 +19,19 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     SLOPES,
     Row, Counts, Nums, Work,
 )  # fmt: skip
+
+CLOSED_SHARE = 1e-4
+"""Loops at an evaluation of a step are closed to this share of the tolerance."""
+DISTURBANCE = 2.0**-51
+"""A rounding or two of a number, as a share of it."""
+ROUGHER_SLOPES = 4.0
+"""Times what one disturbance does to the slopes: others do more."""
+THIRD_ORDER_SHARE = 0.01
+"""Weight of the estimate of order 3 beside that of order 5 in the error of a step: that of Hairer's DOP853."""
+ROUNDING_NOISE = 1e-13
+"""Relative rounding of accelerations, times the pivots' ratio: what remains of closed loops."""
+LEAST_NOISY_MARGIN = 1e-5
+"""Margin below which the noise is not taken to grow further: bounds a quotient."""
 
 
 def slope(ints: Ints, nums: Nums, work: Work, clock: Row, t: float, y: Row, dy: Row) -> float:

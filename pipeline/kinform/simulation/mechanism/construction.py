@@ -11,9 +11,12 @@ from kinform.behaviour.components import RigidBody, System
 from kinform.behaviour.joints import JointGeometry
 from kinform.behaviour.primitives import Ball, OneFreedom, Primitive
 from kinform.model.arrays import Array
-from kinform.simulation.constants import ONE_PLACE
 from kinform.simulation.mechanism.mechanism import BallLink, Mechanism, Slot
 from kinform.simulation.mechanism.topology import Topology, arrange
+
+ONE_PLACE = 1e-6
+"""Share of the greatest radius of gyration within which joints and centres of mass are at one place: rounding, and what
+fits of axes differ by."""
 
 
 @dataclass

@@ -6,7 +6,6 @@ import numpy as np
 
 from kinform.behaviour.components import RigidBody, System
 from kinform.model.arrays import Array, Ints
-from kinform.simulation.constants import MOVES_WITHOUT_MASS, NO_MASS
 from kinform.simulation.kernel import choice, equations, layout, masses, motion
 from kinform.simulation.kernel.calls import plainly
 from kinform.simulation.kernel.layout import Nums, Row, Work
@@ -16,6 +15,11 @@ from kinform.simulation.mechanism.closure import factor
 from kinform.simulation.mechanism.kernel_tables import tabulate
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.states import States
+
+NO_MASS = 1e-13
+"""Share of the greatest inertia of a free motion below which one has none."""
+MOVES_WITHOUT_MASS = 1e-6
+"""Share (rad, or lengths) of a joint in such a motion from which on it is named."""
 
 
 class Dynamics:

@@ -11,8 +11,10 @@ import numpy as np
 
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.model.arrays import Array, Ints
-from kinform.simulation.constants import UNSEEN
 from kinform.simulation.mechanism.mechanism import Mechanism
+
+UNSEEN = 1e-13
+"""Of the most that a condition sees of a wrench in a loop: less of a direction of it is rounding, and none is seen."""
 
 
 def systems_of_loops(shares: Array) -> tuple[Ints, Ints]:

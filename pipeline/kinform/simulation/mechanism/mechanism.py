@@ -20,7 +20,17 @@ from kinform.behaviour.primitives import OneFreedom
 from kinform.foundation.algebra.spatial import along_motion, multiply, rotation_vector, to_matrix
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
-from kinform.simulation.constants import AT_LIMIT, AT_LIMIT_SHARE, CORNER_MARGIN, LENGTHS_ROUNDED
+
+CORNER_MARGIN = 2.0
+"""Margin of a corner over the root of the difference in lengths that makes it, as a share of the mechanism's length:
+at most."""
+LENGTHS_ROUNDED = 1e-13
+"""Share of the mechanism's length by which lengths that are exact in double precision may be off: a few hundred
+roundings, as poses are products of many factors."""
+AT_LIMIT, AT_LIMIT_SHARE = 0.05, 0.1
+"""Margin of the loops for what is not led, and its share of that for all rates, below which a run that cannot go on
+has come to the end of what the loops let be led. Runs end at margins of a hundredth and less. A choice."""
+
 
 IDENTITY = np.eye(4)
 

@@ -9,7 +9,11 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.graph import blocks
 from kinform.model.kinematics import Joint, Kinematics
-from kinform.simulation.constants import LENGTH_SIGMAS, ONE_DIRECTION
+
+LENGTH_SIGMAS = 3.0
+"""Standard uncertainties by which lengths may be off: beyond it chance is below 1 %."""
+ONE_DIRECTION = 1e-12
+"""Sine between axes that were made parallel: rounding."""
 
 
 def loop_uncertainty(kinematics: Kinematics, length: float) -> float:

@@ -14,11 +14,14 @@ from kinform.behaviour.components import System
 from kinform.foundation.algebra.vectors import cross
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
-from kinform.simulation.constants import DEPENDENT_GEARS, VANISHING_WRENCH
+from kinform.simulation.constants import DEPENDENT_GEARS
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.states import States
 from kinform.simulation.outcome.gear_forces import toothed
 from kinform.simulation.outcome.reactions import Network, Reactions, along_rates, applied
+
+VANISHING_WRENCH = 1e-6
+"""Share of the greatest wrench of the run below which wrenches are no measure of errors."""
 
 
 @dataclass(frozen=True, eq=False)

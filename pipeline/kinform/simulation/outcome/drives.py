@@ -19,7 +19,7 @@ from kinform.simulation.kernel import layout
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.efforts import effort_of
 from kinform.simulation.mechanism.mechanism import Mechanism
-from kinform.simulation.solver.record import Record
+from kinform.simulation.record import Record
 
 _KINDS = {
     layout.EFFORT: "effort", layout.SPRING: "spring", layout.DAMPER: "damper", layout.SERVO: "servo",

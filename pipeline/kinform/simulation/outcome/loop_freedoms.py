@@ -10,7 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.model.arrays import Array, Ints
-from kinform.simulation.constants import FEW_MEET
+
+FEW_MEET = 0.05
+"""Share of all products of two directions in a joint up to which those that are not nought are summed one by one."""
 
 
 def least_wrenches(

@@ -15,8 +15,8 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross_matrix
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.simulation.constants import UNDETERMINED_SHARE, UNSEEN
-from kinform.simulation.mechanism.loop_systems import alike, systems_of_loops
+from kinform.simulation.constants import UNDETERMINED_SHARE
+from kinform.simulation.mechanism.loop_systems import UNSEEN, alike, systems_of_loops
 from kinform.simulation.outcome.loop_freedoms import least_wrenches
 
 

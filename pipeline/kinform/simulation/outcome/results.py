@@ -11,7 +11,7 @@ from kinform.behaviour.components import System
 from kinform.foundation.algebra.spatial import quaternions, rotation_vector
 from kinform.model.arrays import Array, Ints
 from kinform.model.simulation import Simulation
-from kinform.simulation.constants import LEAST_DRIFT, OTHER_WAY, RANK_CHUNK, SNUG, SUMMED_DRIFT, TRUSTED_DRIFT
+from kinform.simulation.constants import LEAST_DRIFT
 from kinform.simulation.mechanism.closure import counted
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.loop_systems import loop_values
@@ -20,8 +20,19 @@ from kinform.simulation.mechanism.states import States, states_at
 from kinform.simulation.outcome.balances import imbalance
 from kinform.simulation.outcome.drives import drive_fields
 from kinform.simulation.outcome.reactions import Reactions, reactions
+from kinform.simulation.record import Record
 from kinform.simulation.settings import SolverSettings
-from kinform.simulation.solver.record import Record
+
+SNUG = 1e-8
+"""Gap (m or rad) up to which loops count as closed: those that fit exactly stay a million times below."""
+TRUSTED_DRIFT = 1e-5
+"""Drift of the energy over the energy exchanged; runs at the default tolerances stay a hundred times below."""
+SUMMED_DRIFT = 1e-8
+"""Drift of the energy over the kinetic energy that is no sign of anything, ten times that of sound runs."""
+RANK_CHUNK = 256
+"""Times whose ranks are found at once."""
+OTHER_WAY = 1e-6
+"""Share of a surface's speed along the direction that has friction from which on it slides along others too."""
 
 
 def while_in_mesh(mechanism: Mechanism, system: System, record: Record) -> Record:

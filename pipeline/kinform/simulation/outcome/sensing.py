@@ -16,9 +16,12 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.model.sensors import Reading
 from kinform.model.simulation import Simulation
-from kinform.simulation.constants import NO_TURN
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.states import States
+
+NO_TURN = 1e-12
+"""Half of an angle (rad) below which a turn has no axis."""
+
 
 AXES = ("x", "y", "z")
 

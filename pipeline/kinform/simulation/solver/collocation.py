@@ -18,8 +18,15 @@ import numpy as np
 
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
-from kinform.simulation.constants import COLLOCATION_ROUNDS, COLLOCATION_SETTLED, NODE_ROUNDING
 from kinform.simulation.solver.run_state import Run
+
+COLLOCATION_ROUNDS = 40
+"""Iterations of the stages; five to ten are usual."""
+COLLOCATION_SETTLED = 1e-15
+"""Change of a state (rad, lengths, also a second) by one that ends them; below its root they also end where the noise
+of slopes keeps it from falling to half."""
+NODE_ROUNDING = 1e-16
+"""Newton's last correction of a node: below its last bit."""
 
 
 @dataclass(frozen=True, eq=False)

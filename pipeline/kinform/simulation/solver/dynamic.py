@@ -10,18 +10,36 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.model.arrays import Array
-from kinform.simulation.constants import LARGE, LONGER, LOOK, PLAIN, REPORTS, SHOWN, STALL, STALLED_BUDGETS, UNREADY
 from kinform.simulation.kernel import layout
 from kinform.simulation.kernel.calls import by_articulated_bodies, engine, is_loaded, ready
 from kinform.simulation.mechanism.dynamics import Dynamics
+from kinform.simulation.record import Record
 from kinform.simulation.settings import Conduct
+from kinform.simulation.solver.constants import LOOK
 from kinform.simulation.solver.implicit import run_implicit
 from kinform.simulation.solver.leap import leap
-from kinform.simulation.solver.record import Record
 from kinform.simulation.solver.run_state import Run
 from kinform.simulation.solver.start import Start
 from kinform.simulation.solver.stiffness import is_stiff, vibration
 from kinform.simulation.solver.stops import Contact
+
+PLAIN = 20_000
+"""Evaluations times links that are made without the compiled functions: 25 μs each, 60 in loops, so about as long
+as loading them takes."""
+UNREADY = 10
+"""Times more where they would have to be compiled first."""
+LONGER = 1.5
+"""Times the plain evaluations that a run must promise to take before it is compiled early: its pace may fall."""
+SHOWN = 60
+"""Steps from which on the whole run can be told to be longer than that."""
+LARGE = 1000
+"""Rates times independent rows of the loops from which on plain functions would take too long at all."""
+STALL = 1000
+"""Steps after which the run must have come on: at their pace it would take ten times its budget."""
+STALLED_BUDGETS = 10.0
+"""Budgets of steps that a run may promise to take before it counts as stalled."""
+REPORTS = 50
+"""Times at least that the progress of a run is told."""
 
 
 def run_dynamic(dynamics: Dynamics, start: Start, times: Array, conduct: Conduct) -> Record:

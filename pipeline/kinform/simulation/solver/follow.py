@@ -13,11 +13,13 @@ import numpy as np
 
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
-from kinform.simulation.constants import DETERMINED
 from kinform.simulation.mechanism.closure import factor, rank_of, settle
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.states import states_at
 from kinform.simulation.settings import SolverSettings
+
+DETERMINED = 1e-8
+"""Share (rad, or lengths) of a rate in what led joints leave open, from which on they do not determine it."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,12 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from kinform.model.arrays import Array
-from kinform.simulation.constants import DETERMINED
 from kinform.simulation.mechanism.actuation import Actuation
 from kinform.simulation.mechanism.mechanism import Mechanism
+from kinform.simulation.record import Record
 from kinform.simulation.settings import Conduct, SolverSettings
-from kinform.simulation.solver.follow import Follower, Led
-from kinform.simulation.solver.record import Record
+from kinform.simulation.solver.follow import DETERMINED, Follower, Led
 from kinform.simulation.solver.start import Start
 
 

@@ -19,24 +19,37 @@ from collections.abc import Iterator
 import numpy as np
 
 from kinform.model.arrays import Array
-from kinform.simulation.constants import (
-    CROSSED_GAP,
-    LEAP_ACCURATE,
-    LEAP_COARSE,
-    LEAP_ERROR,
-    LEAP_EVALUATIONS,
-    LEAP_FINE,
-    LEAP_MARGIN,
-    LEAP_NEARER,
-    LEAP_REACHES,
-    LEAP_SHORTEST,
-    LEAP_TOLERANCE,
-    LEAP_TURNED,
-    STOP_PASSED,
-)
+from kinform.simulation.constants import STOP_PASSED
 from kinform.simulation.kernel import layout
 from kinform.simulation.solver.collocation import Passage, pass_over, places_of
 from kinform.simulation.solver.run_state import Run
+
+LEAP_MARGIN = 0.02
+"""Margin, by singular values, below which a singular pose may be ahead; and below which rows of the loops are about to
+depend on others: a choice."""
+LEAP_REACHES = (0.025, 0.05, 0.1, 0.2, 0.4)
+"""How far a step reaches from the pose to either side, tried from the first on: rad, or lengths, that the fastest joint
+moves. The error of the stages' slopes goes with the inverse square of it, what the polynomial leaves out with its
+twelfth power; for chains of 2 to 40 four-bars the first that are tried agree to 1e-12."""
+LEAP_SHORTEST = 0.5
+"""A step begins so much farther before the pose than the run has come to, as a share of that distance."""
+LEAP_COARSE, LEAP_FINE = 6, 8
+"""Stages of the two steps that are compared: even, as none may lie in the middle."""
+LEAP_ACCURATE = 1e-12
+"""Difference between them (rad, lengths, also a second, or a share of that where it is more) that is good enough: a
+hundredth of the tolerance of a step."""
+LEAP_ERROR = 1e-8
+"""Difference beyond which the run is left as it is: what a run of ten seconds gathers at the default tolerance."""
+LEAP_NEARER = 100.0
+"""A step that errs so many times as much as one that is shorter is too long, and longer ones are not tried."""
+LEAP_TURNED = 0.1
+"""Share of itself that the least singular value must have as its negative behind the pose: straight on it has all."""
+LEAP_TOLERANCE = 1e-12
+"""Relative and absolute error a step of the way back."""
+LEAP_EVALUATIONS = 4000
+"""Evaluations of a way back before it is given up; a hundred are usual."""
+CROSSED_GAP = 1e-12
+"""What is open at a pose in which branches cross exactly (rad, shares of the length): the polynomial's rounding."""
 
 
 def leap(run: Run) -> str | None:

@@ -17,11 +17,40 @@ import numpy as np
 
 from kinform.model.arrays import Array
 from kinform.model.simulation import Damping
-from kinform.simulation import constants
+from kinform.simulation.constants import LEAST_DRIFT
 from kinform.simulation.kernel import layout
 from kinform.simulation.mechanism.states import states_at
+from kinform.simulation.solver.constants import LOOK
 from kinform.simulation.solver.run_state import Run
 from kinform.simulation.solver.stiffness import jacobian, vibration
+
+DAMPING_STEP = 100.0
+"""Phase (rad) of the fastest vibration in a step that damps it, by 0.03; one of a tenth of its frequency by 0.3, one of
+a thousandth by 1e-9 of itself."""
+DAMPS = 30.0
+"""Phase from which on a step counts as damping: by 0.1."""
+DAMPING_STEPS = 16
+"""Steps that damp: a vibration to 1e-16 at least of what it was."""
+WITHOUT_CONTROL = 1e3
+"""Relative and absolute error a step that no step has: errors do not control the steps that damp."""
+DAMPING_SETTLED = 1e-10
+"""Newton's last correction in such a step, over the state and 1."""
+DAMPING_NEWTON = 0.03
+"""The same as a share of the change by the step before."""
+STIFF_ROUNDING = 1e-12
+"""Rounding of a position (rad, lengths): times the frequency it is what rates are known to; ten thousand last bits."""
+STIFF_NEWTON = 0.01
+"""Newton's last correction over the error allowed, where rates are only known to such roundings."""
+DAMPING_GAIN = 1e-6
+"""Share of the kinetic energy that such steps may add: what they damp they never make more, and slow motion is kept far
+better."""
+DAMPED_AHEAD = 2000
+"""Implicit steps still to go from which on a vibration that has come up again is damped again."""
+MOST_DAMPINGS = 1000
+"""Times that vibrations are damped in one run: after it they come up too often."""
+FIRST_IMPLICIT_STEP = 1e-6
+"""s: short enough for decays that begin; Radau lengthens it tenfold a step."""
+
 
 Rates = Callable[[float, Array], Array]
 
@@ -35,9 +64,9 @@ class Controlled:
     def solver(self, rates: Rates, longest: float) -> Any:
         """The method from the present state to the end of the stretch, with steps of `longest` (s) at most."""
         run, settings = self.run, self.run.settings
-        solver = _radau(run, rates, settings.implicit_rtol, _finest(run), constants.FIRST_IMPLICIT_STEP, longest)
+        solver = _radau(run, rates, settings.implicit_rtol, _finest(run), FIRST_IMPLICIT_STEP, longest)
         if run.dampings:
-            solver.newton_tol = constants.STIFF_NEWTON
+            solver.newton_tol = STIFF_NEWTON
         return solver
 
     def corrected(self, y: Array) -> Array:
@@ -47,7 +76,7 @@ class Controlled:
     def ends(self, solver: Any, before: Array, span: float) -> bool:
         """Whether another pace is to go on after this step of `span` (s) from the state `before`."""
         self.made += 1
-        return bool(self.run.dampings) and self.made % constants.LOOK == 0 and lasting(self.run) > 0.0
+        return bool(self.run.dampings) and self.made % LOOK == 0 and lasting(self.run) > 0.0
 
     def fault(self) -> str:
         """Why the run cannot be trusted after these steps: errors control them."""
@@ -64,9 +93,9 @@ class Damped:
 
     def solver(self, rates: Rates, longest: float) -> Any:
         """As of `Controlled`."""
-        step, free = constants.DAMPING_STEP / self.fastest, constants.WITHOUT_CONTROL
+        step, free = DAMPING_STEP / self.fastest, WITHOUT_CONTROL
         solver = _radau(self.run, rates, free, np.full_like(self.run.y, free), step, min(step, longest))
-        solver.newton_tol = constants.DAMPING_NEWTON / free
+        solver.newton_tol = DAMPING_NEWTON / free
         return solver
 
     def corrected(self, y: Array) -> Array:
@@ -86,18 +115,18 @@ class Damped:
         # Newton need not be more exact than what the step leaves of the vibration.
         relative = (run.y - before) / (1.0 + np.abs(before))
         change = float(np.sqrt(np.mean(relative[: run.dynamics.tables.metered.start] ** 2)))
-        settled = max(constants.DAMPING_SETTLED, constants.DAMPING_NEWTON * change)
-        solver.newton_tol = settled / constants.WITHOUT_CONTROL
-        self.made += int(self.fastest * span > constants.DAMPS)
-        return self.made == constants.DAMPING_STEPS
+        settled = max(DAMPING_SETTLED, DAMPING_NEWTON * change)
+        solver.newton_tol = settled / WITHOUT_CONTROL
+        self.made += int(self.fastest * span > DAMPS)
+        return self.made == DAMPING_STEPS
 
     def fault(self) -> str:
         """Why the run cannot be trusted after these steps; "" where it can. Steps that damp must not add energy, and
         what goes on must be slow beside them."""
         run, lost = self.run, self.run.dampings[-1].energy
         _, v = run.dynamics.tables.unpack(run.y)
-        way = float(np.abs(v / run.dynamics.mechanism.scale).max(initial=0.0)) * constants.DAMPING_STEP / self.fastest
-        added = lost < -(constants.LEAST_DRIFT + constants.DAMPING_GAIN * (self.moving + _kinetic(run, run.y)))
+        way = float(np.abs(v / run.dynamics.mechanism.scale).max(initial=0.0)) * DAMPING_STEP / self.fastest
+        added = lost < -(LEAST_DRIFT + DAMPING_GAIN * (self.moving + _kinetic(run, run.y)))
         if not added and way <= run.settings.stride:
             return ""
         hertz = self.fastest / (2.0 * np.pi)
@@ -109,9 +138,9 @@ class Damped:
 
 def lasting(run: Run) -> float:
     """Angular frequency (1/s) of the vibration that still keeps steps short, in a run that damps them; else 0."""
-    if not 0 < len(run.dampings) < constants.MOST_DAMPINGS:
+    if not 0 < len(run.dampings) < MOST_DAMPINGS:
         return 0.0
-    return vibration(run, float(run.clock[layout.STEP]), constants.DAMPED_AHEAD)
+    return vibration(run, float(run.clock[layout.STEP]), DAMPED_AHEAD)
 
 
 def _radau(run: Run, rates: Rates, rtol: float, atol: Array, first: float, longest: float) -> Any:
@@ -151,6 +180,6 @@ def _finest(run: Run) -> Array:
     out = np.full_like(run.y, run.settings.implicit_atol)
     out[tables.metered] = np.inf
     head = len(out) - 1 - tables.states
-    rates = tables.pack(np.zeros_like(q), np.full_like(v, constants.STIFF_ROUNDING * fastest))
+    rates = tables.pack(np.zeros_like(q), np.full_like(v, STIFF_ROUNDING * fastest))
     out[:head] = np.maximum(rates[:head], out[:head])
     return out

@@ -6,14 +6,25 @@ import numpy as np
 
 from kinform.model.arrays import Array, Ints
 from kinform.model.simulation import Damping
-from kinform.simulation.constants import APPROACHED, FAR_BEHIND, FIRST_STEP, PASSED_BEFORE_STOP, STIFF_PATIENCE
 from kinform.simulation.kernel import layout
 from kinform.simulation.kernel.calls import Engine, engine
 from kinform.simulation.mechanism.closure import rank_of
 from kinform.simulation.mechanism.dynamics import Dynamics
+from kinform.simulation.record import Record
 from kinform.simulation.settings import SolverSettings
-from kinform.simulation.solver.record import Record
 from kinform.simulation.solver.start import Start
+
+FIRST_STEP = 1e-3
+"""s: the first step that is tried in a stretch; the control finds the right one in a few steps."""
+STIFF_PATIENCE = 15.0
+"""Steps in a row that a decay kept short before the run is looked at for stiffness: those of Hairer's DOP853."""
+PASSED_BEFORE_STOP = 1e-3
+"""s: a singular pose nearer than this to where a run stopped is why it did, and was not passed."""
+APPROACHED = 3e-3
+"""Margin below which a step that ends there was not laid across a singular pose ahead, but came too near."""
+FAR_BEHIND = 3.0 * APPROACHED
+"""Margin above which a pose that could not be leaped over is behind, and others are looked for: a choice. Forty
+four-bars in a row never come above 0.05."""
 
 
 class Run:

@@ -23,13 +23,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import norm
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
-from kinform.simulation.constants import (
-    DEPENDENT_GEARS,
-    SLIP_ROUNDS,
-    SLIP_SETTLED,
-    SLIP_STEEPEST,
-    UNDETERMINED_SHARE,
-)
+from kinform.simulation.constants import DEPENDENT_GEARS, UNDETERMINED_SHARE
 from kinform.simulation.kernel import layout
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.losses import multipliers
@@ -38,6 +32,14 @@ from kinform.simulation.mechanism.states import States, states_at
 from kinform.simulation.outcome.reactions import Network, Reactions, along_rates, reactions
 from kinform.simulation.solver.pressing import Responses, Sight, pressing, pressing_teeth
 from kinform.simulation.solver.run_state import Run
+
+SLIP_STEEPEST = 1.0 - 1e-9
+"""Growth of friction with itself, by the loads that it causes, from which on its answer is not unique (theory: 1)."""
+SLIP_ROUNDS = 2000
+"""Rounds of the fixed point: with a growth of 0.98 so many reach rounding; ordinary joints take under ten."""
+SLIP_SETTLED = 1e-15
+"""Change of a round over the friction at which it is settled: rounding."""
+
 
 _FLANKS: WeakKeyDictionary[Dynamics, list[int]] = WeakKeyDictionary()
 """With which sides the teeth of their gears pushed last: where to begin."""

@@ -19,19 +19,31 @@ from kinform.behaviour.signals import Sine
 from kinform.foundation.algebra.vectors import norm
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
-from kinform.simulation import constants
 from kinform.simulation.kernel import layout
 from kinform.simulation.kernel.calls import engine, ready
 from kinform.simulation.mechanism.actuation import Stop
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.states import states_at
+from kinform.simulation.record import FrictionRecord, Record
 from kinform.simulation.settings import Conduct
+from kinform.simulation.solver.constants import LAW_PARTS, RELEASE_HALVINGS
 from kinform.simulation.solver.friction_stops import strike
-from kinform.simulation.solver.record import FrictionRecord, Record
 from kinform.simulation.solver.run_state import Run
 from kinform.simulation.solver.slip import NotDeterminedError, set_efforts
 from kinform.simulation.solver.start import Start
 from kinform.simulation.solver.sticking import Hold, Sticking, grouped, ways
+
+LAST_OUTPUT = 1e-9
+"""Share of the output step within which the end of a run is the last multiple of it."""
+SLIP_PARTS = 8
+"""Parts of a step at which rates are looked at for a reversal: more often than a polynomial of order 7 turns."""
+STICK_PARTS = 4
+"""Parts of a step at which what sticks is looked at; laws that swing shorten the steps (`Contact.longest`)."""
+MOST_SWITCHES = 100_000
+"""Changes between sticking and slipping before a run gives up."""
+SWITCHES_AT_ONCE = 8
+"""Changes at one and the same time, for each friction, before a run gives up: three are ordinary."""
+
 
 Dense = Callable[[float], Array]
 
@@ -175,12 +187,10 @@ class _Driver:
         else:
             state.stopped(what, t)
         before, count = self.at_once
-        self.at_once = (
-            (t, count + 1) if t <= before + constants.LAST_OUTPUT * (run.times[-1] - run.times[0]) else (t, 1)
-        )
+        self.at_once = (t, count + 1) if t <= before + LAST_OUTPUT * (run.times[-1] - run.times[0]) else (t, 1)
         if (
-            self.at_once[1] > constants.SWITCHES_AT_ONCE * (len(state.rubbings) + len(state.base.stops))
-            or state.switches > constants.MOST_SWITCHES
+            self.at_once[1] > SWITCHES_AT_ONCE * (len(state.rubbings) + len(state.base.stops))
+            or state.switches > MOST_SWITCHES
         ):
             names = ", ".join(dict.fromkeys(one.joint for one in state.rubbings))
             return f"at t = {t:.6g} s friction in {names} changes between sticking and slipping without end"
@@ -199,7 +209,7 @@ class _Driver:
 
             # A joint that has just left its stop is there but for rounding.
             least = min(room(begin), 0.0)
-            when = _falls(lambda t, room=room, least=least: room(t) - least, begin, end, constants.SLIP_PARTS)  # type: ignore[misc]
+            when = _falls(lambda t, room=room, least=least: room(t) - least, begin, end, SLIP_PARTS)  # type: ignore[misc]
             if when is not None:
                 found.append((when, Struck(number), 0))
         for k, sense in enumerate(state.senses):
@@ -209,7 +219,7 @@ class _Driver:
                 def pace(t: float, at: int = at, sense: int = int(sense)) -> float:
                     return sense * float(tables.unpack(dense(t))[1][at])
 
-                when = _falls(pace, begin, end, constants.SLIP_PARTS)
+                when = _falls(pace, begin, end, SLIP_PARTS)
                 if when is not None:
                     found.append((when, k, 0))
         for hold in state.holds:
@@ -221,7 +231,7 @@ class _Driver:
                 return known[t][way]
 
             for way in (1, -1):
-                when = _falls(partial(left, way=way), begin, end, constants.STICK_PARTS)
+                when = _falls(partial(left, way=way), begin, end, STICK_PARTS)
                 if when is not None:
                     found.append((when, hold, way))
         return min(found, key=lambda change: change[0]) if found else None
@@ -256,7 +266,7 @@ class _Driver:
         signals = [*actuation.signals, *(actor.signal for actor in actuation.actors)]
         signals += [load.signal for load in actuation.loads]
         speeds = [abs(signal.speed) for signal in signals if isinstance(signal, Sine) and signal.amplitude != 0.0]
-        return np.pi / (constants.LAW_PARTS * max(speeds)) if any(speeds) else np.inf
+        return np.pi / (LAW_PARTS * max(speeds)) if any(speeds) else np.inf
 
 
 def _falls(function: Callable[[float], float], begin: float, end: float, parts: int) -> float | None:
@@ -280,7 +290,7 @@ def _after(function: Callable[[float], float], begin: float, end: float) -> floa
     from scipy.optimize import brentq
 
     t = end
-    for _ in range(constants.RELEASE_HALVINGS):
+    for _ in range(RELEASE_HALVINGS):
         t = begin + 0.5 * (t - begin)
         if function(t) > 0.0:
             return float(brentq(function, t, end, rtol=1e-15))

@@ -13,9 +13,17 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.model.arrays import Array
-from kinform.simulation import constants
 from kinform.simulation.kernel import layout
 from kinform.simulation.solver.run_state import Run
+
+FAST_DECAY = 0.4
+"""Decay within a step, as an exponent, from which on it is what limits the step."""
+VIBRATES = 0.05
+"""Phase (rad) of a vibration within a step from which on it is what limits the step: with the tolerances it is 0.3 to
+1, whatever the amplitude, as that of a vibration which matters is far above them."""
+JACOBIAN_STEP = 1e-6
+"""Share of a number of the state (of 1 at least) by which it is changed for the derivative: the third root of a
+rounding, at which rounding and curvature disturb central differences alike, but for a factor of six."""
 
 
 def is_stiff(run: Run) -> bool:
@@ -24,7 +32,7 @@ def is_stiff(run: Run) -> bool:
     if step <= 0.0 or (run.clock[layout.END] - t) / step < run.settings.ahead:
         return False
     values = _eigenvalues(run, t, run.y)
-    return bool(np.any((-values.real * step > constants.FAST_DECAY) & (np.abs(values.imag) < -values.real)))
+    return bool(np.any((-values.real * step > FAST_DECAY) & (np.abs(values.imag) < -values.real)))
 
 
 def vibration(run: Run, step: float, budget: float) -> float:
@@ -45,7 +53,7 @@ def vibration(run: Run, step: float, budget: float) -> float:
     swings = np.abs(values.imag)[np.abs(values.imag) > np.abs(values.real)]
     fastest = float(swings.max(initial=0.0))
     shown = (last - float(run.times[0])) / (len(run.times) - 1)
-    return fastest if fastest * step > constants.VIBRATES and fastest * shown > 2.0 * np.pi else 0.0
+    return fastest if fastest * step > VIBRATES and fastest * shown > 2.0 * np.pi else 0.0
 
 
 def jacobian(run: Run, t: float, at: Array) -> Array:
@@ -58,7 +66,7 @@ def jacobian(run: Run, t: float, at: Array) -> Array:
     out = np.zeros((size, size))
     ends = np.zeros((2, size))
     for k in range(metered.start):
-        h = constants.JACOBIAN_STEP * max(1.0, abs(at[k]))
+        h = JACOBIAN_STEP * max(1.0, abs(at[k]))
         for side, sign in enumerate((1.0, -1.0)):
             y = at.copy()
             y[k] += sign * h

@@ -11,9 +11,12 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.model.arrays import Array
-from kinform.surfaces.constants import ON_AXIS
 from kinform.surfaces.groups import repeated
 from kinform.surfaces.kinds.batch import Batch, Params
+
+ON_AXIS = 1e-3
+"""Distance from the axis, in radii, within which a corner has no azimuth."""
+
 
 OF_AXIS = 6
 """The first so many columns of `Params` are those of the axis."""

@@ -13,9 +13,13 @@ import numpy as np
 
 from kinform.foundation.sorting import occurrences
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces.constants import RUN_OF_PAIRS
 from kinform.surfaces.groups import parted, repeated
 from kinform.surfaces.polygons.patchwork import Patchwork
+
+RUN_OF_PAIRS = 1 << 13
+"""Pairs of region and polygon that are worked on at a time, so that what is computed of their corners stays in the
+processor's cache."""
+
 
 Params = Array
 """(R, 8): axis, point, radius, half-angle."""

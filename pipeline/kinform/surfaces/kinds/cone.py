@@ -6,8 +6,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces import constants
-from kinform.surfaces.constants import CIRCLE_OF_NORMALS, LARGEST, LEAST_POINTS, LEAST_RADIUS, LEAST_TAPER, SAGITTA
+from kinform.surfaces.constants import ROWS
 from kinform.surfaces.groups import (
     columns_of,
     group_mean,
@@ -22,8 +21,14 @@ from kinform.surfaces.groups import (
 )
 from kinform.surfaces.kinds.axial import frames
 from kinform.surfaces.kinds.batch import Batch, Params
+from kinform.surfaces.kinds.constants import LARGEST, LEAST_POINTS, LEAST_RADIUS, SAGITTA
 from kinform.surfaces.kinds.ruled import Ruled
 from kinform.surfaces.polygons.noise import Scales
+
+CIRCLE_OF_NORMALS = 1e-2
+"""Variance of the normals along the axis, as a share of the next, below which they lie on the circle of a cone."""
+LEAST_TAPER = 2
+"""Fits by which the ends of a cone differ in radius, at least: less is a cylinder."""
 
 
 class Cone(Ruled):
@@ -72,7 +77,7 @@ def _taper(batch: Batch, axis: Array, region: Ints, edge: Ints) -> tuple[Params,
     vertex = work.ends[edge].ravel()
     middle = group_mean_of(group, list(work.columns), vertex, count)
     u, v, t = np.empty((3, len(vertex)))
-    for rows in slices(len(vertex), constants.ROWS):
+    for rows in slices(len(vertex), ROWS):
         mine = group[rows]
         offset = work.at(vertex[rows]) - columns_of(middle, mine)
         for out, direction in ((u, x), (v, y), (t, axis)):

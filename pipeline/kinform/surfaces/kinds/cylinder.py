@@ -7,12 +7,17 @@ import numpy as np
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.sorting import among, ascending, occurrences
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces.constants import EQUAL_STEPS, LARGEST, LEAST_POINTS, RIDGES_AGREE, SAGITTA
 from kinform.surfaces.groups import group_mean, group_moments, group_range, repeated, spheres_of
 from kinform.surfaces.kinds.axial import frames
 from kinform.surfaces.kinds.batch import Batch, Params
+from kinform.surfaces.kinds.constants import LARGEST, LEAST_POINTS, SAGITTA
 from kinform.surfaces.kinds.ruled import Ruled, generators
 from kinform.surfaces.polygons.noise import Scales
+
+RIDGES_AGREE = 0.98
+"""Share of the squared lengths of inner edges along one direction, above which they are the ridges of a cylinder."""
+EQUAL_STEPS = 1.02
+"""Ratio of the angles of strips and ridges up to which their steps are equal."""
 
 
 class Cylinder(Ruled):

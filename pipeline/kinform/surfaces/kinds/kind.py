@@ -13,10 +13,14 @@ import numpy as np
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces.constants import DAMPING, NEAR
 from kinform.surfaces.groups import columns_of, in_order, normal_equations, solve_normal, sums_of
 from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.polygons.noise import Scales
+
+DAMPING = 1e-11
+"""Share of the scaled diagonal that is added to normal equations: nothing to a regular fit, a bound for a vague one."""
+NEAR = 4
+"""Tolerances within which shared vertices of spheres and tori define them: beyond, they lie on chords."""
 
 
 class Probe(NamedTuple):

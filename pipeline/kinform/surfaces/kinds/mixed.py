@@ -10,12 +10,11 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces import constants
 from kinform.surfaces.groups import solve_normal
 from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.kinds.cone import Cone
 from kinform.surfaces.kinds.cylinder import Cylinder
-from kinform.surfaces.kinds.kind import Kind, Moving
+from kinform.surfaces.kinds.kind import DAMPING, Kind, Moving
 from kinform.surfaces.kinds.ruled import Ruled
 from kinform.surfaces.polygons.noise import Scales
 
@@ -72,7 +71,7 @@ class Mixed(Ruled):
         out = np.zeros(right.shape)
         for kind, run in self.each(len(right)):
             free = slice(None) if kind is self._cone else slice(0, 5)
-            out[run, free] = -solve_normal(matrix[run, free, free], right[run, free], constants.DAMPING)
+            out[run, free] = -solve_normal(matrix[run, free, free], right[run, free], DAMPING)
         return out
 
     def credible(self, batch: Batch, params: Params, scale: Scales) -> Flags:

@@ -14,7 +14,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.sorting import among, distinct
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces import constants
+from kinform.surfaces.constants import NORMAL_SLACK, ROWS
 from kinform.surfaces.groups import (
     columns_of,
     in_order,
@@ -28,9 +28,32 @@ from kinform.surfaces.groups import (
 )
 from kinform.surfaces.kinds.axial import OF_AXIS, Cylindrical, angular_widths, azimuths, cylindrical, frames
 from kinform.surfaces.kinds.batch import Batch, Params
-from kinform.surfaces.kinds.kind import Kind, Moving, Probe, distinct_angles
+from kinform.surfaces.kinds.constants import CONVERGED, LEAST_RADIUS, RING_APART, TILT_LIMIT
+from kinform.surfaces.kinds.kind import DAMPING, Kind, Moving, Probe, distinct_angles
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
+
+KEPT_FITS = 3.0
+"""Tolerances within which the vertices of a surface lie, by their root mean square, that is kept where a step of its
+fit leads away: where they would be off by more than the tolerance, and KEPT_RISE times as much as before."""
+KEPT_RISE = 2.0
+"""Least squares that converge bring vertices nearer; rounding alone does not double what they are off."""
+LEAP = 1e-3
+"""Change of the parameters (rad, spans) by a last step after which the vertices are looked at again: a fit that
+closes in on its end moves by a thousandth of that."""
+ALONG: float = float(np.cos(np.radians(10.0)))
+"""Cosine of the angle between an edge and a generator, above which it is one."""
+BOW = 1e-5
+"""Depth (spans) to which a generator that leans may dip below the surface: the ends of slanted ridges lie on it,
+but a cut between them does not."""
+APEX = 0.05
+"""Distance from the axis, in radii, within which a vertex of a cone is its apex."""
+SECOND_STRIP = 0.4
+"""A strip counts as like the widest when it subtends at least this share of its angle."""
+SHIFT_LIMIT = 1e-6
+"""Shift in one step of a fit that is allowed besides the radius."""
+STEEPEST_CONE = 1.567
+"""Half-angle that a cone has at most: 0.2° short of a plane."""
 
 
 class _Kept:
@@ -52,8 +75,8 @@ class _Kept:
         """At surfaces (R,), by the squares of the distances of so many vertices, summed."""
         mean = squares / np.maximum(sizes, 1)
         if self._before is not None:
-            worse = mean > np.maximum(constants.KEPT_RISE**2 * self._squares, self._square)
-            near = self._squares <= constants.KEPT_FITS**2 * self._square
+            worse = mean > np.maximum(KEPT_RISE**2 * self._squares, self._square)
+            near = self._squares <= KEPT_FITS**2 * self._square
             lost = worse & near & (sizes > 0) & ~self._lost
             if lost.any():
                 self._best = params.copy() if self._best is None else self._best
@@ -78,11 +101,11 @@ class Ruled(Kind, Protocol):
 
     def apices(self, params: Params) -> Array:
         """(R,) distance from the axis at which a vertex is at an apex."""
-        return constants.APEX * params[:, 6]
+        return APEX * params[:, 6]
 
     def change(self, matrix: Array, right: Array) -> Array:
         """(R, 5 or 6) solutions of normal equations."""
-        return -solve_normal(matrix, right, constants.DAMPING)
+        return -solve_normal(matrix, right, DAMPING)
 
     def refine(self, batch: Batch, params: Params, tolerance: Array, steps: int) -> Params:
         """Gauss–Newton over offset, tilt, radius and, for cones, half-angle. A surface that its vertices lie on is kept
@@ -117,14 +140,14 @@ class Ruled(Kind, Protocol):
             matrix, right = normal_equations(of_group, columns.T, residual)
             change = self.change(matrix, right)
             params = kept.of(moving.taken(self.step(params, change, frame), before))
-            region, vertex = moving.after(change, constants.CONVERGED, region, vertex)
+            region, vertex = moving.after(change, CONVERGED, region, vertex)
         return self._looked_at_again(batch, kept, params, change, region, vertex) if steps else params
 
     def _looked_at_again(
         self, batch: Batch, kept: _Kept, params: Params, change: Array, region: Ints, vertex: Ints
     ) -> Params:
         """The surfaces after a last step by `change` (R, k) with these vertices."""
-        leapt = (np.abs(change).max(axis=1) > constants.LEAP).nonzero()[0]
+        leapt = (np.abs(change).max(axis=1) > LEAP).nonzero()[0]
         if not len(leapt) or not len(region):
             return params
         rows = among(region, leapt).nonzero()[0]
@@ -138,10 +161,10 @@ class Ruled(Kind, Protocol):
     def _about(work: Patchwork, params: Params, region: Ints, sizes: Ints, vertex: Ints) -> Cylindrical:
         """The vertices as the axes of their regions see them, each of which has so many (R,)."""
         count = len(region)
-        if count <= constants.ROWS:
+        if count <= ROWS:
             return cylindrical(repeated(params[:, :OF_AXIS], sizes), work.at(vertex))
         at = Cylindrical(np.empty(count), np.empty(count), np.empty((3, count)).T)
-        for rows in slices(count, constants.ROWS):
+        for rows in slices(count, ROWS):
             part = cylindrical(columns_of(params[:, :OF_AXIS], region[rows]), work.at(vertex[rows]))
             at.t[rows], at.rho[rows], at.radial[rows] = part
         return at
@@ -156,8 +179,8 @@ class Ruled(Kind, Protocol):
         x, y = frame
         lean = [np.cos(params[:, 7]), np.sin(params[:, 7])] if self.tapers else []
         table = np.array([*x.T, *y.T, params[:, 6], *lean]).T
-        for rows in slices(count, constants.ROWS):
-            mine = (repeated(table, sizes) if count <= constants.ROWS else columns_of(table, region[rows])).T
+        for rows in slices(count, ROWS):
+            mine = (repeated(table, sizes) if count <= ROWS else columns_of(table, region[rows])).T
             part = Cylindrical(at.t[rows], at.rho[rows], at.radial[rows])
             off = np.subtract(part.rho, mine[6], out=residual[rows])
             tilt = (mine[7], mine[8]) if self.tapers else None
@@ -226,7 +249,7 @@ class Ruled(Kind, Protocol):
             radial = cylindrical(mine, work.middles(polygon)).radial
             leaning = np.cos(mine[:, 7]) * leaning + np.sin(mine[:, 7]) * dot(normal, radial)
         leaning = np.abs(leaning)
-        straight = leaning <= constants.NORMAL_SLACK + work.slack.take(polygon)
+        straight = leaning <= NORMAL_SLACK + work.slack.take(polygon)
         return np.asarray(straight | (leaning * np.sqrt(work.area.take(polygon)) <= tolerance))
 
     def widths(self, batch: Batch, params: Params) -> Array:
@@ -294,8 +317,8 @@ class Ruled(Kind, Protocol):
         """The surfaces with their free parameters changed, within bounds; as they were where that is not finite.
         `frame` is that of their axes."""
         (x, y), radius = frame, params[:, 6]
-        most = np.full(change.shape, constants.TILT_LIMIT)
-        most[:, 4] = np.abs(radius) + constants.SHIFT_LIMIT
+        most = np.full(change.shape, TILT_LIMIT)
+        most[:, 4] = np.abs(radius) + SHIFT_LIMIT
         most[:, :2] = most[:, 4:5]
         least = -most
         least[:, 4] /= 2
@@ -306,10 +329,10 @@ class Ruled(Kind, Protocol):
         square = axis * axis
         length = np.sqrt(square[:, 0] + square[:, 1] + square[:, 2])
         out[:, :3] = axis / np.maximum(length, 1e-300)[:, None]
-        out[:, 6] = np.maximum(radius + change[:, 4], constants.LEAST_RADIUS)
+        out[:, 6] = np.maximum(radius + change[:, 4], LEAST_RADIUS)
         if self.tapers:
             taper = params[:, 7] + change[:, 5]
-            out[:, 7] = np.minimum(np.maximum(taper, -constants.STEEPEST_CONE), constants.STEEPEST_CONE)
+            out[:, 7] = np.minimum(np.maximum(taper, -STEEPEST_CONE), STEEPEST_CONE)
         finite = np.isfinite(out)
         return out if finite.all() else np.where(finite.all(axis=1, keepdims=True), out, params)
 
@@ -324,13 +347,13 @@ class Ruled(Kind, Protocol):
         even = np.zeros(count, bool)
         several = batch.size >= 2
         last = batch.size.cumsum()[several] - 1
-        even[several] = ordered[last - 1] >= constants.SECOND_STRIP * ordered[last]
+        even[several] = ordered[last - 1] >= SECOND_STRIP * ordered[last]
         region, vertex = self.defining(batch, params, scale.fit)
         if not len(region):
             return np.zeros(count, np.int64), sweep, even
         mine = columns_of(params[:, :OF_AXIS], region)
         angle = azimuths(mine, cylindrical(mine, batch.patchwork.at(vertex)).radial)
-        step = constants.RING_APART * ordered_quantile(batch.size, ordered, 0.75)
+        step = RING_APART * ordered_quantile(batch.size, ordered, 0.75)
         return distinct_angles(region, angle, step, count), sweep, even
 
 
@@ -339,7 +362,7 @@ def generators(batch: Batch, params: Params) -> tuple[Ints, Ints, Flags]:
     region, edge, inner = batch.edges
     work = batch.patchwork
     use = np.empty(len(edge), bool)
-    for rows in slices(len(edge), constants.ROWS):
+    for rows in slices(len(edge), ROWS):
         use[rows] = _along(work, params, region[rows], edge[rows])
     at = use.nonzero()[0]
     return region.take(at), edge.take(at), inner.take(at)
@@ -348,7 +371,7 @@ def generators(batch: Batch, params: Params) -> tuple[Ints, Ints, Flags]:
 def _along(work: Patchwork, params: Params, region: Ints, edge: Ints) -> Flags:
     """Whether each edge runs along a generator of its region's surface."""
     sizes = np.bincount(region, minlength=len(params))
-    bow = 8 * constants.BOW * np.maximum(np.abs(params[:, 6]), 1e-12)
+    bow = 8 * BOW * np.maximum(np.abs(params[:, 6]), 1e-12)
     mine = repeated(np.array([*params.T[:3], bow]).T, sizes)
     direction = mine[:, :3]
     cones = params[:, 7].nonzero()[0]
@@ -363,7 +386,7 @@ def _along(work: Patchwork, params: Params, region: Ints, edge: Ints) -> Flags:
     length = work.length.take(edge)
     forward = np.abs(dot(work.along(edge), direction))
     aside = np.maximum(length * length - forward * forward, 0.0)
-    return np.asarray((forward > constants.ALONG * length) & (aside < mine[:, 3]) & (length > 0))
+    return np.asarray((forward > ALONG * length) & (aside < mine[:, 3]) & (length > 0))
 
 
 def with_apices(

@@ -7,12 +7,22 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.sorting import among, distinct
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces.constants import LARGEST_SPHERE, LEAST_POINTS, ONE_PLANE, SAGITTA, SECOND_QUADRIC
 from kinform.surfaces.groups import columns_of, group_mean, group_moments, group_sum, parted, spheres_through
 from kinform.surfaces.kinds.batch import Batch, Params
+from kinform.surfaces.kinds.constants import LEAST_POINTS, SAGITTA
 from kinform.surfaces.kinds.kind import DoublyCurved, Probe
 from kinform.surfaces.kinds.quadrics import distance_from_second
 from kinform.surfaces.polygons.noise import Scales
+
+LARGEST_SPHERE = 5.0
+"""Radius, in spans, beyond which a face is no sphere that a joint could use."""
+SECOND_QUADRIC = 0.5
+"""Fits by which the vertices of a sphere are off every other quadric in the mean, at least: two rings lie on one to
+the last digits, to a fifth of a fit where vertices scatter; three rings of a cap whose sagitta is just enough are half
+a fit off."""
+ONE_PLANE = 1e-4
+"""Variance of vertices across their plane, as a share of that along it, below which they are one ring: any sphere about
+its axis goes through it."""
 
 
 class Sphere(DoublyCurved):

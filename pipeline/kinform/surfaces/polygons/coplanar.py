@@ -15,10 +15,42 @@ from kinform.foundation.graphs.components import components
 from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
-from kinform.surfaces import constants
+from kinform.surfaces.constants import ROWS
 from kinform.surfaces.groups import columns_of, group_mean, group_moments, slices, sums_of
 from kinform.surfaces.polygons.facets import Facets, angles
 from kinform.surfaces.polygons.noise import Scale, departures
+
+THIN_NOISES = 2
+"""Facets of less altitude than this many noises have meaningless normals; polygons that are less flat are cut."""
+COPLANAR_ANGLE = 0.06
+"""Angle up to which facets that differ in height by no more than the noise are coplanar."""
+COPLANAR_SIGMAS = 3
+"""Standard deviations by which the four vertices of an edge in a plane may leave one."""
+COPLANAR_ROUNDINGS = 0.75
+"""The same for vertices that are only rounded, in roundings: half of one in each direction, √3 times."""
+TURNED_SIGMAS = 4
+"""Standard deviations, over the altitudes of two facets, by which scatter may turn their normals."""
+MOST_TURNED = 0.5
+"""Angle beyond which facets are never coplanar, whatever the scatter."""
+SLIVER_PASSES = 8
+"""Passes in which slivers join their neighbours: a fan of slivers halves in each."""
+JOININGS = 2
+"""Passes in which polygons that are coplanar by their means are joined."""
+PEELS = 60
+"""Planes taken off a cluster before the rest of it falls into its facets."""
+PEELS_SEEN = 8
+"""Planes of a cluster after which it is asked whether planes make it up."""
+PEELED = 0.1
+"""Share of a cluster that the rest of the planes would take if all were as large as the largest of those, at least:
+what is less is curved."""
+PEEL_STEPS = 3
+"""Fits of each plane: to the facet, then to what lies in its plane."""
+FACING = 0.5
+"""Cosine of the angle between a facet and the plane that it is taken off with, at least."""
+OUTWARD = 0.99
+"""Cosine between the plane through the vertices and the mean normal of the facets, below which the vertices (of a
+sliver) determine no plane."""
+
 
 Moments: TypeAlias = tuple[Array, Array, Array]
 """Area (P,), unit normal (P, 3) and centroid (P, 3) of polygons."""
@@ -29,14 +61,14 @@ def coplanar_facets(mesh: Facets, scale: Scale, tolerances: Tolerances) -> tuple
     inner = np.flatnonzero(mesh.inner)
     f0, f1, length = mesh.f0.take(inner), mesh.f1.take(inner), mesh.length.take(inner)
     base = mesh.at(mesh.starts(inner))
-    thin = mesh.altitude < constants.THIN_NOISES * scale.noise
+    thin = mesh.altitude < THIN_NOISES * scale.noise
     strict, flat = _flat_edges(mesh, inner, thin, scale, tolerances)
     label = _linked(f0, f1, flat, len(mesh.faces))
     if scale.scatter > 0:
         label = _peel(mesh, label, f0[flat], f1[flat], scale)
         flat = flat & (label[f0] == label[f1])
     found = moments(mesh, label)
-    for stricter, limit in ((strict, constants.THIN_NOISES * scale.noise), (np.zeros_like(strict), scale.fit)):
+    for stricter, limit in ((strict, THIN_NOISES * scale.noise), (np.zeros_like(strict), scale.fit)):
         bent = _flatness(mesh, label, found) > limit
         if not bent.any():
             break
@@ -45,7 +77,7 @@ def coplanar_facets(mesh: Facets, scale: Scale, tolerances: Tolerances) -> tuple
         found = moments_again(mesh, label, before, found)
     before, label = label, _with_slivers(label, thin, f0, f1, length)
     found = moments_again(mesh, label, before, found)
-    for _ in range(constants.JOININGS):
+    for _ in range(JOININGS):
         join = _joined(label.take(f0), label.take(f1), base, found, tolerances.coplanar, scale.noise)
         if not len(join):
             break
@@ -85,18 +117,18 @@ def _flat_edges(
     height = np.maximum(np.abs(dot(normal0, beyond1)), np.abs(dot(normal1, beyond0)))
     solid = ~(thin.take(f0) | thin.take(f1))
     strict = solid & (angle < tolerances.coplanar) & (height < scale.fit)
-    flat = strict | (solid & (height < scale.noise) & (angle < constants.COPLANAR_ANGLE))
-    lost = max(constants.COPLANAR_SIGMAS * scale.scatter, constants.COPLANAR_ROUNDINGS * scale.rounding)
+    flat = strict | (solid & (height < scale.noise) & (angle < COPLANAR_ANGLE))
+    lost = max(COPLANAR_SIGMAS * scale.scatter, COPLANAR_ROUNDINGS * scale.rounding)
     narrow0, narrow1 = (1 / np.maximum(mesh.altitude.take(f), 1e-300) for f in (f0, f1))
-    turned = constants.COPLANAR_ANGLE + constants.TURNED_SIGMAS * lost / constants.COPLANAR_SIGMAS * (narrow0 + narrow1)
-    open_ = np.flatnonzero(solid & ~flat & (angle < np.minimum(turned, constants.MOST_TURNED)))
+    turned = COPLANAR_ANGLE + TURNED_SIGMAS * lost / COPLANAR_SIGMAS * (narrow0 + narrow1)
+    open_ = np.flatnonzero(solid & ~flat & (angle < np.minimum(turned, MOST_TURNED)))
     flat[open_] = np.abs(departures(mesh, inner.take(open_))) < lost
     return strict, flat
 
 
 def _with_slivers(label: Ints, thin: Flags, f0: Ints, f1: Ints, length: Array) -> Ints:
     """The labels of facets, with every polygon of slivers given to a neighbour across its longest edge."""
-    for _ in range(constants.SLIVER_PASSES):
+    for _ in range(SLIVER_PASSES):
         count = int(label.max()) + 1 if len(label) else 0
         solid = np.bincount(label, ~thin, count) > 0
         a, b = label[f0], label[f1]
@@ -180,7 +212,7 @@ def _peel(mesh: Facets, label: Ints, f0: Ints, f1: Ints, scale: Scale) -> Ints:
     label = np.unique(label, return_inverse=True)[1].astype(np.int64)
     whole = np.zeros(int(label.max()) + 1, bool)
     most = np.zeros(len(label), np.int64)
-    for number in range(1, constants.PEELS + 1):
+    for number in range(1, PEELS + 1):
         open_ = np.flatnonzero(~whole[label])
         if not len(open_):
             break
@@ -199,8 +231,8 @@ def _peel(mesh: Facets, label: Ints, f0: Ints, f1: Ints, scale: Scale) -> Ints:
         done = np.ones(len(member), bool)
         done[open_] = False
         whole[label[done]] = True
-        if number % constants.PEELS_SEEN == 0:
-            vain = most * (constants.PEELS - number) < constants.PEELED * size[label]
+        if number % PEELS_SEEN == 0:
+            vain = most * (PEELS - number) < PEELED * size[label]
             whole[label[vain]] = True
             most[:] = 0
     return label
@@ -211,8 +243,8 @@ def _in_planes(mesh: Facets, first: Ints, facets: Ints, group: Ints, scale: Scal
     normal, point = mesh.normal[first], mesh.vertices[mesh.faces[first]].mean(axis=1)
     reach = np.maximum(mesh.altitude[first], 1e-300)
     on: Flags = np.empty(len(facets), bool)
-    for step in range(constants.PEEL_STEPS):
-        for rows in slices(len(facets), constants.ROWS):
+    for step in range(PEEL_STEPS):
+        for rows in slices(len(facets), ROWS):
             mine, faces = group[rows], facets[rows]
             offset = mesh.vertices[mesh.faces[faces]] - point[mine][:, None, :]
             height = np.abs(np.einsum("ijk,ik->ij", offset, normal[mine]))
@@ -220,7 +252,7 @@ def _in_planes(mesh: Facets, first: Ints, facets: Ints, group: Ints, scale: Scal
             if step == 0:
                 far = np.sqrt(np.einsum("ijk,ijk->ij", offset, offset))
                 allowed = scale.noise * (1 + far / reach[mine][:, None])
-            facing = dot(mesh.normal[faces], normal[mine]) > constants.FACING
+            facing = dot(mesh.normal[faces], normal[mine]) > FACING
             on[rows] = (height < allowed).all(axis=1) & facing
         fitting = group[on]
         corners = mesh.vertices[mesh.faces[facets[on]]].reshape(-1, 3)
@@ -242,5 +274,5 @@ def fit_planes(group: Ints, points: Array, outward: Array) -> tuple[Array, Array
     covariance = group_moments(group, offset.T, count) / size[:, None, None]
     values, vectors = np.linalg.eigh(covariance)
     normal = vectors[:, :, 0] * np.sign(dot(vectors[:, :, 0], outward))[:, None]
-    vague = np.abs(dot(normal, outward)) < constants.OUTWARD
+    vague = np.abs(dot(normal, outward)) < OUTWARD
     return np.where(vague[:, None], outward, normal), centre, np.maximum(values, 0.0)

@@ -17,9 +17,23 @@ from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.sorting import ascending
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces import constants
 from kinform.surfaces.groups import columns_of
 from kinform.surfaces.polygons.patchwork import Patchwork
+
+ALIKE_WIDTHS = 3.0
+"""Ratio of widths up to which neighbours look like facets of one surface."""
+ALIKE_STRONG = 0.35
+"""Difference of the larger principal curvatures of neighbours on one surface, as a share of the largest: what coarse
+facets of unequal width make of equal ones."""
+ALIKE_WEAK = 0.3
+"""The same of the smaller principal curvatures."""
+SIMPLE_RATIO = 0.12
+"""Ratio of the two curvatures below which a polygon bends one way only."""
+GOING_ALONG = 0.7
+"""Cosine between a step to the neighbour and the generators, above which it goes along them."""
+TURNED_ALONG = 0.03
+"""Angle between the generators of neighbours on one surface that bends one way, besides that of their normals."""
+
 
 _PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
@@ -65,7 +79,7 @@ def links(work: Patchwork, free: Flags) -> Links:
     shared = np.maximum(np.bincount(number, work.length[edge])[number] if len(key) else np.zeros(0), 1e-300)
     wide = np.maximum(work.area[a], work.area[b]) / shared
     narrow = np.minimum(work.area[a], work.area[b]) / shared
-    return Links(edge, a, b, wide < constants.ALIKE_WIDTHS * narrow)
+    return Links(edge, a, b, wide < ALIKE_WIDTHS * narrow)
 
 
 def curvature(work: Patchwork, link: Links) -> Curvature:
@@ -126,15 +140,15 @@ def bends_like(bent: Curvature, link: Links) -> Flags:
     """Whether the two polygons of each link have like curvatures."""
     strong_a, strong_b = bent.strong[link.a], bent.strong[link.b]
     larger = np.maximum(np.abs(strong_a), np.abs(strong_b))
-    like = np.abs(strong_a - strong_b) <= constants.ALIKE_STRONG * larger
-    return np.asarray(like & (np.abs(bent.weak[link.a] - bent.weak[link.b]) <= constants.ALIKE_WEAK * larger))
+    like = np.abs(strong_a - strong_b) <= ALIKE_STRONG * larger
+    return np.asarray(like & (np.abs(bent.weak[link.a] - bent.weak[link.b]) <= ALIKE_WEAK * larger))
 
 
 def continues(work: Patchwork, bent: Curvature, link: Links) -> Flags:
     """Whether the two polygons of each link, if they bend one way and alike, seem to lie on one surface: directions
     that turn no more than the normals do when going across, and not at all when going along."""
     a, b = link.a, link.b
-    simple = np.maximum(bent.ratio[a], bent.ratio[b]) < constants.SIMPLE_RATIO
+    simple = np.maximum(bent.ratio[a], bent.ratio[b]) < SIMPLE_RATIO
     along_a, along_b = columns_of(bent.along, a), columns_of(bent.along, b)
     cosine = dot(along_a, along_b)
     step = work.middles(b) - work.middles(a)
@@ -142,7 +156,5 @@ def continues(work: Patchwork, bent: Curvature, link: Links) -> Flags:
     size = np.maximum(np.sqrt(square[:, 0] + (square[:, 1] + square[:, 2])), 1e-300)
     going = np.abs(dot(step, along_a + along_b * np.sign(cosine)[:, None])) / 2 / size
     turn = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
-    allowed = np.where(
-        going > constants.GOING_ALONG, constants.TURNED_ALONG, constants.TURNED_ALONG + work.angle[link.edge]
-    )
+    allowed = np.where(going > GOING_ALONG, TURNED_ALONG, TURNED_ALONG + work.angle[link.edge])
     return np.asarray(~simple | (turn <= allowed))

@@ -18,9 +18,42 @@ from kinform.foundation.graphs.components import components
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
-from kinform.surfaces import constants
 from kinform.surfaces.groups import columns_of
 from kinform.surfaces.polygons.facets import Facets
+
+PLAINLY = 1e-9
+"""Share by which a sum is beyond doubt, in whatever order it was made."""
+FITS_PER_NOISE = 10
+"""The tolerance of fits in noises that are expected of vertices, and the noise as such a part of the tolerance."""
+NOISE_ROUNDINGS = 1.5
+"""Noise in roundings of the largest coordinate: a vertex is off by half of one in each of three directions."""
+SCATTER_SHOWS = 2
+"""Vertices scatter where twice the standard deviation that is read exceeds the expected noise."""
+NOISE_SIGMAS = 4
+"""Standard deviations of scattered vertices that are noise: one vertex in 16,000 is beyond."""
+FIT_SIGMAS = 5
+"""Standard deviations of scattered vertices that a fit allows."""
+CALM_SHARE = 0.25
+"""Share of the area, from the calmest vertices up, at which the scatter is read: saddles are rarely more
+than the rest."""
+CALM_SHARE_OF_RIPPLE = 0.1
+"""The same for the difference from the neighbours, which is smaller on saddles too."""
+RIPPLE = 0.05
+"""Where scattered vertices differ from their neighbours by this much of what they show, saddles do by less
+(0.12 to 0.4 against 0.01 to 0.02 where tried)."""
+MIXED_PER_SIGMA = 1.2
+"""What is read there, in standard deviations of one coordinate (tried on noisy copies of robots' parts)."""
+LEAST_EDGES = 4
+"""Edges that show something at a vertex, at least, so that it can mix signs."""
+LEAST_SPOKES = 3
+"""Edges that end at a vertex, at least, so that it has neighbours to differ from."""
+REPEATED = 1e-2
+"""Relative difference of what neighbours show that is no accident in a long row of them."""
+REPEATED_ROW = 12
+"""Vertices in a row that is long."""
+RUN_OF_EDGES = 1 << 14
+"""Edges that are worked on at a time, so that what is computed of them stays in the processor's cache. It changes no
+bit."""
 
 
 @dataclass(frozen=True)
@@ -40,15 +73,15 @@ class Scale:
     def of(cls, mesh: Facets, rounding: float, tolerances: Tolerances) -> Scale:
         """Those of a mesh that was stored with this rounding: vertices that scatter more widen everything to four
         standard deviations."""
-        noise = max(tolerances.fit / constants.FITS_PER_NOISE, constants.NOISE_ROUNDINGS * rounding)
-        sigma = scatter(mesh, tolerances.smooth_edge, noise / constants.SCATTER_SHOWS)
-        fit = max(tolerances.fit, constants.FITS_PER_NOISE * noise)
-        if constants.SCATTER_SHOWS * sigma > noise:
+        noise = max(tolerances.fit / FITS_PER_NOISE, NOISE_ROUNDINGS * rounding)
+        sigma = scatter(mesh, tolerances.smooth_edge, noise / SCATTER_SHOWS)
+        fit = max(tolerances.fit, FITS_PER_NOISE * noise)
+        if SCATTER_SHOWS * sigma > noise:
             return cls(
                 max(rounding, sigma),
                 sigma,
-                noise=constants.NOISE_SIGMAS * sigma,
-                fit=max(fit, constants.FIT_SIGMAS * sigma),
+                noise=NOISE_SIGMAS * sigma,
+                fit=max(fit, FIT_SIGMAS * sigma),
             )
         return cls(rounding, 0.0, noise=noise, fit=fit)
 
@@ -83,8 +116,8 @@ def departures(mesh: Facets, edges: Ints) -> Array:
     scatter it by σ, whatever the shape of the two facets.
     """
     out = np.empty(len(edges))
-    for start in range(0, len(edges), constants.RUN_OF_EDGES):
-        run = slice(start, start + constants.RUN_OF_EDGES)
+    for start in range(0, len(edges), RUN_OF_EDGES):
+        run = slice(start, start + RUN_OF_EDGES)
         a, b, c, d = (mesh.at(corner) for corner in _corners(mesh, edges[run]))
         u, v, w = b - a, c - a, d - a
         uv = cross_columns(u, v)
@@ -117,20 +150,20 @@ def scatter(mesh: Facets, smooth_edge: float, least: float = 0.0) -> float:
         np.maximum.at(above, row, off)
         np.maximum.at(below, row, -off)
         seen += np.bincount(row, minlength=count)
-    mixing, readable = np.minimum(above, below), seen >= constants.LEAST_EDGES
+    mixing, readable = np.minimum(above, below), seen >= LEAST_EDGES
     # what is left of it at the end, in standard deviations, is no more than what there is here
-    if _is_calm(mesh, mixing, readable, constants.CALM_SHARE, constants.MIXED_PER_SIGMA * least):
+    if _is_calm(mesh, mixing, readable, CALM_SHARE, MIXED_PER_SIGMA * least):
         return 0.0
-    mixed = _calmest(mesh, mixing, readable, constants.CALM_SHARE)
+    mixed = _calmest(mesh, mixing, readable, CALM_SHARE)
     a, b = mesh.ends[near].T
     spokes = np.maximum(np.bincount(a, minlength=count) + np.bincount(b, minlength=count), 1)
     mean = (np.bincount(a, off, count) + np.bincount(b, off, count)) / spokes
     around = (np.bincount(a, mean[b], count) + np.bincount(b, mean[a], count)) / spokes
-    ripple = _calmest(mesh, np.abs(mean - around), spokes >= constants.LEAST_SPOKES, constants.CALM_SHARE_OF_RIPPLE)
-    if mixed <= 0.0 or ripple <= constants.RIPPLE * mixed:
+    ripple = _calmest(mesh, np.abs(mean - around), spokes >= LEAST_SPOKES, CALM_SHARE_OF_RIPPLE)
+    if mixed <= 0.0 or ripple <= RIPPLE * mixed:
         return 0.0
     irregular = _irregular(mesh, inner, above, below)
-    return _calmest(mesh, irregular, readable, constants.CALM_SHARE) / constants.MIXED_PER_SIGMA
+    return _calmest(mesh, irregular, readable, CALM_SHARE) / MIXED_PER_SIGMA
 
 
 def _irregular(mesh: Facets, inner: Ints, above: Array, below: Array) -> Array:
@@ -139,10 +172,10 @@ def _irregular(mesh: Facets, inner: Ints, above: Array, below: Array) -> Array:
     a, b = mesh.ends[inner].T
     alike = np.ones(len(a), bool)
     for value in (above, below):
-        alike &= np.abs(value[a] - value[b]) <= constants.REPEATED * np.maximum(value[a], value[b])
+        alike &= np.abs(value[a] - value[b]) <= REPEATED * np.maximum(value[a], value[b])
     # an edge shows at its four vertices: so few are alike anyway
     label = components(a[alike], b[alike], len(above))
-    return np.where(np.bincount(label)[label] >= constants.REPEATED_ROW, 0.0, np.minimum(above, below))
+    return np.where(np.bincount(label)[label] >= REPEATED_ROW, 0.0, np.minimum(above, below))
 
 
 def _calmest(mesh: Facets, value: Array, readable: Flags, share: float) -> float:
@@ -156,7 +189,7 @@ def _calmest(mesh: Facets, value: Array, readable: Flags, share: float) -> float
 def _is_calm(mesh: Facets, value: Array, readable: Flags, share: float, limit: float) -> bool:
     """Whether `_calmest` is plainly within the limit, without an order."""
     each, weight = _of_facets(mesh, value, readable)
-    return bool(weight[each <= limit].sum() >= (1.0 + constants.PLAINLY) * share * weight.sum())
+    return bool(weight[each <= limit].sum() >= (1.0 + PLAINLY) * share * weight.sum())
 
 
 def _of_facets(mesh: Facets, value: Array, readable: Flags) -> tuple[Array, Array]:

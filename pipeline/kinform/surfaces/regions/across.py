@@ -15,7 +15,6 @@ import numpy as np
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Flags, Ints
-from kinform.surfaces import constants
 from kinform.surfaces.groups import Ragged
 from kinform.surfaces.kinds.cylinder import Cylinder
 from kinform.surfaces.kinds.ruled import generators
@@ -23,12 +22,20 @@ from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.growth import Growth
 from kinform.surfaces.regions.territory import Territory
 
+TURNS_ON = (0.03, 0.56)
+"""Angle by which a ridge turns where it goes on round an axis: more than lines of one direction differ, and no more
+than a smooth edge."""
+GOES_ON = 2.05
+"""Ratio of lengths up to which the next edge goes on with a ridge: a fillet is longer than the edges of its corners."""
+OPEN = 3.1
+"""Angle that strips subtend together, at most, that may run across bands round another axis."""
+
 
 def along(territory: Territory, kind: Cylinder, growth: Growth) -> tuple[Growth, Ints]:
     """The cylinders but those across bands, and the edges (n,) which are ridges of these or go on with them."""
     work, batch, params = territory.patchwork, growth.batch, growth.surfaces.params
     sweep = np.bincount(batch.region, kind.widths(batch, params), batch.count)
-    open_ = batch.where(sweep < constants.OPEN)
+    open_ = batch.where(sweep < OPEN)
     if not len(open_.region):
         return growth, np.zeros(0, np.int64)
     region, edge, inner = generators(open_, params)
@@ -60,9 +67,9 @@ def _onward(work: Patchwork, ridges: Ints) -> tuple[Flags, tuple[Ints, Ints]]:
     apart = (following != ridge) & ~_touching(work, following, ridge)
     place, following, ridge = place[apart], following[apart], ridge[apart]
     length, longer = work.length[ridge], work.length[following]
-    alike = (longer <= constants.GOES_ON * length) & (length <= constants.GOES_ON * longer)
+    alike = (longer <= GOES_ON * length) & (length <= GOES_ON * longer)
     cosine = np.abs(dot(work.along(ridge), work.along(following))) / np.maximum(length * longer, 1e-300)
-    least, most = constants.TURNS_ON
+    least, most = TURNS_ON
     on = alike & (cosine >= np.cos(most)) & (cosine <= np.cos(least))
     found = np.zeros(2 * len(ridges), bool)
     found[place[on]] = True

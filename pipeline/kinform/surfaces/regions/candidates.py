@@ -8,10 +8,18 @@ from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.sorting import heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces.constants import FACET_ROUNDING, NORMAL_SLACK, TYPICAL_WIDTH, WIDER, WIDEST
+from kinform.surfaces.constants import NORMAL_SLACK
 from kinform.surfaces.groups import columns_of, in_order, ordered_quantile, quantile
 from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.kinds.kind import Kind
+from kinform.surfaces.regions.constants import WIDEST
+
+FACET_ROUNDING = 1e-3
+"""Angle that is added to the greatest that a facet may subtend: what rounding makes of equal facets."""
+WIDER = 1.6
+"""A polygon this much wider than the next narrower one of a region is a flat on it, not a facet of it."""
+TYPICAL_WIDTH = 0.75
+"""Share of a region's polygons that are narrower than a typical one: cuts leave narrow pieces of facets."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,14 +15,24 @@ import numpy as np
 from kinform.foundation.algebra.vectors import dot, normalised
 from kinform.frozen import dataclass
 from kinform.model.arrays import Flags, Ints
-from kinform.surfaces import constants
 from kinform.surfaces.describe import angles_covered
 from kinform.surfaces.groups import columns_of, group_sum, quantile
 from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.kinds.cylinder import Cylinder
 from kinform.surfaces.polygons.noise import Scales
+from kinform.surfaces.regions.constants import WIDEST
 from kinform.surfaces.regions.growth import Growth, whole
 from kinform.surfaces.regions.territory import Territory
+
+LEAST_CHORDS = 8
+"""Polygons of such a round, at least."""
+ROUND_CHORDS: float = float(np.radians(170.0))
+"""Angle about its axis that it covers at least: arcs of less are flanks of teeth as well."""
+TURNED_CHORDS: float = (ROUND_CHORDS - WIDEST) / 2
+"""Angle to the middle normal of a piece that one of its normals makes at least where a round is in it: they are those
+of the middles of strips, the outermost of which are no wider than WIDEST."""
+ON_CHORD = 1.0
+"""Chord errors of its middle facet by which its vertices are off, at most."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +46,7 @@ class Rounds:
     @classmethod
     def of(cls, kind: Cylinder, batch: Batch, side: Ints) -> Rounds:
         """Those of the pieces that have polygons enough, and normals that differ enough."""
-        large, number = batch.where((batch.size >= constants.LEAST_CHORDS) & _turns(batch)).compact()
+        large, number = batch.where((batch.size >= LEAST_CHORDS) & _turns(batch)).compact()
         return cls(large, side[number], kind.propose(large))
 
 
@@ -47,7 +57,7 @@ def _turns(batch: Batch) -> Flags:
     middle = normalised(group_sum(batch.region, normal * work.area.take(batch.polygon)[:, None], count))
     least = np.ones(count)
     np.minimum.at(least, batch.region, dot(normal, columns_of(middle, batch.region)))
-    return np.asarray(least <= np.cos(constants.TURNED_CHORDS))
+    return np.asarray(least <= np.cos(TURNED_CHORDS))
 
 
 def decimated(territory: Territory, kind: Cylinder, rounds: Rounds, factor: float) -> Growth:
@@ -70,4 +80,4 @@ def _round(kind: Cylinder, growth: Growth, scale: Scales) -> Flags:
     off = np.zeros(batch.count)
     region = batch.region[owner]
     np.maximum.at(off, region, np.abs(kind.probe(columns_of(params, region), batch.points).distance))
-    return np.asarray(even & (sweep >= constants.ROUND_CHORDS) & (off <= constants.ON_CHORD * chord))
+    return np.asarray(even & (sweep >= ROUND_CHORDS) & (off <= ON_CHORD * chord))

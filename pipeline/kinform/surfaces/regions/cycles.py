@@ -10,9 +10,13 @@ import numpy as np
 
 from kinform.foundation.sorting import among, sorted_keys
 from kinform.model.arrays import Flags, Ints
-from kinform.surfaces.constants import PERIODS, STEADY
 from kinform.surfaces.groups import parted
 from kinform.surfaces.kinds.batch import Batch, Params
+
+PERIODS = (2, 3)
+"""Rounds after which regions are what they were, where they gain and lose the same polygons without end."""
+STEADY = 1e-8
+"""Change of such a region's parameters over a period (rad, spans), at most: a two hundredth of the least noise."""
 
 
 class Cycles:

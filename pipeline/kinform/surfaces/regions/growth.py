@@ -14,14 +14,33 @@ from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.sorting import among, ascending, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces import constants
 from kinform.surfaces.groups import repeated
 from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.kinds.kind import Kind
 from kinform.surfaces.polygons.noise import Scales
-from kinform.surfaces.regions.candidates import Candidates
+from kinform.surfaces.regions.candidates import FACET_ROUNDING, Candidates
+from kinform.surfaces.regions.constants import WIDEST
 from kinform.surfaces.regions.cycles import Cycles
 from kinform.surfaces.regions.territory import Territory
+
+LOOSE = 2.5
+"""Fits within which a first guess is held to its region."""
+MAJORITY = 0.6
+"""Share of a piece that must conform at the first look."""
+FIRST_LAYERS = 2
+"""Layers of polygons that a region gains in its first round, and twice as many in each."""
+MOST_LAYERS = 512
+"""Layers that it gains in a round at most."""
+LAYERS_OF_WHOLE = 64
+"""Layers of polygons beside a piece that is whole already."""
+ABSORPTIONS = 6
+"""Rounds in which whole pieces grow."""
+STAGES = 14
+"""Rounds in which seeds grow: with doubled layers enough for 4,000 facets in a row."""
+UNSHARED = 0.4
+"""Share of a region's polygons that belong to no larger one, above which it stays."""
+TOLERANCE_MEDIANS = 6
+"""Tolerance of a region in middle distances of its vertices: four standard deviations."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +72,7 @@ def whole(
     params = params[origin]
     side = _facing(kind, pieces, params) if kind.saddle else side[origin]
     fit = territory.scales_of(pieces).fit
-    surfaces = Candidates(kind, params, side, constants.LOOSE * fit).refine(pieces, 2)
+    surfaces = Candidates(kind, params, side, LOOSE * fit).refine(pieces, 2)
     if not kind.saddle:
         pieces, number = pieces.select(_may_be_most(surfaces, pieces).take(pieces.region)).compact()
         surfaces, origin, fit = surfaces.of(number), origin[number], fit[number]
@@ -76,10 +95,10 @@ def absorb(territory: Territory, growth: Growth) -> Growth:
     batch, kept = batch.where(hopeful).compact()
     number = number[kept]
     surfaces = growth.surfaces.of(number)
-    for _ in range(constants.ABSORPTIONS):
+    for _ in range(ABSORPTIONS):
         if not len(batch.region):
             break
-        larger = territory.spread(surfaces, batch, surfaces.reach(batch), constants.LAYERS_OF_WHOLE)
+        larger = territory.spread(surfaces, batch, surfaces.reach(batch), LAYERS_OF_WHOLE)
         gained = larger.size > batch.size
         finished.append(_keys(batch.where(~gained), number))
         batch, kept = larger.where(gained).compact()
@@ -102,7 +121,7 @@ def pursue(territory: Territory, kind: Kind, batch: Batch, side: Ints) -> Growth
     params, usable = kind.propose(batch)
     batch, origin = batch.where(usable).compact()
     fit = territory.scales_of(batch).fit
-    surfaces = Candidates(kind.of(origin), params[origin], side[origin], constants.LOOSE * fit).refine(batch, 2)
+    surfaces = Candidates(kind.of(origin), params[origin], side[origin], LOOSE * fit).refine(batch, 2)
     batch, surfaces = _grow(territory, surfaces, _settle(territory, surfaces, batch))
     batch, number = batch.compact()
     if not len(number):
@@ -122,7 +141,7 @@ def _grow(territory: Territory, surfaces: Candidates, batch: Batch) -> tuple[Bat
     cycles = Cycles(count)
     batch, number = batch.compact()
     growing = surfaces.of(number)
-    for stage in range(constants.STAGES):
+    for stage in range(STAGES):
         if not len(batch.region):
             break
         before = batch.size
@@ -130,7 +149,7 @@ def _grow(territory: Territory, surfaces: Candidates, batch: Batch) -> tuple[Bat
         ahead = cycles.ahead(number, growing.params)
         if ahead is None:
             batch = _drop_shared(growing.kind, _settle(territory, growing, batch))
-            layers = min(constants.FIRST_LAYERS << stage, constants.MOST_LAYERS)
+            layers = min(FIRST_LAYERS << stage, MOST_LAYERS)
             batch = territory.spread(growing, batch, growing.reach(batch), layers)
         else:
             batch = ahead
@@ -160,7 +179,7 @@ def _may_be_most(surfaces: Candidates, batch: Batch) -> Flags:
     first = size.cumsum() - size
     rows = ((np.arange(len(batch.region)) - first.take(batch.region)) % 2 == 0).nonzero()[0]
     some = Batch(batch.patchwork, batch.region.take(rows), batch.polygon.take(rows), batch.count)
-    fits = surfaces.conforms(some, np.full(batch.count, constants.WIDEST + constants.FACET_ROUNDING))
+    fits = surfaces.conforms(some, np.full(batch.count, WIDEST + FACET_ROUNDING))
     refused = some.size - np.bincount(some.region[fits], minlength=batch.count)
     return _most(surfaces.kind, size - refused, size)
 
@@ -168,14 +187,14 @@ def _may_be_most(surfaces: Candidates, batch: Batch) -> Flags:
 def _most(kind: Kind, conforming: Ints, size: Ints) -> Flags:
     """Whether so many polygons that conform, of so many in all, are the greatest part, and as many as the kind needs:
     none are gained afterwards."""
-    return np.asarray((conforming / size >= constants.MAJORITY) & kind.enough(conforming))
+    return np.asarray((conforming / size >= MAJORITY) & kind.enough(conforming))
 
 
 def _hopeful(territory: Territory, surfaces: Candidates, batch: Batch) -> Flags:
     """Which regions have a neighbour that would conform if facets were as wide as they may ever be."""
     keys = territory.neighbours(batch.keys)
     beside = Batch.of_keys(territory.patchwork, keys[~among(keys, batch.keys)], batch.count)
-    fits = surfaces.conforms(beside, np.full(batch.count, constants.WIDEST + constants.FACET_ROUNDING))
+    fits = surfaces.conforms(beside, np.full(batch.count, WIDEST + FACET_ROUNDING))
     return np.asarray(np.bincount(beside.region[fits], minlength=batch.count) > 0)
 
 
@@ -198,7 +217,7 @@ def _drop_shared(kind: Kind, batch: Batch) -> Batch:
     polygon = polygon.take(order)
     first = order.take(heads(polygon).nonzero()[0])
     unshared = np.bincount(batch.region.take(first), minlength=batch.count)
-    return batch.where(unshared > constants.UNSHARED * batch.size)
+    return batch.where(unshared > UNSHARED * batch.size)
 
 
 def _conforming(surfaces: Candidates, batch: Batch) -> Batch:
@@ -223,7 +242,7 @@ def _settle(territory: Territory, surfaces: Candidates, batch: Batch, whole: Int
 
 def _justify(surfaces: Candidates, batch: Batch, scale: Scales) -> Array:
     """The tolerance that each region's own vertices justify, between the noise and the fit."""
-    return np.clip(constants.TOLERANCE_MEDIANS * surfaces.scatter(batch), scale.noise, scale.fit)
+    return np.clip(TOLERANCE_MEDIANS * surfaces.scatter(batch), scale.noise, scale.fit)
 
 
 def _credible(territory: Territory, surfaces: Candidates, batch: Batch, origin: Ints) -> Growth:

@@ -12,12 +12,26 @@ from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.near import Near
 from kinform.foundation.sorting import coarse
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces import constants
 from kinform.surfaces.groups import columns_of, members
 from kinform.surfaces.kinds.batch import Batch
 from kinform.surfaces.polygons.noise import Scale, Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
-from kinform.surfaces.regions.candidates import Candidates
+from kinform.surfaces.regions.candidates import FACET_ROUNDING, Candidates
+
+PARALLEL_PLANES = 5e-3
+"""Distance in normal (rad) and offset (spans) of planes that may be one."""
+MERGED_SHAPE = 2e-3
+"""Difference of radii (spans) and half-angles (rad) of surfaces that may be one."""
+MERGED_SHAPE_FITS = 10
+"""The same in fits, where that is more."""
+MERGING_FITS = 20
+"""Fits within which the vertices of the smaller surface lie on the larger, before both are fitted as one."""
+MERGED_REACH = 1.05
+"""Angle of the widest facet of merged surfaces that one may have, as a multiple."""
+PARTNERS = 2
+"""Larger surfaces, the nearest ones, that each is tried to be a piece of."""
+SAMPLES = 24
+"""Vertices of the smaller surface that are held against the larger before all of them are."""
 
 
 def coincident_planes(work: Patchwork, number: Ints, scale: Scale) -> Ints:
@@ -31,7 +45,7 @@ def coincident_planes(work: Patchwork, number: Ints, scale: Scale) -> Ints:
     normal, centre = np.zeros((count, 3)), np.zeros((count, 3))
     normal[number[member]], centre[number[member]] = work.normal[member], work.centre[member]
     offset = dot(normal, centre)
-    pairs = Near(np.c_[normal, offset], constants.PARALLEL_PLANES).pairs
+    pairs = Near(np.c_[normal, offset], PARALLEL_PLANES).pairs
     if not len(pairs):
         return number
     larger, smaller = _by_size(pairs, area)
@@ -119,12 +133,12 @@ def _partners(surfaces: Candidates, batch: Batch, size: Array | Ints, scale: Sca
     starts = np.searchsorted(region, np.arange(batch.count + 1))
     alive = np.arange(len(larger))
     final = starts[np.searchsorted(batch.mesh, batch.mesh[smaller], side="right")] - 1
-    near = constants.MERGING_FITS * scale.fit[smaller]
+    near = MERGING_FITS * scale.fit[smaller]
     distance = np.zeros(len(larger))
     # most are far from each other at the first vertices
-    for some in (range(1), range(1, 3), range(3, constants.SAMPLES)):
+    for some in (range(1), range(1, 3), range(3, SAMPLES)):
         first, last = starts[smaller[alive]], starts[smaller[alive] + 1] - 1
-        at = first[:, None] + (np.array(some) * np.maximum(last - first, 0)[:, None]) // (constants.SAMPLES - 1)
+        at = first[:, None] + (np.array(some) * np.maximum(last - first, 0)[:, None]) // (SAMPLES - 1)
         points = work.at(vertex[np.minimum(at, final[alive][:, None])].ravel())
         mine = columns_of(params, larger[alive].repeat(len(some)))
         away = np.abs(kind.probe(mine, points).distance).reshape(-1, len(some))
@@ -133,13 +147,13 @@ def _partners(surfaces: Candidates, batch: Batch, size: Array | Ints, scale: Sca
     distance = np.where(distance < near, distance, np.inf)
     order = np.lexsort((larger, distance, smaller))
     place = np.arange(len(order)) - np.searchsorted(smaller[order], smaller[order])
-    close = order[(place < constants.PARTNERS) & np.isfinite(distance[order])]
+    close = order[(place < PARTNERS) & np.isfinite(distance[order])]
     return larger[close], smaller[close]
 
 
 def _alike(shape: Array, regions: Ints, scale: Scales) -> Ints:
     """(n, 2) regions, among those of one mesh, of nearly the same shape."""
-    distance = max(constants.MERGED_SHAPE, constants.MERGED_SHAPE_FITS * float(scale.fit[regions[0]]))
+    distance = max(MERGED_SHAPE, MERGED_SHAPE_FITS * float(scale.fit[regions[0]]))
     return regions[Near(shape[regions], distance).pairs]
 
 
@@ -148,8 +162,8 @@ def _one_fit(work: Patchwork, surfaces: Candidates, families: list[Ints]) -> Fla
     if not families:
         return np.zeros(0, bool)
     batch, fit = _batch(work, families), surfaces.tolerance
-    fitted = surfaces.within(constants.MERGING_FITS * fit).refine(batch, 2).within(fit).refine(batch, 3)
+    fitted = surfaces.within(MERGING_FITS * fit).refine(batch, 2).within(fit).refine(batch, 3)
     reach = np.zeros(batch.count)
     np.maximum.at(reach, batch.region, fitted.kind.widths(batch, fitted.params))
-    good = fitted.conforms(batch, constants.MERGED_REACH * reach + constants.FACET_ROUNDING)
+    good = fitted.conforms(batch, MERGED_REACH * reach + FACET_ROUNDING)
     return np.asarray(np.bincount(batch.region, ~good, batch.count) == 0)

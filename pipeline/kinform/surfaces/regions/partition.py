@@ -16,7 +16,6 @@ from kinform.foundation.graphs.components import components
 from kinform.foundation.sorting import distinct, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces import constants
 from kinform.surfaces.groups import quantile, renumbered, repeated
 from kinform.surfaces.kinds.batch import Batch
 from kinform.surfaces.kinds.cone import Cone
@@ -25,13 +24,48 @@ from kinform.surfaces.kinds.kind import Kind
 from kinform.surfaces.kinds.mixed import Mixed
 from kinform.surfaces.kinds.sphere import Sphere
 from kinform.surfaces.kinds.torus import Torus
-from kinform.surfaces.polygons.curvature import Curvature, Links, bends_like, continues, curvature, links
+from kinform.surfaces.polygons.curvature import SIMPLE_RATIO, Curvature, Links, bends_like, continues, curvature, links
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.across import along
 from kinform.surfaces.regions.chords import Rounds, decimated
 from kinform.surfaces.regions.growth import Growth, absorb, pursue, whole
 from kinform.surfaces.regions.territory import Territory
+
+ROUNDS = 8
+"""Rounds of searching from seeds, at most."""
+LAST_ROUNDS = 2
+"""Rounds of searching among what may be generators, without regard to how it bends, at least: the longest come first,
+and hide those beside them until the second. More follow as long as they find what is worth it."""
+MOST_LINKS = 32
+"""Smooth edges of a polygon between two generators, at most."""
+LEAST_TURNING_POLYGONS = 3
+"""Polygons of a piece beside edges that turn one way, at least."""
+LEAST_BLEND = 8
+"""Polygons of a piece that may bend both ways."""
+EXPLAINED = 0.98
+"""Share of a piece that one kind explains, above which the others are not tried."""
+FRESH = 0.9
+"""Share of a region that no larger one has taken, at least."""
+STRAIGHT = {"cylinder": 0.985, "cone": 0.85, "sphere": 0.0}
+"""Cosine between a seed and the edges across which its surroundings lie, at least, for each kind."""
+BEND_SLACK = 0.2
+"""What the ratio of curvatures at a seed may be beyond the range of a kind."""
+WORTH = 2e-3
+"""Share of the mesh's area that a round of searching must explain for another one to follow."""
+GRAIN = 1e-4
+"""Share of the mesh's area that the two polygons at a seed have at least: finer detail that is no piece of its
+own stays freeform."""
+BROAD = 2e-2
+"""Share of the mesh's area above which a polygon is a plane of its own, whatever is beside it."""
+DOMINANT = 3
+"""Areas of its mean neighbour above which a polygon is a plane of its own."""
+LEAST_FREEFORM = 4
+"""Polygons that hang together in a freeform patch, at least: fewer are planes."""
+CHORD_FITS = (10.0, 100.0)
+"""Fits, in multiples, to which closed rounds of strips are held once nothing else explains them. A shaft of 9 mm in a
+decimated mesh of 78 mm has vertices 2 µm off its mean radius, where a fit is 1.6 µm."""
+
 
 CYLINDER, CONE, TORUS = Cylinder(), Cone(), Torus()
 
@@ -81,32 +115,32 @@ def partition(work: Patchwork, scales: Scales) -> Partition:
     tried = np.zeros(len(work.a), bool)
     of_edge = work.mesh[work.a]
     inner = work.b >= 0
-    least = constants.GRAIN * work.total[of_edge[inner]]
+    least = GRAIN * work.total[of_edge[inner]]
     tried[inner] = work.area[work.a[inner]] + work.area[work.b[inner]] < least
     last, asked = tried.copy(), np.zeros(len(work.a), bool)
-    for _ in range(constants.ROUNDS):
+    for _ in range(ROUNDS):
         before = tried.copy()
         chosen = _choose(_search(territory, tried, partial(_bends, work, bent)), territory)
         asked |= tried & ~before
         if not chosen:
             break
         regions += chosen
-        tried |= (_gained(work, chosen) < constants.WORTH * work.total)[of_edge]
+        tried |= (_gained(work, chosen) < WORTH * work.total)[of_edge]
     edges = territory.smooth
     ruled = _ruled(territory, edges.take((~last.take(edges) & (work.sign.take(edges) != 0)).nonzero()[0]))
     last[:] = True
     last[ruled] = False
-    for number in range(1, constants.ROUNDS):
+    for number in range(1, ROUNDS):
         chosen = _choose(_search(territory, last, partial(_unasked, work, bent, asked)), territory)
         regions += chosen
-        if number < constants.LAST_ROUNDS:
+        if number < LAST_ROUNDS:
             continue
         if not chosen:
             break
-        last |= (_gained(work, chosen) < constants.WORTH * work.total)[of_edge]
+        last |= (_gained(work, chosen) < WORTH * work.total)[of_edge]
     del bent, like, tried, last, asked, before  # large, and needed no longer
     rounds: Rounds | None = None
-    for factor in constants.CHORD_FITS:
+    for factor in CHORD_FITS:
         rounds = rounds or Rounds.of(CYLINDER, *_pieces(territory, link, link.alike))
         chosen = _choose([decimated(territory, CYLINDER, rounds, factor)], territory)
         regions += chosen
@@ -128,7 +162,7 @@ def _pieces(territory: Territory, link: Links, joined: Flags) -> tuple[Batch, In
         turning = np.zeros(work.count, bool)
         mark = np.flatnonzero(sign.take(use) == side)
         turning[a.take(mark)] = turning[b.take(mark)] = True
-        several = np.bincount(label, turning, work.count) >= constants.LEAST_TURNING_POLYGONS
+        several = np.bincount(label, turning, work.count) >= LEAST_TURNING_POLYGONS
         present = np.flatnonzero(free & several[label])
         number, names = renumbered(label[present], work.count)
         keys.append((number + count) * np.int64(work.count) + present)
@@ -143,7 +177,7 @@ def _blends(territory: Territory, link: Links, joined: Flags, bent: Curvature) -
     use = np.flatnonzero(joined & free[link.a] & free[link.b])
     label = components(link.a.take(use), link.b.take(use), work.count)
     size = np.bincount(label[free], minlength=work.count)
-    present = np.flatnonzero(free & (size[label] >= constants.LEAST_BLEND))
+    present = np.flatnonzero(free & (size[label] >= LEAST_BLEND))
     number, names = renumbered(label[present], work.count)
     lean = np.bincount(number, work.area[present] * np.sign(bent.strong[present]), names)
     keys = np.sort(number * np.int64(work.count) + present)
@@ -155,7 +189,7 @@ def _slender_tori(territory: Territory, link: Links, joined: Flags, bent: Curvat
     cone as well: the pieces that bend both ways alike, whatever their directions."""
     batch, side = _blends(territory, link, joined, bent)
     middle = quantile(batch.region, bent.ratio.take(batch.polygon), batch.count, 0.5)
-    suits = (middle >= TORUS.bends[0]) & (middle < constants.SIMPLE_RATIO) & (batch.size >= TORUS.least)
+    suits = (middle >= TORUS.bends[0]) & (middle < SIMPLE_RATIO) & (batch.size >= TORUS.least)
     pieces, number = batch.where(suits).compact()
     if not len(number):
         return []
@@ -180,7 +214,7 @@ def _whole_pieces(
         growths.append(along(territory, CYLINDER, growth)[0] if kind is CYLINDER else growth)
         size = np.zeros(batch.count)
         size[number[growths[-1].origin]] = growths[-1].batch.size
-        batch = batch.where(size < constants.EXPLAINED * batch.size)
+        batch = batch.where(size < EXPLAINED * batch.size)
     return growths
 
 
@@ -198,7 +232,7 @@ def _choose(growths: list[Growth], territory: Territory) -> list[Region]:
     for _, order, _, number, polygons in entries:
         surfaces = growths[order].surfaces
         fresh = polygons[territory.free[polygons]]
-        if len(fresh) < max(surfaces.kind.least, constants.FRESH * len(polygons)):
+        if len(fresh) < max(surfaces.kind.least, FRESH * len(polygons)):
             continue
         territory.free[fresh] = False
         side, tolerance = int(surfaces.side[number]), float(surfaces.tolerance[number])
@@ -228,7 +262,7 @@ def _search(territory: Territory, tried: Flags, suits: Callable[[Kind, Ints], Fl
     starts: list[tuple[Kind, Batch, Ints]] = []
     for kind in SIMPLE:
         here = np.flatnonzero(suits(kind, seeds))
-        batch = _around(territory, seeds[here], side[here], constants.STRAIGHT[kind.name])
+        batch = _around(territory, seeds[here], side[here], STRAIGHT[kind.name])
         batch, number = batch.where(kind.enough(batch.size)).compact()
         starts.append((kind, batch, side[here[number]]))
     for kind, batch, facing in _ruled_together(starts):
@@ -248,7 +282,7 @@ def _bends(work: Patchwork, bent: Curvature, kind: Kind, seeds: Ints) -> Flags:
     """(n,) whether the polygons beside these edges seem to bend as the kind does."""
     first, second = bent.ratio[work.a[seeds]], bent.ratio[work.b[seeds]]
     least, most = np.minimum(first, second), np.maximum(first, second)
-    return np.asarray((least <= kind.bends[1] + constants.BEND_SLACK) & (most >= kind.bends[0] - constants.BEND_SLACK))
+    return np.asarray((least <= kind.bends[1] + BEND_SLACK) & (most >= kind.bends[0] - BEND_SLACK))
 
 
 def _unasked(work: Patchwork, bent: Curvature, asked: Flags, kind: Kind, seeds: Ints) -> Flags:
@@ -296,7 +330,7 @@ def _ruled(territory: Territory, edges: Ints) -> Ints:
     work, links = territory.patchwork, territory.links
     for polygons in (work.a, work.b):
         polygon = polygons.take(edges)
-        few = (links.lengths(polygon) <= constants.MOST_LINKS).nonzero()[0]
+        few = (links.lengths(polygon) <= MOST_LINKS).nonzero()[0]
         owner, edge = links.expand(polygon.take(few))
         mine = few.take(owner)
         other = (edge != edges.take(mine)) & territory.free.take(work.other(edge, polygon.take(mine)))
@@ -304,7 +338,7 @@ def _ruled(territory: Territory, edges: Ints) -> Ints:
         mine, edge = mine.take(rows), edge.take(rows)
         seed = edges.take(mine)
         cosine = np.abs(dot(work.along(edge), work.along(seed)))
-        along = cosine >= constants.STRAIGHT["cone"] * work.length.take(edge) * work.length.take(seed)
+        along = cosine >= STRAIGHT["cone"] * work.length.take(edge) * work.length.take(seed)
         lined = np.zeros(len(edges), bool)
         lined[mine.take(along.nonzero()[0])] = True
         edges = edges.take(lined.nonzero()[0])
@@ -336,11 +370,11 @@ def _remainder(territory: Territory) -> tuple[Ints, Ints]:
     a, b = work.a[edges], work.b[edges]
     neighbours = np.bincount(np.r_[a, b], minlength=work.count)
     nearby = np.bincount(np.r_[a, b], np.r_[work.area[b], work.area[a]], work.count)
-    dominant = work.area > constants.DOMINANT * nearby / np.maximum(neighbours, 1)
-    dominant |= work.area > constants.BROAD * work.total[work.mesh]
+    dominant = work.area > DOMINANT * nearby / np.maximum(neighbours, 1)
+    dominant |= work.area > BROAD * work.total[work.mesh]
     label = components(a, b, work.count)
     size = np.bincount(label[left], minlength=work.count)[label]
-    loose = left & (size >= constants.LEAST_FREEFORM) & (neighbours >= 1) & ~dominant
+    loose = left & (size >= LEAST_FREEFORM) & (neighbours >= 1) & ~dominant
     planes = np.full(work.count, -1)
     planes[left & ~loose] = np.arange(int((left & ~loose).sum()))
     inside = loose[a] & loose[b]

@@ -12,10 +12,23 @@ from kinform.foundation.algebra.vectors import cross, cross_columns, dot
 from kinform.foundation.graphs.components import components
 from kinform.foundation.sorting import median
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces import constants
 from kinform.surfaces.describe import Description
 from kinform.surfaces.groups import members, repeated, starts_of
 from kinform.surfaces.polygons.patchwork import Patchwork
+
+THREAD_POLYGONS = 24
+"""Polygons of a thread, at least."""
+MOST_LINES = 6
+"""Axes tried, the best supported first."""
+MOST_PIECES = 4
+"""Pieces of what no surface explains that suggest an axis."""
+PIECE_TURNS = 0.1
+"""Share of turning in the motion of such a piece (radius 1), at least."""
+REWEIGHINGS = 6
+"""Rounds of reweighing, until what is no thread counts little."""
+SAME_LINE = 1e-3
+"""Lines (rad, and of the mesh's span) that are one axis."""
+
 
 Line: TypeAlias = tuple[Array, Array]
 """Direction (3,) and a point (3,) of it."""
@@ -24,8 +37,8 @@ Line: TypeAlias = tuple[Array, Array]
 def lines(work: Patchwork, others: Sequence[Description], turning: Sequence[Line]) -> list[Line]:
     """Those of cylinders among the others, the largest first, then the turning ones."""
     cylinders = [(float(work.area[item.polygons].sum()), k) for k, item in enumerate(others) if item.kind == "cylinder"]
-    largest = sorted(cylinders, key=lambda c: (-c[0], c[1]))[: 4 * constants.MOST_LINES]
-    first = _distinct([(others[k].axis, others[k].point) for _, k in largest], constants.MOST_LINES)
+    largest = sorted(cylinders, key=lambda c: (-c[0], c[1]))[: 4 * MOST_LINES]
+    first = _distinct([(others[k].axis, others[k].point) for _, k in largest], MOST_LINES)
     return _distinct([*first, *turning], len(first) + len(turning))
 
 
@@ -35,8 +48,8 @@ def _distinct(candidates: Sequence[Line], most: int) -> list[Line]:
     axes, points = ([pair[k].tolist() for pair in candidates] for k in range(2))
     for k, (axis, point) in enumerate(zip(axes, points, strict=True)):
         if not any(
-            _across(axis, axes[j]) < constants.SAME_LINE
-            and _across([p - q for p, q in zip(point, points[j], strict=True)], axes[j]) < constants.SAME_LINE
+            _across(axis, axes[j]) < SAME_LINE
+            and _across([p - q for p, q in zip(point, points[j], strict=True)], axes[j]) < SAME_LINE
             for j in kept
         ):
             kept.append(k)
@@ -65,7 +78,7 @@ def turning_lines(work: Patchwork, free: Flags) -> list[list[Line]]:
     area, normal, centre = work.area.take(polygon), work.normals(polygon), work.middles(polygon)
     weight, placed, rows = area, np.ascontiguousarray(centre), np.empty((len(polygon), 6))
     rows[:, 3:] = normal
-    for _ in range(constants.REWEIGHINGS):
+    for _ in range(REWEIGHINGS):
         total = [weight[run].sum() for run in runs]
         middle = np.array([weight[run] @ placed[run] / size for run, size in zip(runs, total, strict=True)])
         arm = centre - repeated(middle, sizes)
@@ -81,7 +94,7 @@ def turning_lines(work: Patchwork, free: Flags) -> list[list[Line]]:
         weight = area / (1 + (speed / typical.repeat(sizes)) ** 2)
     for run, motion, about, size in zip(runs, twist, middle, reach.tolist(), strict=True):
         turn = float(np.linalg.norm(motion[:3]))
-        if turn > constants.PIECE_TURNS:
+        if turn > PIECE_TURNS:
             axis = motion[:3] / turn
             out[int(work.mesh[polygon[run.start]])].append((axis, about + cross(axis, motion[3:] / turn) * size))
     return out
@@ -97,8 +110,8 @@ def _pieces(work: Patchwork, free: Flags) -> list[Ints]:
     first = [*label[starts_of(work.mesh, len(work.total))[:-1]].tolist(), len(area)]
     number, count = np.full(len(area), -1), 0
     for low, high in zip(first, first[1:], strict=False):
-        for piece in low + np.argsort(-area[low:high], kind="stable")[: constants.MOST_PIECES]:
-            if size[piece] >= constants.THREAD_POLYGONS:
+        for piece in low + np.argsort(-area[low:high], kind="stable")[:MOST_PIECES]:
+            if size[piece] >= THREAD_POLYGONS:
                 number[piece] = count
                 count += 1
     return members(np.where(free, number[label], -1))

@@ -11,19 +11,34 @@ import numpy as np
 from kinform.foundation.algebra.vectors import canonical_sign, cross, dot
 from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Array, Ints
-from kinform.surfaces import constants
+from kinform.surfaces.constants import COVERAGE
 from kinform.surfaces.describe import Description
 from kinform.surfaces.groups import group_moments, members, sums_of
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.slippage import Slippage, slippage
 
+SLIDING_POLYGONS = 12
+"""Polygons that show a motion, at least."""
+STILL = 6e-3
+"""Root mean square of the normals' share of the motion's speed (patch of radius 1) below which it slides."""
+ACROSS = 0.1
+"""Spread of the normals of an extrusion about its direction, at least: less is flat."""
+UNIQUE = 5.0
+"""Ratio to the next motion, at least: what slides in two ways nearly is too flat to tell."""
+TURNS = 0.15
+"""Share of turning in a motion (patch of radius 1) above which it is a turn."""
+BOXES_AGREE = 0.6
+"""Share of their common box, along each axis, that two patches of one thread share."""
+SCREW_ADVANCE = 0.01
+"""Advance a radian, in radii of the patch about the axis, below which a turn is no screw."""
+
 
 def sliding(work: Patchwork, number: Ints, scales: Scales) -> list[Description]:
     """Patches of polygons (P,) of one or more meshes, -1 for none, that slide on themselves in one way; the others are
     left out."""
     rounding = scales.rounding[work.mesh]
-    large = [patch for patch in members(number) if len(patch) >= constants.SLIDING_POLYGONS]
+    large = [patch for patch in members(number) if len(patch) >= SLIDING_POLYGONS]
     extrusions = _extrusions(work, large, rounding)
     out = [extrusion for extrusion in extrusions if extrusion]
     left = [patch for patch, extrusion in zip(large, extrusions, strict=True) if not extrusion]
@@ -49,7 +64,7 @@ def _extrusions(work: Patchwork, patches: list[Ints], rounding: Array) -> list[D
     # the root of the least value would be that of its rounding where normals stand exactly across
     along = dot(normal, vectors[:, :, 0].take(patch, axis=0))
     speed = np.sqrt(sums(weight * along * along) / total)
-    slides = (speed < constants.STILL) & (spread > constants.ACROSS)
+    slides = (speed < STILL) & (spread > ACROSS)
     return [
         _extrusion(work, polygons, vectors[k, :, 0], float(speed[k]), float(spread[k]), float(rounding[polygons[0]]))
         if slides[k]
@@ -67,7 +82,7 @@ def _extrusion(
     _, vertex = work.corners.expand(polygons)
     span = (work.vertices[vertex] - middle) @ axis
     length = max(float(np.ptp(span)), 1e-12)
-    angular = float(min(constants.COVERAGE * (speed + rounding / length) / spread, np.pi / 2))
+    angular = float(min(COVERAGE * (speed + rounding / length) / spread, np.pi / 2))
     return Description(
         "extrusion", polygons, axis, middle, extent=(float(span.min()), float(span.max())),
         axis_uncertainty=angular, point_uncertainty=angular * length,
@@ -80,9 +95,7 @@ def _turning(work: Patchwork, patches: list[Ints], rounding: Array) -> list[Desc
         return []
     patch = np.repeat(np.arange(len(patches)), [len(polygons) for polygons in patches])
     motion = slippage(work, patch, np.concatenate(patches), len(patches))
-    unique = (motion.speed < constants.STILL) & (
-        motion.next_speed > constants.UNIQUE * np.maximum(motion.speed, constants.STILL / 2)
-    )
+    unique = (motion.speed < STILL) & (motion.next_speed > UNIQUE * np.maximum(motion.speed, STILL / 2))
     return [
         _surface_of_turn(work, polygons, motion, k, float(rounding[polygons[0]])) if unique[k] else None
         for k, polygons in enumerate(patches)
@@ -103,7 +116,7 @@ def _agreeing(work: Patchwork, patches: list[Ints]) -> list[Ints]:
     high = np.array([work.centre[polygons].max(axis=0) for polygons in patches])
     shared = np.minimum(high[:, None], high[None]) - np.maximum(low[:, None], low[None])
     joint = np.maximum(high[:, None], high[None]) - np.minimum(low[:, None], low[None])
-    agree = (shared > constants.BOXES_AGREE * joint).all(axis=2)
+    agree = (shared > BOXES_AGREE * joint).all(axis=2)
     a, b = np.nonzero(np.triu(agree, 1))
     return [group for group in members(components(a, b, len(patches))) if len(group) > 1]
 
@@ -111,10 +124,10 @@ def _agreeing(work: Patchwork, patches: list[Ints]) -> list[Ints]:
 def _surface_of_turn(work: Patchwork, polygons: Ints, motion: Slippage, k: int, rounding: float) -> Description | None:
     """What the k-th motion makes of its patch: its kind with axis, point, pitch, and uncertainty."""
     turning, size = float(np.linalg.norm(motion.angular[k])), float(motion.size[k])
-    if turning < constants.TURNS:
+    if turning < TURNS:
         return None
     gained = max(float(motion.next_speed[k]), 1e-12)
-    angular = float(min(constants.COVERAGE * (motion.speed[k] + rounding / size) / gained, np.pi / 2))
+    angular = float(min(COVERAGE * (motion.speed[k] + rounding / size) / gained, np.pi / 2))
     axis, moment = motion.angular[k] / turning, motion.linear[k] / turning
     point = motion.middle[k] + cross(axis, moment) * size
     advance = float(axis @ moment) * size
@@ -125,7 +138,7 @@ def _surface_of_turn(work: Patchwork, polygons: Ints, motion: Slippage, k: int, 
     rho = np.linalg.norm(radial, axis=1)
     radius = float(np.average(rho, weights=work.area[polygons]))
     outward = np.average(dot(work.normal[polygons], radial) / np.maximum(rho, 1e-300), weights=work.area[polygons])
-    screws = abs(advance) > constants.SCREW_ADVANCE * radius
+    screws = abs(advance) > SCREW_ADVANCE * radius
     return Description(
         "helicoid" if screws else "revolution", polygons, axis, point, radius=radius, side=1 if outward >= 0 else -1,
         extent=(float(span.min()), float(span.max())), axis_uncertainty=angular, point_uncertainty=angular * size,

@@ -19,12 +19,62 @@ from kinform.foundation.graphs.components import components
 from kinform.foundation.sorting import among, distinct, median
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces import constants
-from kinform.surfaces.describe import Description, standoffs
+from kinform.surfaces.constants import COVERAGE, ROWS
+from kinform.surfaces.describe import ROUNDED_SCATTER, Description, standoffs
 from kinform.surfaces.groups import columns_of, slices
-from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.polygons.noise import PLAINLY, Scale
 from kinform.surfaces.polygons.patchwork import Patchwork
-from kinform.surfaces.swept.lines import Line
+from kinform.surfaces.swept.lines import THREAD_POLYGONS, Line
+
+LEVEL = 2e-3
+"""Share of its length by which an edge along a helix may change its distance from the axis."""
+LEVEL_NOISES = 4
+"""The same in noises, for short edges."""
+WIDE = (8.0, 4.0, 2.0, 1.0, 1.0)
+"""How much wider helices are looked for while axis and advance are refined."""
+HELIX_STEP = 0.85
+"""rad: greatest angle of an edge about the axis: a thread has eight vertices a turn, at least."""
+ARC = 1.1
+"""Length of such an edge along its helix, in its own lengths, at most: 1.031, with room."""
+LEAST_ARC = 0.05
+"""Arc of an edge along a helix, in rises, at least."""
+STEEP = (2e-3, 4.0)
+"""Range of the advance a radian, in radii, of what is a thread."""
+ADVANCE_NOISES = 3
+"""Noises, over its angle, by which the advance of an edge is uncertain."""
+ADVANCE_SHOWS = 0.3
+"""Uncertainty of the advance of an edge, as a share of it, with which it suggests one, at most."""
+MOST_ADVANCES = 4
+"""Advances tried about one axis."""
+ALIKE_ADVANCE = 5e-3
+"""Relative spread of the advance along edges of one thread, besides what rounding makes of each."""
+ADVANCE_STEP = 0.1
+"""Relative change of the advance in one step of a fit, beyond which it is another thread."""
+TURNED = 0.7
+"""Turns of helix, counted along all polylines of a thread, at least."""
+LONGEST = 0.4
+"""Turns of the longest of them, at least."""
+SHORTEST = 0.02
+"""Turns of the shortest polyline that counts, in those of the longest."""
+HELIX_SIGMAS = 3
+"""Standard deviations up to which residuals of a helix count fully."""
+HELIX_MEDIANS = 1.5
+"""A standard deviation in median sizes of a normal distribution."""
+VAGUE_HELIX = 1e-12
+"""Ratio of eigenvalues below which axis and advance of a thread are undetermined."""
+TILT = 0.12
+"""Root mean square of the normals' share of the screw's speed, of facets that belong to a thread."""
+TILTS = 3
+"""The same of a single facet that may be one of them, in multiples."""
+LOPSIDED = 0.6
+"""The same of a single facet between two helices: skew triangles lean far to either side in turn."""
+LEAN = 0.3
+"""Mean of that, as a share of the slope of the helix: beyond, the facets are as well a ring, or a helix of another
+pitch."""
+TOUCHING = 3
+"""Corners of a piece of flank on helices, at least."""
+BENT = 1.0
+"""rad: facets of one flank make no greater angle."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,11 +119,11 @@ def threads(work: Patchwork, loose: Flags, about: Sequence[Line], scale: Scale) 
     """Helicoids about these lines among the loose polygons (P,) of a mesh, each with all its flanks."""
     free = loose.copy()
     out: list[Description] = []
-    if int(free.sum()) < constants.THREAD_POLYGONS:
+    if int(free.sum()) < THREAD_POLYGONS:
         return out
     edges = _beside(work, free)
     for (axis, point), level in _with_helices(work, edges, about, scale):
-        if int(free.sum()) < constants.THREAD_POLYGONS:
+        if int(free.sum()) < THREAD_POLYGONS:
             break
         beside = level.take(among(level, edges).nonzero()[0]) if out else level
         thread = _about(work, free, edges, beside, _Screw(axis, point, 0.0), scale)
@@ -94,7 +144,7 @@ def _about(
 ) -> Description | None:  # fmt: skip
     """The thread about a line, if there is one, among free polygons, whose edges these are; those that may be level are
     known."""
-    if len(edges) < constants.THREAD_POLYGONS:
+    if len(edges) < THREAD_POLYGONS:
         return None
     best: tuple[float, _Screw, Ints] | None = None
     for advance in _advances(work, level, start, scale):
@@ -103,7 +153,7 @@ def _about(
             continue
         helices = _helices(work, edges, screw, scale)
         members = np.zeros(0, np.int64) if helices is None else _members(work, free, helices, screw)
-        if helices is None or len(members) < constants.THREAD_POLYGONS:
+        if helices is None or len(members) < THREAD_POLYGONS:
             continue
         # diagonals of a regular mesh make short helices of another pitch
         score = float((np.bincount(helices.polyline, helices.turn) ** 2).sum())
@@ -118,19 +168,19 @@ def _with_helices(work: Patchwork, edges: Ints, about: Sequence[Line], scale: Sc
     """Those of the lines about which edges may turn enough for `_advances`, each with edges that may be level there:
     bounds from lengths need no angles, are had of all lines at once, and leave few."""
     out: list[tuple[Line, Ints]] = []
-    enough = (1.0 - constants.PLAINLY) * 2 * np.pi * constants.TURNED
-    shown = (1.0 - constants.PLAINLY) * constants.ADVANCE_NOISES / constants.ADVANCE_SHOWS * scale.noise
-    for run in slices(len(about), max(constants.ROWS // len(work.vertices), 1)):
+    enough = (1.0 - PLAINLY) * 2 * np.pi * TURNED
+    shown = (1.0 - PLAINLY) * ADVANCE_NOISES / ADVANCE_SHOWS * scale.noise
+    for run in slices(len(about), max(ROWS // len(work.vertices), 1)):
         some = about[run]
         distance = _distances(work, some)
-        line, place = _level(work, edges, distance, constants.WIDE[0], scale).nonzero()
+        line, place = _level(work, edges, distance, WIDE[0], scale).nonzero()
         edge = edges.take(place)
         one, other = (distance.take(line * distance.shape[1] + work.ends[:, end].take(edge)) for end in range(2))
         length = work.length.take(edge)
         rise = np.abs(dot(work.along(edge), columns_of(np.array([axis for axis, _ in some]), line)))
         across = np.sqrt(np.maximum(length * length - rise * rise, 0.0))
-        turn = np.minimum(constants.ARC * across / np.maximum(np.sqrt(one * other), 1e-300), constants.HELIX_STEP)
-        flat = (1.0 - constants.PLAINLY) * rise < constants.STEEP[1] * turn * (one + other) / 2
+        turn = np.minimum(ARC * across / np.maximum(np.sqrt(one * other), 1e-300), HELIX_STEP)
+        flat = (1.0 - PLAINLY) * rise < STEEP[1] * turn * (one + other) / 2
         turned = np.bincount(line, np.where(flat & (rise > shown), turn, 0.0), len(some))
         out += [(some[k], edge[line == k]) for k in np.flatnonzero(turned >= enough).tolist()]
     return out
@@ -152,8 +202,8 @@ def _level(work: Patchwork, edges: Ints, distance: Array, wide: float, scale: Sc
     judged by their lengths: that needs no angles, and leaves few. An arc is no longer than HELIX_STEP / 2 over its sine
     in chords."""
     one, other = (distance.take(work.ends[:, end].take(edges), axis=-1) for end in range(2))
-    room = constants.LEVEL_NOISES * scale.noise
-    return np.asarray(np.abs(other - one) <= constants.ARC * wide * constants.LEVEL * work.length.take(edges) + room)
+    room = LEVEL_NOISES * scale.noise
+    return np.asarray(np.abs(other - one) <= ARC * wide * LEVEL * work.length.take(edges) + room)
 
 
 def _slopes(
@@ -166,37 +216,33 @@ def _slopes(
     mean = (distance[::2] + distance[1::2]) / 2
     turn -= 2 * np.pi * np.round(turn / (2 * np.pi))
     length = np.hypot(rise, mean * turn)
-    level = np.abs(widening) <= wide * constants.LEVEL * length + constants.LEVEL_NOISES * scale.noise
-    turning = (
-        (np.abs(turn) < constants.HELIX_STEP)
-        & (np.abs(turn) * mean > constants.LEAST_ARC * np.abs(rise))
-        & (np.abs(turn) > 1e-6)
-    )
+    level = np.abs(widening) <= wide * LEVEL * length + LEVEL_NOISES * scale.noise
+    turning = (np.abs(turn) < HELIX_STEP) & (np.abs(turn) * mean > LEAST_ARC * np.abs(rise)) & (np.abs(turn) > 1e-6)
     advance = np.where(turning, rise / np.where(turning, turn, 1.0), 0.0)
-    doubt = constants.ADVANCE_NOISES * scale.noise / np.maximum(np.abs(turn), 1e-9)
-    steep = (np.abs(advance) > constants.STEEP[0] * mean + doubt) & (np.abs(advance) < constants.STEEP[1] * mean)
+    doubt = ADVANCE_NOISES * scale.noise / np.maximum(np.abs(turn), 1e-9)
+    steep = (np.abs(advance) > STEEP[0] * mean + doubt) & (np.abs(advance) < STEEP[1] * mean)
     return advance, doubt, turn, level & turning & steep
 
 
 def _advances(work: Patchwork, edges: Ints, start: _Screw, scale: Scale) -> list[float]:
     """Advances that many of the edges, which may be level, have in common, the most turned first."""
-    advance, doubt, turn, usable = _slopes(work, work.ends.take(edges, axis=0), start, scale, constants.WIDE[0])
-    rows = np.flatnonzero(usable & (doubt < constants.ADVANCE_SHOWS * np.abs(advance)))
+    advance, doubt, turn, usable = _slopes(work, work.ends.take(edges, axis=0), start, scale, WIDE[0])
+    rows = np.flatnonzero(usable & (doubt < ADVANCE_SHOWS * np.abs(advance)))
     out: list[float] = []
-    if np.abs(turn[rows]).sum() < (1.0 - constants.PLAINLY) * 2 * np.pi * constants.TURNED:
+    if np.abs(turn[rows]).sum() < (1.0 - PLAINLY) * 2 * np.pi * TURNED:
         return out
-    for _ in range(constants.MOST_ADVANCES):
-        if len(rows) < constants.THREAD_POLYGONS // 2:
+    for _ in range(MOST_ADVANCES):
+        if len(rows) < THREAD_POLYGONS // 2:
             break
         order = rows[np.argsort(advance[rows], kind="stable")]
         values, weight = advance[order], np.abs(turn[order])
-        reach = constants.ALIKE_ADVANCE * np.abs(values) + median(doubt[order])
+        reach = ALIKE_ADVANCE * np.abs(values) + median(doubt[order])
         total = np.r_[0.0, np.cumsum(weight)]
         low = np.searchsorted(values, values - reach)
         high = np.searchsorted(values, values + reach, side="right")
         held = total[high] - total[low]
         best = int(np.argmax(held))
-        if held[best] < 2 * np.pi * constants.TURNED:
+        if held[best] < 2 * np.pi * TURNED:
             break
         inside = order[low[best] : high[best]]
         out.append(median(advance[inside]))
@@ -208,16 +254,16 @@ def _helices(work: Patchwork, edges: Ints, screw: _Screw, scale: Scale, wide: fl
     """The edges along the screw's helices, joined to polylines, if they make enough of a thread."""
     ends = work.ends.take(edges, axis=0)
     advance, doubt, turn, usable = _slopes(work, ends, screw, scale, wide)
-    near = usable & (np.abs(advance - screw.advance) <= 2 * wide * constants.ALIKE_ADVANCE * abs(screw.advance) + doubt)
+    near = usable & (np.abs(advance - screw.advance) <= 2 * wide * ALIKE_ADVANCE * abs(screw.advance) + doubt)
     if not near.any():
         return None
     ends, turn = ends[near], np.abs(turn[near])
     polyline = components(ends[:, 0], ends[:, 1], len(work.vertices))[ends[:, 0]]
     _, polyline = np.unique(polyline, return_inverse=True)
     turned = np.bincount(polyline, turn)
-    if turned.sum() < 2 * np.pi * constants.TURNED or turned.max() < 2 * np.pi * constants.LONGEST:
+    if turned.sum() < 2 * np.pi * TURNED or turned.max() < 2 * np.pi * LONGEST:
         return None
-    keep = (np.bincount(polyline)[polyline] >= 2) & (turned[polyline] > constants.SHORTEST * turned.max())
+    keep = (np.bincount(polyline)[polyline] >= 2) & (turned[polyline] > SHORTEST * turned.max())
     return _Helices(ends[keep], np.unique(polyline[keep], return_inverse=True)[1], turn[keep])
 
 
@@ -255,27 +301,23 @@ def _solve(work: Patchwork, helices: _Helices, screw: _Screw, scale: Scale) -> t
     columns = np.stack(
         [(_residuals(work, helices, _step(screw, step * e), vertex, group) - base) / step for e in np.eye(5)], axis=1
     )
-    scatter = max(constants.HELIX_MEDIANS * median(np.abs(base)), scale.rounding)
-    weight = 1.0 / np.maximum(np.abs(base) / (constants.HELIX_SIGMAS * scatter), 1.0) ** 2
+    scatter = max(HELIX_MEDIANS * median(np.abs(base)), scale.rounding)
+    weight = 1.0 / np.maximum(np.abs(base) / (HELIX_SIGMAS * scatter), 1.0) ** 2
     matrix = (columns * weight[:, None]).T @ columns
     size = np.sqrt(np.maximum(np.diag(matrix), 1e-300))
-    inverse = np.linalg.pinv(matrix / np.outer(size, size), hermitian=True, rcond=constants.VAGUE_HELIX) / np.outer(
-        size, size
-    )
+    inverse = np.linalg.pinv(matrix / np.outer(size, size), hermitian=True, rcond=VAGUE_HELIX) / np.outer(size, size)
     change = -inverse @ (columns.T @ (weight * base))
     return _step(screw, change), inverse, scatter, float(np.ptp(height))
 
 
 def _refine(work: Patchwork, edges: Ints, screw: _Screw, scale: Scale) -> _Screw | None:
     """The screw through the polylines of its helices."""
-    for wide in constants.WIDE:
+    for wide in WIDE:
         helices = _helices(work, edges, screw, scale, wide)
         if helices is None:
             return None
         moved = _solve(work, helices, screw, scale)[0]
-        if not np.isfinite(moved.advance) or abs(moved.advance - screw.advance) > constants.ADVANCE_STEP * abs(
-            screw.advance
-        ):
+        if not np.isfinite(moved.advance) or abs(moved.advance - screw.advance) > ADVANCE_STEP * abs(screw.advance):
             return None
         screw = moved
     return screw
@@ -295,13 +337,8 @@ def _members(work: Patchwork, free: Flags, helices: _Helices, screw: _Screw) -> 
     off = np.bincount(owner, line[vertex] < 0, work.count)
     along = _are_edges(work, helices)
     sided = np.bincount(np.r_[work.a[along], work.b[along & (work.b >= 0)]], minlength=work.count) > 0
-    between = (
-        free
-        & sided
-        & (lines <= 2)
-        & (((off == 0) & (np.abs(share) < constants.LOPSIDED)) | (np.abs(share) < constants.TILT))
-    )
-    fitting = free & (np.abs(share) < constants.TILTS * constants.TILT)
+    between = free & sided & (lines <= 2) & (((off == 0) & (np.abs(share) < LOPSIDED)) | (np.abs(share) < TILT))
+    fitting = free & (np.abs(share) < TILTS * TILT)
     use = work.smooth & fitting[work.a] & (work.b >= 0)
     use[use] &= fitting[work.b[use]]
     label = components(work.a[use], work.b[use], work.count)
@@ -310,8 +347,8 @@ def _members(work: Patchwork, free: Flags, helices: _Helices, screw: _Screw) -> 
     mean = np.bincount(label, area * share, work.count) / whole
     square = np.sqrt(np.bincount(label, area * share**2, work.count) / whole)
     steep = np.bincount(label, area * slope, work.count) / whole
-    touched = np.bincount(label[owner], (line[vertex] >= 0) & fitting[owner], work.count) >= constants.TOUCHING
-    good = touched & (square < constants.TILT) & (np.abs(mean) < constants.LEAN * steep)
+    touched = np.bincount(label[owner], (line[vertex] >= 0) & fitting[owner], work.count) >= TOUCHING
+    good = touched & (square < TILT) & (np.abs(mean) < LEAN * steep)
     return np.flatnonzero(between | (fitting & good[label]))
 
 
@@ -326,7 +363,7 @@ def _chord(work: Patchwork, helices: _Helices, members: Ints) -> float:
     """How far facets may stand off the thread, from the angles between them where they are not its corners."""
     inside = np.zeros(work.count, bool)
     inside[members] = True
-    use = (work.b >= 0) & inside[work.a] & (work.angle < constants.BENT)
+    use = (work.b >= 0) & inside[work.a] & (work.angle < BENT)
     use[use] &= inside[work.b[use]]
     use &= ~_are_edges(work, helices)
     return float(standoffs(work, np.flatnonzero(use)).max(initial=0.0))
@@ -338,7 +375,7 @@ def _description(work: Patchwork, edges: Ints, screw: _Screw, members: Ints, sca
     if helices is None:
         return None
     _, inverse, scatter, _ = _solve(work, helices, screw, scale)
-    spread = constants.COVERAGE * scatter * np.sqrt(np.maximum(np.diag(inverse), 0.0))
+    spread = COVERAGE * scatter * np.sqrt(np.maximum(np.diag(inverse), 0.0))
     weight, normal = work.area[members], work.normal[members]
     height, _, _ = screw.polar(work.vertices[helices.ends.ravel()])
     middle = 0.5 * float(height.min() + height.max())
@@ -354,7 +391,7 @@ def _description(work: Patchwork, edges: Ints, screw: _Screw, members: Ints, sca
         "helicoid", members, axis, point, radius=float(distance @ weight / weight.sum()),
         side=1 if outward >= 0 else -1, extent=(float(span.min()), float(span.max())), residual=scatter,
         axis_uncertainty=float(min(np.hypot(spread[0], spread[1]), np.pi / 2)),
-        point_uncertainty=float(max(np.hypot(spread[2], spread[3]), constants.ROUNDED_SCATTER * scale.rounding)),
+        point_uncertainty=float(max(np.hypot(spread[2], spread[3]), ROUNDED_SCATTER * scale.rounding)),
         pitch=2 * np.pi * screw.advance,
         chord=_chord(work, helices, members),
     )  # fmt: skip

@@ -1,1 +1,0 @@
-"""Numbers written into the XML of a description, a module for each format."""

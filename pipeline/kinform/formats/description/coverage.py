@@ -1,0 +1,52 @@
+"""How far the collision geometry of a link covers its visual geometry, and reaches beyond it.
+
+Simulators that take meshes for collisions take their convex hulls, or the meshes themselves, whose hulls are the same;
+so all is measured on hulls: the visual's vertices against the hull of each piece of collision geometry, and the corners
+of these hulls against the hull of the whole visual.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from kinform.foundation.meshes.hulls import Hull, hull_of
+from kinform.model.arrays import Array, Ints
+from kinform.model.descriptions import Coverage
+
+UNCOVERED_DEPTH = 0.01
+"""Share of a link's size by which its visual may reach out of the collision geometry and counts as covered: facets of
+primitives and of simplified meshes."""
+COVERED_FACETS = 2000
+"""Facets of a visual mesh that are held against the collision geometry, about: of larger ones every second, third, …"""
+
+
+def coverage_of(visual: Sequence[tuple[Array, Ints]], collision: Sequence[Array]) -> Coverage | None:
+    """The coverage of pieces with vertices (n, 3) m and faces (m, 3) by pieces with vertices (k, 3) m, all in one
+    frame; None where one of the two has no extent. Of large meshes a share of the facets is looked at."""
+    hulls = [hull for points in collision if (hull := hull_of(points)) is not None]
+    whole = hull_of(np.concatenate([points for points, _ in visual])) if visual else None
+    if whole is None or not hulls:
+        return None
+    size = float(np.linalg.norm(np.ptp(whole.corners, axis=0)))
+    corners = np.concatenate([hull.corners for hull in hulls])
+    beyond = float(whole.outside(corners).max())
+    outmost = float(_outside(hulls, whole.corners).max())
+    area = bare = 0.0
+    for points, faces in visual:
+        a, b, c = (points[faces[:: 1 + len(faces) // COVERED_FACETS, k]] for k in range(3))
+        if not len(a):
+            continue
+        out = _outside(hulls, (a + b + c) / 3.0)
+        areas = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+        outmost = max(outmost, float(out.max()))
+        area += float(areas.sum())
+        bare += float(areas @ (out > UNCOVERED_DEPTH * size))
+    across = float(np.linalg.norm(np.ptp(corners, axis=0)))
+    return Coverage(max(outmost, 0.0), bare / area if area > 0.0 else 0.0, max(beyond, 0.0), size, across)
+
+
+def _outside(hulls: Sequence[Hull], points: Array) -> Array:
+    """How far each point lies outside of the hull that it is nearest to."""
+    return np.asarray(np.min([hull.outside(points) for hull in hulls], axis=0))

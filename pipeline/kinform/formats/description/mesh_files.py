@@ -1,0 +1,223 @@
+"""Where the meshes are that a description names: `package://`, `model://`, `file://`, and paths beside the file."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from urllib.parse import unquote
+
+from kinform.form.constants import VALUE_LENGTH
+from kinform.frozen import dataclass
+
+PACKAGE_LEVELS = 4
+"""Folders, from that of a description upwards, in which its package is looked for where nothing names it."""
+WORKSPACE_LEVELS = 4
+"""Folders below the `src` of a workspace in which packages are looked for: `src/group/repository/package`, and one."""
+NAME_BYTES = 255
+"""Of the name of a file, or of a folder: the most that file systems take."""
+PACKAGE_BYTES = 64 * 1024
+"""Of a package.xml, that are searched for its name, which stands near the beginning."""
+ENTRIES_MOST = 20_000
+"""Files and folders that are looked at for these, at most: about a second. The largest public package tried has 1,453;
+what is more is a home folder that holds a description."""
+
+
+_PACKAGE = re.compile(r"(?:package|model)://([^/]*)/?(.*)", re.DOTALL)
+_PACKAGE_FILES = ("package.xml", "model.config")
+MODELS = "models"
+"""Folder beside which worlds of Gazebo stand, and in which their models are."""
+SEARCHED = ("ROS_PACKAGE_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "SDF_PATH")
+"""Variables that name folders of packages and of models."""
+_NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
+
+
+@dataclass(frozen=True)
+class Found:
+    """A file, or the reason why there is none with its remedy; and the folder below which the file may lie."""
+
+    path: Path | None
+    folder: Path | None = None
+    message: str = ""
+    remedy: str = ""
+
+
+class MeshFiles:
+    """Resolves what one description names. `packages` are folders by name, as the user states them."""
+
+    def __init__(self, description: Path, packages: Mapping[str, Path], environment: Mapping[str, str] | None = None):
+        self.folder = description.parent
+        self.packages = packages
+        self._environment = os.environ if environment is None else environment
+        self.home = _home(self.folder)
+        """The package of the description: it may name what lies below."""
+
+    def beside(self, description: Path) -> MeshFiles:
+        """The same for another description that this one names."""
+        return MeshFiles(description, self.packages, self._environment)
+
+    def find(self, stated: str, folder: Path | None = None) -> Found:
+        """The file that a description names; `folder` is where plain paths begin, else that of the description."""
+        text = unquote(stated.strip()) if "://" in stated else stated.strip()
+        text = text.replace("\\", "/")
+        if any(len(os.fsencode(part)) > NAME_BYTES for part in text.split("/")):
+            return Found(
+                None, message=f"{stated[:VALUE_LENGTH]}… has a name that no file can have", remedy="shorten it"
+            )
+        match = _PACKAGE.fullmatch(text)
+        if match:
+            return self._in_package(match[1], match[2], text)
+        if text.startswith("file:"):
+            text = re.sub(r"^file:(//)?", "", text)
+        elif "://" in text:
+            return Found(None, message=f"{stated} is not a path in a file system", remedy="name a file")
+        path = (folder or self.folder) / text
+        return Found(path, self.home)
+
+    def package(self, name: str) -> Path | None:
+        """The folder of a package: the one that is stated, else the first that says of itself that it is one, else the
+        first of its name."""
+        if name in self.packages and self.packages[name].is_dir():
+            return self.packages[name]
+        there = [root for root in self._roots(name) if root.is_dir()]
+        return next((root for root in there if _is_package(root)), next(iter(there), None))
+
+    def _in_package(self, name: str, rest: str, stated: str) -> Found:
+        for root in self._roots(name):
+            path = root / rest
+            if path.is_file():
+                return Found(path, root)
+        parts = rest.split("/")
+        for base in _above(self.folder, PACKAGE_LEVELS):  # a package that was renamed, or copied without its folder
+            for k in range(len(parts)):
+                path = base.joinpath(*parts[k:])
+                if path.is_file():
+                    return Found(path, base)
+        known = self.package(name)
+        if known is not None:
+            return Found(known / rest, known)  # it is not there, which is told as of any other path
+        for base in _above(self.folder, PACKAGE_LEVELS):
+            for k in range(len(parts) - 2):  # two of its folders stand there, and the file does not
+                if base.joinpath(*parts[k:-1]).is_dir():
+                    return Found(base.joinpath(*parts[k:]), base)
+        remedy = f"add --package {name}=FOLDER, or set ROS_PACKAGE_PATH"
+        return Found(None, message=f"{stated} is not found: no folder {name} is known", remedy=remedy)
+
+    def _roots(self, name: str) -> Iterator[Path]:
+        """Folders that may be the package: as stated, beside the description, then as the environment says."""
+        if name in ("", ".", ".."):
+            yield from (self.folder, self.home)[: 0 if name else 2]
+            return
+        if name in self.packages:
+            yield self.packages[name]
+        for above in _above(self.folder, None):
+            if above.name == name:
+                yield above
+            if (above / name).is_dir():
+                yield from (above / name, above / name / "share" / name)  # which is where colcon installs it
+            if (above / MODELS / name).is_dir():
+                yield above / MODELS / name
+        for prefix in _paths(self._environment.get("AMENT_PREFIX_PATH")):
+            yield prefix / "share" / name
+        for folder in (path for variable in SEARCHED for path in _paths(self._environment.get(variable))):
+            yield from (folder / name, folder) if folder.name == name else (folder / name,)
+        if name in self._around:
+            yield self._around[name]
+
+    @cached_property
+    def _around(self) -> Mapping[str, Path]:
+        """The packages of the workspace of the description, by the names that they give themselves: those below the
+        folder `src` that it is in; without one, those beside its own."""
+        full = self.home.resolve()
+        source = next((above for above in full.parents if above.name == "src"), None)
+        return packages_below(full.parent, 1) if source is None else packages_below(source, WORKSPACE_LEVELS)
+
+
+def packages_below(folder: Path, levels: int) -> dict[str, Path]:
+    """The packages in a folder, and so many levels of folders below it, by the names that they give themselves; of
+    several of one name the nearest, then the first by name. Linked folders are packages, or not entered."""
+    out: dict[str, Path] = {}
+    for entries, deeper in _level_by_level(folder, levels):
+        for entry in entries:
+            if entry.name.startswith(".") or not _is(entry.is_dir):
+                continue
+            name = package_name(Path(entry.path))
+            if name is not None:
+                out.setdefault(name, Path(entry.path))
+            elif not entry.is_symlink():
+                deeper.append(Path(entry.path))
+    return out
+
+
+def package_name(folder: Path) -> str | None:
+    """The name that a package gives itself; None where the folder is none."""
+    try:
+        with open(folder / _PACKAGE_FILES[0], "rb") as stream:
+            stated = _NAME.search(stream.read(PACKAGE_BYTES))
+    except OSError:
+        return None
+    return None if stated is None else stated[1].decode("utf-8", "replace")
+
+
+def _is_package(folder: Path) -> bool:
+    return any((folder / name).is_file() for name in _PACKAGE_FILES)
+
+
+def files_below(folder: Path, suffixes: Sequence[str]) -> list[Path]:
+    """Files with these suffixes in a folder and those below it, sorted. Linked folders are not entered."""
+    out: list[Path] = []
+    for entries, deeper in _level_by_level(folder):
+        for entry in entries:
+            if entry.is_dir(follow_symlinks=False):
+                deeper.append(Path(entry.path))
+            elif entry.name.lower().endswith(tuple(suffixes)) and _is(entry.is_file):
+                out.append(Path(entry.path))
+    return sorted(out)
+
+
+def _level_by_level(folder: Path, levels: int | None = None) -> Iterator[tuple[list[os.DirEntry[str]], list[Path]]]:
+    """What a folder holds, by name, and a list for those of its folders that are to be entered, which follow when all
+    of its level have been; until so many entries were looked at that it is no package and no workspace."""
+    level, looked_at = [folder], 0
+    while level and (levels is None or levels > 0):
+        levels = None if levels is None else levels - 1
+        deeper: list[Path] = []
+        for above in level:
+            try:
+                entries = sorted(os.scandir(above), key=lambda entry: entry.name)
+            except OSError:
+                continue
+            looked_at += len(entries)
+            if looked_at > ENTRIES_MOST:
+                return
+            yield entries, deeper
+        level = deeper
+
+
+def _is(asked: Callable[[], bool]) -> bool:
+    """Whether an entry is what is asked, or a link to such a thing; a link to itself is nothing."""
+    try:
+        return asked()
+    except OSError:
+        return False
+
+
+def _paths(text: str | None) -> list[Path]:
+    return [Path(item) for item in (text or "").split(os.pathsep) if item]
+
+
+def _above(folder: Path, levels: int | None) -> Sequence[Path]:
+    """The folder and those above it; the given number of them."""
+    full = folder.resolve()
+    return [full, *full.parents][:levels]
+
+
+def _home(folder: Path) -> Path:
+    """The nearest folder above with the file of a package; else the one above the description's."""
+    full = folder.resolve()
+    for above in [full, *full.parents][:PACKAGE_LEVELS]:
+        if _is_package(above):
+            return above
+    return full.parent

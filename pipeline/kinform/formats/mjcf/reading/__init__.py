@@ -1,0 +1,1 @@
+"""Reader of MJCF: `reader.read` makes a `Robot` of a file."""

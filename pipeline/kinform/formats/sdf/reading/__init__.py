@@ -1,0 +1,1 @@
+"""Reader of SDF: `reader.read` makes a `Robot` of a file."""

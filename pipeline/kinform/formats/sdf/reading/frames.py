@@ -1,0 +1,116 @@
+"""Frames of an SDF: each stands in another one of its model, or in the world; and to which link each is attached.
+
+Names are full ones, "outer::inner::name", as SDFormat scopes them; "" is the world. A model has the frame
+"model::__model__", and its own name for it. Reference: SDFormat, "Pose Frame Semantics" (sdformat.org, 1.7 and later).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinform.formats.description.elements import Element, Xml
+from kinform.foundation.algebra.displacements import inverse
+from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.frozen import dataclass
+from kinform.model.arrays import Array
+
+WORLD = ""
+MODEL = "__model__"
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """A frame where it is stated."""
+
+    scope: str
+    """The prefix of the names that it can say, "outer::"."""
+    relative: str
+    """The name, as stated, of the frame in which its pose is."""
+    X: Array
+    """(4, 4), its pose there."""
+    element: Element
+    attached: str | None = None
+    """The name, as stated, of what it is fixed to; None: a link itself."""
+    placed: str | None = None
+    """Of a model whose frame of this name is to have the pose."""
+
+
+class Frames:
+    """All frames of a file, by their full names."""
+
+    def __init__(self, xml: Xml):
+        self._xml = xml
+        self._frames: dict[str, Frame] = {}
+        self._poses: dict[tuple[str, str], Array | None] = {}
+
+    def add(self, name: str, frame: Frame) -> None:
+        """A frame; what had the name before keeps it: links before joints."""
+        self._frames.setdefault(name, frame)
+
+    def full(self, scope: str, stated: str, element: Element, what: str) -> str | None:
+        """The full name of a frame that is stated in a scope; None after noting that there is none."""
+        if stated in ("", "world", "__root__"):
+            return WORLD
+        name = scope + stated
+        if name in self._frames:
+            return name
+        if stated == MODEL and not scope:
+            return WORLD
+        known = [other.removeprefix(scope) for other in self._frames if other.startswith(scope)]
+        self._xml.complain(
+            element, f"{what} {in_quotes(stated)} is not there", did_you_mean(stated, known, "the frames")
+        )
+        return None
+
+    def pose(self, name: str) -> Array | None:
+        """(4, 4) in the world; None after noting why there is none."""
+        return self._pose(name, WORLD, ())
+
+    def link_of(self, name: str, links: dict[str, Element]) -> str | None:
+        """The link that a frame is attached to, "" for the world; None after noting why there is none."""
+        seen: list[str] = []
+        while name not in links and name != WORLD:
+            frame = self._frames[name]
+            if name in seen:
+                wrong = f"frames are attached to each other in a circle: {in_quotes(name)}"
+                self._xml.complain(frame.element, wrong, "attach one of them to a link")
+                return None
+            seen.append(name)
+            if frame.attached is None:
+                self._xml.complain(frame.element, f"{in_quotes(name)} is attached to no link", "name a link")
+                return None
+            below = self.full(frame.scope, frame.attached, frame.element, "attached_to")
+            if below is None:
+                return None
+            name = below
+        return name
+
+    def _pose(self, name: str, base: str, above: tuple[str, ...]) -> Array | None:
+        """(4, 4) of a frame in `base`, which is the world or the model that it is in."""
+        if name == base:
+            return np.eye(4)
+        key = (name, base)
+        if key not in self._poses:
+            frame = self._frames[name]
+            if name in above:
+                circle = " → ".join(in_quotes(other) for other in (*above[above.index(name) :], name))
+                self._xml.complain(frame.element, f"poses are relative to each other in a circle: {circle}",
+                                   "state one of them relative to the model")  # fmt: skip
+                return None
+            self._poses[key] = self._composed(frame, name, base, (*above, name))
+        return self._poses[key]
+
+    def _composed(self, frame: Frame, name: str, base: str, above: tuple[str, ...]) -> Array | None:
+        relative = self.full(frame.scope, frame.relative, frame.element, "the pose: its relative_to")
+        if relative is None:
+            return None
+        X = self._pose(relative, base, above)
+        if X is None:
+            return None
+        out = X @ frame.X
+        if frame.placed is not None:
+            inner = name.removesuffix(MODEL)
+            full = self.full(inner, frame.placed, frame.element, "placement_frame")
+            X_MP = None if full is None else self._pose(full, name, ())
+            return None if X_MP is None else np.asarray(out @ inverse(X_MP))
+        return np.asarray(out)

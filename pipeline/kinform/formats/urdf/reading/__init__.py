@@ -1,0 +1,1 @@
+"""Reader of URDF: `reader.read` makes a `Robot` of a file."""

@@ -1,0 +1,121 @@
+"""Contact that may be read in two ways: what else is known chooses, or the joint stays ambiguous.
+
+Two things choose. The function, where it states a joint that one of the readings is: the joint is `inferred` then, and
+the other reading is kept beside it; nothing but the choice is taken from the function. That a pin in a slot holds is
+chosen so, and never that it does not: both sides of the slot are there. And a pin that several bodies hold about one
+line is seated in the hole that it stands in, as dowels and bolts are: nothing could drive it along.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from kinform.foundation.algebra.vectors import box, cross, foot, norm
+from kinform.kinematics.constants import INTENDED_AXIS
+from kinform.kinematics.joints.bodies.stated_joints import Pair, pair_between
+from kinform.kinematics.joints.pair.joint import reading_of
+from kinform.kinematics.joints.pair.question import Answer
+from kinform.model.assembly import Assembly
+from kinform.model.contacts import Patch
+from kinform.model.function import IntendedJoint
+from kinform.model.kinematics import Joint
+from kinform.model.names import BodyName, PartName
+
+ON_ONE_LINE = 1e-3
+"""Sine between axes, and share of the assembly's size between lines, of contacts of a pin that are about one line."""
+READING_PLACE = 0.1
+"""Share of the size of a contact by which the place of an intended joint may be off that of the reading that it
+chooses."""
+
+
+Decided = Mapping[Pair, tuple[Answer, Joint]]
+
+
+def choose_readings(
+    assembly: Assembly, of_part: Mapping[PartName, BodyName], decided: Decided, patches: Sequence[Patch], size: float
+) -> dict[Pair, tuple[Answer, Joint]]:
+    """The decided pairs, with those that may be read in two ways as what chooses reads them.
+
+    `patches` are those of the joints, `size` (m) is that of the assembly.
+    """
+    wanted = {
+        pair: intended
+        for intended in assembly.function.joints
+        if (pair := pair_between(assembly, of_part, intended.between)) is not None
+    }
+    seated = _pins(decided, size)
+    out: dict[Pair, tuple[Answer, Joint]] = {}
+    for pair, (answer, joint) in decided.items():
+        if joint.readings and pair in wanted:
+            out[pair] = _as_intended(wanted[pair], answer, joint, patches)
+        elif joint.readings and seated.intersection(pair) and joint.readings[0].cause == "stop":
+            reason = f"{joint.reason}; a pin that several bodies hold about one line is seated"
+            out[pair] = answer, replace(joint, status="determined", reason=reason)
+        else:
+            out[pair] = answer, joint
+    return out
+
+
+def _as_intended(
+    intended: IntendedJoint, answer: Answer, joint: Joint, patches: Sequence[Patch]
+) -> tuple[Answer, Joint]:
+    """The reading that is the intended joint, as inferred; unchanged where none is."""
+    assert answer.other is not None
+    first, second = joint, answer.other
+    open_to = (first,) if joint.readings[0].cause == "pin" else (first, second)
+    chosen = next((j for j in open_to if _is(j, intended, patches)), None)
+    if chosen is None:
+        return answer, joint
+    left = reading_of(first, "stop" if first.blockers else "") if chosen is second else joint.readings[0]
+    reason = f"{joint.reason}; the function states {chosen.type}: {intended.name}"
+    strict = joint.twists if chosen is second else answer.strict
+    inferred = replace(
+        chosen, status="inferred", reason=reason, evidence=(*chosen.evidence, "function"), readings=(left,)
+    )
+    return replace(answer, strict=strict), inferred
+
+
+def _is(joint: Joint, intended: IntendedJoint, patches: Sequence[Patch]) -> bool:
+    """Is it the intended joint: of its type, with its axis and place as far as these are stated?
+
+    By how much axes may differ is said by the contact; what is left over is a finding (KF403, KF404).
+    """
+    if joint.type != intended.type:
+        return False
+    if joint.axis is None or intended.axis is None:
+        return True
+    if norm(cross(joint.axis, intended.axis)) > INTENDED_AXIS:
+        return False
+    if intended.point is None or joint.point is None or joint.type in ("prismatic", "planar"):
+        return True
+    apart = joint.point - foot(intended.point, joint.axis, joint.point)
+    low, high = box(np.concatenate([patches[k].points for k in joint.patches]))
+    return norm(apart) <= READING_PLACE * norm(high - low)
+
+
+def _pins(decided: Decided, size: float) -> set[BodyName]:
+    """Bodies that at least two others hold about one line, and nothing else."""
+    joints: dict[BodyName, list[Joint]] = {}
+    for pair, (_, joint) in decided.items():
+        for name in pair:
+            joints.setdefault(name, []).append(joint)
+    return {name for name, of in joints.items() if len(of) > 1 and _about_one_line(of, size)}
+
+
+def _about_one_line(joints: Sequence[Joint], size: float) -> bool:
+    lead = next((j for j in joints if j.type in ("revolute", "cylindrical") and j.axis is not None), None)
+    if lead is None or lead.axis is None or lead.point is None:
+        return False
+    for joint in joints:
+        if joint.type not in ("revolute", "cylindrical", "planar", "screw") or joint.axis is None:
+            return False
+        if norm(cross(joint.axis, lead.axis)) > ON_ONE_LINE:
+            return False
+        if joint.type != "planar" and joint.point is not None:
+            apart = joint.point - foot(lead.point, lead.axis, joint.point)
+            if norm(apart) > ON_ONE_LINE * size:
+                return False
+    return True

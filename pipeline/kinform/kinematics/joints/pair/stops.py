@@ -1,0 +1,266 @@
+"""End stops: faces that end a motion at the drawn pose, and do not guide it.
+
+The rows of a pair take every patch for a constraint in both senses, so that a face which a lever just touches holds it.
+A *stop candidate* is a set of faces whose removal frees a motion that they oppose in one sense only. One sense alone is
+no doubt: a block rests on a table, a shaft on its collar. What tells a guide from a stop is where the face is:
+
+- A collar or shoulder lies round the guide and beyond it: the motion is meant to be held there.
+- A face inside of the guide's own cross-section, at the end of a guide that is long enough to slide in, may be the
+  bottom of a bore that a piston has reached, or the step bearing of a shaft. So may a face beside the axis.
+- A face that opposes a turn in one sense is what the lever came to rest on.
+- A rim that stands in a seat beside a guide may be either: the head of a countersunk screw is tightened, a valve opens.
+- A flank beside a plane contact makes a slider of it where it runs along with it, and is a stop where it is short.
+
+Where the candidate may be either, both readings are kept, and the joint is ambiguous until something else chooses.
+
+Whether a guide is long enough to slide in is the rule for bushings: shorter than half of its width it jams, as friction
+at its edges then holds any load beside its axis (W. Beitz, K.-H. Küttner, Dubbel, guides).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from kinform.foundation.algebra.vectors import cross, perpendicular, sine, widest_turn
+from kinform.frozen import dataclass
+from kinform.kinematics.joints.pair.evidence import COAXIAL, Evidence, Item
+from kinform.kinematics.joints.pair.freedoms import freedoms_beyond
+from kinform.kinematics.joints.pair.in_step import Steps
+from kinform.kinematics.joints.pair.lower_pairs import JointForm
+from kinform.model.arrays import Array, Flags
+from kinform.model.tolerances import Tolerances
+
+ALONG_AXIS = 0.01
+"""Normals and axes this near (sine) to an axis are along it."""
+OPPOSING_SPEED = 0.05
+"""Share of a patch's greatest normal speed that is opposition, and no rounding beside it."""
+FACING_ONE_WAY = 1e-4
+"""1 − cosine of normals of faces that face one way."""
+SLIDES_FROM = 0.5
+"""Length of a guide over its width from which on it slides and does not jam."""
+ONE_SECTION = 0.05
+"""Relative difference of radii that are one cross-section."""
+INSIDE_GUIDE = 1.05
+"""Faces that reach no further than this, in half widths of the guide, are inside of its cross-section."""
+ROUND_FROM = 0.3
+"""Points of a face beyond this share of its reach show whether it goes round the axis."""
+BESIDE_AXIS = math.radians(200.0)
+"""rad without any of a face about the axis, beyond which it lies beside it."""
+SHORT_FLANK = 0.5
+"""Length of a flank over that of the faces beside it below which it guides nothing."""
+
+
+ROLES = {
+    "stop": "an end stop",
+    "sliver": "too slight to decide",
+    "flank": "the flank of a tooth or cam, which bears nothing",
+    "prism": "those of a prism",
+    "pin": "of a pin that has play in its slot",
+    "bend": "a line along which a roller lies in its ring",
+}
+"""What faces are that may not be meant to hold."""
+
+
+@dataclass(frozen=True, eq=False)
+class OtherReading:
+    """What the patches say without some that may not be meant."""
+
+    form: JointForm
+    basis: Array
+    """(6, k) scaled freedoms."""
+    out: tuple[int, ...]
+    """Items that are left out."""
+    role: str
+    """What those are then: stop, sliver, flank or pin. prism: nothing is left out; flats do not let the bodies
+    turn. bend: nor here; a roller turns less in its ring than its line says."""
+
+
+def stop_reading(
+    evidence: Evidence,
+    twists: Array,
+    preserved: Flags,
+    strict: Array,
+    tolerances: Tolerances,
+    counts: Flags | None = None,
+) -> Steps[OtherReading | None]:
+    """The other reading of a pair whose freedoms are `strict` (6, k), if some of its faces may be a stop; None if not.
+
+    `twists` (6, n) are candidate motions, `preserved` (items, n) which patches slide on themselves under them.
+    Of several stops the one with the least area. `counts` (items,): what is left of the contact; None: all of it.
+    """
+    best: tuple[float, OtherReading] | None = None
+    every = np.ones(len(evidence.items), dtype=bool) if counts is None else counts
+    for out in _candidates(evidence, every):
+        keep = every.copy()
+        keep[list(out)] = False
+        free = preserved[keep].all(axis=0) if keep.any() else np.zeros(twists.shape[1], dtype=bool)
+        if not (free & ~preserved[list(out)].all(axis=0)).any():
+            continue
+        basis, freed = yield from freedoms_beyond(evidence, twists, preserved, keep, tolerances, strict)
+        if basis.shape[1] <= strict.shape[1]:
+            continue
+        reading = OtherReading(evidence.form(basis), basis, out, "stop")
+        area = sum(evidence.items[k].area for k in out)
+        if (best is None or area < best[0]) and _may_be_stop(evidence, strict, freed, reading, keep):
+            best = area, reading
+    return None if best is None else best[1]
+
+
+def seat_reading(
+    evidence: Evidence, twists: Array, preserved: Flags, strict: Array, sure: Flags, tolerances: Tolerances
+) -> Steps[OtherReading | None]:
+    """The other reading of a pair whose freedoms are `strict` (6, k), if all that holds it are surfaces that are known
+    (`sure` (items,)) and rims in seats beside them, which end one motion in one sense; None if not."""
+    lines = np.array([item.patch.kind == "line" and not item.patch.one_sided for item in evidence.items])
+    if not lines.any() or lines.all() or not (lines | sure).all():
+        return None
+    basis, freed = yield from freedoms_beyond(evidence, twists, preserved, ~lines, tolerances, strict)
+    out = tuple(int(k) for k in np.flatnonzero(lines))
+    if freed.shape[1] != 1 or not one_sense(evidence, freed[:, 0], out):
+        return None
+    return OtherReading(evidence.form(basis), basis, out, "stop")
+
+
+def _candidates(evidence: Evidence, counts: Flags) -> list[tuple[int, ...]]:
+    """Sets of items, of those that count (items,), that could be stops: planes that face one way, and single cones and
+    balls."""
+    items = evidence.items
+    some = [(k, items[k]) for k in np.flatnonzero(counts).tolist()]
+    planes = sorted((k for k, i in some if i.patch.kind == "plane"), key=lambda k: (-items[k].area, k))
+    sets: list[tuple[int, ...]] = []
+    left = list(planes)
+    while left:
+        normal = items[left[0]].normals[0]
+        facing = [k for k in left if float(items[k].normals[0] @ normal) > 1.0 - FACING_ONE_WAY]
+        sets.append(tuple(sorted(facing)))
+        left = [k for k in left if k not in facing]
+    sets += [(k,) for k, i in some if i.patch.kind in ("cone", "sphere") and not i.patch.one_sided]
+    return [found for found in sets if len(found) < len(some)]
+
+
+def _may_be_stop(evidence: Evidence, strict: Array, motions: Array, reading: OtherReading, keep: Flags) -> bool:
+    """Is there nothing that tells the faces left out to be guides? `motions` (6, n) is what they oppose."""
+    guides = evidence.chosen(keep)
+    faces = [evidence.items[k] for k in reading.out]
+    if motions.shape[1] == 2:
+        return _short_flank(evidence, strict, reading, guides, faces)
+    if motions.shape[1] != 1 or not one_sense(evidence, motions[:, 0], reading.out):
+        return False
+    turned = {"fixed": ("revolute",), "prismatic": ("cylindrical",)}
+    if reading.form.type in turned.get(evidence.form(strict).type, ()):
+        return True
+    return _ends_guide(reading.form, guides, faces)
+
+
+def one_sense(evidence: Evidence, motion: Array, out: tuple[int, ...]) -> bool:
+    """Do the items oppose the motion (6,) in one sense only?"""
+    speeds = np.concatenate([evidence.rows[evidence.start[k] : evidence.start[k + 1]] @ motion for k in out])
+    most, least = float(speeds.max()), float(speeds.min())
+    large = OPPOSING_SPEED * max(most, -least)
+    return not (most > large and least < -large)
+
+
+def ends_inside(evidence: Evidence, reading: OtherReading, keep: Flags) -> bool:
+    """Is a stop at the end of what else is kept (items,), inside of its cross-section, as the bottom of a bore is?"""
+    guides = [item for k, item in enumerate(evidence.items) if keep[k] and k not in reading.out]
+    end = _end_of_guide(reading.form, guides, [evidence.items[k] for k in reading.out])
+    return end is not None and end.inside
+
+
+@dataclass(frozen=True, eq=False)
+class _End:
+    """Faces at the end of a guide that is long enough to slide in."""
+
+    inside: bool
+    """Of its cross-section."""
+    beside: bool
+    """Beside its axis."""
+
+
+def _ends_guide(form: JointForm, guides: list[Item], faces: list[Item]) -> bool:
+    """Are the faces at the end of a guide along the joint's axis, inside of its cross-section or beside its axis?"""
+    end = _end_of_guide(form, guides, faces)
+    return end is not None and (end.inside or end.beside)
+
+
+def _end_of_guide(form: JointForm, guides: list[Item], faces: list[Item]) -> _End | None:
+    """Where faces are at the end of a guide along the joint's axis; None where there is none, or it is too short."""
+    axis = form.axis
+    if axis is None:
+        return None
+    running = [i for i in guides if i.patch.kind in (*COAXIAL, "extrusion", "plane") and _runs_along(i, axis)]
+    if form.type not in ("cylindrical", "prismatic") or not running:
+        return None
+    centre = form.point if form.type == "cylindrical" else None
+    if centre is None:
+        centre = np.concatenate([i.points for i in running]).mean(axis=0)
+    across = np.array(perpendicular(axis)).T
+    lengths = [
+        (_extent(section, axis), float(_distances((section - centre) @ across).max())) for section in _sections(running)
+    ]
+    if all(length < SLIDES_FROM * 2.0 * half for length, half in lengths):
+        return None
+    ends = (np.concatenate([i.points for i in faces]) - centre) @ across
+    away = _distances(ends)
+    face_reach = float(away.max())
+    inside = face_reach <= INSIDE_GUIDE * max(half for _, half in lengths)
+    far = ends[away > ROUND_FROM * face_reach]
+    return _End(inside, widest_turn(np.arctan2(far[:, 1], far[:, 0])) > BESIDE_AXIS)
+
+
+def _extent(points: Array, axis: Array) -> float:
+    """m: how far the points (n, 3) reach along the axis."""
+    along = points @ axis
+    return float(along.max() - along.min())
+
+
+def _distances(across: Array) -> Array:
+    """(n,) m from the axis, of what is seen along it (n, 2)."""
+    return np.asarray(np.sqrt(across[:, 0] ** 2 + across[:, 1] ** 2))
+
+
+def _sections(running: list[Item]) -> list[Array]:
+    """Points of guides of one cross-section: a stepped shaft that slides leaves its steps behind."""
+    rounds: list[tuple[float, list[Array]]] = []
+    flat = [item.points for item in running if item.patch.kind != "cylinder"]
+    for item in running:
+        if item.patch.kind != "cylinder":
+            continue
+        radius = max(item.patch.radii)
+        same = next((of for r, of in rounds if abs(r - radius) <= ONE_SECTION * r), None)
+        if same is None:
+            rounds.append((radius, [item.points]))
+        else:
+            same.append(item.points)
+    return [np.concatenate(of) for of in (*(of for _, of in rounds), flat) if of]
+
+
+def _runs_along(item: Item, axis: Array) -> bool:
+    """Does the patch slide on itself along the axis?"""
+    if item.patch.kind == "plane":
+        return abs(float(item.patch.axis @ axis)) < ALONG_AXIS
+    return sine(item.patch.axis, axis) < ALONG_AXIS
+
+
+def _short_flank(
+    evidence: Evidence, strict: Array, reading: OtherReading, guides: list[Item], faces: list[Item]
+) -> bool:
+    """Do short faces, all on one side, make a slider of a plane contact?"""
+    form = evidence.form(strict)
+    if form.type != "prismatic" or reading.form.type != "planar" or form.axis is None or reading.form.axis is None:
+        return False
+    sideways = cross(form.axis, reading.form.axis)
+    senses = {float(item.normals[0] @ sideways) > 0.0 for item in faces}
+    length, guided = (float(np.ptp(np.concatenate([i.points for i in of]) @ form.axis)) for of in (faces, guides))
+    return len(senses) == 1 and length < SHORT_FLANK * guided
+
+
+def faces_in_words(evidence: Evidence, out: tuple[int, ...]) -> str:
+    """Patches in words: "the plane of 12.5 mm² between base and rod"."""
+    items = [evidence.items[k] for k in out]
+    area = 1e6 * sum(item.patch.area for item in items)
+    largest = max(items, key=lambda item: (item.patch.area, item.patch.parts))
+    kinds = largest.patch.kind if len(items) == 1 else f"{largest.patch.kind} (in {len(items)} pieces)"
+    return f"the {kinds} of {area:.3g} mm² between {' and '.join(largest.patch.parts)}"

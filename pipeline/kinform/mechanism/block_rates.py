@@ -1,0 +1,304 @@
+"""Closure of the loops of one biconnected block: independent joint rates, each driven by one joint.
+
+A block of few rates is decided by the singular values of all its closure equations at once (Davies 1981). A large one
+is reduced loop by loop: six equations, recentred and rescaled on the loop, eliminate up to six rates, chosen by
+pivoting, from all that depend on them; what is left are the freedoms. Equations and solutions stay sparse.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from kinform.foundation.algebra.screws import Frame, scaled
+from kinform.foundation.algebra.vectors import cross, norm
+from kinform.foundation.graphs.cycles import Cycle, short_cycles
+from kinform.frozen import dataclass
+from kinform.kinematics.constants import CLOSED, FAR_AXIS, LEAST_FRAME, SIGMAS
+from kinform.model.arrays import Array, Ints
+
+PART_OF_TURN = 1e-3
+"""Share of the fastest turn of a joint's freedoms below which a combination of them is a slide."""
+LOOSEST_CLOSED = 1e-4
+"""Loops whose axes are in no relation that snapping knows (Bennett's) close to `SIGMAS` times the uncertainty of the
+axes, but to no more than this relative singular value."""
+FEW_RATES = 160
+"""Blocks of at most so many joint rates are decided at once."""
+MOST_RATES = 4000
+"""Largest number of joint rates for which singular values are affordable."""
+SURE_DROPPED = 1e-10
+"""In the elimination, what is dropped is below this, ..."""
+SURE_KEPT = 1e-5
+"""... and what is kept above this, or else the decision is left to singular values."""
+PIVOT_SHARE = 0.3
+"""Any column of at least this share of the largest may be chosen: preference decides among these."""
+RATE_ROUNDING = 1e-10
+"""Rates below this share of the largest of a solution are zero."""
+FACTOR_ROUNDING = 1e-13
+"""Factors of an elimination below this are zero, ..."""
+SUM_ROUNDING = 1e-14
+"""... and sums of products of them below this."""
+AXES_RANK = 1e-6
+"""Relative singular value below which axes are parallel where the point nearest to all of them is looked for."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Joint rates that close all loops, driven by one coordinate whose rate is 1."""
+
+    driver: int
+    """Column of the driving rate."""
+    columns: Ints
+    """Ascending."""
+    rates: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """A biconnected block with its loops and what they leave free. Columns count the rates of its joints in order."""
+
+    edges: tuple[int, ...]
+    """Joints, ascending."""
+    cycles: tuple[Cycle, ...]
+    """A basis of its loops, the shortest first, over positions in `edges`."""
+    frame: Frame
+    solutions: tuple[Solution, ...]
+    sure: bool = True
+    """False: what is free was decided close to rounding."""
+
+
+def close_block(
+    edges: Sequence[tuple[int, int]], spaces: Sequence[Array], block: Sequence[int], prefer: Array, size: float,
+    few: int = FEW_RATES, doubts: Array | None = None,
+) -> Block:  # fmt: skip
+    """Closure of the joints `block` (indices into `edges` and `spaces`).
+
+    `prefer` (rates of the block,): a rate with a smaller number is rather chosen as driver. `size` of the assembly
+    (m). Blocks of more than `few` rates are reduced loop by loop. `doubts` (joints, 2): uncertainty of the
+    directions (rad) and places (m) of the axes of all joints.
+    """
+    members = [spaces[k] for k in block]
+    count = sum(map(len, members))
+    if len(block) == 1:  # nothing closes, and nothing is compared in a frame
+        free = tuple(Solution(c, np.array([c]), np.ones(1)) for c in range(count))
+        return Block(tuple(block), (), Frame(np.zeros(3), size), free)
+    frame = axes_frame(members, size)
+    local = {n: i for i, n in enumerate(sorted({n for k in block for n in edges[k]}))}
+    cycles = short_cycles(len(local), [(local[edges[k][0]], local[edges[k][1]]) for k in block])
+    if count == 0:
+        return Block(tuple(block), tuple(cycles), frame, ())
+    norms = np.concatenate([np.linalg.norm(scaled(s.T, frame), axis=0) for s in members])
+    solutions, sure = None, True
+    if count > few:
+        solutions, sure = _eliminate(members, cycles, norms, prefer, size)
+    if solutions is None or (not sure and count <= MOST_RATES):
+        closed = max(CLOSED, frame.rounding)
+        if doubts is not None:
+            blur = doubts[list(block)]
+            closed = max(
+                closed,
+                min(LOOSEST_CLOSED, SIGMAS * float((blur[:, 0] + blur[:, 1] / frame.length).max())),
+            )
+        nothing = max(RATE_ROUNDING, frame.rounding)
+        solutions, sure = _decompose(loop_matrix(members, cycles, frame, norms), prefer, closed, nothing), True
+    return Block(tuple(block), tuple(cycles), frame, _in_joint_units(solutions, norms), sure)
+
+
+def loop_matrix(spaces: Sequence[Array], cycles: Sequence[Cycle], frame: Frame, norms: Array) -> Array:
+    """(6 loops, rates) closure equations in scaled twists, each column divided by its norm."""
+    start = np.cumsum([0, *map(len, spaces)])
+    columns = np.hstack([scaled(s.T, frame) for s in spaces]) / norms
+    matrix = np.zeros((6 * len(cycles), columns.shape[1]))
+    for row, cycle in enumerate(cycles):
+        for k, sign in cycle:
+            here = slice(start[k], start[k + 1])
+            matrix[6 * row : 6 * row + 6, here] = sign * columns[:, here]
+    return matrix
+
+
+def axes_frame(spaces: Sequence[Array], size: float) -> Frame:
+    """Centre and size of the axes of some joints, so that turns and slides compare. Axes that meet have
+    no size of their own: then a share of the assembly's counts."""
+    middle = _slowest(spaces)
+    turns = np.array([t for space in spaces for t in _by_turn(space) if _turns(t, middle, size)]).reshape(-1, 6)
+    if not len(turns):
+        return Frame(np.zeros(3), size)
+    # the point of an axis nearest to the origin may be far away: take those nearest to the middle of all axes
+    feet = _feet(turns, np.zeros(3))
+    axes = turns[:, :3] / np.linalg.norm(turns[:, :3], axis=1)[:, None]
+    across = np.eye(3) - axes[:, :, None] * axes[:, None, :]
+    start = feet.mean(axis=0)
+    missing = np.einsum("nij,nj->i", across, feet - start)
+    centre = start + np.linalg.lstsq(across.sum(axis=0), missing, rcond=AXES_RANK)[0]
+    frame = Frame.of(np.vstack([_feet(turns, centre), centre]))
+    return Frame(frame.centre, max(frame.length, LEAST_FRAME * size))
+
+
+def _by_turn(space: Array) -> Array:
+    """The same twists (f, 6) combined so that what turns and what slides are apart: of a turn and a slide, each with a
+    part of the other, the axis may be anywhere, and so may that of a slide that turns by rounding."""
+    if len(space) < 2:
+        return space
+    left, values, _ = np.linalg.svd(space[:, :3])
+    turning = int(np.count_nonzero(values > PART_OF_TURN * values[0])) if values[0] > 0.0 else 0
+    return np.asarray(left.T[:turning] @ space) if 0 < turning < len(space) else space
+
+
+def _slowest(spaces: Sequence[Array]) -> Array:
+    """(3,) the point that all the twists together move least: beside their axes, wherever in the world these are."""
+    twists = np.concatenate([np.zeros((0, 6)), *spaces])
+    omega, velocity = twists[:, :3], twists[:, 3:]
+    across = (omega**2).sum() * np.eye(3) - omega.T @ omega
+    return np.asarray(np.linalg.lstsq(across, cross(omega, velocity).sum(axis=0), rcond=AXES_RANK)[0])
+
+
+def _turns(twist: Array, middle: Array, size: float) -> bool:
+    """Whether a twist turns, beyond the rounding of a slide, seen from the `middle` (3,) of all."""
+    return norm(twist[:3]) * size > FAR_AXIS * norm(twist[3:] + cross(twist[:3], middle))
+
+
+def _feet(turns: Array, centre: Array) -> Array:
+    """(n, 3) points of the axes of the twists (n, 6) nearest to `centre`."""
+    omega = turns[:, :3]
+    velocity = turns[:, 3:] + cross(omega, centre)
+    feet: Array = centre + cross(omega, velocity) / (omega**2).sum(axis=1)[:, None]
+    return feet
+
+
+def _decompose(matrix: Array, prefer: Array, closed: float, nothing: float) -> list[Solution]:
+    """Solutions from the singular values of all equations at once; shares of the largest singular value and of the
+    largest rate of a solution that are zero."""
+    _, values, right = np.linalg.svd(matrix)
+    rank = int(np.count_nonzero(values > closed * max(values[0], 1e-300))) if len(values) else 0
+    null: Array = right[rank:]
+    drivers, _ = _pivots(null, -prefer)
+    # the preferred column that is well conditioned drives; all others follow from these
+    reduced = np.linalg.solve(null[:, drivers], null)
+    reduced[:, drivers] = np.eye(len(drivers))
+    out = []
+    for driver, row in sorted(zip(drivers, reduced, strict=True), key=lambda pair: pair[0]):
+        columns = np.flatnonzero(np.abs(row) > nothing * np.abs(row).max())
+        out.append(Solution(driver, columns, row[columns]))
+    return out
+
+
+def _eliminate(
+    spaces: Sequence[Array], cycles: Sequence[Cycle], norms: Array, prefer: Array, size: float
+) -> tuple[list[Solution], bool]:
+    """Solutions by eliminating rates loop by loop, and whether every decision on the way was clear.
+
+    `depends[c]`: of each rate c, by which rates it is expressed so far, and with which factors; at first by itself. A
+    loop's six equations are written in the rates that are free by then, and determine up to six of them.
+    `users[c]`: the rates that are expressed by c.
+    """
+    start = np.cumsum([0, *map(len, spaces)])
+    depends: list[dict[int, float]] = [{c: 1.0} for c in range(int(start[-1]))]
+    users: list[set[int]] = [{c} for c in range(int(start[-1]))]
+    sure = True
+    for cycle in _by_place(cycles):
+        frame = axes_frame([spaces[k] for k, _ in cycle], size)
+        lever: dict[int, Array] = {}
+        scale = 0.0
+        for k, sign in cycle:
+            columns = sign * scaled(spaces[k].T, frame) / norms[start[k] : start[k + 1]]
+            scale = max(scale, float(np.linalg.norm(columns, axis=0).max(initial=0.0)))
+            for n, column in enumerate(range(start[k], start[k + 1])):
+                for free, factor in depends[column].items():
+                    lever[free] = lever.get(free, 0.0) + factor * columns[:, n]
+        free_columns = np.array(sorted(lever), dtype=np.int64)
+        if not len(free_columns):
+            continue
+        matrix = np.array([lever[int(c)] for c in free_columns]).T / scale
+        pivots, clear = _pivots(matrix, prefer[free_columns])
+        sure &= clear
+        if pivots:
+            _substitute(depends, users, free_columns, matrix, pivots)
+    return _solutions(depends), sure
+
+
+def _by_place(cycles: Sequence[Cycle]) -> list[Cycle]:
+    """The loops in an order in which each lies beside those before it, so that few rates are open at a time."""
+    around: dict[int, list[int]] = {}
+    for n, cycle in enumerate(cycles):
+        for k, _ in cycle:
+            around.setdefault(k, []).append(n)
+    order: list[int] = []
+    seen = [False] * len(cycles)
+    for first in range(len(cycles)):
+        if seen[first]:
+            continue
+        queue, seen[first] = [first], True
+        for n in queue:
+            order.append(n)
+            for other in sorted({m for k, _ in cycles[n] for m in around[k] if not seen[m]}):
+                seen[other] = True
+                queue.append(other)
+    return [cycles[n] for n in order]
+
+
+def _pivots(matrix: Array, prefer: Array) -> tuple[list[int], bool]:
+    """Independent columns of the matrix (m, n), at most m, and whether their number is clear.
+
+    Of the columns that are hardly shorter than the longest, each time the one with the greatest `prefer` (n,) is taken,
+    and taken out of the others (twice, for what rounding leaves).
+    """
+    rest = matrix.copy()
+    pivots: list[int] = []
+    clear = True
+    while len(pivots) < min(rest.shape):
+        norms = np.linalg.norm(rest, axis=0)
+        norms[pivots] = 0.0
+        largest = float(norms.max())
+        clear &= largest < SURE_DROPPED or largest > SURE_KEPT
+        if largest < CLOSED:
+            break
+        good = np.flatnonzero(norms >= PIVOT_SHARE * largest)
+        best = int(good[np.argmax(prefer[good])])
+        pivots.append(best)
+        unit = rest[:, best] / norms[best]
+        rest -= np.outer(unit, unit @ rest)
+        rest -= np.outer(unit, unit @ rest)
+    return pivots, clear
+
+
+def _substitute(
+    depends: list[dict[int, float]], users: list[set[int]], columns: Ints, matrix: Array, pivots: list[int]
+) -> None:
+    """Express the pivots by the other columns of the equations, wherever they are used."""
+    others = [n for n in range(len(columns)) if n not in set(pivots)]
+    factors = -np.linalg.lstsq(matrix[:, pivots], matrix[:, others], rcond=None)[0]
+    for pivot, row in zip((int(columns[p]) for p in pivots), factors, strict=True):
+        keep = np.flatnonzero(np.abs(row) > FACTOR_ROUNDING)
+        by = [(int(columns[others[n]]), float(row[n])) for n in keep]
+        for user in users[pivot]:
+            factors_of = depends[user]
+            share = factors_of.pop(pivot)
+            for free, factor in by:
+                total = factors_of.get(free, 0.0) + share * factor
+                if abs(total) > SUM_ROUNDING:
+                    factors_of[free] = total
+                    users[free].add(user)
+                else:
+                    factors_of.pop(free, None)
+                    users[free].discard(user)
+        users[pivot] = set()
+
+
+def _solutions(depends: list[dict[int, float]]) -> list[Solution]:
+    """One for each rate that is left free, with all rates that are expressed by it."""
+    rows: dict[int, list[tuple[int, float]]] = {}
+    for column, by in enumerate(depends):
+        for free, factor in by.items():
+            rows.setdefault(free, []).append((column, factor))
+    out = []
+    for driver in sorted(rows):
+        largest = max(abs(f) for _, f in rows[driver])
+        kept = [(c, f) for c, f in rows[driver] if abs(f) > RATE_ROUNDING * largest]
+        out.append(Solution(driver, np.array([c for c, _ in kept]), np.array([f for _, f in kept])))
+    return out
+
+
+def _in_joint_units(solutions: Sequence[Solution], norms: Array) -> tuple[Solution, ...]:
+    """In rad/s and m/s of the joints' own twists, the driver at 1."""
+    return tuple(Solution(s.driver, s.columns, s.rates * norms[s.driver] / norms[s.columns]) for s in solutions)
