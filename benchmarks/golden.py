@@ -36,8 +36,9 @@ import numpy as np
 
 SOURCES = (".toml", ".urdf", ".xacro", ".sdf", ".xml", ".step", ".stp", ".glb", ".3mf", ".dae", ".obj", ".stl")
 EXPORTS = ("mjcf", "urdf", "sdf", "modelica", "vhdl-ams", "dot", "json", "csv")
-SKIPPED = {"fingerprint", "fingerprints", "code_version", "version", "seal", "digest"}
-"""Attributes and datasets that name the version of the code and not what it found."""
+SKIPPED = {"fingerprint", "fingerprints", "lineage", "key", "code_version", "version", "seal", "digest", "decisions"}
+"""Attributes and datasets that name the version of the code and not what it found; `decisions` is a cache that is
+sorted by such names."""
 PROSE = {"message", "remedy", "reason", "why", "note", "words", "statement", "found", "intended", "text", "description"}
 """Columns of tables, and keys of JSON, that are read by people: only the numbers in them are compared."""
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
@@ -176,7 +177,7 @@ def arrays_differ(name: str, a: np.ndarray, b: np.ndarray, tolerance: float) -> 
         yield f"{name}: shape {a.shape} → {b.shape}" if a.shape != b.shape else f"{name}: columns differ"
         return
     if a.dtype.names:
-        for column in a.dtype.names:
+        for column in (name for name in a.dtype.names if name not in SKIPPED):
             yield from arrays_differ(f"{name}.{column}", a[column], b[column], tolerance)
         return
     if a.dtype.kind in "fc":
