@@ -15,7 +15,7 @@ from kinform.foundation.algebra.screws import Frame, scaled
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.graphs.cycles import Cycle, short_cycles
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import CLOSED, FAR_AXIS, LEAST_FRAME, SIGMAS
+from kinform.mechanism.constants import CLOSED, FAR_AXIS, LEAST_FRAME, SIGMAS
 from kinform.model.arrays import Array, Ints
 
 PART_OF_TURN = 1e-3

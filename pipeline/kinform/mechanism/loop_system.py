@@ -22,7 +22,7 @@ from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import forest
 from kinform.foundation.records import altered
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import FAR_AXIS
+from kinform.mechanism.constants import FAR_AXIS
 from kinform.model.arrays import Array, Flags
 
 Index = NDArray[np.intp]

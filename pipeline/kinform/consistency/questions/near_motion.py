@@ -18,12 +18,12 @@ import numpy as np
 from kinform.foundation.algebra.vectors import norm, perpendicular
 from kinform.foundation.graphs.graph import blocks
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import CLOSED
 from kinform.kinematics.joints.axes.snapping import LINES
 from kinform.kinematics.joints.pair.joint import twists_of
 from kinform.kinematics.mobility.finite_motion import MOVING_JOINT, block_frame
 from kinform.kinematics.mobility.local_dimension import local_motions
 from kinform.kinematics.mobility.second_order import Pose
+from kinform.mechanism.constants import CLOSED
 from kinform.mechanism.joint_graph import JointGraph
 from kinform.mechanism.loop_system import LoopSystem, loop_system
 from kinform.model.arrays import Array

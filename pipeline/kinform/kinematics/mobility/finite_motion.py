@@ -20,9 +20,9 @@ from kinform.foundation.graphs.graph import UnionFind, blocks
 from kinform.foundation.in_step import in_step
 from kinform.foundation.words import counted, listed
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import LEAST_FRAME
 from kinform.kinematics.mobility.local_dimension import LocalMotions, local_motions_of_each
 from kinform.kinematics.mobility.second_order import first_order
+from kinform.mechanism.constants import LEAST_FRAME
 from kinform.mechanism.loop_system import LoopSystem, loop_system
 from kinform.model.kinematics import Coupling, FiniteCertificate, Joint
 from kinform.model.names import JointName

@@ -24,7 +24,6 @@ from kinform.foundation.algebra.screws import bracket
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.in_step import in_step
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import CLOSED
 from kinform.kinematics.mobility.gauss_newton import Ends, Walk, ends, solve
 from kinform.kinematics.mobility.second_order import (
     SLOW_ITERATIONS,
@@ -35,6 +34,7 @@ from kinform.kinematics.mobility.second_order import (
     second_order,
     units,
 )
+from kinform.mechanism.constants import CLOSED
 from kinform.mechanism.loop_system import LoopSystem
 from kinform.model.arrays import Array
 

@@ -13,7 +13,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import CLOSED, RCOND
+from kinform.kinematics.constants import RCOND
+from kinform.mechanism.constants import CLOSED
 from kinform.mechanism.loop_system import Form, LoopSystem, stacked
 from kinform.model.arrays import Array
 

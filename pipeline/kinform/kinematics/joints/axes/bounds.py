@@ -19,7 +19,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import box, norm
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import SIGMAS
+from kinform.mechanism.constants import SIGMAS
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint, Move

@@ -22,10 +22,11 @@ from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import cross, cross_matrix, norm
 from kinform.foundation.graphs.graph import blocks
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import LEAST_FRAME, RCOND
+from kinform.kinematics.constants import RCOND
 from kinform.kinematics.joints.axes.bounds import MoveBounds
 from kinform.kinematics.joints.axes.constants import EXACTLY_PARALLEL, FITTED_RANK, FITTING_ROUNDS
 from kinform.kinematics.joints.pair.joint import twists_of
+from kinform.mechanism.constants import LEAST_FRAME
 from kinform.mechanism.joint_graph import JointGraph
 from kinform.mechanism.loop_system import LoopSystem, loop_system
 from kinform.model.arrays import Array

@@ -18,11 +18,12 @@ import numpy as np
 from kinform.foundation.algebra.vectors import canonical, cross, norm, perpendicular, sine
 from kinform.foundation.records import altered
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import RCOND, SIGMAS
+from kinform.kinematics.constants import RCOND
 from kinform.kinematics.joints.axes.bounds import MoveBounds
 from kinform.kinematics.joints.axes.concurrence import Locus, meeting_shifts
 from kinform.kinematics.joints.axes.constants import MET
 from kinform.kinematics.joints.pair.joint import twists_of
+from kinform.mechanism.constants import SIGMAS
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.kinematics import Joint
 

@@ -18,8 +18,8 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import cross
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import SIGMAS
 from kinform.kinematics.joints.pair.lower_pairs import JointForm, name_space
+from kinform.mechanism.constants import SIGMAS
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.tolerances import Tolerances

@@ -15,11 +15,12 @@ import numpy as np
 from kinform.foundation.algebra.screws import rotation, translation
 from kinform.foundation.algebra.vectors import canonical, cross, foot, norm, perpendicular, sine, weighted_mean
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import ACROSS_LINE, SIGMAS
+from kinform.kinematics.constants import ACROSS_LINE
 from kinform.kinematics.joints.pair.constants import SAME_PITCH, VAGUE_AXIS
 from kinform.kinematics.joints.pair.evidence import COAXIAL, Evidence, Item, Line
 from kinform.kinematics.joints.pair.least_held import slides_across, turns_about
 from kinform.kinematics.wording import components
+from kinform.mechanism.constants import SIGMAS
 from kinform.model.arrays import Array
 
 MOST_DIRECTIONS = 24

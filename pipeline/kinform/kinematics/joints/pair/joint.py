@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical, cross, foot, norm, perpendicular, weighted_mean, widest_gap
-from kinform.kinematics.constants import SIGMAS
 from kinform.kinematics.joints.pair.canonical_basis import canonical_twists
 from kinform.kinematics.joints.pair.decision import Decision
 from kinform.kinematics.joints.pair.evidence import COAXIAL, Evidence, Item
@@ -16,6 +15,7 @@ from kinform.kinematics.joints.pair.lower_pairs import JointForm
 from kinform.kinematics.joints.pair.stops import BESIDE_AXIS, ROLES
 from kinform.kinematics.joints.pair.uncertainty import disagreement, joint_uncertainty
 from kinform.kinematics.wording import motions_in_words
+from kinform.mechanism.constants import SIGMAS
 from kinform.model.arrays import Array
 from kinform.model.kinematics import FREEDOMS, Blocker, Joint, Reading
 from kinform.model.names import BodyName, JointName

@@ -15,9 +15,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, cross_matrix, foot
-from kinform.kinematics.constants import SIGMAS
 from kinform.kinematics.joints.pair.constants import PURE_SLIDE, SAME_PITCH
 from kinform.kinematics.joints.pair.evidence import Evidence
+from kinform.mechanism.constants import SIGMAS
 from kinform.model.arrays import Array, Flags
 
 CONE_SLACK = 1e-6
