@@ -80,10 +80,9 @@ def designs_of(tree: Path, folders: list[Path], robots: Path | None, score: Path
             yield Design(name, path, ("--units", "mm") if loose else ())
     if robots is not None and score is not None:
         tree_of_score = ast.parse(score.read_text())
-        tree_of_score.body = [
-            n for n in tree_of_score.body if isinstance(n, ast.Import | ast.ImportFrom | ast.FunctionDef)
-        ]
-        module: dict[str, Any] = {}
+        kept = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.Assign)
+        tree_of_score.body = [node for node in tree_of_score.body if isinstance(node, kept)]
+        module: dict[str, Any] = {"__file__": str(score)}
         exec(compile(tree_of_score, str(score), "exec"), module)  # its functions, without the command at its end
         for truth in sorted(robots.glob("*/truth.json")):
             said = json.loads(truth.read_text())

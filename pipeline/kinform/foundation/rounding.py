@@ -1,8 +1,7 @@
 """Four levels of rounding, from the guard of a division to the resolution of a mesh file.
 
 Where a number decides only whether something is zero but for rounding, it is one of these, as a share of the size of
-what
-is compared. A number that decides anything else has its own name, in the module that uses it, with its reason.
+what is compared. A number that decides anything else has its own name, in the module that uses it, with its reason.
 """
 
 from __future__ import annotations
