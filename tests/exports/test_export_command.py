@@ -134,9 +134,8 @@ def test_quiet_writes_and_says_nothing(stored, tmp_path, capsys):
 
 def test_templates_are_part_of_the_package():
     """What a wheel holds is what the package folder holds: templates are found where the code is."""
-    code = (
-        "from importlib.resources import files; "
-        "print(*sorted(p.name for p in (files('kinform.exports') / 'templates').iterdir()))"
-    )
+    code = "from importlib.resources import files; print(*(p.name for p in files('kinform').rglob('*.j2')))"
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=dict(os.environ))
-    assert {"robot.urdf.j2", "package.mo.j2", "system.vhd.j2"} <= set(ran.stdout.split())
+    assert {"robot.urdf.j2", "model.sdf.j2", "model.mjcf.j2", "package.mo.j2", "system.vhd.j2"} <= set(
+        ran.stdout.split()
+    )

@@ -9,8 +9,8 @@ from support.export_models import DOWN, Y, block, design, four_bar, model_of
 from support.other_programs import loaded
 from support.places import FIXTURES
 
-from kinform.exports.reflected import carried
 from kinform.formats.mjcf.writing import writer as mjcf
+from kinform.formats.mjcf.writing.reflected import carried
 from kinform.model.function import Coupling, Law
 
 STILL = Law("constant", value=0.0)

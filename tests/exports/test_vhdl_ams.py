@@ -21,7 +21,7 @@ from support.vhdl_residuals import constant, residuals
 from kinform.behaviour import JointComponent, Servo
 from kinform.exports import export, vhdl_ams
 from kinform.exports.model import export_model
-from kinform.exports.vhdl_structure import COUNT
+from kinform.exports.vhdl_ams.structure import COUNT
 from kinform.foundation.algebra.spatial import cross_motion, multiply, quaternions
 
 FREEDOMS = {

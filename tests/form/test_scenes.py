@@ -147,7 +147,7 @@ def test_quantised_positions_and_strides_are_read(tmp_path):
 
     with pytest.raises(InputError):  # of bytes that are no short integers comes a mesh, but none of a solid
         form.load(glb(tmp_path, lambda header: header["accessors"][0].update(count=80)))
-    from kinform.form.scenes.registry import read_scene
+    from kinform.form.scenes.reading import read_scene
 
     path = glb(tmp_path, quantise)
     vertices = read_scene(path.read_bytes(), path).meshes[0][1].vertices

@@ -14,13 +14,12 @@ from kinform.behaviour import Behaviour, Component, JointComponent, RigidBody, S
 from kinform.behaviour.components import Bushing, GasSpring, Gear, SpringDamper
 from kinform.behaviour.shafts import DcMotor, EndStop, Friction
 from kinform.behaviour.signals import STEADY
-from kinform.consistency.constants import DRAWN_SLIDE, DRAWN_TURN
 from kinform.design import Design
 from kinform.errors import StageError
 from kinform.foundation.algebra.spatial import quaternions
 from kinform.foundation.words import quoted
 from kinform.frozen import dataclass
-from kinform.function import resolve_joint, stated_ranges
+from kinform.function import no_stop_within, resolve_joint, stated_ranges
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.function import SimulationRequest
@@ -256,7 +255,7 @@ def _ranges(
         if joint.name in single and joint.range_status in ("found", "unbounded"):
             stated_low, stated_high = out.get(joint.name, (-np.inf, np.inf))
             wide = stated_high - stated_low if np.isfinite(stated_high - stated_low) else 0.0
-            near = DRAWN_TURN if joint.type != "prismatic" else DRAWN_SLIDE * wide
+            near = no_stop_within(joint.type, wide)
             low, high = (
                 said if end is None or (joint.status == "stated" and abs(end) <= near) else end
                 for end, said in ((joint.range_lower, stated_low), (joint.range_upper, stated_high))

@@ -40,9 +40,9 @@ def _quoted(text: object) -> str:
 
 
 @cache
-def _environment() -> jinja2.Environment:
+def _environment(package: str) -> jinja2.Environment:
     environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("kinform.exports", "templates"),
+        loader=jinja2.PackageLoader(package, "."),
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -59,10 +59,11 @@ def _environment() -> jinja2.Environment:
     return environment
 
 
-def render(template: str, **values: Any) -> bytes:
-    """The template filled in, as UTF-8; VHDL as ASCII, because its characters are those of Latin-1 at most.
+def render(package: str, template: str, /, **values: Any) -> bytes:
+    """A template that lies in the folder of a package, filled in, as UTF-8; VHDL as ASCII, because its characters are
+    those of Latin-1 at most.
 
     A name that the template misses raises.
     """
-    text = _environment().get_template(template).render(**values)
+    text = _environment(package).get_template(template).render(**values)
     return text.encode("ascii", "backslashreplace") if template.endswith(".vhd.j2") else text.encode("utf-8")

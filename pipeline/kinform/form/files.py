@@ -84,7 +84,7 @@ def _parsed(path: Path, data: bytes, reading: Reading = AS_IT_IS) -> RawMesh:
 
         return read_dae_mesh(data)
     if is_scene(path):
-        from kinform.form.scenes.registry import scene_once
+        from kinform.form.scenes.reading import scene_once
         from kinform.form.scenes.scene import whole
 
         return whole(scene_once(data, path, reading))
@@ -288,7 +288,7 @@ class DesignFiles:
             return "m"
         if path.suffix.lower() != ".3mf":
             return None
-        from kinform.form.scenes.registry import scene_once
+        from kinform.form.scenes.reading import scene_once
 
         try:
             return scene_once(self._bytes(path), path, self.reading).units
@@ -310,7 +310,7 @@ class DesignFiles:
 
     def _scene_body(self, path: Path, name: str) -> RawMesh:
         """One mesh of a scene, in the frame of its own."""
-        from kinform.form.scenes.registry import scene_once
+        from kinform.form.scenes.reading import scene_once
         from kinform.form.scenes.scene import body_names
 
         if path not in self._bodies:

@@ -1,7 +1,8 @@
-"""What can stand in place of a manifest, as its `from`, and as the `file` of a sub-assembly: one line a format.
+"""What can stand in place of a manifest, as its `from`, and as the `file` of a sub-assembly.
 
-A format is a module with `tables(source)`; it is imported when a file of its suffix is read. It gives the tables of
-the manifest that says the same, and from there everything goes the way of manifests.
+Formats are listed in `kinform.formats.registry` (robot descriptions) and `kinform.form.scenes.registry` (CAD and scene
+files). `tables(source)` of a module, imported when a file of its suffix is read, gives the tables of the manifest that
+says the same, and from there everything goes the way of manifests.
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from kinform.form.scenes.registry import SCENE_FORMATS
+from kinform.formats.registry import ROBOT_FORMATS
 from kinform.frozen import dataclass
 
 if TYPE_CHECKING:
@@ -19,25 +22,13 @@ if TYPE_CHECKING:
     from kinform.form.readers.places import Places
     from kinform.formats.description.facts import Facts
 
-_FORMATS: Mapping[str, str] = {
-    ".urdf": "descriptions.tables",
-    ".xacro": "descriptions.tables",
-    ".xml": "descriptions.tables",
-    ".mjcf": "descriptions.tables",
-    ".sdf": "descriptions.tables",
-    ".world": "descriptions.tables",
-    ".glb": "scenes.tables",
-    ".gltf": "scenes.tables",
-    ".3mf": "scenes.tables",
-    ".dae": "scenes.tables",
-    ".ply": "scenes.tables",
-    ".off": "scenes.tables",
-    ".step": "scenes.tables",
-    ".stp": "scenes.tables",
+_TABLES: Mapping[str, str] = {
+    **{suffix: "form.scenes.tables" for format in SCENE_FORMATS for suffix in format.suffixes},
+    **{suffix: "formats.description.tables" for format in ROBOT_FORMATS for suffix in format.suffixes},
 }
-"""Module of `form` that reads files of a suffix."""
+"""Module of `kinform` with `tables(source)`, by the suffix of the files that it reads."""
 
-_LOOSE = (".ply", ".off")
+_UNITLESS = frozenset(suffix for format in SCENE_FORMATS if format.unitless for suffix in format.suffixes)
 """Suffixes of formats without a unit of length."""
 
 _UNREAD: Mapping[str, str] = {
@@ -109,17 +100,17 @@ class SourceTables:
 
 def is_source(path: Path) -> bool:
     """Whether the suffix is that of a description or an assembly file."""
-    return path.suffix.lower() in _FORMATS
+    return path.suffix.lower() in _TABLES
 
 
 def is_scene(path: Path) -> bool:
     """Whether the suffix is that of a CAD or scene file."""
-    return _FORMATS.get(path.suffix.lower()) == "scenes.tables"
+    return _TABLES.get(path.suffix.lower()) == "form.scenes.tables"
 
 
 def states_units(path: Path) -> bool:
     """Whether a description or an assembly file has its own unit of length; else it is a mesh as well."""
-    return is_source(path) and path.suffix.lower() not in _LOOSE
+    return is_source(path) and path.suffix.lower() not in _UNITLESS
 
 
 def unread(path: Path) -> tuple[str, str] | None:
@@ -130,6 +121,6 @@ def unread(path: Path) -> tuple[str, str] | None:
 
 def source_tables(source: Source) -> SourceTables | None:
     """What a source says, as tables; None where nothing can be made of it. Every problem is noted."""
-    module = importlib.import_module(f"kinform.form.{_FORMATS[source.path.suffix.lower()]}")
+    module = importlib.import_module(f"kinform.{_TABLES[source.path.suffix.lower()]}")
     tables: SourceTables | None = module.tables(source)
     return tables

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from kinform.function.acted_freedoms import FREEDOMS, ActedFreedom, acted_freedom
     from kinform.function.acting_forces import acting_by_force, needing_forces
     from kinform.function.designers_view import DesignersJoint, as_intended, designers_joints
-    from kinform.function.joint_names import Resolution, resolve_joint, stated_ranges
+    from kinform.function.joint_names import Resolution, no_stop_within, resolve_joint, stated_ranges
 
 __all__ = [
     "CODE_VERSION",
@@ -23,6 +23,7 @@ __all__ = [
     "as_intended",
     "designers_joints",
     "needing_forces",
+    "no_stop_within",
     "resolve_joint",
     "stated_ranges",
 ]
@@ -41,6 +42,7 @@ __getattr__ = first_used(
         "as_intended": "designers_view",
         "designers_joints": "designers_view",
         "Resolution": "joint_names",
+        "no_stop_within": "joint_names",
         "resolve_joint": "joint_names",
         "stated_ranges": "joint_names",
     },

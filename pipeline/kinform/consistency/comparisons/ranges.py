@@ -7,10 +7,10 @@ from dataclasses import replace
 
 from kinform.consistency.comparisons.comparison import Comparison
 from kinform.consistency.comparisons.known import bodies_of
-from kinform.consistency.constants import DRAWN_SLIDE, DRAWN_TURN
 from kinform.consistency.context import Context
 from kinform.foundation.words import angle, length, quoted
 from kinform.frozen import dataclass
+from kinform.function import no_stop_within
 from kinform.kinematics.separation.contact_rows import is_stated
 from kinform.model.collisions import RangeEnd
 from kinform.model.function import IntendedJoint
@@ -96,7 +96,7 @@ def _clear(intended: IntendedJoint, end: RangeEnd) -> RangeEnd | None:
     if end.value is None:
         return end
     lower, upper = intended.range or (-math.inf, math.inf)
-    near = DRAWN_SLIDE * (upper - lower) if intended.type == "prismatic" else DRAWN_TURN
+    near = no_stop_within(intended.type, upper - lower)
     return None if abs(end.value) <= near else end
 
 

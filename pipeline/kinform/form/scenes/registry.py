@@ -1,55 +1,27 @@
-"""The formats of scenes: one line each. The suffix decides; the reader confirms."""
+"""The formats of scenes, one line each. The suffix decides; the reader confirms."""
 
 from __future__ import annotations
 
-import importlib
-from collections.abc import Callable
-from functools import lru_cache
-from pathlib import Path
-
-from kinform.form.meshes.raw import Fault, MeshError
-from kinform.form.scenes.scene import EXPORT, Scene
-from kinform.form.sources import AS_IT_IS, Reading
 from kinform.frozen import dataclass
 
 
 @dataclass(frozen=True)
-class Format:
-    """A format, its suffixes, and the module and function of its reader: `read(data, path, reading)`."""
+class SceneFormat:
+    """A format, its suffixes, and the module in `kinform` and function of its reader: `read(data, path, reading)`."""
 
     name: str
     suffixes: tuple[str, ...]
     module: str
     function: str
+    unitless: bool = False
+    """Whether its files have no unit of length."""
 
 
-FORMATS = (
-    Format("glTF", (".glb", ".gltf"), "gltf", "read_gltf"),
-    Format("3MF", (".3mf",), "threemf", "read_3mf"),
-    Format("DAE", (".dae",), "dae", "read_dae"),
-    Format("PLY", (".ply",), "loose", "read_loose"),
-    Format("OFF", (".off",), "loose", "read_loose"),
-    Format("STEP", (".step", ".stp"), "step", "read_step"),
+SCENE_FORMATS = (
+    SceneFormat("glTF", (".glb", ".gltf"), "formats.gltf.reading.reader", "read_gltf"),
+    SceneFormat("3MF", (".3mf",), "form.scenes.threemf", "read_3mf"),
+    SceneFormat("DAE", (".dae",), "form.scenes.dae", "read_dae"),
+    SceneFormat("PLY", (".ply",), "form.scenes.loose", "read_loose", unitless=True),
+    SceneFormat("OFF", (".off",), "form.scenes.loose", "read_loose", unitless=True),
+    SceneFormat("STEP", (".step", ".stp"), "form.scenes.step", "read_step"),
 )
-
-
-def read_scene(data: bytes, path: Path, reading: Reading = AS_IT_IS) -> Scene:
-    """The scene of a file with this content. Raises MeshError, whatever a reader stumbles over."""
-    format = next(f for f in FORMATS if path.suffix.lower() in f.suffixes)
-    if data.startswith(b"version https://git-lfs"):
-        raise MeshError([Fault("is a pointer of Git LFS, not the file", "fetch it: git lfs pull")])
-    module = importlib.import_module(f"kinform.form.scenes.{format.module}")
-    read: Callable[[bytes, Path, Reading], Scene] = getattr(module, format.function)
-    try:
-        return read(data, path, reading)
-    except MeshError:
-        raise
-    except Exception as error:  # readers of other people, and files that are wrong in ways that nobody thought of
-        words = " ".join(str(error).split()) or type(error).__name__
-        raise MeshError([Fault(f"cannot be read as {format.name}: {words[:200]}", EXPORT)]) from None
-
-
-@lru_cache(maxsize=1)
-def scene_once(data: bytes, path: Path, reading: Reading = AS_IT_IS) -> Scene:
-    """As `read_scene`; the last one is kept: its tables are asked for first, its meshes then."""
-    return read_scene(data, path, reading)

@@ -11,7 +11,7 @@ import numpy as np
 from kinform.form.constants import NAME_LENGTH, PARTS_MOST
 from kinform.form.meshes.raw import MeshError
 from kinform.form.readers.places import Places
-from kinform.form.scenes.registry import scene_once
+from kinform.form.scenes.reading import scene_once
 from kinform.form.scenes.scene import EXPORT, Scene, ScenePart, body_names, parts_of
 from kinform.form.sources import Source, SourceTables
 from kinform.foundation.algebra.spatial import quaternions

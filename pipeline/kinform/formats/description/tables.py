@@ -18,9 +18,9 @@ from kinform.form.readers.places import Places
 from kinform.form.sources import Source, SourceTables
 from kinform.formats.description.facts import facts_of
 from kinform.formats.description.mesh_files import MeshFiles
-from kinform.formats.description.registry import FORMATS, reader_of
 from kinform.formats.description.robot import At, Inertial, Link, Robot, RobotJoint, Shape, Solid
 from kinform.formats.description.tree import distinct
+from kinform.formats.registry import ROBOT_FORMATS, reader_of
 from kinform.foundation.algebra.spatial import quaternions
 from kinform.foundation.meant import first_names, in_quotes
 from kinform.foundation.regular import not_a_file
@@ -41,7 +41,9 @@ def tables(source: Source) -> SourceTables | None:
         return None
     read = reader_of(source.path, data)
     if read is None:
-        roots = first_names(f"<{f.root}> ({f.name})" for f in FORMATS if source.path.suffix.lower() in f.suffixes)
+        roots = first_names(
+            f"<{f.root}> ({f.title})" for f in ROBOT_FORMATS if source.path.suffix.lower() in f.suffixes
+        )
         source.problems.add(f"is no robot description: its root is none of {roots}", source.file, 1,
                             "name a manifest (TOML), or a description")  # fmt: skip
         return None

@@ -21,8 +21,8 @@ from kinform.behaviour.shafts import Controller
 from kinform.behaviour.signals import Signal
 from kinform.exports.motors import limited, slowed
 from kinform.exports.names import XML, identifiers
-from kinform.exports.reflected import Carried, carried
-from kinform.exports.robot import Robot, RobotLink
+from kinform.formats.description.writing.robot_model import RobotLink, RobotModel
+from kinform.formats.mjcf.writing.reflected import Carried, carried
 
 BANDWIDTH = 2.0 * math.pi * 10.0
 """rad/s, of the position servos that stand for prescribed motions: 10 Hz, a choice."""
@@ -30,7 +30,7 @@ SHOWN_ASIDE = 1e-9
 """rad and m: a servo that is aimed aside by less is not said to be: that is rounding."""
 
 
-def gears(robot: Robot, lost: list[str]) -> list[tuple[Any, str, str]]:
+def gears(robot: RobotModel, lost: list[str]) -> list[tuple[Any, str, str]]:
     """Couplings with the names of both joints; those that MJCF cannot have are added to `lost`."""
     out = []
     for gear, a, b in robot.gears:
@@ -43,7 +43,7 @@ def gears(robot: Robot, lost: list[str]) -> list[tuple[Any, str, str]]:
     return out
 
 
-def trains(robot: Robot, lost: list[str]) -> list[tuple[Gear, list[tuple[str, float]]]]:
+def trains(robot: RobotModel, lost: list[str]) -> list[tuple[Gear, list[tuple[str, float]]]]:
     """Couplings of three joints and more, which are fixed tendons of constant length, with what multiplies the value
     of each joint; those that MJCF cannot have are added to `lost`."""
     out = []
@@ -56,7 +56,7 @@ def trains(robot: Robot, lost: list[str]) -> list[tuple[Gear, list[tuple[str, fl
     return out
 
 
-def actuators(robot: Robot, links: Sequence[RobotLink], lost: list[str]) -> list[dict[str, Any]]:
+def actuators(robot: RobotModel, links: Sequence[RobotLink], lost: list[str]) -> list[dict[str, Any]]:
     """Drives of links, halves of bodies among them, with what they hold at the start; what MuJoCo does otherwise is
     added to `lost`."""
     out: list[dict[str, Any]] = []
@@ -113,7 +113,7 @@ def _servo(
     }
 
 
-def _motor(robot: Robot, motor: DcMotor, lost: list[str]) -> dict[str, Any]:
+def _motor(robot: RobotModel, motor: DcMotor, lost: list[str]) -> dict[str, Any]:
     """A motor whose current follows its voltage at once; controlled by that, or by its controller's target."""
     if motor.inductance:
         lost.append(f"{motor.subject}: the inductance of its motor ({motor.inductance:g} H)")
@@ -137,7 +137,7 @@ def _aimed(aside: float, joint: JointComponent, freedom: int) -> str:
     return f", aimed {size} aside so that it carries gravity there"
 
 
-def load(robot: Robot, given: LoadComponent) -> dict[str, Any]:
+def load(robot: RobotModel, given: LoadComponent) -> dict[str, Any]:
     """A load as an actuator at a site."""
     body = robot.model.system.body_at(given.name, "frame").subject
     link = next(k for k in robot.links if k.link.body.subject == body)

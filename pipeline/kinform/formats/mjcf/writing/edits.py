@@ -12,6 +12,7 @@ from lxml import etree
 from kinform.form.problems import Problems
 from kinform.formats.description.elements import Xml, tag_of
 from kinform.formats.description.robot import Inertial, Robot
+from kinform.formats.description.writing.xml_edits import numbers
 from kinform.formats.mjcf.reading.defaults import Compiler, Defaults
 
 _TURNED = ("quat", "euler", "axisangle", "xyaxes", "zaxis", "diaginertia")
@@ -40,7 +41,7 @@ def write_range(root: Any, robot: Robot, joint: str, bounds: tuple[float, float]
         if (said.get("name") or "").replace("/", "_") == joint:
             unit = 1.0 if slides or not compiler.degrees else math.pi / 180.0
             ref = float(said.get("ref", "0"))
-            element.set("range", " ".join(repr(float(bound) / unit + ref) for bound in bounds))
+            element.set("range", numbers(bound / unit + ref for bound in bounds))
             element.set("limited", "true")
 
 
@@ -53,10 +54,10 @@ def write_inertial(root: Any, link: str, stated: Inertial) -> None:
         body.insert(0, inertial)
     for key in _TURNED:
         inertial.attrib.pop(key, None)
-    inertial.set("pos", " ".join(repr(float(v)) for v in stated.centre))
+    inertial.set("pos", numbers(stated.centre))
     inertial.set("mass", repr(float(stated.mass)))
     six = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-    inertial.set("fullinertia", " ".join(repr(float(stated.inertia[at])) for at in six))
+    inertial.set("fullinertia", numbers(stated.inertia[at] for at in six))
 
 
 def write_folder(root: Any, folder: str) -> None:

@@ -16,13 +16,12 @@ from typing import Any
 import numpy as np
 
 from kinform.behaviour.primitives import Ball
-from kinform.exports.constants import GRAIN
 from kinform.exports.exported import Exported, ExportError
 from kinform.exports.model import ExportModel, Limits
 from kinform.exports.names import MJCF, free_name
-from kinform.exports.robot import Robot, RobotLink, robot_of
 from kinform.exports.text import render, vector
 from kinform.exports.tree import Closing, Link, Motion
+from kinform.formats.description.writing.robot_model import GRAIN, RobotLink, RobotModel, robot_model_of
 from kinform.formats.mjcf.writing.drives import actuators, gears, load, trains
 from kinform.foundation.algebra.spatial import to_matrix
 from kinform.frozen import dataclass
@@ -94,7 +93,7 @@ class _Equality:
 
 def export(model: ExportModel) -> Exported:
     """NAME.xml and meshes/."""
-    robot = robot_of(model, MJCF, CLOSABLE)
+    robot = robot_model_of(model, MJCF, CLOSABLE)
     lost = [*model.lost, *model.stiction, *_losses(robot)]
     robot = _with_moments(robot, lost)
     root, twins = _bodies(robot)
@@ -106,7 +105,7 @@ def export(model: ExportModel) -> Exported:
     if equalities:
         remarks.append("loops are stiff springs to MuJoCo: the shorter the step, the closer to rigid")
     text = render(
-        "model.mjcf.j2", robot=robot, nested=nested, equalities=equalities, actuators=rows, lost=lost,
+        __package__, "model.mjcf.j2", robot=robot, nested=nested, equalities=equalities, actuators=rows, lost=lost,
         remarks=remarks, materials=robot.materials, step=STEP_OF_LOOPS if equalities else STEP,
         qpos=[x for body in ordered for x in body.qpos], qvel=[x for body in ordered for x in body.qvel],
         loads=[load(robot, one) for one in robot.loads], most=MOST_FACETS, inf=np.inf,
@@ -117,7 +116,7 @@ def export(model: ExportModel) -> Exported:
     return Exported({f"{robot.stem}.xml": text, **robot.meshes}, tuple(lost), tuple(remarks))
 
 
-def _losses(robot: Robot) -> list[str]:
+def _losses(robot: RobotModel) -> list[str]:
     out = []
     for link in robot.links:
         for visual in link.visuals:
@@ -135,7 +134,7 @@ def _losses(robot: Robot) -> list[str]:
     return out
 
 
-def _with_moments(robot: Robot, lost: list[str]) -> Robot:
+def _with_moments(robot: RobotModel, lost: list[str]) -> RobotModel:
     """Moments of inertia that are zero, and masses that are not known, raised to what MuJoCo accepts."""
     links = []
     for k, link in enumerate(robot.links):
@@ -155,7 +154,7 @@ def _with_moments(robot: Robot, lost: list[str]) -> Robot:
     return replace(robot, links=tuple(links))
 
 
-def _bodies(robot: Robot) -> tuple[_Body, dict[str, str]]:
+def _bodies(robot: RobotModel) -> tuple[_Body, dict[str, str]]:
     """The nested bodies, and for joints that cut a body the name of its second half."""
     bodies = [_Body(link, _joints(robot, link)) for link in robot.links]
     for k, link in enumerate(robot.links):
@@ -170,7 +169,7 @@ def _bodies(robot: Robot) -> tuple[_Body, dict[str, str]]:
     return bodies[0], twins
 
 
-def _cut(robot: Robot, closing: Closing, bodies: list[_Body], names: set[str]) -> str:
+def _cut(robot: RobotModel, closing: Closing, bodies: list[_Body], names: set[str]) -> str:
     """Half of the second body (the first where that is the ground), carried by the closing joint."""
     forward = closing.b != 0
     parent, cut = (closing.a, closing.b) if forward else (closing.b, closing.a)
@@ -195,7 +194,7 @@ def _cut(robot: Robot, closing: Closing, bodies: list[_Body], names: set[str]) -
     return name
 
 
-def _joints(robot: Robot, link: RobotLink) -> list[_Joint]:
+def _joints(robot: RobotModel, link: RobotLink) -> list[_Joint]:
     if link.link.joint is None:
         return []
     point = link.link.joint.geometry.point
@@ -203,7 +202,7 @@ def _joints(robot: Robot, link: RobotLink) -> list[_Joint]:
     return [row for motion in link.link.motions for row in _joint(robot, link, motion, position)]
 
 
-def _joint(robot: Robot, link: RobotLink, motion: Motion, position: Array) -> list[_Joint]:
+def _joint(robot: RobotModel, link: RobotLink, motion: Motion, position: Array) -> list[_Joint]:
     name, primitive = robot.joint_names[motion.name], motion.primitive
     if isinstance(primitive, Ball):
         return [_Joint(name, "ball", position, np.zeros(3))]
@@ -221,7 +220,7 @@ def _joint(robot: Robot, link: RobotLink, motion: Motion, position: Array) -> li
     return [turn, _Joint(f"{name}.slide", "slide", position, primitive.omega)]
 
 
-def _state(robot: Robot, body: _Body) -> None:
+def _state(robot: RobotModel, body: _Body) -> None:
     """Coordinates and rates of the body's joints at the start."""
     joint = body.link.link.joint
     if joint is None:
@@ -263,7 +262,7 @@ def _nested(root: _Body) -> Iterator[tuple[_Body, int, bool]]:
         left += [(child, depth + 1, False) for child in reversed(body.children)]
 
 
-def _closure(robot: Robot, closing: Closing, twins: dict[str, str]) -> list[_Equality]:
+def _closure(robot: RobotModel, closing: Closing, twins: dict[str, str]) -> list[_Equality]:
     joint = closing.joint
     a = robot.links[closing.a]
     first, second = ("world" if k == 0 else robot.links[k].name for k in (closing.a, closing.b))

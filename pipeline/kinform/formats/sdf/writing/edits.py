@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import posixpath
-import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -11,17 +9,17 @@ from lxml import etree
 
 from kinform.formats.description.elements import tag_of
 from kinform.formats.description.robot import Inertial, Robot
+from kinform.formats.description.writing.xml_edits import child_of, inertia_numbers, moved, name_of, numbers
 
 _FILES = ("uri", "filename", "albedo_map", "normal_map", "roughness_map", "metalness_map", "environment_map")
 """Elements whose text is the path of a file."""
-_SIX = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
 
 
 def _models(element: Any, scope: str) -> Iterator[tuple[str, Any]]:
     """Models in an element, nested ones too, with the prefix of the names in each."""
     for child in element:
         if tag_of(child) == "model":
-            inner = f"{scope}{_name(child)}::"
+            inner = f"{scope}{name_of(child)}::"
             yield inner, child
             yield from _models(child, inner)
 
@@ -40,44 +38,34 @@ def _all_models(root: Any) -> Iterator[tuple[str, Any]]:
 
 def _named(root: Any, tag: str, name: str) -> Any:
     """The link or joint of that full name."""
-    return next(e for scope, m in _all_models(root) for e in m if tag_of(e) == tag and scope + _name(e) == name)
-
-
-def _name(element: Any) -> str:
-    return (element.get("name") or "").strip().replace("/", "_")
-
-
-def _child(element: Any, tag: str) -> Any:
-    """The first child with that name, made where there is none."""
-    found = next((child for child in element if tag_of(child) == tag), None)
-    return etree.SubElement(element, tag) if found is None else found
+    return next(e for scope, m in _all_models(root) for e in m if tag_of(e) == tag and scope + name_of(e) == name)
 
 
 def write_range(root: Any, robot: Robot, joint: str, bounds: tuple[float, float]) -> None:
     """The limits (rad or m) of a joint."""
-    limit = _child(_child(_named(root, "joint", joint), "axis"), "limit")
+    limit = child_of(child_of(_named(root, "joint", joint), "axis"), "limit")
     for key, bound in zip(("lower", "upper"), bounds, strict=True):
-        _child(limit, key).text = repr(float(bound))
+        child_of(limit, key).text = repr(float(bound))
 
 
 def write_inertial(root: Any, link: str, stated: Inertial) -> None:
     """The inertial of a link, in its frame."""
-    inertial = _child(_named(root, "link", link), "inertial")
+    inertial = child_of(_named(root, "link", link), "inertial")
     inertial.attrib.pop("auto", None)
     for child in [child for child in inertial if tag_of(child) in ("density", "auto_inertia_params")]:
         inertial.remove(child)
-    pose = _child(inertial, "pose")
+    pose = child_of(inertial, "pose")
     pose.attrib.clear()
-    pose.text = " ".join(repr(float(v)) for v in (*stated.centre, 0.0, 0.0, 0.0))
-    _child(inertial, "mass").text = repr(float(stated.mass))
-    inertia = _child(inertial, "inertia")
-    for key, at in _SIX.items():
-        _child(inertia, key).text = repr(float(stated.inertia[at]))
+    pose.text = numbers((*stated.centre, 0.0, 0.0, 0.0))
+    child_of(inertial, "mass").text = repr(float(stated.mass))
+    inertia = child_of(inertial, "inertia")
+    for key, text in inertia_numbers(stated.inertia):
+        child_of(inertia, key).text = text
 
 
 def write_folder(root: Any, folder: str) -> None:
     """Plain relative paths of meshes and textures, which began in `folder`, as seen from the new place."""
     for element in root.iter(etree.Element):
-        stated = (element.text or "").strip()
-        if tag_of(element) in _FILES and stated and not re.match(r"[a-z]+:|/", stated):
-            element.text = posixpath.normpath(posixpath.join(folder, stated))
+        path = moved(element.text or "", folder) if tag_of(element) in _FILES else None
+        if path is not None:
+            element.text = path

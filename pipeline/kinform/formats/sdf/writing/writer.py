@@ -13,13 +13,12 @@ from dataclasses import replace
 
 from kinform.behaviour.joints import KINDS
 from kinform.behaviour.primitives import OneFreedom
-from kinform.exports.chains import Hinge, chain, tree_losses
-from kinform.exports.constants import GRAIN
 from kinform.exports.exported import Exported
 from kinform.exports.model import ExportModel
 from kinform.exports.names import SDF, free_name
-from kinform.exports.robot import Robot, RobotLink, robot_of
 from kinform.exports.text import render
+from kinform.formats.description.writing.chains import Hinge, chain, tree_losses
+from kinform.formats.description.writing.robot_model import GRAIN, RobotLink, RobotModel, robot_model_of
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
@@ -60,7 +59,7 @@ class _Grain:
 
 def export(model: ExportModel) -> Exported:
     """NAME.sdf and meshes/."""
-    robot = robot_of(model, SDF, KINDS)
+    robot = robot_model_of(model, SDF, KINDS)
     lost = [*model.lost, *model.stiction, *tree_losses(robot, "SDF", springs=True)]
     taken = {link.name for link in robot.links} | {"world"}
     joints, grains = [], []
@@ -85,13 +84,13 @@ def export(model: ExportModel) -> Exported:
         lost.append(f"mass of {', '.join([g.name for g in grains] + weightless)}: {grain}")
     remarks = ["meshes do not collide, because mating surfaces always touch", *robot.remarks]
     text = render(
-        "model.sdf.j2", robot=robot, joints=joints, grains=grains, lost=lost, remarks=remarks, grain=GRAIN,
+        __package__, "model.sdf.j2", robot=robot, joints=joints, grains=grains, lost=lost, remarks=remarks, grain=GRAIN,
         ground=free_name("world_fixed", robot.joint_names.values()),
     )  # fmt: skip
     return Exported({f"{robot.stem}.sdf": text, **robot.meshes}, tuple(lost), tuple(remarks))
 
 
-def _direct(robot: Robot, link: RobotLink) -> _Joint | None:
+def _direct(robot: RobotModel, link: RobotLink) -> _Joint | None:
     """The joint, where SDF has its kind."""
     joint = link.link.joint
     assert joint is not None
@@ -124,7 +123,7 @@ def _direct(robot: Robot, link: RobotLink) -> _Joint | None:
     return _Joint(name, kind, parent, link.name, (axis,))
 
 
-def _axis(robot: Robot, link: RobotLink, k: int, direction: Array) -> _Axis:
+def _axis(robot: RobotModel, link: RobotLink, k: int, direction: Array) -> _Axis:
     """A coordinate of the link's joint, and what acts on it."""
     free = bool(robot.model.assembly.descriptions) or any(drive.freedom == k for drive in link.drives)
     effort = 0.0 if link.limits.effort is None and not free else link.limits.effort
@@ -134,14 +133,14 @@ def _axis(robot: Robot, link: RobotLink, k: int, direction: Array) -> _Axis:
     )  # fmt: skip
 
 
-def _of_hinge(robot: Robot, link: RobotLink, hinge: Hinge) -> _Joint:
+def _of_hinge(robot: RobotModel, link: RobotLink, hinge: Hinge) -> _Joint:
     follows = hinge.follows is not None
     axis = _Axis(hinge.axis, effort=0.0) if follows else _axis(robot, link, hinge.coordinate, hinge.axis)
     return _Joint(hinge.name, hinge.type, hinge.parent, hinge.child, (axis,))
 
 
 def _mimicking(
-    robot: Robot, joints: list[_Joint], gear: str, a: str, b: str, ratio: float, lost: list[str]
+    robot: RobotModel, joints: list[_Joint], gear: str, a: str, b: str, ratio: float, lost: list[str]
 ) -> list[_Joint]:
     """The joints, with a following b."""
     first, second = robot.joint_names[a], robot.joint_names[b]

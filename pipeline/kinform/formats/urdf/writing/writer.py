@@ -8,12 +8,12 @@ without mass between them; a screw is a turn and a slide that mimics it.
 from __future__ import annotations
 
 from kinform.behaviour.joints import KINDS
-from kinform.exports.chains import Hinge, chain, tree_losses
 from kinform.exports.exported import Exported
 from kinform.exports.model import ExportModel, Limits
 from kinform.exports.names import XML
-from kinform.exports.robot import Robot, RobotLink, robot_of
 from kinform.exports.text import render
+from kinform.formats.description.writing.chains import Hinge, chain, tree_losses
+from kinform.formats.description.writing.robot_model import RobotLink, RobotModel, robot_model_of
 from kinform.frozen import dataclass
 
 UNLIMITED = 1e9
@@ -33,7 +33,7 @@ class _Joint:
 
 def export(model: ExportModel) -> Exported:
     """NAME.urdf and meshes/."""
-    robot = robot_of(model, XML, KINDS)
+    robot = robot_model_of(model, XML, KINDS)
     lost = [*model.lost, *model.stiction, *tree_losses(robot, "URDF"), *_spherical(robot)]
     taken = {link.name for link in robot.links}
     joints, remarks = [], robot.remarks
@@ -53,13 +53,13 @@ def export(model: ExportModel) -> Exported:
         remarks.append(f"limits of effort and velocity of {UNLIMITED:g} stand for none")
     remarks.append("URDF has no gravity; ours is " + ", ".join(f"{x:g}" for x in model.gravity) + " m/s²")
     text = render(
-        "robot.urdf.j2", robot=robot, joints=joints, free=free, lost=lost, remarks=remarks, unlimited=UNLIMITED,
-        between=[j.hinge.child for j in joints if j.hinge.between], materials=robot.materials,
+        __package__, "robot.urdf.j2", robot=robot, joints=joints, free=free, lost=lost, remarks=remarks,
+        unlimited=UNLIMITED, between=[j.hinge.child for j in joints if j.hinge.between], materials=robot.materials,
     )  # fmt: skip
     return Exported({f"{robot.stem}.urdf": text, **robot.meshes}, tuple(lost), tuple(remarks))
 
 
-def _joint(robot: Robot, link: RobotLink, hinge: Hinge, mimics: dict[str, tuple[str, float]]) -> _Joint:
+def _joint(robot: RobotModel, link: RobotLink, hinge: Hinge, mimics: dict[str, tuple[str, float]]) -> _Joint:
     limits = link.range if link.single and hinge.follows is None else None
     if limits is not None:
         limits = max(limits[0], -UNLIMITED), min(limits[1], UNLIMITED)
@@ -76,7 +76,7 @@ def _joint(robot: Robot, link: RobotLink, hinge: Hinge, mimics: dict[str, tuple[
     return _Joint(hinge, kind, limits, damping, mimic, friction, others)
 
 
-def _mimics(robot: Robot, lost: list[str]) -> dict[str, tuple[str, float]]:
+def _mimics(robot: RobotModel, lost: list[str]) -> dict[str, tuple[str, float]]:
     """By joint: the joint that it follows, and the ratio."""
     out: dict[str, tuple[str, float]] = {}
     for gear, a, b in robot.gears:
@@ -96,7 +96,7 @@ def _mimics(robot: Robot, lost: list[str]) -> dict[str, tuple[str, float]]:
     return out
 
 
-def _spherical(robot: Robot) -> list[str]:
+def _spherical(robot: RobotModel) -> list[str]:
     return [
         f"{link.link.joint.subject}: a spherical joint; it is three turns about x, y and z, whose values are not our "
         "quaternion and which lock at 90°"

@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +23,7 @@ from kinform.form.problems import Problems
 from kinform.formats.description.elements import xml_bytes
 from kinform.formats.description.mesh_files import MeshFiles
 from kinform.formats.description.robot import At, Inertial, Robot, RobotJoint
+from kinform.formats.registry import WRITTEN, edits_of, reader_of_text
 from kinform.frozen import dataclass
 from kinform.mass.shapes import solid_of
 from kinform.model.arrays import Array
@@ -31,8 +31,6 @@ from kinform.model.assembly import Assembly, Part
 from kinform.model.descriptions import DescribedLink, Description
 from kinform.model.function import IntendedJoint
 
-SUFFIX = {"urdf": ".urdf", "sdf": ".sdf", "mjcf": ".xml"}
-"""Of the files, by format."""
 SAME = 1e-9
 """Relative difference of numbers up to which a manifest says what the description says: the way through degrees."""
 _BEFORE = re.compile(r"(?:\s|<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^>\[]*>)*", re.DOTALL)
@@ -57,7 +55,7 @@ def export(design: Design, format: str, *, inertia: bool = False, folder: str | 
     changes = _Changes(design.assembly, description, robot)
     masses, left = _masses(design, description, robot, inertia=inertia)
     ranges = dict(changes.ranges())
-    text = _Text(description, import_module(f"kinform.formats.{format}.writing.edits"))
+    text = _Text(description, edits_of(format))
     for joint, bounds in ranges.items():
         text.module.write_range(text.root, robot, joint, bounds)
     for link, stated in masses.items():
@@ -65,8 +63,9 @@ def export(design: Design, format: str, *, inertia: bool = False, folder: str | 
     if folder not in (None, "", "."):
         text.module.write_folder(text.root, folder)
     changed = bool(ranges or masses or folder not in (None, "", "."))
+    ending = WRITTEN[format].ending
     name = Path(description.file).name.removesuffix(".xacro")
-    name = name if name.endswith(SUFFIX[format]) else Path(name).stem + SUFFIX[format]
+    name = name if name.endswith(ending) else Path(name).stem + ending
     data = text.data() if changed else xml_bytes(description.text)
     remarks = [f"the description as it was read, with {len(ranges)} ranges and {len(masses)} inertias written into it"]
     if folder is None:
@@ -76,9 +75,9 @@ def export(design: Design, format: str, *, inertia: bool = False, folder: str | 
 
 def _read(description: Description) -> Robot:
     """The robot of the text, by its reader; meshes need not be there."""
-    reader = import_module(f"kinform.formats.{description.format}.reading.reader")
+    read = reader_of_text(description.format)
     data, path = xml_bytes(description.text), Path(description.file)
-    robot: Robot | None = reader.read(path, data, description.file, Problems(), MeshFiles(path, {}))
+    robot = read(path, data, description.file, Problems(), MeshFiles(path, {}))
     assert robot is not None, "it was read before"
     return robot
 

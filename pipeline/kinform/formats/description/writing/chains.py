@@ -10,7 +10,7 @@ import numpy as np
 from kinform.behaviour import DcMotor, EffortDrive, MotionDrive, Servo
 from kinform.behaviour.primitives import Ball, OneFreedom
 from kinform.exports.names import free_name
-from kinform.exports.robot import Driver, Robot, RobotLink
+from kinform.formats.description.writing.robot_model import Driver, RobotLink, RobotModel
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
@@ -45,7 +45,7 @@ class Hinge:
     """Which of its coordinates it is."""
 
 
-def chain(robot: Robot, link: RobotLink, taken: set[str]) -> list[Hinge]:
+def chain(robot: RobotModel, link: RobotLink, taken: set[str]) -> list[Hinge]:
     """The hinges from the parent to a link; names of the links between are added to `taken`."""
     joint = link.link.joint
     assert joint is not None
@@ -79,7 +79,7 @@ def _steps(name: str, primitive: OneFreedom | Ball) -> list[tuple[str, str, Arra
     return [turn, (f"{name}.slide", "prismatic", primitive.omega, (name, lead))]
 
 
-def tree_losses(robot: Robot, format: str, *, springs: bool = False) -> Iterator[str]:
+def tree_losses(robot: RobotModel, format: str, *, springs: bool = False) -> Iterator[str]:
     """Loops, laws of drives, springs, loads and initial values. `springs`: the format has them."""
     for closing in robot.closing:
         yield f"{closing.joint.subject}: the joint closes a loop, and {format} has trees only; it is left out"

@@ -29,6 +29,10 @@ from kinform.exports.tree import Closing, Link, Tree, coordinate_names, grow
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
+GRAIN = 1e-9
+"""kg and kg·m², of links whose mass is not known, where a format wants one: a microgram changes no motion. Chosen,
+not measured."""
+
 Driver = MotionDrive | EffortDrive | Servo | DcMotor
 """What drives a joint."""
 
@@ -118,7 +122,7 @@ class RobotLink:
 
 
 @dataclass(frozen=True, eq=False)
-class Robot:
+class RobotModel:
     """Links, loops, names and files."""
 
     model: ExportModel
@@ -177,7 +181,7 @@ class Robot:
         return bool(np.any(self.model.q != self.model.mechanism.start) or np.any(self.model.v))
 
 
-def robot_of(model: ExportModel, language: Language = XML, closable: Collection[str] = ()) -> Robot:
+def robot_model_of(model: ExportModel, language: Language = XML, closable: Collection[str] = ()) -> RobotModel:
     """The tree of a model, with names for the language."""
     tree = grow(model.system, closable, model.stated)
     shapes = shapes_of(model)
@@ -192,7 +196,7 @@ def robot_of(model: ExportModel, language: Language = XML, closable: Collection[
             meshes[f"meshes/{shape.file}.stl"] = stl(shape.in_world - link.origin, shape.faces)
         links.append(_link(model, link, names[link.body.subject], link.origin - parent, looks))
     title = identifiers([model.name], language)[model.name]
-    return Robot(model, title, identifiers([model.name], FILES)[model.name], tree, tuple(links), joints, meshes)
+    return RobotModel(model, title, identifiers([model.name], FILES)[model.name], tree, tuple(links), joints, meshes)
 
 
 def _link(model: ExportModel, link: Link, name: str, offset: Array, shapes: tuple[Shape, ...]) -> RobotLink:

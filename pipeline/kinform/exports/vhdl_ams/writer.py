@@ -18,8 +18,8 @@ from kinform.exports.exported import Exported
 from kinform.exports.model import ExportModel
 from kinform.exports.names import VHDL, identifiers
 from kinform.exports.text import number, render, vector
-from kinform.exports.vhdl_drives import drives
-from kinform.exports.vhdl_structure import AXES, COUNT, Part, Scope, Writer
+from kinform.exports.vhdl_ams.drives import drives
+from kinform.exports.vhdl_ams.structure import AXES, COUNT, Part, Scope, Writer
 from kinform.foundation.algebra.spatial import to_matrix
 from kinform.foundation.algebra.vectors import perpendicular
 from kinform.model.arrays import Array
@@ -53,17 +53,17 @@ def _files(writer: Writer) -> Exported:
     bench = identifiers([f"{top} bench"], VHDL, beside=(*writer.entity.values(), "mechanics", *COUNT))[f"{top} bench"]
     order = ("1_mechanics.vhd", "2_components.vhd", f"3_{top}.vhd", f"4_{bench}.vhd")
     system = render(
-        "system.vhd.j2", model=model, lost=lost, remarks=remarks, equations=writer.equations_made, order=order,
-        potentials=writer.potentials, tables=writer.tables,
+        __package__, "system.vhd.j2", model=model, lost=lost, remarks=remarks, equations=writer.equations_made,
+        order=order, potentials=writer.potentials, tables=writer.tables,
         scopes=[writer.of[path] for path in reversed(writer.scopes.paths)],
     )  # fmt: skip
     counts = {len(gear.others): list(gear.others) for gear in writer.equations.gears if gear.others}
     trains = [counts[count] for count in sorted(counts)]
     files = {
-        order[0]: render("mechanics.vhd.j2"),
-        order[1]: render("components.vhd.j2", count=COUNT, trains=trains),
+        order[0]: render(__package__, "mechanics.vhd.j2"),
+        order[1]: render(__package__, "components.vhd.j2", count=COUNT, trains=trains),
         order[2]: system,
-        order[3]: render("bench.vhd.j2", model=model, bench=bench, entity=top, starts=writer.starts),
+        order[3]: render(__package__, "bench.vhd.j2", model=model, bench=bench, entity=top, starts=writer.starts),
     }
     return Exported(files, tuple(lost), tuple(remarks))
 

@@ -98,8 +98,8 @@ def export(model: ExportModel) -> Exported:
     _actors(package)
     title = identifiers([model.name], MODELICA, beside=LIBRARY)[model.name]
     text = render(
-        "package.mo.j2", package=title, model=model, built=package, lost=equations.lost, remarks=equations.remarks,
-        number_of_free=len(equations.free), v=_array,
+        __package__, "package.mo.j2", package=title, model=model, built=package, lost=equations.lost,
+        remarks=equations.remarks, number_of_free=len(equations.free), v=_array,
     )  # fmt: skip
     return Exported({f"{title}.mo": text}, tuple(equations.lost), tuple(equations.remarks))
 

@@ -13,7 +13,7 @@ from kinform.behaviour.shafts import Controller
 from kinform.behaviour.signals import Signal, Spline, Table
 from kinform.exports.equations import law_numbers, polynomials
 from kinform.exports.text import number
-from kinform.exports.vhdl_structure import Part, Scope, Writer
+from kinform.exports.vhdl_ams.structure import Part, Scope, Writer
 from kinform.frozen import dataclass
 
 Values = dict[str, str]

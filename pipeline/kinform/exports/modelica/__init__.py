@@ -1,0 +1,1 @@
+"""Modelica: `writer.export` fills the template `package.mo.j2`."""

@@ -1,0 +1,1 @@
+"""Reader of glTF: `reader.read_gltf` makes a `Scene` of a file."""

@@ -1,0 +1,1 @@
+"""Writer of GLB: `writer.export` writes shapes with their motion."""

@@ -1,0 +1,97 @@
+"""The formats of robot descriptions: for each its name, suffixes, root element, reader and writer, all in one line.
+
+Readers and writers are named, not imported: who reads imports no writer, and nothing is imported before it is used.
+"""
+
+from __future__ import annotations
+
+import importlib
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from kinform.frozen import dataclass
+
+if TYPE_CHECKING:
+    from kinform.form.problems import Problems
+    from kinform.formats.description.mesh_files import MeshFiles
+    from kinform.formats.description.robot import Robot
+
+    Read = Callable[[Path, bytes, str, Problems, MeshFiles], Robot | None]
+    """Reader of a format: path, content, the file as messages show it, problems, where meshes are."""
+
+
+@dataclass(frozen=True)
+class RobotFormat:
+    """A format of robot descriptions.
+
+    Its package `kinform.formats.NAME` has the modules `writing.writer`, with `export(model)`, and `writing.edits`,
+    with `write_range`, `write_inertial` and `write_folder`.
+    """
+
+    title: str
+    """As messages have it."""
+    suffixes: tuple[str, ...]
+    """Of files that may be of this format; several formats share .xml."""
+    root: str
+    """Name of the root element, which decides among formats that share a suffix."""
+    reader: str
+    """Module in `kinform.formats` with `read`."""
+    name: str
+    """As `kinform export --to` has it, and `Robot.format`: of what is read and written back."""
+    ending: str = ""
+    """Of files that are written; "": nothing is written in this format."""
+    purpose: str = ""
+    """What a file that is written is for."""
+
+    @property
+    def writer(self) -> str:
+        """Module in `kinform` with `export`."""
+        return f"formats.{self.name}.writing.writer"
+
+
+ROBOT_FORMATS = (
+    RobotFormat("URDF", (".urdf", ".xml"), "robot", "urdf.reading.reader", "urdf", ".urdf",
+                "a tree of links and joints, for ROS and its relatives"),
+    RobotFormat("xacro", (".xacro",), "robot", "urdf.reading.xacro", "urdf"),
+    RobotFormat("MJCF", (".mjcf", ".xml"), "mujoco", "mjcf.reading.reader", "mjcf", ".xml",
+                "bodies, joints, loops and drives, for MuJoCo"),
+    RobotFormat("SDF", (".sdf", ".world", ".xml"), "sdf", "sdf.reading.reader", "sdf", ".sdf",
+                "links and joints, for Gazebo and Drake"),
+)  # fmt: skip
+
+WRITTEN = {format.name: format for format in ROBOT_FORMATS if format.ending}
+"""Formats with a writer, by name."""
+
+_ROOT = re.compile(rb"<\s*([A-Za-z_][\w:.-]*)")
+_BEFORE_ROOT = re.compile(rb"<!--.*?-->|<\?.*?\?>|<!DOCTYPE[^>]*>", re.DOTALL)
+HEAD_BYTES = 1 << 16
+"""Of a file, in which its root element is looked for: comments before it, such as licences, have a few thousand.
+Chosen, not measured."""
+
+
+def reader_of(path: Path, data: bytes) -> Read | None:
+    """`read` of the format that a file has by its suffix and its root element; None where it is none of them."""
+    match = _ROOT.search(_BEFORE_ROOT.sub(b"", data[:HEAD_BYTES]))
+    root = match[1].decode() if match else ""
+    fits = [format for format in ROBOT_FORMATS if path.suffix.lower() in format.suffixes]
+    chosen = next((format for format in fits if format.root == root), None)
+    if chosen is None:
+        chosen = fits[0] if len(fits) == 1 else None
+    return None if chosen is None else _read(chosen.reader)
+
+
+def reader_of_text(name: str) -> Read:
+    """`read` for the text of a `Robot` whose format has that name."""
+    return _read(WRITTEN[name].reader)
+
+
+def _read(module: str) -> Read:
+    read: Read = importlib.import_module(f"kinform.formats.{module}").read
+    return read
+
+
+def edits_of(name: str) -> Any:
+    """The module with the edits of a format."""
+    return importlib.import_module(f"kinform.formats.{name}.writing.edits")
