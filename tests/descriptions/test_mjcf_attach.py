@@ -123,7 +123,7 @@ def test_what_is_wrong_is_told_with_file_line_and_remedy(tmp_path, case):
 
 
 def test_models_that_double_again_and_again_end_at_a_limit(tmp_path, monkeypatch):
-    monkeypatch.setattr(attach, "ATTACHED_MOST", 500)
+    monkeypatch.setattr(attach, "COPIES_MOST", 500)
     twice = '<attach model="m" body="q" prefix="{}"/>'
     for k in range(12):
         inner = f'<asset><model name="m" file="m{k + 1}.xml"/></asset>' if k < 11 else ""

@@ -7,7 +7,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from kinform.form.meshes.constants import FAULTS_SHOWN
+from kinform.form.constants import FAULTS_SHOWN
 from kinform.form.meshes.obj import read_obj
 from kinform.form.meshes.raw import MeshError
 

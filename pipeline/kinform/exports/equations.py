@@ -22,14 +22,13 @@ from kinform.exports.model import ExportModel
 from kinform.exports.motors import left_out
 from kinform.exports.tree import Closing, Tree, grow
 from kinform.foundation.algebra.vectors import perpendicular
+from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.mechanism.closure import rank_of
 
-LEAST_MOTION = 1e-9
-"""rad or m: what counts as motion of a joint along our run. Far above rounding; a choice, not a measurement."""
 POSES_OF_RUN = 24
-"""Poses of our run at which the free coordinates must be good; a choice: a turn is seen every 15°."""
+"""Poses of our run at which the free coordinates must be good: a turn is seen every 15°. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,7 +202,7 @@ def _held_rates(model: ExportModel, free: frozenset[int], lost: list[str], remar
         held = [k for k in range(slot.v.stop - slot.v.start) if slot.v.start + k in free]
         if held and slot.has_ball:
             lost.append(f"{slot.name}: in our run it rests, here its spherical joint swings")
-        elif any(np.ptp(run.joint_position[:, int(columns[slot.name]) + k]) > LEAST_MOTION for k in held):
+        elif any(np.ptp(run.joint_position[:, int(columns[slot.name]) + k]) > SOLVED for k in held):
             lost.append(
                 f"{slot.name}: nothing prescribes it; in our run it moves no more than it must, here it is held"
             )

@@ -10,7 +10,8 @@ import numpy as np
 from kinform.model.arrays import Array
 
 CLOSE_CHOICE = 0.7
-"""Choices within this factor of the best count as equal, and the first is taken: the same on all machines."""
+"""Choices within this factor of the best count as equal, and the first is taken: the same on all machines, whatever the
+last digits are. Chosen, not measured: any factor clearly below 1 does that."""
 
 
 def free_columns(equations: Sequence[Array]) -> list[int]:

@@ -26,7 +26,8 @@ from kinform.model.names import PartName
 from kinform.model.tolerances import Tolerances
 
 SOLID_DEVIATION = 1e-3
-"""Deviation of facets of solids that a program holds, in diagonals: `STEP_TURN` decides for what is round."""
+"""Deviation of facets of solids that a program holds, in diagonals: `STEP_TURN` decides for what is round, and this
+only for what is nearly flat. Chosen, not measured."""
 
 
 WHERE = "(python)"

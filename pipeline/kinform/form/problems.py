@@ -5,10 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from kinform.errors import InputError, Problem
+from kinform.form.constants import PROBLEMS_MOST
 from kinform.foundation.words import counted
-
-PROBLEMS_MOST = 1000
-"""Problems of the input that are told: who has more repairs these first."""
 
 
 class Problems:

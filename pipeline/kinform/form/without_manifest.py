@@ -21,6 +21,7 @@ from kinform.form.problems import Problems
 from kinform.form.readers.poses import shift
 from kinform.form.sources import states_units
 from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.rounding import ARITHMETIC
 from kinform.foundation.units import METRES_PER_UNIT, UNITS, metres_per
 from kinform.foundation.words import length
 from kinform.model.arrays import Array
@@ -30,20 +31,20 @@ from kinform.model.names import PartName
 from kinform.model.tolerances import Tolerances
 
 SMALLEST_ASSEMBLY = 1e-3
-"""Diagonal (m) below which a unit is doubted."""
+"""Diagonal (m) below which a unit is doubted: no assembly of parts is smaller than a millimetre. Chosen, not
+measured."""
 LARGEST_ASSEMBLY = 100.0
-"""Diagonal (m) above which a unit is doubted."""
+"""Diagonal (m) above which a unit is doubted: few machines are as large as a ship. Chosen, not measured."""
 MISTAKEN_METRES = 20.0
-"""Diagonal (m) from which on metres are doubted: machines of that size are drawn in mm, and in mm it is 20 mm."""
+"""Diagonal (m) from which on metres are doubted: machines of that size are drawn in mm, and a device of 20 mm, a common
+size, read as metres has it. Chosen, not measured."""
 USUAL_ASSEMBLY = (0.01, 10.0)
-"""Diagonals (m) between which another unit is proposed."""
+"""Diagonals (m) between which another unit is proposed: from a watch to a lorry. Chosen, not measured."""
 WIDTH = 100
-"""Columns of comments."""
+"""Columns of comments in a manifest that is proposed. Chosen."""
 NOISE = 2e-5
 """Components of a proposed axis or point below this share of the largest are written as zero: 0.001°, or 6 µm at 0.3 m,
 is the rounding of meshes in float32 far from the origin, and nothing that is meant."""
-ROUNDED = 1e-12
-"""Coordinates of a proposed point below this share of the greatest of all meshes are the rounding of doubles."""
 
 
 def load_meshes(
@@ -166,7 +167,7 @@ def joint_lines(joint: IntendedJoint, units: str, within: float) -> list[str]:
     if joint.axis is not None:
         lines.append(f"axis = {_numbers(_without_noise(joint.axis), 6)}")
     if joint.point is not None:
-        point = np.where(np.abs(joint.point) < ROUNDED * within, 0.0, joint.point)
+        point = np.where(np.abs(joint.point) < ARITHMETIC * within, 0.0, joint.point)
         lines.append(f"point = {_numbers(_without_noise(point / metres_per(units)), 6)}")
     return lines
 
@@ -179,7 +180,7 @@ def _without_noise(values: Array) -> Array:
 
 def _numbers(values: Array, digits: int) -> str:
     """As in "[0, 1, 0.25]", each to so many significant digits of the largest."""
-    largest = max(float(np.abs(values).max()), 1e-12)
+    largest = max(float(np.abs(values).max()), ARITHMETIC)
     places = digits - 1 - math.floor(math.log10(largest))
     return "[" + ", ".join(f"{round(float(value), places) + 0.0:.12g}" for value in values) + "]"
 

@@ -14,35 +14,36 @@ import numpy as np
 from kinform.exports.graph.layout import box_centres
 from kinform.foundation.graphs.cycles import short_cycles
 from kinform.foundation.graphs.graph import blocks
+from kinform.foundation.rounding import SOLVED
 from kinform.foundation.words import counted, one_line
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Kinematics
 
 LETTER_WIDTH = 7.3
-"""px, of a letter on average."""
+"""px, of a letter on average: of 13 px sans serif, wide ones included."""
 LINE_HEIGHT = 18.0
-"""px, of a line of the legend."""
+"""px, of a line of the legend: 1.4 times the size of its letters."""
 MARGIN = 30.0
-"""px, around the drawing."""
+"""px, around the drawing: the radius of a symbol, three times. Chosen by eye."""
 EDGE_LENGTH = 105.0
-"""px, of a joint between two bodies: its symbol stands clear of both."""
+"""px, of a joint between two bodies: its symbol stands clear of both. Chosen by eye."""
 SYMBOL_RADIUS = 10.5
-"""px, of the circle with the letter of a joint."""
+"""px, of the circle with the letter of a joint: the letter fits in it. Chosen by eye."""
 SYMBOL_PLACES = (0.5, 0.6, 0.4, 0.7, 0.3, 0.8, 0.2)
-"""Shares of a joint's line at which its symbol may stand, the best first."""
+"""Shares of a joint's line at which its symbol may stand, the best first: from the middle outwards."""
 CLEARANCE = 0.8
-"""Share of its radius by which a symbol keeps clear of boxes."""
+"""Share of its radius by which a symbol keeps clear of boxes. Chosen by eye."""
 MOST_CLEARED = 600
-"""Bodies up to which the symbols keep clear of boxes: the search takes bodies times joints."""
+"""Bodies up to which the symbols keep clear of boxes: the search takes bodies times joints. Chosen, not measured."""
 MOST_LOOPS = 40
-"""Loops up to which they are numbered; more marks cannot be told apart."""
+"""Loops up to which they are numbered: more marks cannot be told apart. Chosen by eye."""
 MOST_BODIES = 150
-"""Bodies of the largest graph in a page: a larger one cannot be read there."""
+"""Bodies of the largest graph in a page: a larger one cannot be read there. Chosen by eye."""
 LONGEST_NAME = 30
-"""Letters of a name in a page."""
+"""Letters of a name in a page: two thirds of the width of the panel."""
 PANEL = (320.0, 470.0)
-"""px, width and height of the room of the graph in a page."""
+"""px, width and height of the graph in a page: a column of its layout."""
 
 
 SYMBOLS = {
@@ -231,7 +232,7 @@ def _loops(kinematics: Kinematics, edges: list[tuple[int, int]]) -> list[_Loop]:
 def _trimmed(start: Array, end: Array, size: Array) -> Array:
     """Where the line from `start` leaves the box of this size around it."""
     way = end - start
-    share = np.abs(way) / np.maximum(size / 2, 1e-9)
+    share = np.abs(way) / np.maximum(size / 2, SOLVED)
     return np.asarray(start + way / max(float(share.max()), 1.0))
 
 

@@ -11,24 +11,27 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.foundation.graphs.graph import Edge, neighbours
+from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
 
 MOST_STRESSED = 250
-"""Nodes of a component; larger ones stay in layers, as majorisation takes their square in memory."""
+"""Nodes of a component; larger ones stay in layers, as majorisation takes their square in memory. Chosen, not
+measured."""
 MOST_ROUNDS = 200
-"""Steps of majorisation, and rounds of pushing boxes apart."""
+"""Steps of majorisation, and rounds of pushing boxes apart: graphs of bodies settle in some tens. Chosen, not
+measured."""
 STILL = 0.05
-"""px: a step of majorisation that moves no node by more is the last."""
+"""px: a step of majorisation that moves no node by more is the last: a twentieth of a pixel is not seen."""
 LEAST_OVERLAP = 0.5
-"""px: boxes that are nearer to each other than they may be by less stay where they are."""
+"""px: boxes that are nearer to each other than they may be by less stay where they are: half a pixel is not seen."""
 CROWDED = 9
-"""Nodes with more neighbours are hubs, whose edges are longer."""
+"""Nodes with more neighbours are hubs, whose edges are longer. Chosen by eye."""
 HUB_EXPONENT = 0.75
-"""The edge of a hub grows with this power of its neighbours over CROWDED; tried on the fixtures."""
+"""The edge of a hub grows with this power of its neighbours over CROWDED. Chosen by eye, on the fixtures."""
 WIDTH_SHARE = 0.25
-"""Share of both widths by which boxes beside each other are to be further apart than their edges say."""
+"""Share of both widths by which boxes beside each other are to be further apart than their edges say. Chosen by eye."""
 GAP = 26.0
-"""px, least space between two boxes."""
+"""px, least space between two boxes: more than two symbols of joints. Chosen by eye."""
 
 
 def box_centres(sizes: Array, edges: Sequence[Edge], first: int, spacing: float) -> Array:
@@ -95,7 +98,7 @@ def _least_stress(at: Array, edges: Sequence[Edge], spacing: float, boxes: Array
     at = at + 1e-3 * spacing * np.stack([np.cos(np.arange(len(at))), np.sin(1.7 * np.arange(len(at)))], axis=1)
     for _ in range(MOST_ROUNDS):
         apart = np.linalg.norm(at[:, None] - at[None], axis=2)
-        pull = weight * far / np.maximum(apart, 1e-9)
+        pull = weight * far / np.maximum(apart, SOLVED)
         np.fill_diagonal(pull, 0.0)
         better = inverse @ ((np.diag(pull.sum(axis=1)) - pull) @ at)
         if float(np.abs(better - at).max()) < STILL:

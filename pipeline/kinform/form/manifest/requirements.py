@@ -9,7 +9,8 @@ from pydantic import Field
 from kinform.form.manifest.common import Finite, Name, NonNegative, Pair, Positive, Quantity, Reference, Table, Vector
 
 ROWS_MOST = 10_000
-"""Rows of a law that is written in the manifest; longer ones are CSV files."""
+"""Rows of a law that is written in the manifest: what is longer was made by a program, which writes CSV. Chosen, not
+measured."""
 
 
 Length = Quantity("length")

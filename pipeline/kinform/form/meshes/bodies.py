@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.form.meshes.constants import WELD_SHARE
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh
 from kinform.form.meshes.weld import merge_close, merge_exact, used_only
 from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.foundation.meshes.edges import edge_table
 from kinform.foundation.meshes.shells import shells_of
+from kinform.foundation.rounding import SINGLE
 from kinform.model.arrays import Array, Ints
 
 INSIDE = 0.5
-"""Winding number above which a point lies in a shell: it is 1 inside and 0 outside."""
+"""Winding number above which a point lies in a shell: halfway between 0 outside and 1 inside."""
 
 
 def named_bodies(raw: RawMesh) -> dict[str, RawMesh]:
@@ -29,7 +29,7 @@ def shell_bodies(raw: RawMesh) -> dict[str, RawMesh]:
     """Connected shells as "shell 1", "shell 2", …; a cavity belongs to the shell around it."""
     first, place = merge_exact(raw.vertices)
     vertices = raw.vertices[first].astype(np.float64)
-    leaders, close = merge_close(vertices, WELD_SHARE * float(np.linalg.norm(np.ptp(vertices, axis=0))))
+    leaders, close = merge_close(vertices, SINGLE * float(np.linalg.norm(np.ptp(vertices, axis=0))))
     vertices, faces = vertices[leaders], close[place[raw.faces]]
     a, b, c = faces.T
     whole = (a != b) & (b != c) & (c != a)

@@ -17,7 +17,7 @@ from kinform.model.arrays import Array, Ints
 LARGE_COORDINATES = 0.1
 """Share of the largest coordinate from which on a coordinate is as coarse as it: one decimal digit."""
 DIGITS_READ = 2000
-"""Coordinates of a text whose digits are looked at."""
+"""Coordinates of a text whose digits are looked at: at random they show the share that uses the last digit to 1 %."""
 DIGITS_LEAST = 5
 """Digits from which on the largest coordinates can have been cut: no writer keeps fewer, and parts of whole or half
 millimetres, up to some metres, have fewer."""

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.form.meshes.constants import WELD_SHARE
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh
 from kinform.form.meshes.repeated import taken_once
 from kinform.form.meshes.weld import merge_close, merge_exact, used_only
@@ -18,6 +17,7 @@ from kinform.foundation.meshes.boxes import bounds
 from kinform.foundation.meshes.edges import EdgeTable, unsorted_edge_table
 from kinform.foundation.meshes.shells import shells_of
 from kinform.foundation.processes import Crash, apart
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED
 from kinform.foundation.words import counted
 from kinform.model.arrays import Array, Ints, freeze
 from kinform.model.assembly import Mesh, MeshHealth
@@ -25,11 +25,8 @@ from kinform.model.assembly import Mesh, MeshHealth
 SMALLEST_MESH = 1e-12
 """Diagonal (m) of the smallest mesh: an atom is a hundred times larger, and cubes of its lengths are still numbers."""
 EPS32 = 2.0**-23
-"""Relative step of single precision: no mesh is taken to be known better than that, at its own size."""
-FLAT = 1e-9
-"""A solid thinner than this share of its size has no volume."""
-SLIVER = 1e-24
-"""Squared altitude of a degenerate facet, in squares of its longest side."""
+"""Relative step of single precision, in which STL files are written: no mesh is taken to be known better than that, at
+its own size."""
 WELD_STEPS = 2.0
 """The same in steps of the last place of the largest coordinate, where that is more: copies of one corner that were
 rounded apart differ by one in each direction."""
@@ -59,7 +56,7 @@ def build_mesh(raw: RawMesh, metres: float, weld: float | None, *, path: str, bo
     if diagonal < SMALLEST_MESH:
         raise MeshError([Fault(f"is {diagonal:.2g} m across, less than an atom", "correct its units or its scale")])
     centred = _centred(shape)
-    if solid and _thickness(centred) <= max(FLAT * diagonal, 0.0):
+    if solid and _thickness(centred) <= max(SOLVED * diagonal, 0.0):
         raise MeshError([Fault(
             "has zero thickness: all its vertices lie in one plane",
             "export a closed solid, or state solid = false for a part that is surfaces only",
@@ -107,7 +104,7 @@ def _welded(raw: RawMesh, metres: float, weld: float | None, resolution: float) 
     vertices -= origin
     vertices *= metres
     faces = place.take(raw.faces)
-    distance = max(WELD_SHARE * _diagonal(vertices), WELD_STEPS * resolution) if weld is None else weld
+    distance = max(SINGLE * _diagonal(vertices), WELD_STEPS * resolution) if weld is None else weld
     leaders, close = merge_close(vertices, distance)
     if len(leaders) == len(vertices):
         return vertices, faces, origin, distance
@@ -177,7 +174,7 @@ def _slivers(corners: Sequence[Array]) -> int:
     doubled = _crossed(sides[1], sides[2])
     first, second, third = (_dots(side, side) for side in sides)
     longest = np.maximum(np.maximum(first, second), third)
-    return int(np.count_nonzero(_dots(doubled, doubled) <= SLIVER * longest**2))
+    return int(np.count_nonzero(_dots(doubled, doubled) <= ARITHMETIC**2 * longest**2))
 
 
 def _crossed(a: Array, b: Array) -> Array:

@@ -15,9 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.form.constants import LARGEST_NUMBER
+from kinform.form.constants import FAULTS_SHOWN, LARGEST_NUMBER, PROBLEMS_MOST
 from kinform.form.meshes.blocks import NEWLINE, blocks, coordinate, with_newlines
-from kinform.form.meshes.constants import FAULTS_SHOWN
 from kinform.form.meshes.digits import written_step
 from kinform.form.meshes.polygons import CUT_CORNERS, triangulate
 from kinform.form.meshes.raw import REEXPORT, Fault, Labelling, MeshError, RawMesh, is_coordinate
@@ -25,9 +24,6 @@ from kinform.foundation.words import counted
 
 FACE_BYTES = 4 * 1024 * 1024
 """Of one line of an OBJ that states a vertex or a face: a million corners. Each takes sixty bytes while it is read."""
-FAULTS_KEPT = 1000
-"""Faults of one mesh file that are kept, to find those of the first lines among them; a file with more is read no
-further."""
 
 
 _SKIPPED = frozenset(
@@ -49,7 +45,7 @@ class _Faults:
     @property
     def enough(self) -> bool:
         """Whether there are so many that nobody needs more of them."""
-        return len(self._kept) >= FAULTS_KEPT
+        return len(self._kept) >= PROBLEMS_MOST
 
     def add(self, message: str, remedy: str, line: int) -> None:
         """Note a fault."""
@@ -253,7 +249,7 @@ def _corners(
     precede each. Indices beyond the file's vertices are left to `_check_range`."""
     tokens = [_AFTER_SLASH.sub(b"", rest).split() if b"/" in rest else rest.split() for rest in texts]
     sizes = np.array(list(map(len, tokens)), dtype=np.int64)
-    for face in np.flatnonzero(sizes < 3)[:FAULTS_KEPT].tolist():
+    for face in np.flatnonzero(sizes < 3)[:PROBLEMS_MOST].tolist():
         message = f"has a face of {counted(int(sizes[face]), 'corner')} at line {lines[face]}; it needs 3"
         faults.add(message, REEXPORT, int(lines[face]))
     if any(b"_" in rest for rest in texts):
@@ -272,7 +268,7 @@ def _corners(
         return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
     owner = np.repeat(np.arange(len(sizes)), sizes)
     index = np.where(stated > 0, stated - 1, stated + before[owner])
-    for corner in np.flatnonzero((stated <= 0) & ((index < 0) | (stated == 0)))[:FAULTS_KEPT].tolist():
+    for corner in np.flatnonzero((stated <= 0) & ((index < 0) | (stated == 0)))[:PROBLEMS_MOST].tolist():
         line = int(lines[owner[corner]])
         if stated[corner] == 0:
             faults.add(f"has index 0 at line {line}: OBJ counts vertices from 1", REEXPORT, line)
@@ -286,7 +282,7 @@ def _check_range(
     index: NDArray[np.int64], sizes: NDArray[np.integer], lines: NDArray[np.integer], count: int, faults: _Faults
 ) -> None:
     """Note the corners whose vertex a file of `count` does not have."""
-    beyond = np.flatnonzero(index >= count)[:FAULTS_KEPT]
+    beyond = np.flatnonzero(index >= count)[:PROBLEMS_MOST]
     faces = np.searchsorted(np.cumsum(sizes, dtype=np.int64), beyond, side="right")
     for stated, face in zip((index[beyond] + 1).tolist(), faces.tolist(), strict=True):
         if face < len(lines):

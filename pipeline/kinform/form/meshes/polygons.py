@@ -9,17 +9,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.form.meshes.constants import FAULTS_SHOWN
+from kinform.form.constants import FAULTS_SHOWN
 from kinform.foundation.algebra.vectors import perpendicular
+from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.model.arrays import Array, Ints
 
-NO_TRIANGLE = 1e-9
-"""Share of a polygon's area below which a triangle is no triangle: a fan with such ones is not taken."""
 CUT_CORNERS = 10_000
 """Corners of a concave polygon at most: cutting takes time as their square, 0.8 s for one of so many that crosses
 itself, 2.1 s for one of 16,000. Convex ones are fans, and may have any number."""
-CUT_AREA = 1e-6
-"""Share of a polygon's area that its triangles may miss or have twice."""
 
 
 def triangulate(vertices: Array, corners: Ints, sizes: Ints) -> tuple[Ints, Ints, Ints]:
@@ -75,7 +72,7 @@ def _fan(vertices: Array, polygons: Ints) -> tuple[Ints, NDArray[np.bool_]]:
     length = np.linalg.norm(normal, axis=1)
     along = np.einsum("pti,pi->pt", doubled, normal)
     flat = np.linalg.norm(doubled, axis=2).max(axis=1) == 0
-    return fan, flat | (along > NO_TRIANGLE * (length**2)[:, None]).all(axis=1)
+    return fan, flat | (along > SOLVED * (length**2)[:, None]).all(axis=1)
 
 
 def _cut(vertices: Array, polygon: Ints) -> Ints | None:
@@ -86,10 +83,10 @@ def _cut(vertices: Array, polygon: Ints) -> Ints | None:
     normal = np.cross(p, np.roll(p, -1, axis=0)).sum(axis=0)
     area = float(np.linalg.norm(normal))
     spread = float(np.abs(p).max())
-    if area <= NO_TRIANGLE * spread**2:
+    if area <= SOLVED * spread**2:
         fan = np.stack([np.full(len(p) - 2, polygon[0]), polygon[1:-1], polygon[2:]], axis=1)
         a, b, c = (vertices[fan[:, i]] for i in range(3))
-        collinear = np.abs(np.cross(b - a, c - a)).max() <= NO_TRIANGLE * spread**2
+        collinear = np.abs(np.cross(b - a, c - a)).max() <= SOLVED * spread**2
         return fan if collinear else None
     normal /= area
     flat = np.stack([-(p @ across) for across in perpendicular(normal)], axis=1)
@@ -98,6 +95,6 @@ def _cut(vertices: Array, polygon: Ints) -> Ints | None:
         return None
     a, b, c = (flat[triangles[:, i]] for i in range(3))
     doubled = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
-    if doubled.min() < -NO_TRIANGLE * area or abs(doubled.sum() - area) > CUT_AREA * area:
+    if doubled.min() < -SOLVED * area or abs(doubled.sum() - area) > SINGLE * area:
         return None
     return polygon[triangles]

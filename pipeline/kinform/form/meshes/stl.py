@@ -15,14 +15,14 @@ from operator import itemgetter
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.form.constants import LARGEST_NUMBER
+from kinform.form.constants import FAULTS_SHOWN, LARGEST_NUMBER
 from kinform.form.meshes.blocks import SPACE, blocks, coordinate, with_newlines
-from kinform.form.meshes.constants import FAULTS_SHOWN
 from kinform.form.meshes.digits import written_step
 from kinform.form.meshes.raw import REEXPORT, Fault, Labelling, MeshError, RawMesh, is_coordinate, soup
 from kinform.foundation.words import counted
 
 _HEADER = 84
+"""Bytes before the records of a binary STL: 80 of text, 4 for the number of facets."""
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _SOLID = re.compile(rb"^[ \t]*(end)?solid\b[ \t]*([^\n]*)$", re.MULTILINE | re.IGNORECASE)
 _UNPRINTABLE = re.compile(rb"[\x00-\x08\x0e-\x1f\x7f]")
@@ -36,6 +36,7 @@ _OTHERS = (
 )
 """How files of other formats begin, that are found under the name of an STL file."""
 _TOKENS = 21
+"""Words of a facet in a text STL, from `facet` to `endfacet`; `_WORDS` are those that are no numbers."""
 _WORDS = {
     0: b"facet", 1: b"normal", 5: b"outer", 6: b"loop", 7: b"vertex", 11: b"vertex", 15: b"vertex",
     19: b"endloop", 20: b"endfacet",

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from kinform.errors import InputError, Problem
-from kinform.form.constants import PARTS_MOST
+from kinform.form.constants import FILES_DEEP, PARTS_MOST
 from kinform.form.files import DesignFiles, MeshUse, earlier_meshes, no_file
 from kinform.form.manifest.common import Posed
 from kinform.form.manifest.parts import Group as GroupTable
@@ -31,6 +31,7 @@ from kinform.form.sources import AS_IT_IS, Reading, is_source
 from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.foundation.memory import keep_heap
 from kinform.foundation.regular import AS_A_FILE, not_a_file
+from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Group, MassOverride, Part, Subassembly
@@ -40,14 +41,8 @@ from kinform.model.names import PartName
 from kinform.model.tolerances import Tolerances
 
 SCOPES_MOST = 10_000
-"""Sub-assemblies of a design, counted each time that they are placed: of files that place each other twice there could
-be more than atoms."""
-SCOPES_DEEP = 32
-"""Sub-assemblies in each other."""
-UNIT_QUATERNION = 1e-6
-"""A quaternion whose length is off by more than this was not meant as a rotation."""
-SYMMETRIC = 1e-9
-"""Relative difference up to which the two halves of an inertia are alike: what twelve printed digits lose."""
+"""Sub-assemblies of a design, counted each time that they are placed, a tenth of `PARTS_MOST`: of files that place each
+other twice there could be more than atoms."""
 
 
 def load(path: str | Path, *, allow_outside: bool = False, reading: Reading = AS_IT_IS) -> Assembly:
@@ -123,8 +118,8 @@ class _AssemblyReader:
                 chain = " → ".join([*(self.files.shown(p) for p in here), shown])
                 scope.complain(f"sub-assemblies form a cycle: {chain}", "remove one of them", *at, "file")
                 continue
-            if len(here) > SCOPES_DEEP or len(self.scopes) >= SCOPES_MOST:
-                self._too_many(scope, len(here) > SCOPES_DEEP, *at, "file")
+            if len(here) > FILES_DEEP or len(self.scopes) >= SCOPES_MOST:
+                self._too_many(scope, len(here) > FILES_DEEP, *at, "file")
                 return
             name = prefix + table.name
             before = len(self.scopes)
@@ -136,7 +131,7 @@ class _AssemblyReader:
     def _too_many(self, scope: Scope, deep: bool, *path: str | int) -> None:
         """Note, once, that there are more sub-assemblies than a design may have."""
         if not self.stopped:
-            how = f"more than {SCOPES_DEEP} deep in each other" if deep else f"more than {SCOPES_MOST:,} in all"
+            how = f"more than {FILES_DEEP} deep in each other" if deep else f"more than {SCOPES_MOST:,} in all"
             scope.complain(f"sub-assemblies are placed {how}", "place fewer of them", *path)
         self.stopped = True
 
@@ -361,7 +356,7 @@ def _complete(scope: Scope) -> bool:
 def _pose(scope: Scope, table: Posed, *path: str | int) -> Array:
     if table.quaternion is not None and table.rpy is not None:
         scope.complain("both quaternion and rpy are given", "remove one of them", *path, "rpy")
-    if table.quaternion is not None and unit_error(table.quaternion) > UNIT_QUATERNION:
+    if table.quaternion is not None and unit_error(table.quaternion) > SINGLE:
         message = f"the quaternion has length {math.hypot(*table.quaternion):.6g}, not 1"
         scope.complain(message, "give a unit quaternion [w, x, y, z]", *path, "quaternion")
         return pose(table.position, None, None, scope.metres)
@@ -411,7 +406,7 @@ def _override(
         scope.complain(f"{what}: {stated} without {' and '.join(missing)}", remedy, *path)
         return None
     inertia = np.array(table.inertia, dtype=float)
-    if not np.allclose(inertia, inertia.T, rtol=SYMMETRIC, atol=0.0):
+    if not np.allclose(inertia, inertia.T, rtol=SOLVED, atol=0.0):
         scope.complain(f"{what}: the inertia is not symmetric", "give a symmetric matrix", *path, "inertia")
     assert table.mass is not None
     assert table.centre_of_mass is not None

@@ -19,6 +19,7 @@ from kinform.form.readers.csv_tables import law_rows
 from kinform.form.readers.drive_keys import complain_of_drive, efficiencies
 from kinform.form.readers.open_manifest import Scope
 from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.rounding import SINGLE
 from kinform.model.assembly import Assumption
 from kinform.model.checks import CheckSettings, Ignore
 from kinform.model.function import (
@@ -32,10 +33,8 @@ from kinform.model.function import (
     SimulationRequest,
 )
 
-PARALLEL_AXES = 1e-6
-"""Sine of the angle between the two axes of a universal joint below which they are one."""
 OUTPUTS = 1_000_000
-"""Output times of a run: more would fill the memory before anything is solved."""
+"""Output times of a run: more would fill the memory before anything is solved: with 100 columns they are 800 MB."""
 
 
 NEEDED = {
@@ -106,7 +105,7 @@ class FunctionReader:
                 scope.complain(f"{what}: {key} does nothing: a {kind} joint has none", right, *path, key)
         axis = scope.direction(table.axis, *path, "axis")
         axis2 = scope.direction(table.axis2, *path, "axis2")
-        if axis is not None and axis2 is not None and np.linalg.norm(np.cross(axis, axis2)) < PARALLEL_AXES:
+        if axis is not None and axis2 is not None and np.linalg.norm(np.cross(axis, axis2)) < SINGLE:
             scope.complain(f"{what}: axis and axis2 are parallel", "give two different axes", *path, "axis2")
         pitch = None if table.pitch is None else table.pitch * scope.metres
         if pitch == 0.0:

@@ -9,9 +9,9 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from kinform.form.constants import LARGEST_NUMBER, VALUE_LENGTH
+from kinform.form.constants import LARGEST_NUMBER, PROBLEMS_MOST, VALUE_LENGTH
 from kinform.form.manifest import json_schema
-from kinform.form.problems import PROBLEMS_MOST, Problems
+from kinform.form.problems import Problems
 from kinform.form.readers.places import Lines
 from kinform.form.readers.toml_lines import Path
 from kinform.foundation.meant import did_you_mean, first_names, in_quotes

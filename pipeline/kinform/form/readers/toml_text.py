@@ -11,12 +11,11 @@ import tomllib
 from collections.abc import Iterator
 from typing import Any
 
+from kinform.form.constants import NAME_LENGTH
 from kinform.foundation.words import counted
 
 MANIFEST_DEPTH = 8
 """Tables in tables, arrays in arrays, and keys between dots: schema 1 goes six deep."""
-BARE_LENGTH = 255
-"""Characters of a bare key, a number or a date in TOML: doubles take 25 at most, and names have quotes."""
 
 
 _KEY = r"(?:[A-Za-z0-9_+:-]++|\"(?:[^\"\\\n]|\\.)*+\"|'[^'\n]*+')"
@@ -79,6 +78,6 @@ def _excesses(text: str) -> Iterator[tuple[int, str, str]]:
                 message = f"a key of {counted(len(steps), 'step')} between dots; {MANIFEST_DEPTH} are the most"
                 yield token.start(), message, "shorten it: no key of the manifest has more than four"
             longest = max((len(step) for step in steps if step[0] not in "\"'"), default=0)
-            if longest > BARE_LENGTH:
-                message = f"a key or number of {longest} characters; {BARE_LENGTH} are the most"
+            if longest > NAME_LENGTH:
+                message = f"a key or number of {longest} characters; {NAME_LENGTH} are the most"
                 yield token.start(), message, "shorten it"

@@ -15,9 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from kinform.form.constants import LARGEST_NUMBER
+from kinform.form.constants import LARGEST_NUMBER, UNPACKED_BYTES
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate, prevailing
-from kinform.form.scenes.constants import SCENE_XML_BYTES
 from kinform.form.scenes.declarations import refuse_declarations
 from kinform.form.scenes.scene import EXPORT, SCENE_DEEP, SCENE_NODES, Node, Scene
 from kinform.form.sources import AS_IT_IS, Reading
@@ -199,8 +198,8 @@ def _check(data: bytes) -> None:
         raise MeshError([Fault("is a pointer of Git LFS, not the mesh", "fetch it: git lfs pull")])
     if data[:2] == b"PK":
         raise MeshError([Fault("is an archive", "unpack it, and name the .dae")])
-    if len(data) > SCENE_XML_BYTES:
-        raise MeshError([Fault(f"has {len(data):,} bytes, and {SCENE_XML_BYTES:,} are the most", "divide it")])
+    if len(data) > UNPACKED_BYTES:
+        raise MeshError([Fault(f"has {len(data):,} bytes, and {UNPACKED_BYTES:,} are the most", "divide it")])
     refuse_declarations(data)
 
 

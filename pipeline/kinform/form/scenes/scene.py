@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from kinform.form.constants import PARTS_MOST, SHEAR
+from kinform.form.constants import FRAME_ROUNDING, PARTS_MOST
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, prevailing
 from kinform.formats.description.tree import distinct
 from kinform.foundation.meant import in_quotes
@@ -21,8 +21,6 @@ SCENE_DEEP = 64
 """Nodes of a scene in each other: twice what sub-assemblies may have, for each may have a frame of its own."""
 SCENE_NODES = 400_000
 """Nodes that a scene places, counted each time that they are: four for each of the parts that a design may have."""
-UNSCALED = 1e-5
-"""Relative difference up to which a scale is 1, as rotations in single precision have it."""
 
 
 EXPORT = "export the file again"
@@ -157,7 +155,7 @@ def _pose_and_scale(X: Array, name: str) -> tuple[Array, tuple[float, float, flo
         raise MeshError([Fault(f"places {in_quotes(name)} by a matrix that is none of a solid", EXPORT)])
     x, y, z = columns / lengths[:, None]
     askew = max(abs(float((a * b).sum())) for a, b in ((x, y), (y, z), (z, x)))
-    if askew > SHEAR:
+    if askew > FRAME_ROUNDING:
         raise MeshError([Fault(f"shears {in_quotes(name)}, as unequal scales of turned nodes do",
                                "apply the scales to the meshes before it is exported")])  # fmt: skip
     y = y - (x * y).sum() * x
@@ -167,7 +165,7 @@ def _pose_and_scale(X: Array, name: str) -> tuple[Array, tuple[float, float, flo
     pose = np.eye(4)
     pose[:3, :3] = np.column_stack([x, y, last])
     pose[:3, 3] = X[:3, 3]
-    near = [round(float(v)) if abs(abs(v) - 1.0) < UNSCALED else float(v) for v in lengths]
+    near = [round(float(v)) if abs(abs(v) - 1.0) < FRAME_ROUNDING else float(v) for v in lengths]
     return pose, (float(near[0]), float(near[1]), float(near[2]))
 
 

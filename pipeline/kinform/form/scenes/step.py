@@ -25,9 +25,11 @@ STEP_BYTES = 1 << 30
 """Largest STEP file that is read: the largest public ones have a quarter of it, and OpenCASCADE takes twenty times as
 much memory."""
 STEP_END = 4096
-"""Bytes at either end of a STEP file in which its first and last keyword stand: comments and blanks may be around."""
+"""Bytes at either end of a STEP file in which its first and last keyword stand: comments and blanks around them are
+shorter. Chosen, not measured."""
 STEP_MEMORY = 12 << 30
-"""Bytes of memory that the tessellation of a STEP file may take: beyond, it fails with a message, not the machine."""
+"""Bytes of memory that the tessellation of a STEP file may take: beyond, it fails with a message, not the machine.
+Chosen, not measured."""
 STEP_EDGES = 0.005
 """Largest distance of facets from surfaces, as a share of the size of edges: not a length, for what is fine for a watch
 takes all memory for a ship (a ball of 10 m, at 0.01 mm, more than 20 GB)."""

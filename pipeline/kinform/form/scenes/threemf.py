@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kinform.form.constants import UNPACKED_BYTES
 from kinform.form.meshes.digits import written_step
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate, prevailing
-from kinform.form.scenes.constants import SCENE_XML_BYTES
 from kinform.form.scenes.declarations import refuse_declarations
 from kinform.form.scenes.scene import EXPORT, Node, Scene
 from kinform.form.sources import AS_IT_IS, Reading
@@ -49,7 +49,7 @@ class _Reader:
     def __init__(self, archive: zipfile.ZipFile):
         self.archive = archive
         self.names = {f"/{name.lstrip('/')}".lower(): name for name in archive.namelist()}
-        self.left = SCENE_XML_BYTES
+        self.left = UNPACKED_BYTES
         self.objects: dict[_Key, Any] = {}
         self.roots: dict[str, Any] = {}
         self.colours: dict[_Key, list[str]] = {}
@@ -91,7 +91,7 @@ class _Reader:
         info = self.archive.getinfo(self.names[name])
         self.left -= info.file_size
         if self.left < 0:
-            raise MeshError([Fault(f"has more than {SCENE_XML_BYTES:,} bytes of XML in it", "divide it")])
+            raise MeshError([Fault(f"has more than {UNPACKED_BYTES:,} bytes of XML in it", "divide it")])
         try:
             text = self.archive.read(info)
         except (zipfile.BadZipFile, RuntimeError, NotImplementedError, EOFError, OSError) as error:

@@ -17,9 +17,10 @@ from kinform.model.descriptions import Coverage
 
 UNCOVERED_DEPTH = 0.01
 """Share of a link's size by which its visual may reach out of the collision geometry and counts as covered: facets of
-primitives and of simplified meshes."""
+primitives and of simplified meshes miss a surface by about 0.1 % to 1 %. Chosen, not measured."""
 COVERED_FACETS = 2000
-"""Facets of a visual mesh that are held against the collision geometry, about: of larger ones every second, third, …"""
+"""Facets of a visual mesh that are held against the collision geometry, about: of larger ones every second, third, …
+2000 tell a share of the area to 1 %."""
 
 
 def coverage_of(visual: Sequence[tuple[Array, Ints]], collision: Sequence[Array]) -> Coverage | None:

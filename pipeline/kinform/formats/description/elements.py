@@ -13,16 +13,15 @@ from typing import Any
 
 from lxml import etree
 
-from kinform.form.constants import LARGEST_NUMBER, VALUE_LENGTH
+from kinform.form.constants import LARGEST_NUMBER, TEXT_BYTES, VALUE_LENGTH
 from kinform.form.problems import Problems
 from kinform.formats.description.robot import At
 from kinform.foundation.colours import told
 from kinform.foundation.meant import in_quotes
 
-XML_BYTES = 64 * 1024 * 1024
-"""Largest XML text that is read: descriptions of robots with a thousand links have a tenth of it."""
 XML_DEPTH = 255
-"""Elements in each other that are read: bodies of MJCF in a row have one each."""
+"""Elements in each other that are read: the limit of libxml2 without its option for huge trees is 256. Bodies of MJCF
+in a row have one each."""
 
 
 FILE = "{urn:kinform}file"
@@ -52,8 +51,8 @@ def parse_xml(data: bytes, file: str, problems: Problems) -> Element | None:
     """The root element of an XML text; None after noting what is wrong with it."""
     if declares_entities(data, file, problems):
         return None
-    if len(data) > XML_BYTES:
-        problems.add(f"has {len(data):,} bytes, and {XML_BYTES:,} are the most", file, None, "split the description")
+    if len(data) > TEXT_BYTES:
+        problems.add(f"has {len(data):,} bytes, and {TEXT_BYTES:,} are the most", file, None, "split the description")
         return None
     parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True,
                              remove_pis=True, huge_tree=False, recover=True)  # fmt: skip

@@ -9,17 +9,16 @@ from functools import cached_property
 from pathlib import Path
 from urllib.parse import unquote
 
-from kinform.form.constants import VALUE_LENGTH
+from kinform.form.constants import NAME_LENGTH, VALUE_LENGTH
 from kinform.frozen import dataclass
 
 PACKAGE_LEVELS = 4
-"""Folders, from that of a description upwards, in which its package is looked for where nothing names it."""
+"""Folders, from that of a description upwards, in which its package is looked for where nothing names it:
+`package/robots/variant/urdf`, and one. Chosen, not measured."""
 WORKSPACE_LEVELS = 4
 """Folders below the `src` of a workspace in which packages are looked for: `src/group/repository/package`, and one."""
-NAME_BYTES = 255
-"""Of the name of a file, or of a folder: the most that file systems take."""
 PACKAGE_BYTES = 64 * 1024
-"""Of a package.xml, that are searched for its name, which stands near the beginning."""
+"""Of a package.xml, that are searched for its name, which stands near the beginning. Chosen, not measured."""
 ENTRIES_MOST = 20_000
 """Files and folders that are looked at for these, at most: about a second. The largest public package tried has 1,453;
 what is more is a home folder that holds a description."""
@@ -62,7 +61,7 @@ class MeshFiles:
         """The file that a description names; `folder` is where plain paths begin, else that of the description."""
         text = unquote(stated.strip()) if "://" in stated else stated.strip()
         text = text.replace("\\", "/")
-        if any(len(os.fsencode(part)) > NAME_BYTES for part in text.split("/")):
+        if any(len(os.fsencode(part)) > NAME_LENGTH for part in text.split("/")):
             return Found(
                 None, message=f"{stated[:VALUE_LENGTH]}… has a name that no file can have", remedy="shorten it"
             )

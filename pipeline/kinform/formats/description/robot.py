@@ -14,8 +14,8 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 NO_BOUND = 1e9
-"""rad, m, N·m, N from which on a limit says that there is none: formats that want a limit get numbers such as this, and
-files of Gazebo have 1e16. The circumference of the earth is 4e7 m."""
+"""rad, m, N·m, N from which on a limit says that there is none, and what is written where a format wants a limit and
+there is none: files of Gazebo have 1e16, others numbers such as this. The circumference of the earth is 4e7 m."""
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,7 @@ from kinform.formats.registry import ROBOT_FORMATS, reader_of
 from kinform.foundation.algebra.spatial import quaternions
 from kinform.foundation.meant import first_names, in_quotes
 from kinform.foundation.regular import not_a_file
+from kinform.foundation.rounding import ARITHMETIC
 from kinform.foundation.units import METRES_PER_UNIT, metres_per
 from kinform.model.arrays import Array
 
@@ -258,6 +259,6 @@ def shape_table(solid: Solid, metres: float) -> dict[str, Any]:
 def _unit_and_scale(metres: float, scale: tuple[float, float, float]) -> tuple[str, tuple[float, ...]]:
     """A unit of length, and what is left of the scale of a mesh that is in it: 0.001 is said as mm."""
     for unit in ("m", "mm", "cm"):
-        if all(math.isclose(abs(s) * metres, METRES_PER_UNIT[unit], rel_tol=1e-12) for s in scale):
+        if all(math.isclose(abs(s) * metres, METRES_PER_UNIT[unit], rel_tol=ARITHMETIC) for s in scale):
             return unit, tuple(math.copysign(1.0, s) for s in scale)
     return "m", tuple(s * metres for s in scale)

@@ -24,6 +24,7 @@ from kinform.formats.description.elements import xml_bytes
 from kinform.formats.description.mesh_files import MeshFiles
 from kinform.formats.description.robot import At, Inertial, Robot, RobotJoint
 from kinform.formats.registry import WRITTEN, edits_of, reader_of_text
+from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
 from kinform.mass.shapes import solid_of
 from kinform.model.arrays import Array
@@ -31,8 +32,6 @@ from kinform.model.assembly import Assembly, Part
 from kinform.model.descriptions import DescribedLink, Description
 from kinform.model.function import IntendedJoint
 
-SAME = 1e-9
-"""Relative difference of numbers up to which a manifest says what the description says: the way through degrees."""
 _BEFORE = re.compile(r"(?:\s|<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^>\[]*>)*", re.DOTALL)
 
 
@@ -140,7 +139,7 @@ def _same(a: Any, b: Any) -> bool:
         return a is b
     first, second = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
     scale = max(float(np.abs(second[np.isfinite(second)]).max(initial=0.0)), 1e-3)
-    equal = (first == second) | (np.abs(first - second) <= SAME * scale)
+    equal = (first == second) | (np.abs(first - second) <= SOLVED * scale)
     return bool(equal.all())
 
 
@@ -168,7 +167,7 @@ def _masses(
             other = was.get(link.name)
             now = (override.mass, *override.centre_of_mass, *override.inertia.ravel())
             before = None if other is None else (other.mass, *other.centre, *other.inertia.ravel())
-            if before is None or not np.allclose(now, before, rtol=SAME, atol=1e-15):
+            if before is None or not np.allclose(now, before, rtol=SOLVED, atol=1e-15):
                 out[link.name] = _in_link(link, override.mass, override.centre_of_mass, override.inertia)
     return out, left
 

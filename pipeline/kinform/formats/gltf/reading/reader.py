@@ -17,6 +17,7 @@ from urllib.parse import unquote
 
 import numpy as np
 
+from kinform.form.constants import TEXT_BYTES
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate, prevailing
 from kinform.form.scenes.scene import EXPORT, Node, Scene
 from kinform.form.sources import AS_IT_IS, Reading
@@ -26,15 +27,12 @@ from kinform.foundation.regular import not_a_file
 from kinform.foundation.words import counted
 from kinform.model.arrays import Array, Ints
 
-SCENE_TEXT_BYTES = 64 * 1024 * 1024
-"""Largest JSON of a glTF: 10,000 nodes have a tenth of it, and what is parsed takes ten times as much memory."""
-
-
 _TYPES = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _COLUMNS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
 _HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_mesh_quantization", "KHR_xmp")
 """Extensions, by how they begin, that do not change where anything is; or that are read."""
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
+"""Modes of primitives whose facets are read."""
 
 
 def read_gltf(data: bytes, path: Path, reading: Reading = AS_IT_IS) -> Scene:
@@ -61,8 +59,8 @@ def _chunks(data: bytes) -> tuple[Any, bytes | None]:
             chunks.setdefault(kind, data[at + 8 : at + 8 + size])
             at += 8 + size
         text, binary = chunks.get(b"JSON", b""), chunks.get(b"BIN\x00")
-    if len(text) > SCENE_TEXT_BYTES:
-        raise MeshError([Fault(f"has {len(text):,} bytes of JSON, and {SCENE_TEXT_BYTES:,} are the most", "divide it")])
+    if len(text) > TEXT_BYTES:
+        raise MeshError([Fault(f"has {len(text):,} bytes of JSON, and {TEXT_BYTES:,} are the most", "divide it")])
     try:
         header = json.loads(text)
     except (ValueError, RecursionError) as error:

@@ -19,6 +19,7 @@ from kinform.exports.model import ExportModel
 from kinform.exports.names import FILES, identifiers
 from kinform.foundation.algebra.spatial import quaternions
 from kinform.foundation.colours import light
+from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
 from kinform.version import __version__
@@ -26,7 +27,9 @@ from kinform.version import __version__
 FLOAT, UNSIGNED = 5126, 5125
 VERTICES, INDICES = 34962, 34963
 LINES = 1
+"""Numbers of glTF 2.0: types of components, targets of buffers, mode of a primitive."""
 AXIS_COLOUR = (0.85, 0.15, 0.1, 1.0)
+"""Of the axes of joints: red, which no material has."""
 
 
 @dataclass
@@ -159,7 +162,7 @@ def _axis(file: _File, meshes: _Meshes, joint: Joint, length: float) -> int:
 def _from_z(axis: Array) -> Array:
     """The shortest turn that takes z to the axis, as a quaternion."""
     q = np.array([1.0 + axis[2], -axis[1], axis[0], 0.0])
-    if q[0] < 1e-9:
+    if q[0] < SOLVED:  # the axis is −z
         return np.array([0.0, 1.0, 0.0, 0.0])
     return np.asarray(q / np.linalg.norm(q))
 

@@ -22,9 +22,11 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 ATTACHED_DEEP = 16
-"""Models in models in models that `<attach>` of an MJCF may name: arms have hands, and hands have fingers."""
-ATTACHED_MOST = 20_000
-"""Bodies that `<attach>` makes, at most, as for `<replicate>`: a few files that attach each other twice make 2ⁿ."""
+"""Models in each other that `<attach>` of an MJCF may name: robots have arms, arms hands, and hands fingers, four deep.
+Chosen, not measured."""
+COPIES_MOST = 20_000
+"""Bodies that `<attach>` makes, or elements that `<replicate>` makes, at most: a few files that attach each other twice
+make 2ⁿ, and what is replicated more often are ropes and grains, not machines. Chosen, not measured."""
 
 
 SUFFIX = "{urn:kinform}suffix"
@@ -95,8 +97,8 @@ class Models:
         if read is None:
             return None
         self._budget.made += len(read[1].links)
-        if self._budget.made > ATTACHED_MOST:
-            self._xml.complain(element, f"<attach> makes more than {ATTACHED_MOST:,} bodies", "attach fewer")
+        if self._budget.made > COPIES_MOST:
+            self._xml.complain(element, f"<attach> makes more than {COPIES_MOST:,} bodies", "attach fewer")
             return None
         return read[1]
 

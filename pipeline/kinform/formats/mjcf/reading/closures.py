@@ -7,13 +7,13 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from kinform.formats.constants import AXIS_LENGTH
 from kinform.formats.description.elements import Element, Xml, tag_of
 from kinform.formats.description.poses import place, pose, quaternion
 from kinform.formats.description.robot import Link, Ratio, RobotJoint
 from kinform.formats.description.tree import Count
 from kinform.formats.mjcf.reading.defaults import Defaults
 from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
 
 LOOP_GAP = 1e-4
@@ -59,7 +59,7 @@ def closures(
         element = items[0][0]
         name = (element.get("name") or f"{tag_of(element)} {first} {second}").replace("/", "_").replace("~", "-")
         points = [point for _, point in items if point is not None]
-        far = [point for point in points[1:] if float(np.linalg.norm(point - points[0])) > AXIS_LENGTH]
+        far = [point for point in points[1:] if float(np.linalg.norm(point - points[0])) > SOLVED]
         if len(points) < len(items) or len(far) > 1:
             out.append(RobotJoint(name, "fixed", (first, second), xml.at(element)))
         elif far:

@@ -9,8 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from kinform.form.constants import SHEAR
-from kinform.formats.constants import INCLUDES
+from kinform.form.constants import FILES_DEEP, FRAME_ROUNDING
 from kinform.formats.description.elements import FILE, Element, Xml, parse_xml, tag_of
 from kinform.formats.description.mesh_files import MeshFiles
 from kinform.formats.description.poses import about, pose, quaternion, turn
@@ -63,7 +62,7 @@ class Includes:
             self._xml.complain(element, f"the include {in_quotes(name)} lies outside the folder", "move it there")
         elif not name or not path.is_file():
             self._xml.complain(element, f"the include {in_quotes(name)} does not exist", "correct its file")
-        elif path.resolve() in self._seen or len(self._seen) > INCLUDES:
+        elif path.resolve() in self._seen or len(self._seen) > FILES_DEEP:
             message = f"the file {in_quotes(name)} is included twice, or includes itself"
             self._xml.complain(element, message, "remove one of the includes")
         else:
@@ -191,7 +190,7 @@ def from_z(direction: Array) -> Array:
     z = direction / size
     axis = np.cross([0.0, 0.0, 1.0], z)
     sine = float(np.linalg.norm(axis))
-    if sine < 1e-15:
+    if sine < 1e-15:  # mjMINVAL, as MuJoCo has it
         return np.eye(3) if z[2] > 0.0 else np.diag([1.0, -1.0, -1.0])
     return about(tuple(axis), math.atan2(sine, float(z[2])))
 
@@ -274,7 +273,7 @@ def _scale_and_pose(scale: Array, R: Array, p: Array) -> tuple[Array, Array | No
     M = scale[:, None] * R.T
     along = np.linalg.norm(M, axis=0)
     cosines = (M.T @ M) / np.outer(along, along)
-    if float(np.abs(cosines - np.eye(3)).max()) > SHEAR:
+    if float(np.abs(cosines - np.eye(3)).max()) > FRAME_ROUNDING:
         return scale, None
     first = along * np.sign(scale)
     return first, pose(M / first, -M @ p)

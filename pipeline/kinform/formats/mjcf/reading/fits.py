@@ -16,7 +16,8 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
 FITTED_FLAT = 1e-6
-"""Thickness of a mesh over its length below which no primitive is fitted to it: MuJoCo refuses such sizes."""
+"""Thickness of a mesh over its length below which no primitive is fitted to it: MuJoCo refuses sizes of nearly zero,
+and meshes in single precision have no less."""
 
 
 FITTED = ("sphere", "capsule", "cylinder", "ellipsoid", "box")

@@ -15,7 +15,6 @@ import numpy as np
 from lxml import etree
 
 from kinform.form.problems import Problems
-from kinform.formats.constants import AXIS_LENGTH
 from kinform.formats.description.elements import FILE, Element, Xml, parse_xml, tag_of, xml_text
 from kinform.formats.description.mesh_files import MeshFiles
 from kinform.formats.description.poses import place
@@ -28,6 +27,7 @@ from kinform.formats.mjcf.reading.defaults import Compiler, Defaults, Includes
 from kinform.formats.mjcf.reading.replicas import Replicas
 from kinform.formats.mjcf.reading.shapes import Shapes
 from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
 
 WORLD = "world"
@@ -282,7 +282,7 @@ class _Reader:
             xml.complain(element, message, "rename one of them")
         name, kind = self.free_joint(stated), self._type(element, named) or ""
         axis = np.array(xml.numbers(element, said.get("axis", "0 0 1"), "axis", 3) or (0.0, 0.0, 1.0))
-        if float(np.linalg.norm(axis)) < AXIS_LENGTH:
+        if float(np.linalg.norm(axis)) < SOLVED:
             xml.complain(element, f"joint {in_quotes(name)}: its axis is zero", 'give an axis such as "0 0 1"')
             axis = np.array([0.0, 0.0, 1.0])
         point = xml.numbers(element, said.get("pos", "0 0 0"), "pos", 3) or (0.0, 0.0, 0.0)

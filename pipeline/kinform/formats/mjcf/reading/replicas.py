@@ -9,13 +9,10 @@ from lxml import etree
 
 from kinform.formats.description.elements import FILE, Element, Xml, tag_of
 from kinform.formats.description.poses import pose
-from kinform.formats.mjcf.reading.attach import SUFFIX
+from kinform.formats.mjcf.reading.attach import COPIES_MOST, SUFFIX
 from kinform.formats.mjcf.reading.defaults import Compiler
 from kinform.foundation.algebra.spatial import quaternions
 from kinform.model.arrays import Array
-
-REPLICAS_MOST = 20_000
-"""Elements that `<replicate>` makes, at most: what is made of more are ropes and grains, not machines."""
 
 
 class Replicas:
@@ -43,8 +40,8 @@ class Replicas:
         size = sum(1 for _ in element.iter())
         if count < 1:
             self._xml.complain(element, "<replicate> has no count of at least 1", 'give count="2"')
-        elif self._made + count * size > REPLICAS_MOST:
-            self._xml.complain(element, f"<replicate> makes more than {REPLICAS_MOST:,} elements", "make fewer")
+        elif self._made + count * size > COPIES_MOST:
+            self._xml.complain(element, f"<replicate> makes more than {COPIES_MOST:,} elements", "make fewer")
         else:
             self._made += count * size
             for k, X in enumerate(self._poses(element, count)):

@@ -23,11 +23,10 @@ from kinform.exports.motors import limited, slowed
 from kinform.exports.names import XML, identifiers
 from kinform.formats.description.writing.robot_model import RobotLink, RobotModel
 from kinform.formats.mjcf.writing.reflected import Carried, carried
+from kinform.foundation.rounding import SOLVED
 
 BANDWIDTH = 2.0 * math.pi * 10.0
-"""rad/s, of the position servos that stand for prescribed motions: 10 Hz, a choice."""
-SHOWN_ASIDE = 1e-9
-"""rad and m: a servo that is aimed aside by less is not said to be: that is rounding."""
+"""rad/s, of the position servos that stand for prescribed motions: 10 Hz. Chosen, not measured."""
 
 
 def gears(robot: RobotModel, lost: list[str]) -> list[tuple[Any, str, str]]:
@@ -130,7 +129,7 @@ def _motor(robot: RobotModel, motor: DcMotor, lost: list[str]) -> dict[str, Any]
 
 def _aimed(aside: float, joint: JointComponent, freedom: int) -> str:
     """What carries gravity at the start, in words; nothing where it is rounding."""
-    if abs(aside) < SHOWN_ASIDE:
+    if abs(aside) < SOLVED:
         return ""
     turns = joint.kind.coordinates[freedom][1]
     size = f"{math.degrees(aside):.3g}°" if turns else f"{1e3 * aside:.3g} mm"

@@ -11,13 +11,10 @@ import numpy as np
 
 from kinform.behaviour import RigidBody
 from kinform.exports.model import ExportModel
+from kinform.foundation.rounding import SINGLE
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.simulation.mechanism.states import states_at
-
-LOCKED_SHARE = 1e-6
-"""Share of what one rate opens loops by that the others may leave open: more, and the loops lock it. Axes that contact
-made agree close loops to 1e-9 and better."""
 
 
 @dataclass(frozen=True)
@@ -62,8 +59,8 @@ def _least_rates(rows: Array, scale: Array, column: int) -> Array | None:
     rates[column] = 1.0
     if len(rows):
         needed = -rows[:, column]
-        found, *_ = np.linalg.lstsq(rows[:, others] * scale[others], needed, rcond=LOCKED_SHARE)
+        found, *_ = np.linalg.lstsq(rows[:, others] * scale[others], needed, rcond=SINGLE)
         rates[others] = found * scale[others]
-        if np.linalg.norm(rows @ rates) > LOCKED_SHARE * np.linalg.norm(needed):
+        if np.linalg.norm(rows @ rates) > SINGLE * np.linalg.norm(needed):
             return None
     return rates

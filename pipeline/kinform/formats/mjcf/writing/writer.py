@@ -28,13 +28,13 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 LEAST_MOMENT = 1e-14
-"""kg·m²: below 1e-15 MuJoCo refuses a moment of inertia."""
+"""kg·m², ten times the moment of inertia below which MuJoCo refuses a body (mjMINVAL, 1e-15)."""
 MOST_FACETS = 200_000
-"""More than these MuJoCo does not read from STL."""
+"""More facets MuJoCo does not read from one STL file: a check in its reader."""
 MOST_NESTED = 495
 """Bodies in a row, each in the one before, that MuJoCo 4.0 reads: its XML reader takes 499 elements in each other."""
 STEP = 0.001
-"""s, of RK4 without loops; a choice."""
+"""s, of RK4 without loops. Chosen, not measured."""
 STEP_OF_LOOPS = 0.0002
 """s, of RK4: loops are stiff springs to MuJoCo and need the shorter step (within 1e-5 of rigid ones in the tests)."""
 

@@ -13,7 +13,7 @@ from urllib.parse import unquote
 
 import numpy as np
 
-from kinform.formats.constants import INCLUDES
+from kinform.form.constants import FILES_DEEP
 from kinform.formats.description.elements import FILE, Element, Xml, parse_xml, tag_of
 from kinform.formats.description.mesh_files import MeshFiles
 from kinform.formats.description.tree import Count
@@ -25,7 +25,7 @@ from kinform.frozen import dataclass
 
 SDF_MODELS = 2000
 """Models of an SDF, included ones too, beyond which no include is read: files that include each other twice, thirty
-deep, never end."""
+deep, never end. Chosen, not measured."""
 
 
 SCENERY = ("sun", "ground_plane")
@@ -148,7 +148,7 @@ class Models:
                 wrong = f"has more than {SDF_MODELS:,} models, with those that are included"
                 xml.complain(element, wrong, "divide it, or remove includes")
             return
-        if path.resolve() in here.above or len(here.above) > INCLUDES:
+        if path.resolve() in here.above or len(here.above) > FILES_DEEP:
             xml.complain(element, f"the include {in_quotes(uri)} includes itself", "remove one of the includes")
             return
         shown = _shown(path, self._meshes.folder, Path(xml.file).parent)

@@ -14,7 +14,6 @@ from pathlib import Path
 import numpy as np
 
 from kinform.form.problems import Problems
-from kinform.formats.constants import AXIS_LENGTH
 from kinform.formats.description.elements import Element, Xml, parse_xml, tag_of
 from kinform.formats.description.mesh_files import MeshFiles
 from kinform.formats.description.poses import place
@@ -26,6 +25,7 @@ from kinform.formats.sdf.reading.models import Model, Models, version_of
 from kinform.formats.sdf.reading.text import whole_text
 from kinform.formats.sdf.reading.values import Values
 from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
 
 TYPES = {
@@ -244,14 +244,14 @@ class _Reader:
                 return None
             direction = np.array(self.values.vector(axis, "xyz", (0.0, 0.0, 1.0)))
             size = float(np.linalg.norm(direction))
-            if size < AXIS_LENGTH:
+            if size < SOLVED:
                 self.xml.complain(axis, f"{what}: its axis is zero", "give an axis such as <xyz>0 0 1</xyz>")
                 return None
             R = self._seen_from(what, model, axis, X)
             if R is None:
                 return None
             out.append(R @ (direction / size))
-        if len(out) == 2 and float(np.linalg.norm(np.cross(out[0], out[1]))) < AXIS_LENGTH:
+        if len(out) == 2 and float(np.linalg.norm(np.cross(out[0], out[1]))) < SOLVED:
             self.xml.complain(element, f"{what}: its two axes are parallel", "give axes at right angles")
             return None
         return out

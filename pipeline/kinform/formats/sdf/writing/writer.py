@@ -19,11 +19,9 @@ from kinform.exports.names import SDF, free_name
 from kinform.exports.text import render
 from kinform.formats.description.writing.chains import Hinge, chain, tree_losses
 from kinform.formats.description.writing.robot_model import GRAIN, RobotLink, RobotModel, robot_model_of
+from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
-
-LEAST_SKEW = 1e-9
-"""Cosine between the axes of a universal joint below which they are square, as SDF has them; rounding leaves less."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +100,7 @@ def _direct(robot: RobotModel, link: RobotLink) -> _Joint | None:
         return _Joint(name, "ball", parent, link.name)
     screws = [m.primitive for m in link.link.motions if isinstance(m.primitive, OneFreedom)]
     if kind == "universal":
-        if abs(float(screws[0].omega @ screws[1].omega)) > LEAST_SKEW:
+        if abs(float(screws[0].omega @ screws[1].omega)) > SOLVED:
             return None
         axes = zip(link.link.motions, screws, strict=True)
         return _Joint(

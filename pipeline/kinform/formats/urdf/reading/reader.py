@@ -13,7 +13,6 @@ from pathlib import Path
 import numpy as np
 
 from kinform.form.problems import Problems
-from kinform.formats.constants import AXIS_LENGTH
 from kinform.formats.description.elements import Element, Xml, colour_of, parse_xml, tag_of, xml_text
 from kinform.formats.description.inertials import placed, symmetric
 from kinform.formats.description.mesh_files import MeshFiles
@@ -33,6 +32,7 @@ from kinform.formats.description.robot import (
 )
 from kinform.formats.description.tree import Count, Edge, Tree, refuse_circle, tree_of
 from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
 
 TYPES = {
@@ -295,9 +295,9 @@ class _Reader:
         stated = self.xml.child(element, "axis")
         axis = np.array(self.xml.vector(stated, "xyz", (1.0, 0.0, 0.0)))
         size = float(np.linalg.norm(axis))
-        if size < AXIS_LENGTH and kind in ("fixed", "spherical"):
+        if size < SOLVED and kind in ("fixed", "spherical"):
             return [np.array([1.0, 0.0, 0.0])]
-        if size < AXIS_LENGTH:
+        if size < SOLVED:
             self.xml.complain(stated, f"{what}: its axis is zero", 'give an axis such as xyz="0 0 1"')
             return None
         return [axis / size]

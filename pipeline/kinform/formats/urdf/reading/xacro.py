@@ -21,7 +21,8 @@ from kinform.foundation.processes import Crash, in_own_process
 from kinform.frozen import dataclass
 
 XACRO_FILES = 500
-"""Files of a package that are looked through for the names of others, at most."""
+"""Files of a package that are looked through for the names of other packages, at most: a package has a few dozen.
+Chosen, not measured."""
 XACRO_SECONDS = 20
 """Seconds of processor time that the expansion of a xacro file may take: robots take one or two, and macros that call
 each other twice, thirty deep, never end."""

@@ -12,12 +12,10 @@ from kinform.exports.exported import Exported
 from kinform.exports.model import ExportModel, Limits
 from kinform.exports.names import XML
 from kinform.exports.text import render
+from kinform.formats.description.robot import NO_BOUND
 from kinform.formats.description.writing.chains import Hinge, chain, tree_losses
 from kinform.formats.description.writing.robot_model import RobotLink, RobotModel, robot_model_of
 from kinform.frozen import dataclass
-
-UNLIMITED = 1e9
-"""What stands for a limit that is not known, where the format must have one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,15 +44,15 @@ def export(model: ExportModel) -> Exported:
         if len(hinges) > 1:
             remarks.append(f"{link.link.joint.subject}: a chain of joints with links without mass between them")
     free = [link for link in robot.links[1:] if link.link.parent < 0]
-    if any(joint.limits is not None and UNLIMITED in map(abs, joint.limits) for joint in joints):
-        remarks.append(f"limits of {UNLIMITED:g} stand for ranges that are open or not known")
+    if any(joint.limits is not None and NO_BOUND in map(abs, joint.limits) for joint in joints):
+        remarks.append(f"limits of {NO_BOUND:g} stand for ranges that are open or not known")
     bounded = [joint.others for joint in joints if joint.limits is not None or joint.others != Limits()]
     if any(None in (others.effort, others.speed) for others in bounded):
-        remarks.append(f"limits of effort and velocity of {UNLIMITED:g} stand for none")
+        remarks.append(f"limits of effort and velocity of {NO_BOUND:g} stand for none")
     remarks.append("URDF has no gravity; ours is " + ", ".join(f"{x:g}" for x in model.gravity) + " m/s²")
     text = render(
         __package__, "robot.urdf.j2", robot=robot, joints=joints, free=free, lost=lost, remarks=remarks,
-        unlimited=UNLIMITED, between=[j.hinge.child for j in joints if j.hinge.between], materials=robot.materials,
+        unlimited=NO_BOUND, between=[j.hinge.child for j in joints if j.hinge.between], materials=robot.materials,
     )  # fmt: skip
     return Exported({f"{robot.stem}.urdf": text, **robot.meshes}, tuple(lost), tuple(remarks))
 
@@ -62,12 +60,12 @@ def export(model: ExportModel) -> Exported:
 def _joint(robot: RobotModel, link: RobotLink, hinge: Hinge, mimics: dict[str, tuple[str, float]]) -> _Joint:
     limits = link.range if link.single and hinge.follows is None else None
     if limits is not None:
-        limits = max(limits[0], -UNLIMITED), min(limits[1], UNLIMITED)
+        limits = max(limits[0], -NO_BOUND), min(limits[1], NO_BOUND)
     kind = hinge.type
-    if kind == "revolute" and (limits is None or limits == (-UNLIMITED, UNLIMITED)):
+    if kind == "revolute" and (limits is None or limits == (-NO_BOUND, NO_BOUND)):
         kind, limits = "continuous", None
     elif kind == "prismatic" and limits is None:
-        limits = -UNLIMITED, UNLIMITED
+        limits = -NO_BOUND, NO_BOUND
     mimic = hinge.follows or mimics.get(hinge.name)
     ball = link.link.joint is not None and link.link.joint.kind.name == "spherical"
     damping = 0.0 if hinge.follows is not None or ball else link.damping(hinge.coordinate)
