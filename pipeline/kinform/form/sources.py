@@ -11,7 +11,7 @@ import importlib
 from collections.abc import Mapping
 from dataclasses import field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from kinform.form.scenes.registry import SCENE_FORMATS
 from kinform.formats.registry import ROBOT_FORMATS
@@ -40,15 +40,16 @@ _UNREAD: Mapping[str, str] = {
 }  # fmt: skip
 """Formats of designs that are not read, by suffix."""
 
-GEOMETRIES = ("visual", "collision")
+Geometry = Literal["visual", "collision"]
 """Which geometry of a description its parts are."""
+GEOMETRIES: tuple[Geometry, ...] = get_args(Geometry)
 
 
 @dataclass(frozen=True)
 class Reading:
     """What a user may say of how sources are read."""
 
-    geometry: str = "visual"
+    geometry: Geometry = "visual"
     packages: tuple[tuple[str, str], ...] = ()
     """Folders of `package://NAME`, by name."""
     deviation: float | None = None

@@ -7,12 +7,14 @@ as a sub-assembly, names have its prefix and poses are in the world.
 from __future__ import annotations
 
 from dataclasses import field
-from typing import Annotated
+from typing import Annotated, Literal
 
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.quantities import MATRIX, Direction, JointValue, Metres, Place, Ratio, columns
 
+DescriptionFormat = Literal["urdf", "sdf", "mjcf", ""]
+"""Of the text of a description; "" where there is none that can be written back."""
 SIX = columns("*_xx", "*_yy", "*_zz", "*_xy", "*_xz", "*_yz")
 """The numbers of an inertia, in the order of URDF."""
 
@@ -117,8 +119,7 @@ class Description:
     """Relative to the folder of the top manifest."""
     prefix: str
     """Of its names in the assembly: "" where it is the top."""
-    format: str
-    """"urdf", "sdf" or "mjcf"."""
+    format: DescriptionFormat
     text: str
     """All of it as XML, macros expanded and includes put in."""
     links: tuple[DescribedLink, ...] = field(default=())

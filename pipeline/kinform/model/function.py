@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import field, replace
 from functools import cached_property
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
@@ -18,7 +18,14 @@ from kinform.model.springs import StatedSpring
 
 Stated = Annotated[float, "unit of the manifest"]
 """Where only the joint says whether it is an angle or a length."""
-PASSIVE = ("spring", "damper", "friction")
+LawType = Literal["constant", "sine", "ramp", "table"]
+DriveKind = Literal["motion", "effort", "spring", "damper", "friction", "servo", "dc_motor"]
+LoadFrame = Literal["world", "body"]
+"""world: the direction is fixed. body: it turns with the part."""
+SimulationLevel = Literal["functional", "kinematic", "dynamic"]
+StopsAt = Literal["range", "found", ""]
+"""range: joints stop at the ends of their stated ranges. found: where meshes meet. "": they pass both."""
+PASSIVE: tuple[DriveKind, ...] = ("spring", "damper", "friction")
 """Kinds of drives that only answer to motion."""
 LOSING = {"efficiency", "efficiency_back", "rotor_friction"}
 """Parameters of motors by which they lose power."""
@@ -99,7 +106,7 @@ class Law:
     ramp: offset + rate·t. table: linear between (times, values), held outside.
     """
 
-    type: str
+    type: LawType
     value: Stated = 0.0
     amplitude: Stated = 0.0
     frequency: Annotated[float, "Hz"] = 0.0
@@ -117,8 +124,7 @@ class Drive:
     """Something that acts on an intended joint, or on a joint as kinform names it."""
 
     joint: str
-    kind: str
-    """motion, effort, spring, damper, friction, servo, dc_motor."""
+    kind: DriveKind
     law: Law | None
     parameters: dict[str, float]
     """Further numbers of the kind (stiffness, damping, rest, kp, …, gear) that are stated, in manifest units."""
@@ -175,8 +181,7 @@ class Load:
     torque: Annotated[Array, "N·m", XYZ] | None
     point: Place | None
     """(3,) m, world at the pose of the meshes; None: centre of mass."""
-    frame: str
-    """"world" (fixed direction) or "body" (turns with the part)."""
+    frame: LoadFrame
     file: str
     line: int | None
     law: Law | None = None
@@ -270,7 +275,7 @@ class InitialValue:
 class SimulationRequest:
     """`[simulation]`; seconds, m/s²."""
 
-    level: str | None = None
+    level: SimulationLevel | None = None
     duration: Annotated[float, "s"] = 1.0
     step: Annotated[float, "s"] = 0.01
     gravity: Annotated[Array, "m/s²", XYZ] = field(default_factory=lambda: np.array([0.0, 0.0, -9.81]))
@@ -279,8 +284,7 @@ class SimulationRequest:
     line: int | None = None
     partial: bool = False
     """Whether joints that are not understood are held while the rest moves."""
-    stops: str = ""
-    """"range": joints stop at the ends of their stated ranges; "found": where meshes meet; "": they pass them."""
+    stops: StopsAt = ""
     restitution: Ratio = 0.0
     """Of these stops: the share of the speed that an impact leaves."""
     assumed: tuple[str, ...] = ()

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Final, Literal
 
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.quantities import MATRIX, Place, columns
 
-SPRING, GAS_SPRING, BUSHING = "spring", "gas_spring", "bushing"
+SpringKind = Literal["spring", "gas_spring", "bushing"]
+SPRING: Final = "spring"
+GAS_SPRING: Final = "gas_spring"
+BUSHING: Final = "bushing"
 
 
 @dataclass(frozen=True, eq=False)
 class StatedSpring:
     """`[[function.spring]]`, `[[function.gas_spring]]` or `[[function.bushing]]`."""
 
-    kind: str
+    kind: SpringKind
     name: str
     between: Annotated[tuple[str, str], columns("between_a", "between_b")]
     """Parts or groups."""

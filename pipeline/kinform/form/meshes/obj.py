@@ -19,7 +19,7 @@ from kinform.form.constants import FAULTS_SHOWN, LARGEST_NUMBER, PROBLEMS_MOST
 from kinform.form.meshes.blocks import NEWLINE, blocks, coordinate, with_newlines
 from kinform.form.meshes.digits import written_step
 from kinform.form.meshes.polygons import CUT_CORNERS, triangulate
-from kinform.form.meshes.raw import REEXPORT, Fault, Labelling, MeshError, RawMesh, is_coordinate
+from kinform.form.meshes.raw import REEXPORT, Fault, Labelling, LabellingKind, MeshError, RawMesh, is_coordinate
 from kinform.foundation.words import counted
 
 FACE_BYTES = 4 * 1024 * 1024
@@ -153,7 +153,7 @@ def _coordinates(data: bytes) -> Iterator[list[bytes]]:
         yield [token for word in words if word and word[0] == b"v" for token in word[1:4]]
 
 
-def _labelling(kind: str, names: dict[str, int], labels: NDArray[np.integer]) -> Labelling | None:
+def _labelling(kind: LabellingKind, names: dict[str, int], labels: NDArray[np.integer]) -> Labelling | None:
     used, compact = np.unique(labels, return_inverse=True)
     every = list(names)
     kept = tuple(every[i] for i in used)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from kinform.form.constants import LARGEST_NUMBER
 from kinform.frozen import dataclass
 
+LabellingKind = Literal["object", "group", "solid"]
 REEXPORT = "export the mesh again"
 """The remedy where nothing else helps."""
 
@@ -42,8 +44,7 @@ class MeshError(Exception):
 class Labelling:
     """One way in which a file divides its facets: OBJ objects, OBJ groups, or ASCII solids."""
 
-    kind: str
-    """object, group or solid."""
+    kind: LabellingKind
     names: tuple[str, ...]
     """Distinct, in the order of the file; "" for facets before the first name."""
     labels: NDArray[np.int64]

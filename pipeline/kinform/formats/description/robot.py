@@ -12,6 +12,7 @@ from pathlib import Path
 
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
+from kinform.model.descriptions import DescriptionFormat
 
 NO_BOUND = 1e9
 """rad, m, N·m, N from which on a limit says that there is none, and what is written where a format wants a limit and
@@ -165,8 +166,8 @@ class Robot:
     """What the reader did on its own account, and what cannot be carried, in sentences."""
     files: tuple[Path, ...] = ()
     """Files that were read besides the description: includes, and meshes that primitives are fitted to."""
-    format: str = ""
-    """"urdf", "sdf" or "mjcf": what `text` is."""
+    format: DescriptionFormat = ""
+    """What `text` is."""
     text: str = ""
     """All of it as XML, macros expanded and includes put in; "" where it cannot be written back."""
     folders: tuple[Path, ...] = field(default=())

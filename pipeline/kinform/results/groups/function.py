@@ -38,7 +38,7 @@ class _WithLaws:
         of_laws = [[getattr(one.law, field, None) for one in found] for field in laws]
         write_rows(group, self.dataset, self._columns, own + of_laws)
         for points in self._points:
-            points.write(group, Law, [one.law or Law("") for one in found])
+            points.write(group, Law, [one.law or Law("constant") for one in found])
 
     def read(self, group: HeldGroup, cls: type, rows: Rows) -> None:
         found = read_rows(group, self.dataset, self._columns, defaults(self._record) | self._later)
