@@ -75,3 +75,24 @@ def test_weighted_mean_has_the_bits_of_numpy(count):
     rng = np.random.default_rng(count)
     points, weights = rng.normal(size=(count, 3)), rng.random(count) + 0.1
     assert weighted_mean(points, weights).tobytes() == np.average(points, axis=0, weights=weights).tobytes()
+
+
+@pytest.mark.parametrize("shape", ["cloud", "grid", "ring", "sliver"])
+@pytest.mark.parametrize("count", [3, 30, 900])
+def test_the_corners_of_a_hull_are_those_of_qhull(shape: str, count: int) -> None:
+    rng = np.random.default_rng(count)
+    turn = 2 * np.pi * np.round(64 * rng.random(count)) / 64
+    flat = {
+        "cloud": rng.random((count, 2)),
+        "grid": np.stack(np.divmod(np.arange(count), max(count // 20, 2)), axis=1).astype(float),
+        "ring": np.stack([np.cos(turn), np.sin(turn)], axis=1) * rng.choice([0.5, 1.0], count)[:, None],
+        "sliver": np.stack([rng.random(count), 1e-4 * rng.random(count)], axis=1),
+    }[shape]
+    points = np.column_stack([flat, np.full(count, 0.3)])
+    chosen = flat[hull(points, np.array([0.0, 0.0, 1.0]))]
+    corners = flat[ConvexHull(flat, qhull_options="QJ Pp" if shape == "sliver" else "").vertices]
+    size = np.ptp(flat, axis=0).max()
+    # every corner of either is within rounding of the outline of the other: equal areas, and none outside
+    assert ConvexHull(chosen).volume == pytest.approx(ConvexHull(corners).volume, rel=1e-5)
+    equations = ConvexHull(chosen).equations
+    assert (flat @ equations[:, :2].T + equations[:, 2]).max() < 1e-5 * size

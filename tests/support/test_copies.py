@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from support.copies import Change, answers, axis_errors, copy_of, derived, turned
-from support.places import FIXTURES
 
 from kinform import form
+from support.copies import Change, answers, axis_errors, copy_of, derived, turned
+from support.places import FIXTURES
 
 SCREW = FIXTURES / "pairs" / "screw_right" / "screw_right.toml"
 COLLARS = FIXTURES / "pairs" / "revolute_collars" / "revolute_collars.toml"

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from support.export_models import CHAINS, LOOPS, known, model_of, swinging
 from support.other_programs import gap, loaded, origin
 from support.places import FIXTURES
 
 from kinform.behaviour import RigidBody
 from kinform.exports import export
+from kinform.exports.exported import ExportError
+from kinform.formats.mjcf.writing.writer import MOST_NESTED, _nested
 from kinform.foundation.algebra.spatial import to_matrix
 
 
@@ -158,3 +163,31 @@ def test_a_loop_that_only_a_slider_can_close_cuts_a_body_in_halves(tmp_path):
     assert sum(masses) == pytest.approx(1.5, abs=1e-12)
     assert root.find("equality/weld") is not None
     assert followed(found, tmp_path) < 1e-3
+
+
+def body(name, *children):
+    return SimpleNamespace(name=name, children=list(children))
+
+
+def written(node, depth=1):
+    """As a recursion has it."""
+    inner = [row for child in node.children for row in written(child, depth + 1)]
+    return [(node.name, depth, False), *inner, *([(node.name, depth, True)] if depth > 1 else [])]
+
+
+@given(st.recursive(st.builds(body, st.integers()), lambda of: st.builds(body, st.integers(), of, of), max_leaves=20))
+def test_bodies_begin_and_end_as_they_are_nested(root):
+    assert [(one.name, depth, ends) for one, depth, ends in _nested(root)] == written(root)
+
+
+@pytest.mark.parametrize(("count", "read"), [(MOST_NESTED, True), (MOST_NESTED + 1, False), (5000, False)])
+def test_of_more_in_a_row_than_are_read_it_is_told(count, read):
+    root = body("world")
+    for k in range(count):
+        root.children, inner = [body(k)], root.children
+        root.children[0].children = inner
+    if read:
+        assert len(list(_nested(root))) == 2 * count + 1
+    else:
+        with pytest.raises(ExportError, match="ground"):
+            list(_nested(root))

@@ -1,4 +1,4 @@
-"""What is wrong with a large OBJ is said in seconds, and takes no more memory than its bytes."""
+"""OBJ: polygons, indices, objects, and what is wrong at its line."""
 
 from __future__ import annotations
 
@@ -8,8 +8,44 @@ import numpy as np
 import pytest
 
 from kinform.form.constants import FAULTS_SHOWN
-from kinform.form.meshes.obj import read_obj
+from kinform.form.meshes.obj import parse_obj, read_obj
 from kinform.form.meshes.raw import MeshError
+
+
+def test_obj_with_quads_negative_indices_slashes_and_two_objects():
+    text = (
+        "o first\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1/1/1 2/1/1 3//1 4\n"
+        "o second\nv 0 0 1\nv 1 0 1\nv 1 1 1\nf -3 -2 \\\n-1\n"
+    )
+    raw = parse_obj(text.encode())
+    assert len(raw.faces) == 3
+    assert raw.faces[2].tolist() == [4, 5, 6]
+    assert raw.labellings[0].names == ("first", "second")
+
+
+def test_a_concave_polygon_keeps_its_area():
+    arrow = [(0, 0), (2, 0), (2, 2), (1, 0.5), (0, 2)]
+    text = "".join(f"v {x} {y} 0\n" for x, y in arrow) + "f 1 2 3 4 5\n"
+    raw = parse_obj(text.encode())
+    p = raw.vertices[raw.faces]
+    area = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])[:, 2] / 2
+    assert (area > 0).all()
+    assert area.sum() == pytest.approx(2.5)
+
+
+@pytest.mark.parametrize("index", ["9", "-9", "0", "x"])
+def test_a_wrong_index_is_told_with_its_line(index):
+    with pytest.raises(MeshError) as caught:
+        parse_obj(f"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {index}\n".encode())
+    assert [fault.line for fault in caught.value.faults] == [4]
+
+
+def test_a_wrong_index_is_told_how_many_vertices_there_are():
+    with pytest.raises(MeshError, match="out of range at line 4: the file has 3 vertices"):
+        parse_obj(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")
+    with pytest.raises(MeshError, match="out of range at line 2: 1 vertex precede it"):
+        parse_obj(b"v 0 0 0\nf -2 1 1\n")
+
 
 TRIANGLE = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.support.places import FIXTURES
-from tests.support.scenes import assert_same_joints, over
+from tests.support.scenes import assert_same_joints, over, step_copy
 
 import kinform
 from kinform import form
@@ -19,18 +19,11 @@ from kinform.errors import InputError
 from kinform.form.readers.assembly import load
 from kinform.form.sources import Reading
 
-FILES = Path(__file__).parent / "step"
 PAIRS = {
     "revolute_collars": FIXTURES / "pairs",
     "prismatic_dovetail": FIXTURES / "pairs",
     "four_bar": FIXTURES / "mechanisms",
 }
-
-
-def copy(folder: Path, name: str, change=lambda text: text) -> Path:
-    path = folder / f"{name}.step"
-    path.write_text(change((FILES / path.name).read_text()))
-    return path
 
 
 def refused(path: Path, **keys):
@@ -50,14 +43,14 @@ def reader():
 @pytest.mark.parametrize("name", PAIRS)
 def test_a_step_file_has_the_joints_of_the_stl_version(tmp_path, name):
     manifest = PAIRS[name] / name / f"{name}.toml"
-    of_step, of_stl = kinform.run(over(manifest, copy(tmp_path, name))), kinform.run(manifest)
+    of_step, of_stl = kinform.run(over(manifest, step_copy(tmp_path, name))), kinform.run(manifest)
     assert [part.name for part in of_step.assembly.parts] == [part.name for part in of_stl.assembly.parts]
     assert_same_joints(of_step, of_stl)
 
 
 @pytest.mark.usefixtures("reader")
 def test_names_hierarchy_instances_and_the_unit_are_kept(tmp_path):
-    assembly = form.load(copy(tmp_path, "names"))
+    assembly = form.load(step_copy(tmp_path, "names"))
     assert [part.name for part in assembly.parts] == ["a_b", "pin", "pins/pin", "pins/pin#2"]
     assert [sub.name for sub in assembly.subassemblies] == ["pins"]
     assert assembly.units == "mm"
@@ -89,8 +82,8 @@ def test_lengths_are_in_the_unit_that_the_file_states(tmp_path, unit, written, f
         assert stated in text
         return text.replace(stated, written).replace("ENDSEC;\nEND-ISO", inch)
 
-    plain = form.load(copy(tmp_path, "revolute_collars"))
-    assembly = form.load(copy(tmp_path, "revolute_collars", other))
+    plain = form.load(step_copy(tmp_path, "revolute_collars"))
+    assembly = form.load(step_copy(tmp_path, "revolute_collars", other))
     assert assembly.units == unit
     for part in plain.parts:
         there = assembly.part(part.name)
@@ -100,7 +93,7 @@ def test_lengths_are_in_the_unit_that_the_file_states(tmp_path, unit, written, f
 
 @pytest.mark.usefixtures("reader")
 def test_a_stated_deviation_bounds_the_facets_and_is_told(tmp_path):
-    path = copy(tmp_path, "revolute_collars")
+    path = step_copy(tmp_path, "revolute_collars")
     for deviation in (2e-5, 1e-6):
         assembly = load(path, reading=Reading(deviation=deviation))
         vertices = assembly.part("shaft").mesh.vertices
@@ -118,7 +111,7 @@ def test_without_the_package_it_says_what_to_install(tmp_path, monkeypatch):
     import sys
 
     monkeypatch.setitem(sys.modules, "cascadio", None)
-    problem = refused(copy(tmp_path, "names"))
+    problem = refused(step_copy(tmp_path, "names"))
     assert "not installed" in problem.message and "pip install 'kinform[step]'" in problem.remedy
 
 
@@ -141,7 +134,7 @@ BAD = {
 @pytest.mark.usefixtures("reader")
 @pytest.mark.parametrize(("change", "words"), BAD.values(), ids=BAD)
 def test_what_is_wrong_with_a_step_file_is_one_problem(tmp_path, change, words):
-    assert words in refused(copy(tmp_path, "names", change)).message
+    assert words in refused(step_copy(tmp_path, "names", change)).message
 
 
 @pytest.mark.usefixtures("reader")
@@ -153,9 +146,9 @@ def test_the_end_of_the_native_reader_is_told(tmp_path, monkeypatch):
         os.kill(os.getpid(), signal.SIGSEGV)
 
     monkeypatch.setattr(cascadio, "to_glb_bytes", end)
-    assert "SIGSEGV" in refused(copy(tmp_path, "names")).message
+    assert "SIGSEGV" in refused(step_copy(tmp_path, "names")).message
 
 
 def test_units_of_a_step_file_are_refused(tmp_path):
     with pytest.raises(InputError, match="states its own unit"):
-        kinform.run(copy(tmp_path, "names"), units="mm")
+        kinform.run(step_copy(tmp_path, "names"), units="mm")

@@ -14,6 +14,8 @@ from kinform.form.meshes.obj import parse_obj
 from kinform.form.meshes.raw import RawMesh
 
 WEDGE = np.array([[0.1, 0.2, 0.3], [1.3, 0.25, 0.35], [0.15, 1.7, 0.4], [0.2, 0.3, 2.1]])
+
+
 SIDES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
 
 

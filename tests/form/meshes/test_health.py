@@ -1,8 +1,6 @@
-"""Mesh files in, welded meshes and facts out."""
+"""Welded meshes and facts about them."""
 
 from __future__ import annotations
-
-import struct
 
 import manifold3d
 import numpy as np
@@ -10,88 +8,23 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kinform.errors import InputError
-from kinform.form import init_manifest, load, load_meshes
 from kinform.form.meshes.health import build_mesh
-from kinform.form.meshes.obj import parse_obj
 from kinform.form.meshes.raw import MeshError, RawMesh
-from kinform.form.meshes.stl import parse_ascii, parse_binary, read_stl
 from kinform.foundation.meshes.boxes import bounds
 
 CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+
+
 SIDES = np.array([
     [0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1],
     [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3],
 ])  # fmt: skip
 
 
-def binary(corners, header=b"made by a test"):
-    records = b"".join(struct.pack("<12fH", 0, 0, 0, *np.ravel(facet), 0) for facet in corners)
-    return header.ljust(80, b"\0") + struct.pack("<I", len(corners)) + records
-
-
-def ascii_of(name, corners):
-    lines = [f"solid {name}"]
-    for facet in corners:
-        lines += ["facet normal 0 0 0", "outer loop", *(f"vertex {x!r} {y!r} {z!r}" for x, y, z in facet.tolist())]
-        lines += ["endloop", "endfacet"]
-    return "\n".join([*lines, f"endsolid {name}", ""])
-
-
 def built(vertices, faces, solid=True, metres=1.0):
     return build_mesh(
         RawMesh(np.asarray(vertices, float), np.asarray(faces)), metres, None, path="m", body=None, solid=solid
     )
-
-
-@given(st.lists(st.lists(st.floats(-1e6, 1e6, width=32), min_size=9, max_size=9), min_size=1, max_size=20))
-def test_binary_stl_gives_back_its_corners(facets):
-    corners = np.array(facets, np.float32).reshape(-1, 3, 3)
-    raw = parse_binary(binary(corners, b"solid although binary"))
-    assert np.array_equal(raw.vertices[raw.faces], corners)
-
-
-@given(st.lists(st.lists(st.floats(-1e6, 1e6), min_size=9, max_size=9), min_size=1, max_size=8))
-def test_ascii_stl_gives_back_its_corners_and_names_its_solids(facets):
-    corners = np.array(facets).reshape(-1, 3, 3)
-    raw = parse_ascii((ascii_of("one", corners) + ascii_of("two", corners)).encode())
-    assert np.array_equal(raw.vertices[raw.faces], np.concatenate([corners, corners]))
-    assert raw.labellings[0].names == ("one", "two")
-
-
-def test_obj_with_quads_negative_indices_slashes_and_two_objects():
-    text = (
-        "o first\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1/1/1 2/1/1 3//1 4\n"
-        "o second\nv 0 0 1\nv 1 0 1\nv 1 1 1\nf -3 -2 \\\n-1\n"
-    )
-    raw = parse_obj(text.encode())
-    assert len(raw.faces) == 3
-    assert raw.faces[2].tolist() == [4, 5, 6]
-    assert raw.labellings[0].names == ("first", "second")
-
-
-def test_a_concave_polygon_keeps_its_area():
-    arrow = [(0, 0), (2, 0), (2, 2), (1, 0.5), (0, 2)]
-    text = "".join(f"v {x} {y} 0\n" for x, y in arrow) + "f 1 2 3 4 5\n"
-    raw = parse_obj(text.encode())
-    p = raw.vertices[raw.faces]
-    area = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])[:, 2] / 2
-    assert (area > 0).all()
-    assert area.sum() == pytest.approx(2.5)
-
-
-@pytest.mark.parametrize("index", ["9", "-9", "0", "x"])
-def test_a_wrong_index_is_told_with_its_line(index):
-    with pytest.raises(MeshError) as caught:
-        parse_obj(f"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {index}\n".encode())
-    assert [fault.line for fault in caught.value.faults] == [4]
-
-
-def test_a_wrong_index_is_told_how_many_vertices_there_are():
-    with pytest.raises(MeshError, match="out of range at line 4: the file has 3 vertices"):
-        parse_obj(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")
-    with pytest.raises(MeshError, match="out of range at line 2: 1 vertex precede it"):
-        parse_obj(b"v 0 0 0\nf -2 1 1\n")
 
 
 def test_facts_about_a_cube():
@@ -133,36 +66,6 @@ def test_a_flat_solid_is_refused_and_a_flat_surface_is_not():
     with pytest.raises(MeshError, match="zero thickness"):
         built(*square)
     assert built(*square, solid=False).health.open_edges == 4
-
-
-def test_a_file_of_several_shells_gives_a_part_each_and_keeps_cavities_inside(tmp_path):
-    hollow = [CUBE[SIDES] * 3, CUBE[SIDES[:, ::-1]] + 1.0, CUBE[SIDES] + [9, 0, 0]]
-    (tmp_path / "all.stl").write_bytes(binary(np.concatenate(hollow)))
-    assembly = load_meshes([tmp_path / "all.stl"], units="mm")
-    assert [p.name for p in assembly.parts] == ["shell 1", "shell 2"]
-    assert [p.mesh.health.volume for p in assembly.parts] == pytest.approx([26e-9, 1e-9])
-
-
-def test_init_writes_a_manifest_that_loads(tmp_path):
-    (tmp_path / "a.stl").write_bytes(binary(CUBE[SIDES] * 20))
-    (tmp_path / "b.stl").write_bytes(binary(CUBE[SIDES] * 20 + 40))
-    text = init_manifest([tmp_path / "a.stl", tmp_path / "b.stl"], units="mm", relative_to=tmp_path)
-    (tmp_path / "m.toml").write_text(text)
-    assembly = load(tmp_path / "m.toml")
-    assert [p.name for p in assembly.parts] == ["a", "b"]
-    assert "doubtful" not in text
-    huge = [CUBE[SIDES] * 20_000, CUBE[SIDES] * 20_000 + 40_000]
-    for name, corners in zip("ab", huge, strict=True):
-        (tmp_path / f"{name}.stl").write_bytes(binary(corners))
-    doubted = init_manifest([tmp_path / "a.stl", tmp_path / "b.stl"], units="m", relative_to=tmp_path)
-    assert "doubtful" in doubted
-
-
-def test_an_unknown_unit_and_an_unknown_suffix_are_told_together(tmp_path):
-    (tmp_path / "a.step").write_text("x")
-    with pytest.raises(InputError) as caught:
-        load_meshes([tmp_path / "a.step"], units="mile")
-    assert len(caught.value.problems) == 2
 
 
 @st.composite
@@ -233,29 +136,3 @@ def test_bounds_are_the_least_and_greatest_of_columns(count):
     points = np.random.default_rng(count).normal(size=(count, 3)).astype(np.float32)
     low, high = bounds(points)
     assert np.array_equal(low, points.min(axis=0)) and np.array_equal(high, points.max(axis=0))
-
-
-@pytest.mark.parametrize(
-    ("begins", "said"),
-    [
-        (b"# made by a modeller\n\n# again\nmtllib a.mtl\n", "an OBJ file"),
-        (b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "an OBJ file"),
-        (b"ply\nformat binary_little_endian 1.0\n", "a PLY file"),
-        (b"COFF\n8 6 12\n", "an OFF file"),
-        (b"ISO-10303-21;\nHEADER;\n", "a STEP file"),
-        (b"glTF\x02\0\0\0", "a GLB file"),
-        (b"PK\x03\x04\x14\0", "a 3MF file"),
-        (b"<html><body>not found</body></html>\n", 'text that does not begin with "solid"'),
-    ],
-)
-def test_a_file_of_another_kind_named_stl_is_told_for_what_it_is(begins, said):
-    for data in (begins, begins + b" " * 200 + begins * 20):
-        with pytest.raises(MeshError) as caught:
-            read_stl(data)
-        assert said in caught.value.faults[0].message
-
-
-def test_binary_stl_whose_header_is_any_text_is_read():
-    for head in (b"v 1 2 3\nf 1 2 3\n", b"ply\n", b"# exported by a modeller\n"):
-        data = binary(CUBE[SIDES])
-        assert read_stl(head.ljust(80) + data[80:]).faces.shape == (12, 3)

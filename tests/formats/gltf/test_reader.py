@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import struct
 import subprocess
 import sys
 
@@ -11,7 +9,7 @@ import numpy as np
 import pytest
 import trimesh
 from tests.support.places import FIXTURES
-from tests.support.scenes import assert_same_joints, over, scene_of
+from tests.support.scenes import assert_same_joints, glb, nodes, over, scene_of
 
 import kinform
 from kinform import form
@@ -74,44 +72,6 @@ def test_a_scene_is_a_subassembly_and_init_says_the_same(tmp_path):
         assert np.array_equal(a.X_WP, b.X_WP) and a.mesh.digest == b.mesh.digest == c.mesh.digest
         assert np.allclose(c.X_WP[:3, 3], a.X_WP[:3, 3] + [0.5, 0.0, 0.0])
     assert alone.check.profile == full.check.profile == "design"
-
-
-def glb(tmp_path, change=lambda header: None, cut=0):
-    """A GLB of a box (5 × 4 × 3 m), whose header is changed before it is written."""
-    box = trimesh.creation.box((5.0, 4.0, 3.0))
-    points = box.vertices.astype("<f4").tobytes()
-    corners = box.faces.astype("<u2").tobytes()
-    header = {
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
-        "nodes": [{"name": "box", "mesh": 0}],
-        "meshes": [{"name": "box", "primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
-        "buffers": [{"byteLength": len(points + corners)}],
-        "bufferViews": [
-            {"buffer": 0, "byteLength": len(points)},
-            {"buffer": 0, "byteOffset": len(points), "byteLength": len(corners)},
-        ],
-        "accessors": [
-            {"bufferView": 0, "componentType": 5126, "count": 8, "type": "VEC3"},
-            {"bufferView": 1, "componentType": 5123, "count": 36, "type": "SCALAR"},
-        ],
-    }  # fmt: skip
-    change(header)
-    text = json.dumps(header).encode()
-    text += b" " * (-len(text) % 4)
-    binary = points + corners
-    body = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary
-    path = tmp_path / "box.glb"
-    data = struct.pack("<4sII", b"glTF", 2, 12 + len(body)) + body
-    path.write_bytes(data[: len(data) - cut])
-    return path
-
-
-def nodes(*tables, roots=None):
-    def change(header):
-        header["nodes"] = list(tables)
-        header["scenes"] = [{"nodes": list(range(len(tables))) if roots is None else roots}]
-
-    return change
 
 
 def test_instances_share_a_mesh_and_repeated_names_are_numbered(tmp_path):

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 import trimesh
 from support.sealing import editing
-from tests.form.test_other_scenes import BOX, MM, dae, of_mesh, threemf
 from tests.support.places import FIXTURES
 from tests.support.robots import urdf, write
-from tests.support.scenes import scene_of
+from tests.support.scenes import BOX, MM, dae, of_mesh, scene_of, threemf
 
 import kinform
 from kinform import exports, form, results
@@ -57,7 +56,7 @@ def test_materials_of_gltf(tmp_path, suffix):
 
 
 def test_the_colour_of_most_of_the_area_is_that_of_the_part(tmp_path):
-    from tests.form.test_scenes import glb
+    from tests.support.scenes import glb
 
     def change(header):
         first = {"attributes": {"POSITION": 0}, "indices": 1, "material": 0}
@@ -75,7 +74,7 @@ def test_the_colour_of_most_of_the_area_is_that_of_the_part(tmp_path):
 
 
 def test_what_is_no_colour_is_none_and_no_fault(tmp_path):
-    from tests.form.test_scenes import glb
+    from tests.support.scenes import glb
 
     def change(header):
         header["meshes"][0]["primitives"][0]["material"] = 7
@@ -137,7 +136,7 @@ def test_faces_of_a_ply(tmp_path):
 
 def test_solids_of_a_step_file(tmp_path):
     pytest.importorskip("cascadio")
-    from tests.form.test_step import copy
+    from tests.support.scenes import step_copy as copy
 
     stated = colours(copy(tmp_path, "names"))
     assert {name for name, colour in stated.items() if colour == "#ff0000"} == {"a_b"}, stated
