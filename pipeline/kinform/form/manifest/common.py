@@ -34,6 +34,11 @@ Unit = Literal["m", "cm", "mm", "um", "in", "ft"]
 JointType = Literal["fixed", "revolute", "prismatic", "cylindrical", "spherical", "planar", "screw", "universal"]
 
 
+QuantityKind = Literal[
+    "length", "angle", "point", "direction", "joint_value", "joint_values", "place", "joint", "path", "frame"
+]  # fmt: skip
+
+
 @dataclass(frozen=True)
 class Quantity:
     """What the value of a requirement's key is, so that it can be brought to SI, the world and full names.
@@ -44,7 +49,7 @@ class Quantity:
     table as `rows`. frame: lengths that stay in the manifest's frame, whose pose is then added as `X_WF`.
     """
 
-    kind: str
+    kind: QuantityKind
 
 
 class Table(BaseModel):

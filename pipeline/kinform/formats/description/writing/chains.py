@@ -4,6 +4,8 @@ formats of trees of links cannot say."""
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
@@ -22,13 +24,15 @@ _DRIVES: dict[type[Driver], str] = {
 }
 
 
+HingeType = Literal["fixed", "revolute", "prismatic"]
+
+
 @dataclass(frozen=True, eq=False)
 class Hinge:
     """One turn, slide, or rigid connection between two links, both by name."""
 
     name: str
-    type: str
-    """fixed, revolute or prismatic."""
+    type: HingeType
     parent: str
     child: str
     offset: Array
@@ -45,38 +49,50 @@ class Hinge:
     """Which of its coordinates it is."""
 
 
+@dataclass(frozen=True, eq=False)
+class _Step:
+    """A turn or slide of a motion; `follows` as of `Hinge`."""
+
+    name: str
+    type: HingeType
+    axis: Array
+    follows: tuple[str, float] | None = None
+
+
 def chain(robot: RobotModel, link: RobotLink, taken: set[str]) -> list[Hinge]:
     """The hinges from the parent to a link; names of the links between are added to `taken`."""
     joint = link.link.joint
     assert joint is not None
     parent = robot.links[link.link.parent].name
-    steps: list[tuple[str, str, Array, tuple[str, float] | None, int]] = []
-    for motion in link.link.motions:
-        name = robot.joint_names[motion.name]
-        steps.extend((*step, motion.coordinate) for step in _steps(name, motion.primitive))
+    steps = [
+        (step, motion.coordinate)
+        for motion in link.link.motions
+        for step in _steps(robot.joint_names[motion.name], motion.primitive)
+    ]
     if not steps:
         return [Hinge(robot.joint_names[joint.subject], "fixed", parent, link.name, link.offset, np.zeros(3))]
     out = []
-    for k, (name, kind, axis, follows, coordinate) in enumerate(steps):
+    for k, (step, coordinate) in enumerate(steps):
         last = k == len(steps) - 1
         child = link.name if last else free_name(f"{link.name}_{k + 1}", taken)
         taken.add(child)
         offset = link.offset if k == 0 else np.zeros(3)
-        out.append(Hinge(name, kind, parent, child, offset, axis, not last, follows, joint.subject, coordinate))
+        hinge = Hinge(step.name, step.type, parent, child, offset, step.axis, not last, step.follows)
+        out.append(replace(hinge, joint=joint.subject, coordinate=coordinate))
         parent = child
     return out
 
 
-def _steps(name: str, primitive: OneFreedom | Ball) -> list[tuple[str, str, Array, tuple[str, float] | None]]:
+def _steps(name: str, primitive: OneFreedom | Ball) -> list[_Step]:
     if isinstance(primitive, Ball):
-        return [(f"{name}.{axis}", "revolute", row, None) for axis, row in zip("xyz", np.eye(3), strict=True)]
+        return [_Step(f"{name}.{axis}", "revolute", row) for axis, row in zip("xyz", np.eye(3), strict=True)]
     if not primitive.omega.any():
-        return [(name, "prismatic", primitive.slide, None)]
+        return [_Step(name, "prismatic", primitive.slide)]
     lead = float(primitive.slide @ primitive.omega)
-    turn = (name, "revolute", primitive.omega, None)
+    turn = _Step(name, "revolute", primitive.omega)
     if lead == 0.0:
         return [turn]
-    return [turn, (f"{name}.slide", "prismatic", primitive.omega, (name, lead))]
+    return [turn, _Step(f"{name}.slide", "prismatic", primitive.omega, (name, lead))]
 
 
 def tree_losses(robot: RobotModel, format: str, *, springs: bool = False) -> Iterator[str]:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import field, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -45,7 +45,7 @@ CLOSABLE = ("spherical", "revolute", "fixed")
 @dataclass(frozen=True, eq=False)
 class _Joint:
     name: str
-    type: str
+    type: Literal["hinge", "slide", "ball"]
     position: Array
     axis: Array
     range: tuple[float, float] | None = None
@@ -83,8 +83,7 @@ class _Body:
 
 @dataclass(frozen=True)
 class _Equality:
-    kind: str
-    """connect or weld."""
+    kind: Literal["connect", "weld"]
     name: str
     first: str
     second: str

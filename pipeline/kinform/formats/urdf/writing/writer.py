@@ -61,7 +61,7 @@ def _joint(robot: RobotModel, link: RobotLink, hinge: Hinge, mimics: dict[str, t
     limits = link.range if link.single and hinge.follows is None else None
     if limits is not None:
         limits = max(limits[0], -NO_BOUND), min(limits[1], NO_BOUND)
-    kind = hinge.type
+    kind: str = hinge.type
     if kind == "revolute" and (limits is None or limits == (-NO_BOUND, NO_BOUND)):
         kind, limits = "continuous", None
     elif kind == "prismatic" and limits is None:
