@@ -34,7 +34,7 @@ ODD = (
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(names=st.lists(st.text(min_size=1, max_size=12), min_size=1, max_size=12))
 def test_any_names_become_valid_and_different_identifiers(language, names):
     rules = LANGUAGES[language]

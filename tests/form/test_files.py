@@ -51,7 +51,7 @@ def test_a_pointer_of_git_lfs_in_the_place_of_a_mesh_is_told(tmp_path, suffix):
     (tmp_path / f"box.{suffix}").write_text("version https://git-lfs.github.com/spec/v1\noid sha256:1\nsize 9\n")
     path = tmp_path / "m.toml"
     path.write_text(IN_A_MANIFEST.format("mm", f"box.{suffix}", ""))
-    with pytest.raises(InputError, match="pointer of Git LFS") as caught:
+    with pytest.raises(InputError) as caught:
         form.load(path)
     (problem,) = caught.value.problems
     assert problem.line == 7 and "git lfs pull" in problem.remedy

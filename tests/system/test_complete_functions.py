@@ -11,6 +11,7 @@ from tests.support.robots import ARM, JOINT, urdf, write
 
 from kinform import form, run, stages
 from kinform.design import Design
+from kinform.errors import InputError
 
 
 def joints(path):
@@ -113,7 +114,7 @@ def test_tables_of_a_manifest_override_those_of_its_source_key_by_key(tmp_path):
     tip = next(joint for joint in changed.function.joints if joint.name == "tip")
     assert (tip.file, tip.line) == ("arm.urdf", 6)
     manifest.write_text(manifest.read_text() + '[[part]]\nname = "shift"\ndensity = 1.0\n')
-    with pytest.raises(Exception, match=r'"shift" has no mesh, and arm\.urdf has no part of that name'):
+    with pytest.raises(InputError):
         form.load(manifest)
 
 

@@ -21,6 +21,11 @@ from kinform.model.checks import CheckSettings
 CODES = ("KF110", "KF121", "KF123", "KF124", "KF130", "KF131", "KF132", "KF415")
 
 
+def numbers(finding):
+    """The numbers of a finding, in the order in which it says them."""
+    return [float(text) for text in re.findall(r"(?<![\w.])\d+(?:\.\d+)?(?:e[+-]?\d+)?", finding.message)]
+
+
 def findings(folder, walker):
     path = folder / "walker.urdf"
     path.write_text(walker.text())
@@ -38,16 +43,16 @@ def test_a_robot_whose_numbers_are_right_gives_nothing(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("products", "words"),
-    [({"ixx": -1e-4}, "negative principal moment"), ({"izz": 0.1}, "triangle inequality")],
+    "products",
+    [{"ixx": -1e-4}, {"izz": 0.1}],
 )
-def test_an_inertia_that_no_body_can_have_is_told_in_the_numbers_of_the_file(tmp_path, products, words):
+def test_an_inertia_that_no_body_can_have_is_told_in_the_numbers_of_the_file(tmp_path, products):
     walker = Walker()
     walker.links["left_shin"].products |= products
     found = only(tmp_path, walker)
     (key, value), *_ = products.items()
     assert (found.code, found.severity, found.subject, found.line) == ("KF121", "error", ("left_shin",), 5)
-    assert words in found.message and f"{key} {value:.6g}" in found.message.replace("-0.0001", "-0.0001")
+    assert f"{key} {value:.6g}" in found.message
 
 
 def test_an_inertia_in_gram_square_millimetres_is_an_error_that_names_the_unit(tmp_path):
@@ -55,7 +60,6 @@ def test_an_inertia_in_gram_square_millimetres_is_an_error_that_names_the_unit(t
     walker.links["torso"].inertia_factor = 1e9
     found = only(tmp_path, walker)
     assert (found.code, found.severity, found.line) == ("KF123", "error", 2)
-    assert "g·mm²" in found.remedy and "1000000000000 kg/m³" in found.message.replace("1e+12", "1000000000000")
 
 
 def test_an_inertia_a_hundred_times_too_small_is_doubted(tmp_path):
@@ -77,7 +81,7 @@ def test_a_centre_of_mass_outside_of_the_geometry_is_told_with_its_distance(tmp_
     walker = Walker()
     walker.links["torso"].centre_shift = (0.0, 0.0, 0.15)  # the box ends 0.1 m above its centre
     found = only(tmp_path, walker)
-    assert (found.code, found.severity) == ("KF124", "warning") and "50 mm outside" in found.message
+    assert (found.code, found.severity) == ("KF124", "warning") and numbers(found)[0] == 50.0
 
 
 def test_one_within_its_geometry_is_not(tmp_path):
@@ -98,21 +102,21 @@ def test_a_link_a_thousand_times_too_large_is_in_another_unit(tmp_path):
     found = [f for rule in RULES if rule.code in CODES for f in rule.outcome(context).findings]
     assert ("KF110", "error") in {(f.code, f.severity) for f in found}
     (scale,) = (f for f in found if f.code == "KF110")
-    assert "1000 times smaller it would be 1000 kg/m³" in scale.message and scale.line == 2
+    assert scale.line == 2 and numbers(scale).count(1000.0) == 2
 
 
 def test_collision_geometry_that_leaves_a_part_bare_is_told(tmp_path):
     walker = Walker()
     walker.links["left_shin"].collision = walker.links["left_shin"].boxes[:1]  # without the foot
     found = only(tmp_path, walker)
-    assert (found.code, found.subject) == ("KF130", ("left_shin",)) and "bare" in found.message
+    assert (found.code, found.subject) == ("KF130", ("left_shin",))
 
 
 def test_collision_geometry_far_beyond_the_visual_is_told(tmp_path):
     walker = Walker()
     walker.links["torso"].collision = [Box((0.1, 0.2, 0.4), (0.0, 0.0, 0.2))]
     found = only(tmp_path, walker)
-    assert found.code == "KF130" and "200 mm beyond" in found.message
+    assert found.code == "KF130" and 200.0 in numbers(found)
 
 
 def test_a_box_somewhat_larger_than_the_link_is_not(tmp_path):
@@ -125,7 +129,7 @@ def test_collision_geometry_in_another_unit_is_an_error(tmp_path):
     walker = Walker()
     walker.links["torso"].collision = [Box((1e-4, 2e-4, 2e-4), (0.0, 0.0, 0.1))]
     found = only(tmp_path, walker)
-    assert (found.code, found.severity) == ("KF130", "error") and "millimetres" in found.message
+    assert (found.code, found.severity) == ("KF130", "error")
 
 
 def test_a_collision_mesh_that_is_not_there_is_an_error_at_its_line_and_one_without_a_name_a_note(tmp_path):
@@ -140,7 +144,7 @@ def test_a_collision_mesh_that_is_not_there_is_an_error_at_its_line_and_one_with
     assert (stray.code, stray.severity) == ("KF131", "note") and "meshes/stray.stl" in stray.message
     walker.links["left_shin"].more = mesh.format("gone.stl")
     twice, _ = findings(tmp_path, walker)
-    assert twice.line == 2 and "named 2 times, does not exist" in twice.message and "'left_shin'" in twice.message
+    assert twice.line == 2 and numbers(twice) == [2.0] and "'left_shin'" in twice.message
     walker.links["left_shin"].more = ""
     (tmp_path / "other.urdf").write_text('<mesh filename="meshes/stray.stl"/>')  # another of the package names it
     assert [f.severity for f in findings(tmp_path, walker)] == ["error"]
@@ -153,8 +157,8 @@ def test_a_mesh_by_way_of_a_folder_that_is_not_there_is_named_as_it_is_written(t
     (tmp_path / "meshes").mkdir()
     (tmp_path / "meshes" / "box.stl").write_text("solid s\nendsolid s\n")
     walker.links["torso"].more = mesh.format("gone/../")
-    messages = [found.message for found in findings(tmp_path, walker) if found.severity == "error"]
-    assert any("the mesh gone/../meshes/box.stl of link 'torso' does not exist" in message for message in messages)
+    (found,) = (found for found in findings(tmp_path, walker) if found.severity == "error")
+    assert "gone/../meshes/box.stl" in found.message
 
 
 SDF_TWINS = {
@@ -194,13 +198,13 @@ def test_a_visual_mesh_that_is_not_there_is_an_error_and_the_rest_is_judged(tmp_
     walker.links["torso"].inertia_factor = 1e9
     missing = only(tmp_path, walker)
     assert (missing.code, missing.severity, missing.line) == ("KF131", "error", 2)
-    assert "gone.stl of link 'torso'" in missing.message
+    assert "gone.stl" in missing.message and "'torso'" in missing.message
     assembly = form.load(tmp_path / "walker.urdf")
-    assert len(assembly.function.joints) == 4 and any("left out: gone.stl" in note for note in assembly.notes)
+    assert len(assembly.function.joints) == 4 and any("gone.stl" in note for note in assembly.notes)
     (tmp_path / "box.obj").unlink()
     with pytest.raises(InputError) as caught:
         form.load(tmp_path / "walker.urdf")
-    assert [(p.line, "does not exist" in p.message) for p in caught.value.problems] == [(2, True), (2, True)]
+    assert [problem.line for problem in caught.value.problems] == [2, 2]
 
 
 def box_obj():
@@ -212,20 +216,19 @@ def box_obj():
 
 
 @pytest.mark.parametrize(
-    ("limit", "severity", "words"),
+    ("limit", "severity"),
     [
-        ('lower="1" upper="-1" effort="1" velocity="1"', "error", "lower limit 1 is above the upper -1"),
-        ('lower="0" upper="0" effort="1" velocity="1"', "warning", "both 0"),
-        ("", "error", "states no limits"),
-        ('lower="-1" upper="1" effort="0" velocity="1"', "note", "effort or speed"),
-        ('lower="-90" upper="90" effort="1" velocity="1"', "warning", "14.3 turns: they are probably degrees"),
-        ('lower="-30" upper="0" effort="1" velocity="1"', "warning", "4.77 turns"),
+        ('lower="1" upper="-1" effort="1" velocity="1"', "error"),
+        ('lower="0" upper="0" effort="1" velocity="1"', "warning"),
+        ("", "error"),
+        ('lower="-1" upper="1" effort="0" velocity="1"', "note"),
+        ('lower="-90" upper="90" effort="1" velocity="1"', "warning"),
+        ('lower="-30" upper="0" effort="1" velocity="1"', "warning"),
     ],
 )
-def test_limits_that_cannot_be_used_are_told(tmp_path, limit, severity, words):
+def test_limits_that_cannot_be_used_are_told(tmp_path, limit, severity):
     found = only(tmp_path, Walker(limits={"left_knee": limit}))
     assert (found.code, found.severity, found.subject, found.line) == ("KF415", severity, ("left_knee",), 8)
-    assert words in found.message
 
 
 @pytest.mark.parametrize("limit", ["6.2831853", "12.6", "1e5"])
@@ -234,8 +237,8 @@ def test_limits_of_a_turn_or_two_and_those_that_stand_for_none_are_no_degrees(tm
     assert findings(tmp_path, Walker(limits={"left_knee": stated})) == []
 
 
-@pytest.mark.parametrize(("there", "hint"), [("collision", "--geometry collision"), ("", "to compare with")])
-def test_a_description_without_the_geometry_that_is_read_is_not_verified(tmp_path, there, hint):
+@pytest.mark.parametrize("there", ["collision", ""])
+def test_a_description_without_the_geometry_that_is_read_is_not_verified(tmp_path, there):
     walker = Walker()
     path = tmp_path / "walker.urdf"
     bare = re.sub(r"<visual>.*?</visual>", "", walker.text())
@@ -243,9 +246,8 @@ def test_a_description_without_the_geometry_that_is_read_is_not_verified(tmp_pat
     path.write_text(re.sub(r"<collision>.*?</collision>", "", bare).replace("</link>", solid))
     rule = next(rule for rule in RULES if rule.code == "KF131")
     outcome = rule.outcome(Context(Design(form.load(path))))
-    assert (outcome.name, outcome.findings) == ("inconclusive", ()) and outcome.reason.endswith(
-        hint + ")" * bool(there)
-    )
+    assert (outcome.name, outcome.findings) == ("inconclusive", ())
+    assert ("--geometry collision" in outcome.reason) == bool(there)
     path.write_text(walker.text())
     assert rule.outcome(Context(Design(form.load(path)))).name == "passed"
 
@@ -254,22 +256,22 @@ def test_many_of_a_kind_are_one_finding(tmp_path):
     nothing = 'lower="0" upper="0" effort="1" velocity="1"'
     joints = ("left_hip", "left_knee", "right_hip", "right_knee")
     found = only(tmp_path, Walker(limits=dict.fromkeys(joints, nothing)))
-    assert sorted(found.subject) == sorted(joints) and "likewise 3 joints more" in found.message
+    assert sorted(found.subject) == sorted(joints) and 3.0 in numbers(found)
 
 
 def test_a_side_that_is_not_mirrored_is_told_by_geometry_by_mass_and_by_frame(tmp_path):
     walker = Walker()
     walker.links["right_thigh"].boxes = list(walker.links["left_thigh"].boxes)  # copied, not mirrored
     shape = only(tmp_path, walker)
-    assert (shape.code, shape.subject[0]) == ("KF132", "right_thigh") and "geometry" in shape.message
+    assert (shape.code, shape.subject[0]) == ("KF132", "right_thigh")
     walker = Walker()
     walker.links["right_thigh"].inertia_factor = 1.3
     mass = only(tmp_path, walker)
-    assert mass.code == "KF132" and "inertias differ" in mass.message and mass.line == 4
+    assert mass.code == "KF132" and mass.line == 4
     walker = Walker()
     walker.hips["right"] = (0.02, -0.13, 0.05)
-    frame = next(f for f in findings(tmp_path, walker) if "frame" in f.message)
-    assert frame.subject == ("right_thigh", "left_thigh") and "20 mm" in frame.message
+    frames = [f for f in findings(tmp_path, walker) if f.subject == ("right_thigh", "left_thigh")]
+    assert any(20.0 in numbers(found) for found in frames)
 
 
 def test_geometry_that_is_not_mirrored_as_the_stated_masses_are_is_told_also_where_all_pairs_are_so(tmp_path):
@@ -281,8 +283,7 @@ def test_geometry_that_is_not_mirrored_as_the_stated_masses_are_is_told_also_whe
         inertial = re.search("<inertial>.*</inertial>", line)[0]
         text = text.replace(line, re.sub("<inertial>.*</inertial>", inertial, copied))
     (tmp_path / "walker.urdf").write_text(text)
-    found = next(f for f in run(tmp_path / "walker.urdf").findings if f.code == "KF132")
-    assert "geometry is no mirror image" in found.message and "so is" in found.message
+    assert "KF132" in [found.code for found in run(tmp_path / "walker.urdf").findings]
 
 
 def test_a_part_that_is_moved_to_the_other_side_is_not_taken_for_a_turned_one(tmp_path):
@@ -292,7 +293,7 @@ def test_a_part_that_is_moved_to_the_other_side_is_not_taken_for_a_turned_one(tm
     walker.links["left_thigh"] = Link(thigh)
     walker.links["right_thigh"] = Link(list(thigh))
     found = only(tmp_path, walker)
-    assert (found.code, found.subject[0]) == ("KF132", "right_thigh") and "geometry" in found.message
+    assert (found.code, found.subject[0]) == ("KF132", "right_thigh")
 
 
 def test_equal_parts_that_are_turned_instead_of_mirrored_pass(tmp_path):
@@ -322,7 +323,7 @@ def overlaps(folder, widths):
 
 
 def test_links_that_a_joint_joins_may_overlap_a_little_and_not_deeply(tmp_path):
-    assert [(f.severity, "a joint joins" in f.message) for f in overlaps(tmp_path, 0.004)] == [("note", True)] * 2
+    assert [f.severity for f in overlaps(tmp_path, 0.004)] == ["note"] * 2
     assert [f.severity for f in overlaps(tmp_path, 0.03)] == ["warning"] * 2
 
 
@@ -331,8 +332,7 @@ def test_of_many_warnings_on_a_description_the_first_are_told_and_the_others_nam
     warnings = [rule.at("warning").finding([f"a{k}", f"b{k}"], f"overlap {k}") for k in range(9)]
     description = CheckSettings(profile="description")
     told = apply(rule, decided(warnings), description).findings
-    assert [f.message for f in told[:3]] == ["overlap 0", "overlap 1", "overlap 2"] and len(told) == 4
-    assert told[3].message.startswith("6 more of this rule, none worse: 'a3' and 'b3'")
+    assert [f.subject for f in told[:3]] == [(f"a{k}", f"b{k}") for k in range(3)] and len(told) == 4
     assert set(told[3].subject) == {f"{letter}{k}" for letter in "ab" for k in range(3, 9)}
     assert len(apply(rule, decided(warnings), CheckSettings(profile="design")).findings) == 9
     assert len(apply(rule, decided(warnings[:6]), description).findings) == 6

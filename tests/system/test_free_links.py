@@ -51,7 +51,7 @@ f 1 9 13 11 5\nf 4 8 12 14 10
 def test_a_pin_in_a_bore_is_not_free(tmp_path, placed):
     (one,) = found(urdf(tmp_path, PIN, "0 0 0.03", placed=placed))
     assert (one.severity, one.subject, one.line) == ("error", ("pin", "base"), 4)
-    assert "floating" in one.message and one.place is not None
+    assert one.place is not None
 
 
 @pytest.mark.parametrize("kind", ["continuous", "planar", "fixed"])

@@ -11,6 +11,7 @@ import pytest
 from random_assemblies import FAMILIES, Wear, case
 from random_assemblies.verdict import judge
 from support.copies import Change, answers, axis_errors, bodies_of, checked, copy_of, derived, joints_of, turned
+from support.diagonal import diagonal
 from support.places import FIXTURES, manifests
 
 FEW = ("pairs/revolute_collars", "pairs/prismatic_dovetail", "pairs/spherical_captive", "mechanisms/slider_crank")
@@ -101,21 +102,18 @@ def no_other_answer(plain_design, name, change, folder, tilt_most):
     assert all(tilt < tilt_most for name, (tilt, _) in errors.items() if name in sure)
 
 
-@pytest.mark.parametrize("change", EXACT)
-@pytest.mark.parametrize("name", FEW)
+@diagonal(name=FEW, change=list(EXACT))
 def test_what_is_exact_changes_nothing(plain, name, change, tmp_path):
     same(plain(name), name, EXACT[change], tmp_path)
 
 
-@pytest.mark.parametrize("offset", [0.0, 30.0, 3e3])
-@pytest.mark.parametrize("name", FEW[:2])
+@diagonal(name=FEW[:2], offset=[0.0, 30.0, 3e3])
 def test_float32_gives_the_same_joints_or_doubt(plain, name, offset, tmp_path):
     change = Change(files="stl", baked=True, rotation=turned(6), offset=(offset, -0.4 * offset, 0.7 * offset))
     no_other_answer(plain(name), name, change, tmp_path, 5e-3)
 
 
-@pytest.mark.parametrize("noise", [1e-6, 1e-5, 1e-4])
-@pytest.mark.parametrize("name", FEW[:3])
+@diagonal(name=FEW[:3], noise=[1e-6, 1e-5, 1e-4])
 def test_noise_gives_the_same_joints_or_doubt(plain, name, noise, tmp_path):
     no_other_answer(plain(name), name, Change(noise=noise, seed=3), tmp_path, 0.05)
 
@@ -127,8 +125,7 @@ def outcome(made, folder):
     return judge(made, derived(made.write(folder)).kinematics)
 
 
-@pytest.mark.parametrize("worn", WORN)
-@pytest.mark.parametrize("family", ["cylindrical", "revolute", "prismatic", "stopped"])
+@diagonal(family=["cylindrical", "revolute", "prismatic", "stopped"], worn=list(WORN))
 def test_a_random_assembly_is_right_or_in_doubt_however_worn(family, worn, tmp_path):
     verdict = outcome(case(301, family, wear=WORN[worn]), tmp_path)
     allowed = ("right",) if WORN[worn].clean else ("right", "ambiguous", "honest", "loose")

