@@ -1,8 +1,7 @@
 """What can stand in place of a manifest, as its `from`, and as the `file` of a sub-assembly.
 
-Formats are listed in `kinform.formats.registry` (robot descriptions) and `kinform.form.scenes.registry` (CAD and scene
-files). `tables(source)` of a module, imported when a file of its suffix is read, gives the tables of the manifest that
-says the same, and from there everything goes the way of manifests.
+Formats are listed in `kinform.formats.registry`. `tables(source)` of a module, imported when a file of its suffix is
+read, gives the tables of the manifest that says the same, and from there everything goes the way of manifests.
 """
 
 from __future__ import annotations
@@ -13,8 +12,7 @@ from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
-from kinform.form.scenes.registry import SCENE_FORMATS
-from kinform.formats.registry import ROBOT_FORMATS
+from kinform.formats.registry import ROBOT_FORMATS, SCENE_FORMATS
 from kinform.frozen import dataclass
 
 if TYPE_CHECKING:

@@ -5,10 +5,10 @@
     mjcf  read in mjcf/reading/reader.py    written in mjcf/writing/writer.py    template mjcf/writing/model.mjcf.j2
     gltf  read in gltf/reading/reader.py    written in gltf/writing/writer.py
 
-`registry` lists the formats of robot descriptions: name, suffixes, root element, reader, writer. A reader makes a
-`description.robot.Robot` of a file, and `description.tables` the tables of a manifest of that. A writer makes files of
-an export model; a description that was read is written back by `description.writing.write_back`, with the edits of its
-format in `writing/edits.py`. Readers import no writers.
+`registry` lists them, and the CAD and scene formats that are only read: name, suffixes, root element, reader, writer.
+A reader makes a `description.robot.Robot` of a file, and `description.tables` the tables of a manifest of that. A
+writer makes files of an export model; a description that was read is written back by `description.writing.write_back`,
+with the edits of its format in `writing/edits.py`. Readers import no writers.
 
 Sub-packages; each imports only those above it:
 

@@ -1,6 +1,7 @@
-"""The formats of robot descriptions: for each its name, suffixes, root element, reader and writer, all in one line.
+"""The formats that can stand in place of a manifest: robot descriptions, and CAD and scene files.
 
-Readers and writers are named, not imported: who reads imports no writer, and nothing is imported before it is used.
+For each its name, suffixes, root element, reader and writer, all in one line. Readers and writers are named, not
+imported: who reads imports no writer, and nothing is imported before it is used.
 """
 
 from __future__ import annotations
@@ -60,6 +61,31 @@ ROBOT_FORMATS = (
     RobotFormat("SDF", (".sdf", ".world", ".xml"), "sdf", "sdf.reading.reader", "sdf", ".sdf",
                 "links and joints, for Gazebo and Drake"),
 )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class SceneFormat:
+    """A CAD or scene format; the suffix decides, the reader confirms."""
+
+    name: str
+    """As messages have it."""
+    suffixes: tuple[str, ...]
+    module: str
+    """In `kinform`, of the reader."""
+    function: str
+    """The reader: `function(data, path, reading)` gives a `Scene`."""
+    unitless: bool = False
+    """Whether its files have no unit of length."""
+
+
+SCENE_FORMATS = (
+    SceneFormat("glTF", (".glb", ".gltf"), "formats.gltf.reading.reader", "read_gltf"),
+    SceneFormat("3MF", (".3mf",), "form.scenes.threemf", "read_3mf"),
+    SceneFormat("DAE", (".dae",), "form.scenes.dae", "read_dae"),
+    SceneFormat("PLY", (".ply",), "form.scenes.loose", "read_loose", unitless=True),
+    SceneFormat("OFF", (".off",), "form.scenes.loose", "read_loose", unitless=True),
+    SceneFormat("STEP", (".step", ".stp"), "form.scenes.step", "read_step"),
+)
 
 WRITTEN = {format.name: format for format in ROBOT_FORMATS if format.ending}
 """Formats with a writer, by name."""

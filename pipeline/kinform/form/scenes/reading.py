@@ -1,4 +1,4 @@
-"""Reads a scene of any format in `registry`."""
+"""Reads a scene of any format in `kinform.formats.registry`."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from functools import lru_cache
 from pathlib import Path
 
 from kinform.form.meshes.raw import Fault, MeshError
-from kinform.form.scenes.registry import SCENE_FORMATS
 from kinform.form.scenes.scene import EXPORT, Scene
 from kinform.form.sources import AS_IT_IS, Reading
+from kinform.formats.registry import SCENE_FORMATS
 
 
 def read_scene(data: bytes, path: Path, reading: Reading = AS_IT_IS) -> Scene:
