@@ -27,10 +27,12 @@ _COLOURS: dict[str, tuple[float, float, float]] = {
     "plywood": (0.80, 0.67, 0.46),
     "cfrp": (0.22, 0.23, 0.25),
 }
+"""Of materials, in sRGB, as they look in daylight. Chosen by eye."""
 _PALETTE = (
     (0.36, 0.54, 0.74), (0.88, 0.58, 0.30), (0.45, 0.66, 0.45), (0.75, 0.42, 0.42), (0.60, 0.50, 0.72),
     (0.58, 0.46, 0.38), (0.84, 0.56, 0.72), (0.72, 0.70, 0.36), (0.36, 0.68, 0.70), (0.62, 0.62, 0.62),
 )  # fmt: skip
+"""Of other materials, in turn: neighbours differ in hue. Chosen by eye."""
 
 
 @dataclass(frozen=True, eq=False)
