@@ -50,6 +50,7 @@ def test_four_bars_whose_branches_part_within_their_uncertainty_stop_there_and_s
     assert float(re.search(r"t = ([\d.]+) s", design.simulation.reason)[1]) == pytest.approx(125.0 / 180.0, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_a_coupler_longer_by_more_than_that_takes_its_true_branch(derive_design):
     """Crossed from the first flat pose on, to the end of its reach: the bars make a triangle of 100, 40 and 60.1 mm."""
     design = derive_design(WILD / "parallelogram_unequal" / "parallelogram_unequal.toml")

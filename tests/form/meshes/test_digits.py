@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kinform.form import load
@@ -28,6 +28,7 @@ def obj(rows, form):
     return "\n".join([*lines, *("f {} {} {}".format(*(face + 1)) for face in SIDES)])
 
 
+@settings(max_examples=30)
 @given(st.tuples(*[st.integers(-(2**24), 2**24)] * 3))
 def test_a_far_mesh_is_the_same_to_the_last_bit(place):
     offset = 4.0 * np.array(place, dtype=float)

@@ -6,7 +6,7 @@ import struct
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kinform.form.meshes.raw import MeshError
@@ -34,6 +34,7 @@ def ascii_of(name, corners):
     return "\n".join([*lines, f"endsolid {name}", ""])
 
 
+@settings(max_examples=30)
 @given(st.lists(st.lists(st.floats(-1e6, 1e6, width=32), min_size=9, max_size=9), min_size=1, max_size=20))
 def test_binary_stl_gives_back_its_corners(facets):
     corners = np.array(facets, np.float32).reshape(-1, 3, 3)
@@ -41,6 +42,7 @@ def test_binary_stl_gives_back_its_corners(facets):
     assert np.array_equal(raw.vertices[raw.faces], corners)
 
 
+@settings(max_examples=30)
 @given(st.lists(st.lists(st.floats(-1e6, 1e6), min_size=9, max_size=9), min_size=1, max_size=8))
 def test_ascii_stl_gives_back_its_corners_and_names_its_solids(facets):
     corners = np.array(facets).reshape(-1, 3, 3)
