@@ -218,6 +218,7 @@ def test_texts_read_in_small_blocks_give_the_same_mesh(monkeypatch, size):
     assert [fault.line for fault in caught.value.faults] == [6]
 
 
+@pytest.mark.slow
 def test_files_of_faults_take_no_more_memory_than_geometry():
     for text in (b"v\n" * 200_000, b"f 1 2\n" * 100_000, b"? \n" * 100_000):
         tracemalloc.start()
