@@ -9,7 +9,7 @@ import pytest
 
 from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.deep_entry import Inside
-from kinform.collisions.pair.prepared_pair import SPECK
+from kinform.foundation.rounding import SOLVED
 
 
 def inside(depth):
@@ -29,7 +29,7 @@ def inside(depth):
 @pytest.mark.parametrize("entry", [0.2, 0.5, 0.77])
 def test_a_point_comes_in_where_it_is_on_the_surface(entry):
     found = inside(lambda s: s - entry).met(1.0, 1.0, 1e-6, every=True)
-    assert found.at - 1.01 * SPECK <= entry <= found.hit
+    assert found.at - 1.01 * SOLVED <= entry <= found.hit
     assert found.hit - found.at <= 1e-8
 
 
@@ -45,4 +45,4 @@ def test_what_only_seemed_to_be_inside_counts_once_it_has_been_out():
     assert known.met(0.4, 1.0, 1e-6, every=True) is None
     assert known.met(0.6, 1.0, 1e-6, every=True) is None
     found = known.met(1.0, 1.0, 1e-6, every=True)
-    assert found.at - 1.01 * SPECK <= 0.9 <= found.hit
+    assert found.at - 1.01 * SOLVED <= 0.9 <= found.hit

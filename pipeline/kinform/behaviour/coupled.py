@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from kinform.foundation.graphs.graph import UnionFind
+from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
 from kinform.function import resolve_joint
 from kinform.kinematics import is_higher
@@ -22,10 +23,6 @@ from kinform.model.contacts import Contacts
 from kinform.model.function import Coupling
 from kinform.model.kinematics import Coupling as Found
 from kinform.model.kinematics import Kinematics
-
-TIED = 1e-9
-"""Share of the greatest singular value of ratios between joints up to which one is nought: ratios are given to six
-digits and more, and stand side by side as they are, each row over its greatest."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +70,7 @@ def _left_free(rows: Sequence[Mapping[str, float]], names: Sequence[str]) -> int
         for name, factor in row.items():
             ties[k, index[name]] = factor / size
     free = _null_space(ties)[[index[name] for name in names]]
-    return int(np.linalg.matrix_rank(free, tol=TIED)) if free.size else 0
+    return int(np.linalg.matrix_rank(free, tol=SOLVED)) if free.size else 0
 
 
 def _null_space(matrix: Array) -> Array:
@@ -81,7 +78,7 @@ def _null_space(matrix: Array) -> Array:
     if not len(matrix):
         return np.eye(matrix.shape[1])
     _, values, right = np.linalg.svd(matrix)
-    rank = int(np.count_nonzero(values > TIED * values[0]))
+    rank = int(np.count_nonzero(values > SOLVED * values[0]))
     return np.asarray(right[rank:].T)
 
 

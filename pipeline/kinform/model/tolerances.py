@@ -7,8 +7,6 @@ import math
 from kinform.frozen import dataclass
 from kinform.model.quantities import Metres, Radians, Ratio
 
-DEGREE = math.pi / 180.0
-
 
 @dataclass(frozen=True)
 class PartSize:
@@ -28,7 +26,7 @@ class Tolerances:
     """Gap or overlap up to which surfaces mate (m). None: shares of the two parts, see `contact_of` and `radial_of`."""
     weld: Metres | None = None
     """Vertices closer than this are one (m). Default per mesh: 1e-6 of its diagonal."""
-    alignment: Radians = 0.2 * DEGREE
+    alignment: Radians = math.radians(0.2)
     """Axes of one pair closer than this mate; the excess over the clearance is a finding (rad)."""
 
     axis_angle: Radians | None = None
@@ -38,7 +36,7 @@ class Tolerances:
     offset_share: Ratio = 5e-3
     """The same, as a share of the smaller body's diagonal."""
 
-    smooth_edge: Radians = 32.0 * DEGREE
+    smooth_edge: Radians = math.radians(32.0)
     """Dihedral below which an edge is smooth: a 12-gon is a cylinder, an 8-gon stays a prism (rad)."""
     fit: Ratio = 2e-5
     """Distance of vertices from their surface, relative to the span of the part, between its points farthest apart."""

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 
 from kinform.behaviour import Behaviour, EndStop, Friction, RigidBody, System
+from kinform.foundation.rounding import SINGLE
 from kinform.frozen import dataclass
 from kinform.function import FREEDOMS, acted_freedom, acting_by_force, resolve_joint, stated_ranges
 from kinform.model.assembly import Assembly
@@ -13,9 +14,6 @@ from kinform.model.function import Drive
 from kinform.model.kinematics import Kinematics, Meshing
 from kinform.model.quantities import Reason
 from kinform.simulation.mechanism.mechanism import Mechanism
-
-WHOLE_TURN = 1e-6
-"""rad: teeth whose pitches make a turn to within this go all round."""
 
 
 @dataclass(frozen=True)
@@ -166,7 +164,7 @@ def _teeth_counted(teeth: Meshing, types: Mapping[str, str], joints: tuple[str, 
     """How many teeth were counted on either side."""
     parts = []
     for count, name, pitch in zip(teeth.teeth, joints, teeth.pitches, strict=True):
-        whole = types[name] != "prismatic" and abs(count * pitch - 2.0 * math.pi) < WHOLE_TURN
+        whole = types[name] != "prismatic" and abs(count * pitch - 2.0 * math.pi) < SINGLE
         parts.append(f"{count} teeth" if whole else f"{count} teeth in a row")
     return " and ".join(parts)
 

@@ -11,6 +11,7 @@ from kinform.behaviour.components import Ground, System
 from kinform.behaviour.diagnosis import faults
 from kinform.behaviour.nested import flat
 from kinform.foundation.progress import Progress, Say
+from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.simulation import Simulation
@@ -25,7 +26,7 @@ from kinform.simulation.solver.dynamic import run_dynamic
 from kinform.simulation.solver.friction_known import friction_not_determined
 from kinform.simulation.solver.kinematic import notes_of_rest, run_kinematic
 from kinform.simulation.solver.start import Stated, begin, loop_rank, torn_at_start
-from kinform.simulation.solver.stick_slip import LAST_OUTPUT, run_with_friction
+from kinform.simulation.solver.stick_slip import run_with_friction
 from kinform.simulation.solver.stops import beyond
 from kinform.simulation.subject import Failures, refuse
 
@@ -33,9 +34,7 @@ OUTPUT_NUMBERS = 100_000_000
 """Numbers that a run gives in all, at all output times: 800 MB in the results file, and three times that while they are
 computed. A four-bar has a hundred at each time."""
 OUTPUT_TIMES = 10_000_000
-"""Output times of a run, whatever it gives at each."""
-INERTIA_ROUNDING = 1e-9
-"""Share of the greatest number of an inertia by which it may be unsymmetric or have a negative moment."""
+"""Output times of a run, whatever it gives at each: with ten numbers at each as many numbers as the above."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,8 +138,8 @@ def _unfit(system: System, mechanism: Mechanism) -> Failures:
 def _inertial(inertia: Array) -> bool:
     """Whether a tensor (3, 3) is symmetric without a negative moment, but for rounding."""
     size = float(np.abs(inertia).max())
-    symmetric = float(np.abs(inertia - inertia.T).max()) <= INERTIA_ROUNDING * size
-    return symmetric and float(np.linalg.eigvalsh(inertia).min()) >= -INERTIA_ROUNDING * size
+    symmetric = float(np.abs(inertia - inertia.T).max()) <= SOLVED * size
+    return symmetric and float(np.linalg.eigvalsh(inertia).min()) >= -SOLVED * size
 
 
 def run_course(
@@ -220,8 +219,8 @@ def numbers_at_a_time(mechanism: Mechanism, level: str) -> int:
 
 def _grid(duration: float, step: float) -> Array:
     """Multiples of the step from zero, and the end itself."""
-    times = np.arange(int(np.floor(duration / step + LAST_OUTPUT)) + 1, dtype=np.float64) * step
-    if duration - times[-1] > LAST_OUTPUT * step:
+    times = np.arange(int(np.floor(duration / step + SOLVED)) + 1, dtype=np.float64) * step
+    if duration - times[-1] > SOLVED * step:
         return np.append(times, duration)
     times[-1] = duration
     return times

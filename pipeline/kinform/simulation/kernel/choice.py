@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from kinform.foundation.rounding import TINY
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.simulation.kernel.loops import gather
 
@@ -21,7 +22,8 @@ from kinform.simulation.kernel.layout import (  # isort: skip
 )  # fmt: skip
 
 CLOSING_PIVOT = 0.3
-"""Pivots of the joints that close loops are taken first while they are larger than this: a choice."""
+"""Pivots of the joints that close loops are taken first while they are larger than this: a choice. Entries are scaled
+to about 1; small pivots lose digits."""
 PASS = 200
 """Multiplications a rate of one pass of articulated bodies along the tree (`kernel.choice.way`). Counted; with it the
 two ways take as long as each other where they are said to."""
@@ -48,7 +50,7 @@ def choose(ints: Ints, nums: Nums, work: Work) -> None:
         best = most[1] if most[1].size.max() > CLOSING_PIVOT else most[0]
         row = int(np.argmax(best.size))
         column = int(best.place[row])
-        work[VECTORS][REFERENCE][len(chosen)] = max(float(best.size[row]), 1e-300)
+        work[VECTORS][REFERENCE][len(chosen)] = max(float(best.size[row]), TINY)
         left[row] = False
         chosen.append(row)
         dependent.append(column)

@@ -18,7 +18,8 @@ from kinform.simulation.kernel.layout import (  # isort: skip
 )  # fmt: skip
 
 PIVOT_SWAP = 1.5
-"""Rows change places for a pivot so many times as large: order is no matter of the mathematics."""
+"""Rows change places for a pivot so many times as large: a choice. Any order gives the same motion; fewer changes keep
+rows sparse."""
 
 
 def line_of(frame: Row, tip: Row, length: float, axis: int) -> tuple[float, float, float, float, float, float]:

@@ -11,15 +11,13 @@ from collections.abc import Callable
 
 import numpy as np
 
+from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.mechanism.closure import factor, rank_of, settle
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.states import states_at
 from kinform.simulation.settings import SolverSettings
-
-DETERMINED = 1e-8
-"""Share (rad, or lengths) of a rate in what led joints leave open, from which on they do not determine it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +57,7 @@ class Follower:
         """The led joints cannot be chosen: the loops leave them no freedom at the start."""
         self.loose = factor(rows[:, self.unknown], scale[self.unknown], self.rank).null
         """(k, d) motions of the others that the led joints do not determine."""
-        still = np.abs(self.loose / scale[self.unknown][:, None]).max(axis=1, initial=0.0) < DETERMINED
+        still = np.abs(self.loose / scale[self.unknown][:, None]).max(axis=1, initial=0.0) < SOLVED
         touched = np.abs(rows[:, self.unknown]).max(axis=0, initial=0.0) > 0.0
         self._determined: Ints = self.unknown[still & touched]
         self.undetermined: Ints = self.unknown[~still & touched]

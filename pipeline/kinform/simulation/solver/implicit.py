@@ -11,16 +11,14 @@ from typing import Any
 
 import numpy as np
 
+from kinform.foundation.rounding import ARITHMETIC
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
-from kinform.simulation.constants import STOP_HALVINGS, STOP_PASSED
+from kinform.simulation.constants import HALVINGS
 from kinform.simulation.kernel import layout
 from kinform.simulation.solver.paces import Controlled, Damped, lasting
 from kinform.simulation.solver.run_state import Run
 from kinform.simulation.solver.stops import Contact
-
-REAL_ROOT = 1e-12
-"""Imaginary part of a root of a cubic that is real but for rounding."""
 
 
 def run_implicit(run: Run, contact: Contact, report: Callable[[], None], fastest: float = 0.0) -> str:
@@ -95,11 +93,11 @@ def _passed(run: Run, solver: Any, before: float) -> tuple[int, float]:
             continue
         # The curve over the step is a cubic: where it turns, and its ends, are where it reaches farthest.
         beyond = _Beyond(dense, int(at), int(sense), float(tables.nums[layout.STOPS][k, 0]))
-        past = next((t for t in (*beyond.turns(before, end), end) if beyond(t) > STOP_PASSED), None)
+        past = next((t for t in (*beyond.turns(before, end), end) if beyond(t) > ARITHMETIC), None)
         if past is None:
             continue
         low, high = before, past
-        for _ in range(STOP_HALVINGS):
+        for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
             low, high = (low, middle) if beyond(middle) > 0.0 else (middle, high)
         hit, end = k, high
@@ -123,7 +121,7 @@ class _Beyond:
         share = np.linspace(0.0, 1.0, 4)
         cubic = np.linalg.solve(np.vander(share), [self(begin + x * (end - begin)) for x in share])
         roots = np.roots(np.polyder(cubic))
-        real = np.sort(roots[np.abs(roots.imag) < REAL_ROOT].real)
+        real = np.sort(roots[np.abs(roots.imag) < ARITHMETIC].real)
         return [float(begin + x * (end - begin)) for x in real if 0.0 < x < 1.0]
 
 

@@ -18,10 +18,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from kinform.foundation.rounding import ARITHMETIC
 from kinform.model.arrays import Array
-from kinform.simulation.constants import STOP_PASSED
 from kinform.simulation.kernel import layout
 from kinform.simulation.solver.collocation import Passage, pass_over, places_of
+from kinform.simulation.solver.constants import MOST_ROUNDS
 from kinform.simulation.solver.run_state import Run
 
 LEAP_MARGIN = 0.02
@@ -31,25 +32,16 @@ LEAP_REACHES = (0.025, 0.05, 0.1, 0.2, 0.4)
 """How far a step reaches from the pose to either side, tried from the first on: rad, or lengths, that the fastest joint
 moves. The error of the stages' slopes goes with the inverse square of it, what the polynomial leaves out with its
 twelfth power; for chains of 2 to 40 four-bars the first that are tried agree to 1e-12."""
-LEAP_SHORTEST = 0.5
-"""A step begins so much farther before the pose than the run has come to, as a share of that distance."""
 LEAP_COARSE, LEAP_FINE = 6, 8
 """Stages of the two steps that are compared: even, as none may lie in the middle."""
-LEAP_ACCURATE = 1e-12
-"""Difference between them (rad, lengths, also a second, or a share of that where it is more) that is good enough: a
-hundredth of the tolerance of a step."""
 LEAP_ERROR = 1e-8
 """Difference beyond which the run is left as it is: what a run of ten seconds gathers at the default tolerance."""
 LEAP_NEARER = 100.0
-"""A step that errs so many times as much as one that is shorter is too long, and longer ones are not tried."""
+"""A step that errs so many times as much as one that is shorter is too long, and longer ones are not tried: twice as
+long leaves out 2^12 times as much. A choice."""
 LEAP_TURNED = 0.1
-"""Share of itself that the least singular value must have as its negative behind the pose: straight on it has all."""
-LEAP_TOLERANCE = 1e-12
-"""Relative and absolute error a step of the way back."""
-LEAP_EVALUATIONS = 4000
-"""Evaluations of a way back before it is given up; a hundred are usual."""
-CROSSED_GAP = 1e-12
-"""What is open at a pose in which branches cross exactly (rad, shares of the length): the polynomial's rounding."""
+"""Share of itself that the least singular value must have as its negative behind the pose: straight on it has all,
+turned back none. A choice."""
 
 
 def leap(run: Run) -> str | None:
@@ -67,13 +59,13 @@ def leap(run: Run) -> str | None:
             best = error, passage
         elif error > LEAP_NEARER * best[0]:
             break
-        if best[0] < LEAP_ACCURATE:
+        if best[0] < ARITHMETIC:  # a hundredth of the tolerance of a step
             break
     run.choose()
     if best is None or best[0] > LEAP_ERROR:
         return ""
     gap = _gap(run, best[1].state_at(0.5))
-    if gap > CROSSED_GAP:
+    if gap > ARITHMETIC:
         return f"at t = {pose:.6g} s {mechanism.doubt()}{run.loops()}" if gap <= mechanism.uncertain else ""
     _land(run, best[1])
     return None
@@ -105,7 +97,8 @@ def _passages(run: Run, pose: float) -> Iterator[tuple[Passage, float]]:
     unit = 1.0 / max(_pace(run, y), np.sqrt(_pull(run, t, y)))
     for reach in (share * unit for share in LEAP_REACHES):
         begin, end = pose - reach, pose + reach
-        if begin > t - LEAP_SHORTEST * (pose - t):
+        if begin > t - 0.5 * (pose - t):
+            # Too near: a step begins at least half as far again before the pose as the run has come to.
             continue
         if begin <= run.times[0] or end >= run.clock[layout.END]:
             return
@@ -135,8 +128,8 @@ def _back(run: Run, now: float, y: Array, time: float) -> Array | None:
         return _slope(run, t, y)
 
     with np.errstate(all="ignore"):
-        way = DOP853(rates, now, y.copy(), time, rtol=LEAP_TOLERANCE, atol=LEAP_TOLERANCE)
-        while way.status == "running" and made < LEAP_EVALUATIONS:
+        way = DOP853(rates, now, y.copy(), time, rtol=ARITHMETIC, atol=ARITHMETIC)
+        while way.status == "running" and made < MOST_ROUNDS:
             way.step()
     if way.status != "finished":
         return None
@@ -198,7 +191,7 @@ def _stopped(run: Run, passage: Passage) -> bool:
     stops = run.dynamics.actuation.stops
     places = (*places_of(len(passage.slopes)), 1.0) if stops else ()
     values = [_positions(run, passage.state_at(place)) for place in places]
-    return any(stop.sense * (q[stop.q] - stop.limit) > STOP_PASSED for q in values for stop in stops)
+    return any(stop.sense * (q[stop.q] - stop.limit) > ARITHMETIC for q in values for stop in stops)
 
 
 def _land(run: Run, passage: Passage) -> None:

@@ -15,39 +15,36 @@ from typing import Any
 
 import numpy as np
 
+from kinform.foundation.rounding import ARITHMETIC
 from kinform.model.arrays import Array
 from kinform.model.simulation import Damping
-from kinform.simulation.constants import LEAST_DRIFT
 from kinform.simulation.kernel import layout
 from kinform.simulation.mechanism.states import states_at
-from kinform.simulation.solver.constants import LOOK
+from kinform.simulation.solver.constants import LOOK, MOST_EVENTS
 from kinform.simulation.solver.run_state import Run
 from kinform.simulation.solver.stiffness import jacobian, vibration
 
 DAMPING_STEP = 100.0
-"""Phase (rad) of the fastest vibration in a step that damps it, by 0.03; one of a tenth of its frequency by 0.3, one of
-a thousandth by 1e-9 of itself."""
-DAMPS = 30.0
-"""Phase from which on a step counts as damping: by 0.1."""
+"""Phase (rad) of the fastest vibration in a step that damps it, by 3/100; one of a tenth of its frequency by 0.3, one
+of a thousandth by 1e-9 of itself. Steps that are cut short count as damping from 0.3 of it on, by 0.1."""
 DAMPING_STEPS = 16
-"""Steps that damp: a vibration to 1e-16 at least of what it was."""
+"""Steps that damp: a vibration to 0.1^16, the last bit, at least of what it was."""
 WITHOUT_CONTROL = 1e3
-"""Relative and absolute error a step that no step has: errors do not control the steps that damp."""
+"""Relative and absolute error a step that no step has: errors do not control the steps that damp. Any great number."""
 DAMPING_SETTLED = 1e-10
-"""Newton's last correction in such a step, over the state and 1."""
+"""Newton's last correction in such a step, over the state and 1: the absolute tolerance of the implicit method
+(`SolverSettings.implicit_atol`)."""
 DAMPING_NEWTON = 0.03
-"""The same as a share of the change by the step before."""
-STIFF_ROUNDING = 1e-12
-"""Rounding of a position (rad, lengths): times the frequency it is what rates are known to; ten thousand last bits."""
+"""The same as a share of the change by the step before: what such a step leaves of the vibration, 3/100."""
 STIFF_NEWTON = 0.01
-"""Newton's last correction over the error allowed, where rates are only known to such roundings."""
+"""Newton's last correction over the error allowed, where rates are known to roundings only: a third of what Radau takes
+otherwise, 0.03. A choice."""
 DAMPING_GAIN = 1e-6
-"""Share of the kinetic energy that such steps may add: what they damp they never make more, and slow motion is kept far
-better."""
+"""Share of the kinetic energy that such steps may add: they never add to what they damp, and keep slow motion far
+better than that. A choice."""
 DAMPED_AHEAD = 2000
-"""Implicit steps still to go from which on a vibration that has come up again is damped again."""
-MOST_DAMPINGS = 1000
-"""Times that vibrations are damped in one run: after it they come up too often."""
+"""Implicit steps still to go from which on a vibration that has come up again is damped again: a choice, a hundredth of
+the budget."""
 FIRST_IMPLICIT_STEP = 1e-6
 """s: short enough for decays that begin; Radau lengthens it tenfold a step."""
 
@@ -117,7 +114,7 @@ class Damped:
         change = float(np.sqrt(np.mean(relative[: run.dynamics.tables.metered.start] ** 2)))
         settled = max(DAMPING_SETTLED, DAMPING_NEWTON * change)
         solver.newton_tol = settled / WITHOUT_CONTROL
-        self.made += int(self.fastest * span > DAMPS)
+        self.made += int(self.fastest * span > 0.3 * DAMPING_STEP)
         return self.made == DAMPING_STEPS
 
     def fault(self) -> str:
@@ -126,7 +123,7 @@ class Damped:
         run, lost = self.run, self.run.dampings[-1].energy
         _, v = run.dynamics.tables.unpack(run.y)
         way = float(np.abs(v / run.dynamics.mechanism.scale).max(initial=0.0)) * DAMPING_STEP / self.fastest
-        added = lost < -(LEAST_DRIFT + DAMPING_GAIN * (self.moving + _kinetic(run, run.y)))
+        added = lost < -(ARITHMETIC + DAMPING_GAIN * (self.moving + _kinetic(run, run.y)))
         if not added and way <= run.settings.stride:
             return ""
         hertz = self.fastest / (2.0 * np.pi)
@@ -138,7 +135,7 @@ class Damped:
 
 def lasting(run: Run) -> float:
     """Angular frequency (1/s) of the vibration that still keeps steps short, in a run that damps them; else 0."""
-    if not 0 < len(run.dampings) < MOST_DAMPINGS:
+    if not 0 < len(run.dampings) < MOST_EVENTS:
         return 0.0
     return vibration(run, float(run.clock[layout.STEP]), DAMPED_AHEAD)
 
@@ -180,6 +177,7 @@ def _finest(run: Run) -> Array:
     out = np.full_like(run.y, run.settings.implicit_atol)
     out[tables.metered] = np.inf
     head = len(out) - 1 - tables.states
-    rates = tables.pack(np.zeros_like(q), np.full_like(v, STIFF_ROUNDING * fastest))
+    # rounding of positions (rad, lengths) times the frequency is what rates are known to
+    rates = tables.pack(np.zeros_like(q), np.full_like(v, ARITHMETIC * fastest))
     out[:head] = np.maximum(rates[:head], out[:head])
     return out

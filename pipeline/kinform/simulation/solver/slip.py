@@ -21,24 +21,22 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from kinform.foundation.algebra.vectors import norm
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
-from kinform.simulation.constants import DEPENDENT_GEARS, UNDETERMINED_SHARE
 from kinform.simulation.kernel import layout
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.losses import multipliers
 from kinform.simulation.mechanism.rubbing import Rubbing
 from kinform.simulation.mechanism.states import States, states_at
 from kinform.simulation.outcome.reactions import Network, Reactions, along_rates, reactions
+from kinform.simulation.solver.constants import CONVERGED, MOST_ROUNDS
 from kinform.simulation.solver.pressing import Responses, Sight, pressing, pressing_teeth
 from kinform.simulation.solver.run_state import Run
 
-SLIP_STEEPEST = 1.0 - 1e-9
-"""Growth of friction with itself, by the loads that it causes, from which on its answer is not unique (theory: 1)."""
-SLIP_ROUNDS = 2000
-"""Rounds of the fixed point: with a growth of 0.98 so many reach rounding; ordinary joints take under ten."""
-SLIP_SETTLED = 1e-15
-"""Change of a round over the friction at which it is settled: rounding."""
+SLIP_STEEPEST = 1.0 - SOLVED
+"""Growth of friction with itself, by the loads that it causes, from which on its answer is not unique: 1, but for
+rounding of what is solved for (`rounding.SOLVED`)."""
 
 
 _FLANKS: WeakKeyDictionary[Dynamics, list[int]] = WeakKeyDictionary()
@@ -144,12 +142,12 @@ def _settled(
     if float(np.abs(np.linalg.eigvals(steep)).max()) >= SLIP_STEEPEST:
         joints = [one.joint for one, _ in pairs]
         raise NotDeterminedError(_doubt(joints, t), joints)
-    for _ in range(SLIP_ROUNDS):
+    for _ in range(MOST_ROUNDS):
         after = least + rates * sight.grips(sight.base + sight.slopes @ u)[columns]
         after = after if share is None else share @ after
         moved = float(np.abs(after - u).max())
         u = after
-        if moved <= SLIP_SETTLED * float(np.abs(u).max()):
+        if moved <= CONVERGED * float(np.abs(u).max()):
             break
     return u
 
@@ -211,7 +209,7 @@ def undetermined(dynamics: Dynamics, q: Array, free: float) -> tuple[str, ...]:
             continue
         size = max(friction.radial, abs(friction.axial), abs(friction.torsion) * mechanism.length)
         grips = one.grip(stresses[:, one.number], states.poses[0, one.link, :3, :3], q)
-        if friction.static and not friction.least and grips.max() > UNDETERMINED_SHARE * size:
+        if friction.static and not friction.least and grips.max() > SINGLE * size:
             out.append(one.joint)
     return tuple(dict.fromkeys(out))
 
@@ -223,10 +221,10 @@ def _shared_gears(dynamics: Dynamics, states: States, network: Network, found: R
     if not len(rows):
         return np.zeros(0, dtype=np.bool_)
     left, values, _ = np.linalg.svd(rows)
-    rank = int(np.count_nonzero(values > DEPENDENT_GEARS * values[0]))
-    out = np.abs(left[:, rank:]).max(axis=1, initial=0.0) > UNDETERMINED_SHARE
+    rank = int(np.count_nonzero(values > ARITHMETIC * values[0]))
+    out = np.abs(left[:, rank:]).max(axis=1, initial=0.0) > SINGLE
     if len(found.stresses):
         rest = along_rates(network, states, replace(found, on_second=found.stresses))
         passed = np.abs(multipliers(mechanism, rest)) * np.abs(rows).max(axis=1)
-        out |= (passed > UNDETERMINED_SHARE * mechanism.length).any(axis=0)
+        out |= (passed > SINGLE * mechanism.length).any(axis=0)
     return np.asarray(out, dtype=np.bool_)
