@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from support.designs import difference
 
 from kinform.behaviour import Component, Constant, Model, Sine, System, count, counts, flat, nest, placed
-from kinform.behaviour.homes import homes
+from kinform.behaviour.component_owners import component_owners
 from kinform.simulation import Course, simulate_system
 
 STILL = np.zeros(3)
@@ -191,7 +191,7 @@ def test_what_acts_inside_a_sub_assembly_belongs_to_it():
     model.gear("gear", "inner", "outer", 2.0)
     model.spring_between("cord", "a/one", "a/b/two", ((0, 0, 0), (1, 0, 0)), 1.0)
     system = model.system()
-    found = homes(system, {body.subject: (body.subject,) for body in system.bodies})
+    found = component_owners(system, {body.subject: (body.subject,) for body in system.bodies})
     assert {name: home for name, home in found.items() if home} == {
         "a/one": "a", "a/b/two": "a/b", "inner": "a", "winding": "a", "supply": "a", "push": "a/b", "cord": "a",
     }  # fmt: skip

@@ -9,7 +9,7 @@ from support.port_models import DOWN, Model, bricard, chain, four_bars, hung_cha
 
 from kinform.behaviour import MotionDrive, Sine, SpringDamper
 from kinform.simulation import Course, SolverSettings, simulate_system
-from kinform.simulation.kernel import choice, layout
+from kinform.simulation.kernel import layout, pivoting
 from kinform.simulation.kernel.calls import Engine, by_articulated_bodies, engine, is_loaded
 from kinform.simulation.mechanism import kernel_tables
 from kinform.simulation.solver.run_state import Run
@@ -43,14 +43,14 @@ def both_ways(model, monkeypatch):
     bodies."""
     out = []
     for wanted in (0, 1):
-        decide, run_of = choice.way, []
+        decide, run_of = pivoting.choose_method, []
 
         def way(ints, nums, decide=decide, wanted=wanted):
             decide(ints, nums)
             ints[layout.MODE][layout.WAY][0] = wanted
 
         begin = Run.begin
-        monkeypatch.setattr(choice, "way", way)
+        monkeypatch.setattr(pivoting, "choose_method", way)
         monkeypatch.setattr(Run, "begin", lambda run, run_of=run_of, begin=begin: run_of.append(run) or begin(run))
         assert simulate_system(model.system(), Course(1e-3, 1e-3, DOWN)).status == "done"
         run = run_of[0]

@@ -9,7 +9,7 @@ import pytest
 from support.devices import Z, device, drive, joint, rod, sine
 from support.port_models import pendulum
 
-from kinform.simulation import Course, of_system, simulate, simulate_system
+from kinform.simulation import Course, simulate, simulate_system, system_simulation
 
 
 def numbers_of(run):
@@ -30,9 +30,9 @@ def test_what_is_counted_is_what_comes(monkeypatch, level):
     whole = simulate(*made, level=level)
     assert whole.status == "done"
     count = numbers_of(whole)
-    monkeypatch.setattr(of_system, "OUTPUT_NUMBERS", 1.25 * count)
+    monkeypatch.setattr(system_simulation, "OUTPUT_NUMBERS", 1.25 * count)
     assert simulate(*made, level=level).status == "done"
-    monkeypatch.setattr(of_system, "OUTPUT_NUMBERS", 0.95 * count)
+    monkeypatch.setattr(system_simulation, "OUTPUT_NUMBERS", 0.95 * count)
     refused = simulate(*made, level=level)
     assert refused.status == "refused"
     assert "its output would be" in refused.reason

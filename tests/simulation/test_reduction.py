@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.port_models import DOWN, bricard, four_bars, hung_chain, squeezer
 
-from kinform.simulation import Course, SolverSettings, of_system, simulate_system
+from kinform.simulation import Course, SolverSettings, simulate_system, system_simulation
 from kinform.simulation.kernel import layout
 from kinform.simulation.kernel.calls import engine
 from kinform.simulation.kernel.loops import eliminate
@@ -16,13 +16,13 @@ from kinform.simulation.solver.run_state import Run
 
 def begun(model, monkeypatch):
     """(dynamics, start) with which the system would be simulated."""
-    caught, run = [], of_system.run_dynamic
+    caught, run = [], system_simulation.run_dynamic
 
     def caught_run(dynamics, start, *rest):
         caught.append((dynamics, start))
         return run(dynamics, start, *rest)
 
-    monkeypatch.setattr(of_system, "run_dynamic", caught_run)
+    monkeypatch.setattr(system_simulation, "run_dynamic", caught_run)
     assert simulate_system(model.system(), Course(1e-3, 1e-3, DOWN)).status == "done"
     return caught[0]
 

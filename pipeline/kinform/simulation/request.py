@@ -42,7 +42,7 @@ def simulate(
         raise ValueError(f'level "{asked}": expected one of {", ".join(LEVELS)}')
     if assembly.simulation is None and level is None and not assembly.function.driven:
         return nothing("not requested", "there is neither [simulation] nor a drive")
-    from kinform.simulation.of_assembly import simulate_assembly
+    from kinform.simulation.assembly_simulation import simulate_assembly
 
     chosen = settings or replace(SolverSettings(), free=assembly.tolerances.free)
     return simulate_assembly(assembly, kinematics, mass, asked, behaviour, Conduct(chosen, progress, say))

@@ -25,9 +25,9 @@ from kinform.simulation.mechanism.closure import factor, rank_of
 from kinform.simulation.mechanism.construction import assemble
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.mechanism import Mechanism
-from kinform.simulation.solver.friction_known import friction_not_determined
+from kinform.simulation.solver.friction_determinacy import friction_not_determined
+from kinform.simulation.solver.friction_forces import NotDeterminedError, Rub, friction_efforts
 from kinform.simulation.solver.run_state import Run
-from kinform.simulation.solver.slip import NotDeterminedError, Rub, dry
 from kinform.simulation.solver.start import Start, Stated, begin
 
 
@@ -115,14 +115,14 @@ def _efforts(dynamics: Dynamics, start: Start, settings: SolverSettings, own: in
     }
     if run.derivative(0.0, run.y.copy(), np.zeros_like(run.y)) < 0.0:
         return "a free motion moves no mass"
-    plain = dry(run, 0.0, run.y, {})
+    plain = friction_efforts(run, 0.0, run.y, {})
     size = float(np.abs(plain.accelerations / mechanism.scale).max(initial=0.0))
     if size > SINGLE * max(float(np.linalg.norm(dynamics.gravity)) / mechanism.length, SINGLE):
         return "gravity moves more than the drives hold: which joint holds the rest is not stated"
 
     def effort(way: int, *, at_rest: bool) -> float | None:
         try:
-            answer = dry(run, 0.0, run.y, {k: Rub(way * sense, at_rest) for k, sense in senses.items()})
+            answer = friction_efforts(run, 0.0, run.y, {k: Rub(way * sense, at_rest) for k, sense in senses.items()})
         except NotDeterminedError:
             return None
         return float(answer.needed[own])

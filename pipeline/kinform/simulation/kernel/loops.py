@@ -1,6 +1,6 @@
 """Closes loops: independent rows and dependent rates, factors, and what follows from both.
 
-Rows and rates are chosen once (`choice`) and kept while their pivots stay good; every evaluation eliminates
+Rows and rates are chosen once (`pivoting`) and kept while their pivots stay good; every evaluation eliminates
 in that order, never by a tolerance of its own. With the rates in the
 order dependent d, free i, led l the loops say x_d = g − B x_il; motions E = (−B; 1) keep them closed.
 """

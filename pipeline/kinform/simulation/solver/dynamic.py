@@ -17,8 +17,8 @@ from kinform.simulation.record import Record
 from kinform.simulation.settings import Conduct
 from kinform.simulation.solver.constants import LOOK
 from kinform.simulation.solver.implicit import run_implicit
-from kinform.simulation.solver.leap import leap
 from kinform.simulation.solver.run_state import Run
+from kinform.simulation.solver.singular_crossing import cross_singular_pose
 from kinform.simulation.solver.start import Start
 from kinform.simulation.solver.stiffness import is_stiff, vibration
 from kinform.simulation.solver.stops import Contact
@@ -92,7 +92,7 @@ class _Driver:
                 status = layout.SPENT
             if status == layout.DONE and run.clock[layout.NOW] >= run.clock[layout.END]:
                 return ""
-            crossed = leap(run) if status in _AT_SINGULAR_POSES else ""
+            crossed = cross_singular_pose(run) if status in _AT_SINGULAR_POSES else ""
             if crossed is None:
                 continue
             if crossed:

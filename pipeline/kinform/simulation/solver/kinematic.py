@@ -12,7 +12,7 @@ from kinform.simulation.mechanism.actuation import Actuation
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.record import Record
 from kinform.simulation.settings import Conduct, SolverSettings
-from kinform.simulation.solver.follow import Follower, Led
+from kinform.simulation.solver.continuation import Follower, Led
 from kinform.simulation.solver.start import Start
 
 

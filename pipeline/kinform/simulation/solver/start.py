@@ -16,7 +16,7 @@ from kinform.simulation.mechanism.closure import Factor, factor, rank_of, settle
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.states import gaps_at, poses_at
 from kinform.simulation.settings import SolverSettings
-from kinform.simulation.solver.follow import Follower, Led
+from kinform.simulation.solver.continuation import Follower, Led
 
 START_SHARE = 0.03
 """Of a motion (rad, or lengths) from the start that shows whether the loops bear it: a choice, so long that what opens

@@ -29,9 +29,9 @@ from kinform.simulation.mechanism.states import states_at
 from kinform.simulation.record import FrictionRecord, Record
 from kinform.simulation.settings import Conduct
 from kinform.simulation.solver.constants import CONVERGED, LAW_PARTS
+from kinform.simulation.solver.friction_forces import NotDeterminedError, set_efforts
 from kinform.simulation.solver.friction_stops import strike
 from kinform.simulation.solver.run_state import Run
-from kinform.simulation.solver.slip import NotDeterminedError, set_efforts
 from kinform.simulation.solver.start import Start
 from kinform.simulation.solver.sticking import Hold, Sticking, grouped, ways
 

@@ -20,8 +20,8 @@ from kinform.simulation.mechanism.actuation import Actuation, Stop
 from kinform.simulation.mechanism.closure import factor, rank_of
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.rubbing import Rubbing
+from kinform.simulation.solver.friction_forces import Answer, NotDeterminedError, Rub, friction_efforts
 from kinform.simulation.solver.run_state import Run
-from kinform.simulation.solver.slip import Answer, NotDeterminedError, Rub, dry
 
 
 def ways(dynamics: Dynamics, actuation: Actuation, q: Array, free: float, rates: Sequence[int] | None = None) -> Array:
@@ -205,7 +205,7 @@ class Sticking:
     def answer(self, t: float, y: Array, others: Mapping[int, Rub] | None = None) -> Answer:
         """What all frictions do, `others` beside those that slip. Raises NotDeterminedError."""
         held = [hold.held for hold in self.holds if hold.group >= 0]
-        return dry(self.run, t, y, self.acting | dict(others or {}), held)
+        return friction_efforts(self.run, t, y, self.acting | dict(others or {}), held)
 
     def limits(self, answer: Answer) -> Array:
         """(m,) what each friction takes at most at rest, against what it holds or the way in which it slips."""
@@ -228,7 +228,9 @@ class Sticking:
         one = self.rubbings[hold.held]
         a, scale = self.answer(t, self.run.y).accelerations, self.run.dynamics.mechanism.scale
         # At the moment of release all that moves it is balanced, but for rounding of what there is without friction.
-        size = max(float(np.abs(x / scale).max()) for x in (a, dry(self.run, t, self.run.y, {}).accelerations))
+        size = max(
+            float(np.abs(x / scale).max()) for x in (a, friction_efforts(self.run, t, self.run.y, {}).accelerations)
+        )
         if way * a[one.v] / scale[one.v] < -SINGLE * size:
             raise NotDeterminedError(
                 f"at t = {t:.6g} s {one.joint} can neither stick nor slip: more friction than what moves it bears"

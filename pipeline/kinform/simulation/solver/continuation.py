@@ -1,4 +1,5 @@
-"""Moves a mechanism along a path: some joints are led, the others follow so that loops stay closed.
+"""Numerical continuation: moves a mechanism along a path. Some joints are led, the others follow so that loops stay
+closed.
 
 From one closed pose to the next by prediction with the rates and correction by Newton, with steps short
 enough to stay on the branch of the loop. A pose where the led joints no longer determine the others

@@ -23,7 +23,7 @@ from kinform.simulation.outcome.results import publish, publish_dynamic, while_i
 from kinform.simulation.outcome.sensing import Probe, with_readings
 from kinform.simulation.settings import Conduct, SolverSettings
 from kinform.simulation.solver.dynamic import run_dynamic
-from kinform.simulation.solver.friction_known import friction_not_determined
+from kinform.simulation.solver.friction_determinacy import friction_not_determined
 from kinform.simulation.solver.kinematic import notes_of_rest, run_kinematic
 from kinform.simulation.solver.start import Stated, begin, loop_rank, torn_at_start
 from kinform.simulation.solver.stick_slip import run_with_friction

@@ -8,11 +8,11 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from kinform.behaviour.acting import make_drive, make_gear, make_load, make_spring, mesh_gear
+from kinform.behaviour.component_owners import component_owners
 from kinform.behaviour.components import Ground, JointComponent, RigidBody, System
-from kinform.behaviour.coupled import Imposed, imposed_couplings
+from kinform.behaviour.couplings import Imposed, imposed_couplings
+from kinform.behaviour.drives_and_loads import make_drive, make_gear, make_load, make_spring, mesh_gear
 from kinform.behaviour.efficiencies import lossy, lost_nowhere, stated_losses
-from kinform.behaviour.homes import homes
 from kinform.behaviour.joints import KINDS, JointGeometry
 from kinform.behaviour.nested import nest
 from kinform.behaviour.ports import Component, Node
@@ -175,7 +175,7 @@ def build(
             forces_missing.append((stated_spring.name, why))
     system = builder.system()
     parts = {str(body.name): body.parts for body in kinematics.bodies}
-    nested = nest(system, homes(system, parts))
+    nested = nest(system, component_owners(system, parts))
     said = () if gears else tuple(_imposed(subject, replaced) for subject, replaced in geared)
     return Behaviour(system, nested, tuple(failures), tuple(forces_missing), tuple(held), said)
 

@@ -82,7 +82,7 @@ class Sight:
         ]
 
 
-def pressing(run: Run, t: float, y: Array, to: Responses, held: Sequence[int], flanks: Sequence[int]) -> Sight:
+def normal_loads(run: Run, t: float, y: Array, to: Responses, held: Sequence[int], flanks: Sequence[int]) -> Sight:
     """What presses in the trials of `to`, in the state y (kernel's order) at t. `held`: frictions that stand for what
     is needed on their rates; `flanks` (G,): the sides with which teeth push."""
     dynamics, rubbings = run.dynamics, run.dynamics.actuation.frictions

@@ -25,11 +25,11 @@ CLOSING_PIVOT = 0.3
 """Pivots of the joints that close loops are taken first while they are larger than this: a choice. Entries are scaled
 to about 1; small pivots lose digits."""
 PASS = 200
-"""Multiplications a rate of one pass of articulated bodies along the tree (`kernel.choice.way`). Counted; with it the
-two ways take as long as each other where they are said to."""
+"""Multiplications a rate of one pass of articulated bodies along the tree (`choose_method`). Counted; with it the two
+ways take as long as each other where they are said to."""
 
 
-def choose(ints: Ints, nums: Nums, work: Work) -> None:
+def choose_pivots(ints: Ints, nums: Nums, work: Work) -> None:
     """Picks rows and dependent rates by complete pivoting, those of closing joints first; writes the
     mode and its pivots."""
     n, rank = ints[COUNTS][0][RATES], ints[COUNTS][0][RANK]
@@ -86,7 +86,7 @@ class _Largest:
         return size[np.arange(len(rows)), place], place
 
 
-def way(ints: Ints, nums: Nums) -> None:
+def choose_method(ints: Ints, nums: Nums) -> None:
     """Decides whether articulated bodies are the way to solve with the rows and rates chosen, by what both ways cost,
     and writes what they make of each rate: all that is not led has mass to move, or follows from a row."""
     n, rank, led = ints[COUNTS][0][RATES], ints[COUNTS][0][RANK], ints[COUNTS][0][LED]

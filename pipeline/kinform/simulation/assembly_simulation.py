@@ -27,11 +27,11 @@ from kinform.simulation.levels import (
 from kinform.simulation.mechanism.construction import assemble
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.uncertainty import loop_uncertainty
-from kinform.simulation.of_system import Course, run_course
 from kinform.simulation.probes import probes_of
 from kinform.simulation.settings import Conduct
 from kinform.simulation.solver.start import Stated
 from kinform.simulation.subject import Failures, are_gears_ideal, refuse, simulated_joints
+from kinform.simulation.system_simulation import Course, run_course
 
 
 def simulate_assembly(

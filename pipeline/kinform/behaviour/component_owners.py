@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from kinform.behaviour.components import System
 
 
-def homes(system: System, parts: Mapping[str, Sequence[str]]) -> dict[str, str]:
+def component_owners(system: System, parts: Mapping[str, Sequence[str]]) -> dict[str, str]:
     """Path of the sub-assembly of each component of a flat system, by its name; "" where it is in none.
 
     `parts` are those of each body, by what the body is called.

@@ -1,4 +1,4 @@
-"""How the implicit method lays its steps: by its errors, or so long that a vibration dies out in them.
+"""Step sizes of the implicit method: by its errors, or so long that a vibration dies out in them.
 
 Steps far longer than the period of a vibration damp it: at ω times the step = y by |R(iy)|, about 3/y for large y
 (Hairer and Wanner, Solving Ordinary Differential Equations II, section IV.5). The control of errors would never let
@@ -52,7 +52,7 @@ FIRST_IMPLICIT_STEP = 1e-6
 Rates = Callable[[float, Array], Array]
 
 
-class Controlled:
+class ErrorControlled:
     """Steps by their errors."""
 
     def __init__(self, run: Run):
@@ -71,16 +71,16 @@ class Controlled:
         return y
 
     def ends(self, solver: Any, before: Array, span: float) -> bool:
-        """Whether another pace is to go on after this step of `span` (s) from the state `before`."""
+        """Whether other steps are to go on after this step of `span` (s) from the state `before`."""
         self.made += 1
-        return bool(self.run.dampings) and self.made % LOOK == 0 and lasting(self.run) > 0.0
+        return bool(self.run.dampings) and self.made % LOOK == 0 and lasting_vibration(self.run) > 0.0
 
     def fault(self) -> str:
         """Why the run cannot be trusted after these steps: errors control them."""
         return ""
 
 
-class Damped:
+class VibrationDamping:
     """Steps in which a vibration of angular frequency `fastest` (1/s) dies out."""
 
     def __init__(self, run: Run, fastest: float):
@@ -89,7 +89,7 @@ class Damped:
         run.dampings.append(Damping(float(run.clock[layout.NOW]), fastest / (2.0 * np.pi), 0.0))
 
     def solver(self, rates: Rates, longest: float) -> Any:
-        """As of `Controlled`."""
+        """As of `ErrorControlled`."""
         step, free = DAMPING_STEP / self.fastest, WITHOUT_CONTROL
         solver = _radau(self.run, rates, free, np.full_like(self.run.y, free), step, min(step, longest))
         solver.newton_tol = DAMPING_NEWTON / free
@@ -103,7 +103,7 @@ class Damped:
         return out
 
     def ends(self, solver: Any, before: Array, span: float) -> bool:
-        """As of `Controlled`."""
+        """As of `ErrorControlled`."""
         run = self.run
         lost = self.kept - _balance(run, run.y)
         run.y[-1] -= lost
@@ -133,7 +133,10 @@ class Damped:
         )
 
 
-def lasting(run: Run) -> float:
+Stepping = ErrorControlled | VibrationDamping
+
+
+def lasting_vibration(run: Run) -> float:
     """Angular frequency (1/s) of the vibration that still keeps steps short, in a run that damps them; else 0."""
     if not 0 < len(run.dampings) < MOST_EVENTS:
         return 0.0

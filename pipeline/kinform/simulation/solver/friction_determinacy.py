@@ -5,7 +5,7 @@ from __future__ import annotations
 from kinform.model.arrays import Array
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.settings import SolverSettings
-from kinform.simulation.solver.slip import undetermined
+from kinform.simulation.solver.friction_forces import undetermined
 from kinform.simulation.solver.sticking import grouped, ways
 from kinform.simulation.subject import Failures
 

@@ -25,26 +25,26 @@ from kinform.simulation.solver.collocation import Passage, pass_over, places_of
 from kinform.simulation.solver.constants import MOST_ROUNDS
 from kinform.simulation.solver.run_state import Run
 
-LEAP_MARGIN = 0.02
+CROSSING_MARGIN = 0.02
 """Margin, by singular values, below which a singular pose may be ahead; and below which rows of the loops are about to
 depend on others: a choice."""
-LEAP_REACHES = (0.025, 0.05, 0.1, 0.2, 0.4)
+CROSSING_REACHES = (0.025, 0.05, 0.1, 0.2, 0.4)
 """How far a step reaches from the pose to either side, tried from the first on: rad, or lengths, that the fastest joint
 moves. The error of the stages' slopes goes with the inverse square of it, what the polynomial leaves out with its
 twelfth power; for chains of 2 to 40 four-bars the first that are tried agree to 1e-12."""
-LEAP_COARSE, LEAP_FINE = 6, 8
+CROSSING_COARSE, CROSSING_FINE = 6, 8
 """Stages of the two steps that are compared: even, as none may lie in the middle."""
-LEAP_ERROR = 1e-8
+CROSSING_ERROR = 1e-8
 """Difference beyond which the run is left as it is: what a run of ten seconds gathers at the default tolerance."""
-LEAP_NEARER = 100.0
+CROSSING_NEARER = 100.0
 """A step that errs so many times as much as one that is shorter is too long, and longer ones are not tried: twice as
 long leaves out 2^12 times as much. A choice."""
-LEAP_TURNED = 0.1
+CROSSING_TURNED = 0.1
 """Share of itself that the least singular value must have as its negative behind the pose: straight on it has all,
 turned back none. A choice."""
 
 
-def leap(run: Run) -> str | None:
+def cross_singular_pose(run: Run) -> str | None:
     """Put the run beyond the singular pose ahead: None when it is there, "" where it is left as it is, else why it
     ends."""
     mechanism = run.dynamics.mechanism
@@ -57,12 +57,12 @@ def leap(run: Run) -> str | None:
     for passage, error in _passages(run, pose):
         if best is None or error < best[0]:
             best = error, passage
-        elif error > LEAP_NEARER * best[0]:
+        elif error > CROSSING_NEARER * best[0]:
             break
         if best[0] < ARITHMETIC:  # a hundredth of the tolerance of a step
             break
     run.choose()
-    if best is None or best[0] > LEAP_ERROR:
+    if best is None or best[0] > CROSSING_ERROR:
         return ""
     gap = _gap(run, best[1].state_at(0.5))
     if gap > ARITHMETIC:
@@ -75,7 +75,7 @@ def _pose_ahead(run: Run) -> float | None:
     """When (s) the margin, which falls like one side of a V, comes to nothing; None where it does not."""
     now, pace = float(run.clock[layout.NOW]), _pace(run, run.y)
     margin, at = _margin(run, run.y), run.y
-    if not 0.0 < margin < LEAP_MARGIN or pace == 0.0:
+    if not 0.0 < margin < CROSSING_MARGIN or pace == 0.0:
         return None
     # First a look at how fast it falls, and with that one from twice as far, where it is known better.
     pose, before = now, now - margin / pace
@@ -95,7 +95,7 @@ def _passages(run: Run, pose: float) -> Iterator[tuple[Passage, float]]:
     """Steps across the pose, one longer than the other, with their errors."""
     t, y = float(run.clock[layout.NOW]), run.y
     unit = 1.0 / max(_pace(run, y), np.sqrt(_pull(run, t, y)))
-    for reach in (share * unit for share in LEAP_REACHES):
+    for reach in (share * unit for share in CROSSING_REACHES):
         begin, end = pose - reach, pose + reach
         if begin > t - 0.5 * (pose - t):
             # Too near: a step begins at least half as far again before the pose as the run has come to.
@@ -107,10 +107,10 @@ def _passages(run: Run, pose: float) -> Iterator[tuple[Passage, float]]:
             return
         t, y = begin, state
         run.dynamics.place(*run.dynamics.tables.unpack(y))
-        coarse = pass_over(run, y, begin, end - begin, np.repeat(_slope(run, t, y)[None], LEAP_COARSE, axis=0))
+        coarse = pass_over(run, y, begin, end - begin, np.repeat(_slope(run, t, y)[None], CROSSING_COARSE, axis=0))
         fine = None
         if coarse is not None:
-            fine = pass_over(run, y, begin, end - begin, coarse.slopes_at(places_of(LEAP_FINE)))
+            fine = pass_over(run, y, begin, end - begin, coarse.slopes_at(places_of(CROSSING_FINE)))
         if coarse is None or fine is None or not _goes_straight(run, fine) or _stopped(run, fine):
             continue
         yield fine, float(np.max(np.abs(fine.end - coarse.end) / np.maximum(1.0, np.abs(fine.end))))
@@ -174,7 +174,7 @@ def _gap(run: Run, y: Array) -> float:
     """What is open in the rows that are about to depend on the others (rad, shares of the length)."""
     mechanism, q, rank = run.dynamics.mechanism, _positions(run, y), run.dynamics.rank
     left, values, _ = np.linalg.svd(_scaled_rows(run, y))
-    loose = left[:, :rank][:, values[:rank] < LEAP_MARGIN * values[0]]
+    loose = left[:, :rank][:, values[:rank] < CROSSING_MARGIN * values[0]]
     return float(np.abs(loose.T @ mechanism.gap(mechanism.poses(q), q)).max(initial=0.0))
 
 
@@ -183,7 +183,7 @@ def _goes_straight(run: Run, passage: Passage) -> bool:
     left, values, right = np.linalg.svd(_scaled_rows(run, passage.start))
     k = run.dynamics.rank - 1
     after = float(left[:, k] @ _scaled_rows(run, passage.end) @ right[k])
-    return after < -LEAP_TURNED * float(values[k])
+    return after < -CROSSING_TURNED * float(values[k])
 
 
 def _stopped(run: Run, passage: Passage) -> bool:

@@ -31,7 +31,7 @@ from kinform.simulation.mechanism.rubbing import Rubbing
 from kinform.simulation.mechanism.states import States, states_at
 from kinform.simulation.outcome.reactions import Network, Reactions, along_rates, reactions
 from kinform.simulation.solver.constants import CONVERGED, MOST_ROUNDS
-from kinform.simulation.solver.pressing import Responses, Sight, pressing, pressing_teeth
+from kinform.simulation.solver.normal_loads import Responses, Sight, normal_loads, pressing_teeth
 from kinform.simulation.solver.run_state import Run
 
 SLIP_STEEPEST = 1.0 - SOLVED
@@ -77,7 +77,7 @@ class Answer:
     """(n,)."""
 
 
-def dry(run: Run, t: float, y: Array, acting: Mapping[int, Rub], held: Sequence[int] = ()) -> Answer:
+def friction_efforts(run: Run, t: float, y: Array, acting: Mapping[int, Rub], held: Sequence[int] = ()) -> Answer:
     """The frictions `acting`, by their number, in the state y (kernel's order) at t; the others give no effort, but for
     those `held`, which give what is needed on their rates. Leaves the efforts in the tables. Raises
     NotDeterminedError."""
@@ -92,9 +92,9 @@ def dry(run: Run, t: float, y: Array, acting: Mapping[int, Rub], held: Sequence[
     toothed = pressing_teeth(dynamics)
     flanks = _FLANKS.get(dynamics, [0] * len(dynamics.system.gears))
     for _ in range(2 + 2 * len(toothed)):
-        sight = pressing(run, t, y, to, held, flanks)
+        sight = normal_loads(run, t, y, to, held, flanks)
         # The teeth of each gear may push with the other side after all, and press more than these.
-        others = [pressing(run, t, y, to, held, _flipped(flanks, k)).slopes - sight.slopes for k in toothed]
+        others = [normal_loads(run, t, y, to, held, _flipped(flanks, k)).slopes - sight.slopes for k in toothed]
         u = _settled(t, sight, others, [(rubbings[k], acting[k]) for k in columns], columns)
         pushing = sight.flanks(u, flanks)
         if pushing == flanks or not toothed:
