@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from kinform.frozen import dataclass
 from kinform.model.quantities import Direction, Place
+
+SensorKind = Literal["point", "rotation", "distance", "angle", "reaction"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -11,8 +15,7 @@ class Sensor:
     """What `[[simulation.sensor]]` asks to be followed; places in the world at the pose of the meshes."""
 
     name: str
-    kind: str
-    """point, rotation, distance, angle, reaction."""
+    kind: SensorKind
     part: str = ""
     """The part or group that is followed; of a distance or an angle the first of two, of a reaction the one that it
     acts on, "" for the second of the joint."""

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.quantities import MATRIX, Place, columns
 
+SpringKind = Literal["spring", "gas_spring", "bushing"]
+SPRING: SpringKind
+GAS_SPRING: SpringKind
+BUSHING: SpringKind
 SPRING, GAS_SPRING, BUSHING = "spring", "gas_spring", "bushing"
 
 
@@ -15,7 +19,7 @@ SPRING, GAS_SPRING, BUSHING = "spring", "gas_spring", "bushing"
 class StatedSpring:
     """`[[function.spring]]`, `[[function.gas_spring]]` or `[[function.bushing]]`."""
 
-    kind: str
+    kind: SpringKind
     name: str
     between: Annotated[tuple[str, str], columns("between_a", "between_b")]
     """Parts or groups."""

@@ -60,6 +60,8 @@ def hint(annotation: Any) -> Hint:
         elif origin in (typing.Union, types.UnionType):
             optional = True
             (annotation,) = (kind for kind in typing.get_args(annotation) if kind is not types.NoneType)
+        elif origin is typing.Literal:
+            (annotation,) = {type(value) for value in typing.get_args(annotation)}
         elif isinstance(annotation, NewType):
             annotation = annotation.__supertype__
         else:

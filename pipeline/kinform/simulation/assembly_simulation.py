@@ -13,7 +13,7 @@ from kinform.model.assembly import Assembly
 from kinform.model.function import InitialValue, SimulationRequest
 from kinform.model.kinematics import Kinematics
 from kinform.model.mass import MassReport
-from kinform.model.simulation import Simulation
+from kinform.model.simulation import Simulation, SimulationLevel
 from kinform.simulation.levels import (
     choose,
     notes_of_drives,
@@ -38,7 +38,7 @@ def simulate_assembly(
     assembly: Assembly,
     kinematics: Kinematics,
     mass: MassReport | None,
-    asked: str | None,
+    asked: SimulationLevel | None,
     behaviour: Behaviour | None,
     conduct: Conduct,
 ) -> Simulation:

@@ -13,6 +13,7 @@ from kinform.model.assembly import Assembly
 from kinform.model.function import Drive
 from kinform.model.kinematics import Kinematics, Meshing
 from kinform.model.quantities import Reason
+from kinform.model.simulation import SimulationLevel
 from kinform.simulation.mechanism.mechanism import Mechanism
 
 
@@ -20,17 +21,17 @@ from kinform.simulation.mechanism.mechanism import Mechanism
 class Choice:
     """The level, or "" with failures when the level asked for cannot be had."""
 
-    level: str
+    level: SimulationLevel
     failures: tuple[Reason, ...] = ()
     not_dynamic: tuple[Reason, ...] = ()
     """(subject, why) of what keeps it below the dynamic level, where no level is asked for."""
 
 
 def choose(
-    asked: str | None, behaviour: Behaviour, mechanism: Mechanism, adrift: tuple[str, ...], formless: bool
+    asked: SimulationLevel | None, behaviour: Behaviour, mechanism: Mechanism, adrift: tuple[str, ...], formless: bool
 ) -> Choice:
     """The level asked for, else the highest that is known. `formless`: no part has a mesh."""
-    without_forces = "functional" if formless else "kinematic"
+    without_forces: SimulationLevel = "functional" if formless else "kinematic"
     obstacles = _obstacles(behaviour, mechanism, adrift)
     if asked == "dynamic":
         return Choice("", failures=obstacles) if obstacles else Choice("dynamic")
@@ -190,7 +191,12 @@ def _intended_ratios(assembly: Assembly, kinematics: Kinematics, behaviour: Beha
 
 
 def notes_of_level(
-    assembly: Assembly, kinematics: Kinematics, behaviour: Behaviour, level: str, adrift: tuple[str, ...], gears: bool
+    assembly: Assembly,
+    kinematics: Kinematics,
+    behaviour: Behaviour,
+    level: SimulationLevel,
+    adrift: tuple[str, ...],
+    gears: bool,
 ) -> Iterator[str]:
     """What plays no part at this level."""
     if adrift:

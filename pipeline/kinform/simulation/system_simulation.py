@@ -14,7 +14,7 @@ from kinform.foundation.progress import Progress, Say
 from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
-from kinform.model.simulation import Simulation
+from kinform.model.simulation import Simulation, SimulationLevel
 from kinform.simulation.mechanism.actuation import Actuation
 from kinform.simulation.mechanism.construction import assemble
 from kinform.simulation.mechanism.dynamics import Dynamics
@@ -47,7 +47,7 @@ class Course:
     """s, of the output."""
     gravity: Array = field(default_factory=lambda: np.array([0.0, 0.0, -9.81]))
     """(3,) m/s²."""
-    level: str = "dynamic"
+    level: SimulationLevel = "dynamic"
     """kinematic (or functional), dynamic."""
 
     def __post_init__(self) -> None:
@@ -209,7 +209,7 @@ def _excess(mechanism: Mechanism, course: Course) -> str:
     )
 
 
-def numbers_at_a_time(mechanism: Mechanism, level: str) -> int:
+def numbers_at_a_time(mechanism: Mechanism, level: SimulationLevel) -> int:
     """How many numbers the results of a run have at each output time: see `Simulation`."""
     bodies, joints, rates = len(mechanism.bodies), len(mechanism.slots), mechanism.rates
     poses, coordinates, monitors = 7 * bodies, 4 * rates, 6

@@ -11,7 +11,7 @@ from kinform.behaviour.components import System
 from kinform.foundation.algebra.spatial import quaternions, rotation_vector
 from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED
 from kinform.model.arrays import Array, Ints
-from kinform.model.simulation import Simulation
+from kinform.model.simulation import Simulation, SimulationLevel
 from kinform.simulation.constants import CHUNK
 from kinform.simulation.mechanism.closure import counted
 from kinform.simulation.mechanism.dynamics import Dynamics
@@ -50,7 +50,7 @@ def while_in_mesh(mechanism: Mechanism, system: System, record: Record) -> Recor
 
 
 def publish_dynamic(
-    dynamics: Dynamics, record: Record, level: str, notes: tuple[str, ...], settings: SolverSettings
+    dynamics: Dynamics, record: Record, level: SimulationLevel, notes: tuple[str, ...], settings: SolverSettings
 ) -> tuple[Simulation, States]:
     """The results with energy, reactions, their balance, and what the drives did; and the states of the links."""
     run, states = publish(dynamics.mechanism, record, level, notes, settings.free)
@@ -147,7 +147,7 @@ def _notes_of_sliding(dynamics: Dynamics, record: Record) -> tuple[str, ...]:
 
 
 def publish(
-    mechanism: Mechanism, record: Record, level: str, assumptions: tuple[str, ...], free: float
+    mechanism: Mechanism, record: Record, level: SimulationLevel, assumptions: tuple[str, ...], free: float
 ) -> tuple[Simulation, States]:
     """The record as results keep it, without energy and reactions, and the states of the links.
 

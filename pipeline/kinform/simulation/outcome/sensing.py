@@ -15,7 +15,7 @@ from kinform.foundation.algebra.spatial import quaternions
 from kinform.foundation.rounding import ARITHMETIC
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
-from kinform.model.sensors import Reading
+from kinform.model.sensors import Reading, SensorKind
 from kinform.model.simulation import Simulation
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.states import States
@@ -28,8 +28,7 @@ class Probe:
     """A sensor on bodies and joints of a port model, by what they are called; world axes at the pose of the model."""
 
     name: str
-    kind: str
-    """point, rotation, distance, angle, reaction."""
+    kind: SensorKind
     body: str = ""
     """Of a distance or an angle the first; of a reaction the one that it acts on."""
     other: str = ""
