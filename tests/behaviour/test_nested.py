@@ -167,14 +167,14 @@ def test_bodies_that_meet_in_a_node_move_as_one():
 def test_a_port_that_does_not_exist_cannot_be_exposed_or_joined():
     model = Model()
     model.ground("base")
-    with pytest.raises(ValueError, match='no port "shaft" of a component "base"'):
+    with pytest.raises(ValueError, match=r'"shaft".*"base"'):
         model.expose("out", "base", "shaft")
-    with pytest.raises(ValueError, match='"motor" has no port "rotor"'):
+    with pytest.raises(ValueError, match=r'"motor".*"rotor"'):
         model.include("motor", motor(), rotor="base")
-    with pytest.raises(ValueError, match='no component "bas"'):
+    with pytest.raises(ValueError, match='"bas"'):
         model.include("motor", motor(), housing="bas")
     inner = motor()
-    with pytest.raises(ValueError, match="exposed port out"):
+    with pytest.raises(ValueError, match="out"):
         System(inner.components, inner.nodes, "m", exposed=(("out", ("rotor", "shaft")),))
 
 
