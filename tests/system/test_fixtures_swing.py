@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.dynamics import moved
 from support.places import FIXTURES
 
-from kinform import stages
 from kinform.model.function import SimulationRequest
 from kinform.simulation import SolverSettings, simulate
 
@@ -32,7 +32,7 @@ def swung(derive_design):
             request = SimulationRequest(gravity=np.array([3.0, -2.0, -9.0]), duration=0.12, step=0.02)
             function = replace(found.assembly.function, drives=())
             assembly = replace(found.assembly, simulation=request, function=function)
-            known[name] = stages.simulate(replace(found, assembly=assembly), level="dynamic").simulation
+            known[name] = moved(replace(found, assembly=assembly), "dynamic").simulation
         return known[name]
 
     return swing

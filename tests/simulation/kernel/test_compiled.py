@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.diagonal import diagonal
 from support.places import FIXTURES
 from support.port_models import DOWN, Model, bricard, four_bars, governor, hung_chain
 
@@ -123,8 +124,7 @@ def compilations(monkeypatch):
     return asked
 
 
-@pytest.mark.parametrize("ready", [False, True])
-@pytest.mark.parametrize("drives", [False, True])
+@diagonal(ready=[False, True], drives=[False, True])
 def test_ten_seconds_of_the_seeker_need_no_compiler(ready, drives, compilations, derive_design, monkeypatch):
     monkeypatch.setattr(dynamic, "ready", lambda tables: ready)
     found = derive_design(FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml")

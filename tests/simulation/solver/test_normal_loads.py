@@ -69,10 +69,10 @@ def test_at_rest_it_holds_what_the_bearings_take():
 
 def test_teeth_that_change_sides_press_on():
     """A drive that swings against a load: the same with the file's order and signs turned round."""
-    one = _pair(Sine(0.0, 4.0, 6.0, 0.0), Constant(0.4), until=2.0)
-    other = _pair(Sine(0.0, -4.0, 6.0, 0.0), Constant(-0.4), until=2.0)
+    one = _pair(Sine(0.0, 4.0, 9.0, 0.0), Constant(0.4), until=0.8)
+    other = _pair(Sine(0.0, -4.0, 9.0, 0.0), Constant(-0.4), until=0.8)
     _sound(one)
-    assert (np.diff(np.sign(one.gear_effort[:, 0, 0])) != 0).sum() >= 3
+    assert (np.diff(np.sign(one.gear_effort[:, 0, 0])) != 0).sum() >= 2
     np.testing.assert_allclose(one.joint_position, -other.joint_position, atol=1e-9)
 
 
