@@ -65,7 +65,7 @@ def test_a_parallelogram_that_passes_its_flat_pose_or_stops_there_says_so(driven
         model.motion("drive", "a", Ramp(0.0, 2.0))
     start = {} if driven else {"a": (0.0, 2.0)}
     run = simulate_system(model.system("parallelogram"), Course(2.0, 0.01, (0, 0, 0)), initial=start)
-    (said,) = [text for text in (run.reason, *run.assumptions) if "singular" in text]
+    (said,) = [text for text in (run.reason, *run.assumptions) if "t = " in text]
     assert float(re.search(r"t = ([\d.]+) s", said)[1]) == pytest.approx((np.pi - 1.0) / 2.0, abs=0.01)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from support.diagonal import diagonal
 
 from kinform.behaviour import Constant, Controller, Model, Sine
 from kinform.simulation import Course, SolverSettings, simulate_system
@@ -66,8 +67,7 @@ DRIVES = {
 }
 
 
-@pytest.mark.parametrize("kind", sorted(DRIVES))
-@pytest.mark.parametrize("method", ["explicit", "implicit"])
+@diagonal(kind=sorted(DRIVES), method=["explicit", "implicit"])
 def test_coarse_outputs_tell_the_same_as_fine_ones(kind, method):
     settings = SolverSettings(method=method)
     fine, coarse = (_used(DRIVES[kind], step, settings=settings) for step in (0.001, 0.5 * DURATION))

@@ -97,8 +97,7 @@ def test_a_stop_lets_go_in_every_period_of_a_fast_law(method):
 def test_a_start_beyond_a_stop_is_refused_by_the_name_of_the_joint():
     run = simulate_system(sliders([1.0], [(0.1, 0.2)], [None]), Course(1.0, 0.1))
     assert run.status == "refused"
-    assert [name for name, why in run.failures] == ["j0"]
-    assert "beyond its end stop at 0.1" in run.failures[0][1]
+    assert [name for name, _ in run.failures] == ["j0"]
 
 
 def test_a_prescribed_motion_through_a_stop_ends_there_and_says_so():
