@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Final, Literal
 
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.quantities import MATRIX, Place, columns
 
 SpringKind = Literal["spring", "gas_spring", "bushing"]
-SPRING: SpringKind
-GAS_SPRING: SpringKind
-BUSHING: SpringKind
-SPRING, GAS_SPRING, BUSHING = "spring", "gas_spring", "bushing"
+SPRING: Final = "spring"
+GAS_SPRING: Final = "gas_spring"
+BUSHING: Final = "bushing"
 
 
 @dataclass(frozen=True, eq=False)
