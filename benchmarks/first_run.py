@@ -26,14 +26,14 @@ SEEKER = ROOT / "fixtures" / "seekers" / "seeker_2dof"
 
 RUN = """
 import sys, time
-from kinform.simulation import of_system
-run = of_system.run_dynamic
+from kinform.simulation import system_simulation
+run = system_simulation.run_dynamic
 def timed(*given):
     start = time.process_time()
     out = run(*given)
     print("solver", time.process_time() - start, "numba" in sys.modules, len(out.time), file=sys.stderr)
     return out
-of_system.run_dynamic = timed
+system_simulation.run_dynamic = timed
 from kinform_cli.main import main
 sys.exit(main(sys.argv[1:]))
 """

@@ -20,7 +20,7 @@ LARGE = 100_000
 ahead half of one."""
 
 _JOINTS = ("kinform.kinematics.derivation", "scipy.optimize", "kinform.mass.compile")
-_MOTION = ("kinform.simulation", "kinform.collisions", "kinform.behaviour.of_design")
+_MOTION = ("kinform.simulation", "kinform.collisions", "kinform.behaviour.from_design")
 _FINDINGS = ("kinform.consistency.inspection", "kinform.results.groups.behaviour")
 
 

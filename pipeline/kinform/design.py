@@ -9,7 +9,7 @@ from kinform.frozen import dataclass
 from kinform.model.fingerprints import Fingerprints
 
 if TYPE_CHECKING:
-    from kinform.behaviour.of_design import Behaviour
+    from kinform.behaviour.from_design import Behaviour
     from kinform.model.assembly import Assembly
     from kinform.model.contacts import Contacts
     from kinform.model.findings import CheckReport

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from support.diagonal import diagonal
 from support.slots import derived
 from support.solids import box, rod
 
@@ -113,9 +114,9 @@ def swung(kin, time, turn, X):
     return run(time, poses, names, turn, np.gradient(np.gradient(turn, time), time))
 
 
-@pytest.mark.parametrize("away", [0.0, 1.0, 10.0])
-@pytest.mark.parametrize(("gap", "meets"), [(0.5, False), (-0.3, True)])
-def test_an_arm_passes_posts_wherever_it_is(away, gap, meets):
+@diagonal(away=[0.0, 1.0, 10.0], gap=[0.5, -0.3])
+def test_an_arm_passes_posts_wherever_it_is(away, gap):
+    meets = gap < 0.0
     X = np.eye(4)
     X[:3, 3] = away
     made, known, touching, kin = derived(fenced(gap), X, ground="base")

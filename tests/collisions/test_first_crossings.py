@@ -6,12 +6,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from support.diagonal import first
 
 from kinform.collisions import first_crossings
 from kinform.collisions.pair.advancement import First
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", first(10, range(30)))
 def test_all_up_to_the_time_of_so_many_and_nothing_twice(seed, monkeypatch):
     rng = np.random.default_rng(seed)
     count = int(rng.integers(1, 60))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from support.diagonal import diagonal
 from support.slots import block_in_slot, derived, moved
 from support.solids import box, rod
 
@@ -13,8 +14,7 @@ from kinform.function.clearances import apart
 SCALES = [1e-6, 1e-3, 1e-2, 1.0]
 
 
-@pytest.mark.parametrize("scale", SCALES)
-@pytest.mark.parametrize("gap", [0.0, 0.05])
+@diagonal(scale=SCALES, gap=[0.0, 0.05])
 def test_a_block_stops_at_the_same_share_of_its_slot(gap, scale):
     made, known, touching, kin = derived(block_in_slot(gap), None, "lever", scale, 0.5)
     assert [joint.type for joint in kin.joints] == ["prismatic"]
@@ -23,8 +23,7 @@ def test_a_block_stops_at_the_same_share_of_its_slot(gap, scale):
     assert found == pytest.approx([18.0, 28.0], abs=1e-3)
 
 
-@pytest.mark.parametrize("scale", SCALES)
-@pytest.mark.parametrize("gap", [0.0, 0.05])
+@diagonal(scale=SCALES, gap=[0.0, 0.05])
 def test_a_block_meets_the_end_at_the_same_time_and_in_proportion_as_deep(gap, scale):
     made, known, touching, kin = derived(block_in_slot(gap), None, "lever", scale, 0.5)
     run = moved(kin, scale * np.array([0.0, 10.0, 30.0, 20.0]), np.eye(4))

@@ -286,9 +286,9 @@ ELSEWHERE = {
     "KF411": "tests/consistency/test_couplings.py",
     "KF415": "tests/system/test_described_robots.py",
     "KF417": "tests/system/test_free_links.py",
-    "KF412": "tests/collisions/test_ranges.py",
+    "KF412": "tests/collisions/test_joint_ranges.py",
     "KF450": "tests/cli/test_change.py",
-    "KF505": "tests/collisions/test_ranges.py",
+    "KF505": "tests/collisions/test_joint_ranges.py",
     "KF506": "tests/consistency/test_separating.py",
     "KF507": "tests/consistency/test_separating.py",
 }

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from support.diagonal import diagonal
 from support.nuts import INERTIA, LEAD, MASS, G, arm, nut
 
 import kinform
@@ -32,9 +33,9 @@ def _run(tmp_path, names, drive, shaft="[function]\n", **thread):
     return run
 
 
-@pytest.mark.parametrize("names", NAMES)
-@pytest.mark.parametrize(("torque", "way"), [(1.5, 1), (0.2, -1), (-0.3, -1), (0.0, -1)])
-def test_a_torque_on_the_nut_moves_it_as_the_handbook_has_it(tmp_path, names, torque, way):
+@diagonal(names=NAMES, driven=[(1.5, 1), (0.2, -1), (-0.3, -1), (0.0, -1)])
+def test_a_torque_on_the_nut_moves_it_as_the_handbook_has_it(tmp_path, names, driven):
+    torque, way = driven
     run = _run(tmp_path, names, EFFORT.format(torque))
     by_load, forward = arm(0.08, way), LEAD / (2.0 * math.pi)
     exact = (torque - MASS * G * by_load) / (INERTIA + MASS * forward * by_load)
@@ -42,8 +43,7 @@ def test_a_torque_on_the_nut_moves_it_as_the_handbook_has_it(tmp_path, names, to
     np.testing.assert_allclose(np.abs(run.joint_velocity[-1, 0]), 0.1 * abs(exact), rtol=1e-8)
 
 
-@pytest.mark.parametrize("names", NAMES)
-@pytest.mark.parametrize("way", [1, -1])
+@diagonal(names=NAMES, way=[1, -1])
 def test_a_nut_that_is_led_takes_the_torque_of_the_handbook(tmp_path, names, way):
     """With a fine thread that locks itself: it has to be driven both ways."""
     run = _run(tmp_path, names, MOTION.format(36.0 * way), mu=0.12, lead=0.005)
@@ -71,8 +71,7 @@ ratio = RATIO
 """
 
 
-@pytest.mark.parametrize("names", NAMES)
-@pytest.mark.parametrize("turned", [False, True])
+@diagonal(names=NAMES, turned=[False, True])
 def test_what_a_coupling_gives_the_nut_does_not_press_on_its_thread_either(tmp_path, names, turned):
     """A motor turns five times as fast as the nut, the other way."""
     shaft = SHAFT.replace("JOINTS", '["thread", "motor"]' if turned else '["motor", "thread"]')

@@ -156,7 +156,8 @@ def test_a_pendulum_comes_to_rest_on_its_end_stop_at_the_time_of_the_closed_form
     x = np.linspace(0, np.sqrt(-limit), 20001)
     slope = np.divide(2 * x, np.sqrt(2 * 9.81 * np.sin(x * x)), out=np.full_like(x, 2 / np.sqrt(19.62)), where=x > 0)
     struck = np.trapezoid(slope, x)
-    assert any(f"t = {struck:.3g}"[:8] in note for note in run.assumptions)
+    first = run.time[np.argmax(np.abs(angle - limit) < 1e-9)]
+    assert struck <= first < struck + 0.011
     late = run.time > struck
     np.testing.assert_allclose(angle[late], limit, atol=1e-12)
     # The stop carries the weight, and has taken what the fall had gained.

@@ -36,7 +36,7 @@ within 50 MB of its limit. A choice."""
 IMPORTED = (
     "kinform.method", "kinform.stages", "kinform.results", "kinform.form.readers.assembly", "kinform.kinematics",
     "kinform.reuse.contacts", "kinform.mass", "kinform.simulation", "kinform.collisions", "kinform.consistency.rules",
-    "kinform.consistency.inspection", "kinform.simulation.of_assembly", "kinform.simulation.of_system",
+    "kinform.consistency.inspection", "kinform.simulation.assembly_simulation", "kinform.simulation.system_simulation",
     "kinform.simulation.kernel", "kinform.simulation.levels", "kinform.simulation.mechanism", "kinform.reuse.decisions",
     "kinform.reuse.masses", "kinform.reuse.packing", "kinform.reports.values.topics", "kinform.reports.values.form",
     "kinform.reports.values.kinematics", "kinform.reports.values.runs", "kinform.consistency.comparisons.answers",

@@ -8,7 +8,6 @@ Paredis and Khosla, "Kinematics support for design and simulation of mechatronic
 
 from __future__ import annotations
 
-from kinform.behaviour.acting import one_freedom
 from kinform.behaviour.components import (
     Bushing,
     GasSpring,
@@ -21,11 +20,12 @@ from kinform.behaviour.components import (
     System,
 )
 from kinform.behaviour.counting import Count, count, counts
-from kinform.behaviour.coupled import imposed_couplings
+from kinform.behaviour.couplings import imposed_couplings
 from kinform.behaviour.diagnosis import faults
+from kinform.behaviour.drives_and_loads import one_freedom
+from kinform.behaviour.from_design import Behaviour, build
 from kinform.behaviour.model import Model
 from kinform.behaviour.nested import flat, nest, placed
-from kinform.behaviour.of_design import Behaviour, build
 from kinform.behaviour.ports import Component, Node, Port
 from kinform.behaviour.rubbing import Rubs
 from kinform.behaviour.shafts import (

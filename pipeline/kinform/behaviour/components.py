@@ -19,7 +19,8 @@ from kinform.model.arrays import Array
 from kinform.model.quantities import MATRIX, XYZ, Direction, Inertia, JointValue, Metres, Place, Ratio
 
 LEAST_GAS = 1e-6
-"""Share of the column of a gas spring below which its force grows no further: nothing is pushed in so far."""
+"""Share of the column of a gas spring below which its force grows no further, so that it stays finite: nothing is
+pushed in so far."""
 
 
 @dataclass(frozen=True)

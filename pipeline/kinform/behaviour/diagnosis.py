@@ -22,10 +22,7 @@ from kinform.behaviour.components import (
 from kinform.behaviour.ports import Component
 from kinform.behaviour.shafts import Actor, Controller, DcMotor, EndStop, Friction, VoltageController, VoltageSource
 from kinform.behaviour.signals import LAWS, Table
-
-UNIT_LENGTH = 1e-9
-"""Length of an axis beyond 1 that no rounding explains."""
-
+from kinform.foundation.rounding import SOLVED
 
 _SIGNALS = tuple(LAWS.values())
 _UNBOUNDED = ("lower", "upper", "limit", "current_limit", "speed_limit")
@@ -111,11 +108,7 @@ def _faults_of_geometry(joint: JointComponent) -> Iterator[str]:
         yield f"the {joint.kind.name} joint cannot be placed: {error}"
     for name in ("axis", "axis2"):
         vector = getattr(joint.geometry, name)
-        if (
-            vector is not None
-            and np.all(np.isfinite(vector))
-            and abs(float(np.linalg.norm(vector)) - 1.0) > UNIT_LENGTH
-        ):
+        if vector is not None and np.all(np.isfinite(vector)) and abs(float(np.linalg.norm(vector)) - 1.0) > SOLVED:
             yield f"its {name} is not of length 1"
 
 

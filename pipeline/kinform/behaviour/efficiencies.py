@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from kinform.behaviour.components import Gear
-from kinform.behaviour.coupled import Imposed
+from kinform.behaviour.couplings import Imposed
 from kinform.frozen import dataclass
 from kinform.function import resolve_joint
 from kinform.model.assembly import Assembly

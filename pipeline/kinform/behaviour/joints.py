@@ -13,12 +13,10 @@ import numpy as np
 
 from kinform.behaviour.primitives import Ball, OneFreedom, Primitive
 from kinform.foundation.algebra.vectors import perpendicular
+from kinform.foundation.rounding import SINGLE
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.quantities import Direction, Metres, Place
-
-PARALLEL_AXES = 1e-6
-"""rad: the axes of a universal joint make no cross at less, far above the rounding of unit vectors."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +118,7 @@ def _universal(geometry: JointGeometry) -> tuple[Primitive, ...]:
     """
     point = geometry.needed("point")
     axis, axis2 = geometry.needed("axis"), geometry.needed("axis2")
-    if float(np.linalg.norm(np.cross(axis, axis2))) < PARALLEL_AXES:
+    if float(np.linalg.norm(np.cross(axis, axis2))) < SINGLE:
         raise ValueError("its two axes are parallel")
     return (_turn(axis, point), _turn(axis2, point))
 

@@ -8,6 +8,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
 from kinform.model.function import Law
 
@@ -15,9 +16,6 @@ OVERSHOOT = 0.02
 """Share of a table's span that a spline may leave its rows: a sine of sixteen rows a turn does."""
 SPLINE_SAMPLES = 17
 """Places in each stretch of a table at which a spline is compared with its straight line: ends and sixteenths."""
-STRAIGHT = 1e-9
-"""Share of a table's span by which rows may be off the line between its ends and count as on it: tables that programs
-write have nine digits and more."""
 
 
 class Signal(Protocol):
@@ -211,7 +209,7 @@ def _straight(table: Table, until: float) -> Ramp | None:
         return None
     slope = float((levels[-1] - levels[0]) / (times[-1] - times[0]))
     off = float(np.abs(levels - levels[0] - slope * (times - times[0])).max())
-    if off > STRAIGHT * float(np.ptp(levels)):
+    if off > SOLVED * float(np.ptp(levels)):
         return None
     return Ramp(float(levels[0] - slope * times[0]), slope)
 

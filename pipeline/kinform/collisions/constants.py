@@ -1,7 +1,7 @@
-"""The numbers that decide about ranges and collisions, by the module that uses them first.
+"""Numbers that several sub-packages of the collisions share.
 
-Lengths are shares of the diagonal of the smaller part of a pair unless a unit is stated, so that an assembly of any
-size answers the same. Where neither a reason nor a measurement is named the number is a choice.
+Lengths are shares of the diagonal of the smaller part of a pair unless a unit is stated, here and in all modules of
+this package, so that an assembly of any size answers the same.
 """
 
 from __future__ import annotations

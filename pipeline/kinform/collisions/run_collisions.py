@@ -16,6 +16,7 @@ from kinform.collisions.pair.posed_pairs import Moving, Nodes, moving_pairs
 from kinform.collisions.pair.prepared_pair import OVERLAP_SAME, PairTest
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.progress import Progress
+from kinform.foundation.rounding import SINGLE
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Part
 from kinform.model.collisions import Collision
@@ -25,26 +26,28 @@ from kinform.model.simulation import Simulation
 from kinform.model.surfaces import MeshSurfaces
 
 CONTACT_TIME = 1e-4
-"""Share of the time between two outputs to which a first contact is found."""
+"""Share of the time between two outputs to which a first contact is found: a choice. Bodies are taken to move evenly in
+between, which is no better."""
 OUTPUT_TURN = 0.2
-"""rad that a joint may turn between outputs: then arcs are as good as straight."""
+"""rad that a joint may turn between outputs: an arc is off its chord by r/8 times its square, 0.5 % of the radius."""
 OUTPUT_SLIDE = 0.05
-"""The same of a slide, as a share of the assembly's size."""
+"""The same of a slide, as a share of the assembly's size: a choice."""
 OUTPUT_PEAK = 0.005
-"""Share of these that a joint may go further on between outputs than at them, where it turns back."""
+"""Share of these that a joint may go further on between outputs than at them, where it turns back: a choice."""
 OUTPUTS_MOST = 50_000
-"""Outputs up to which a run is asked for again."""
+"""Outputs up to which a run is asked for again: a choice."""
 OUTPUTS_FOR_PEAKS = 2_000
 """The same where that is for what happens where joints turn back: impacts would ask for any number."""
 RUN_ASKED = 3
 """How often: with more outputs more of the motion is seen."""
 COLLISIONS_MOST = 100
-"""Collisions after which later ones are not looked for."""
+"""Collisions after which later ones are not looked for: a choice, more than anybody reads."""
 DEPTH_SOON = 17
-"""Times within an output step of the first contact at which the depth is measured too."""
+"""Times within an output step of the first contact, its ends and sixteenths, at which the depth is measured: a
+choice."""
 DEPTH_TIMES = 12
 """Output times after the first contact at which the depth is measured: so many spread over the rest, and about the
-worst."""
+worst. A choice."""
 
 
 def along(
@@ -178,7 +181,7 @@ def _parts_of_a_step(simulation: Simulation, size: float) -> tuple[int, int]:
     )
     parts = max(rate * step, float(np.sqrt(0.5 * acceleration)) * step)
     peaks = float(np.sqrt(0.125 * acceleration / OUTPUT_PEAK)) * step
-    return max(1, int(np.ceil(parts - 1e-6))), max(1, int(np.ceil(peaks - 1e-6)))
+    return max(1, int(np.ceil(parts - SINGLE))), max(1, int(np.ceil(peaks - SINGLE)))
 
 
 def _depth(test: PairTest, course: Course, time: Array, hit: float) -> float:

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal, get_args
 
 from kinform.frozen import dataclass
 from kinform.model.names import JointName, PartName
 from kinform.model.quantities import JointValue, Metres, PartPair, Place
 
-RANGE_STATUSES = ("found", "unbounded", "unknown")
+RangeStatus = Literal["found", "unbounded", "unknown"]
+"""found: it stops there; unbounded: nothing stops it; unknown: the reason says why."""
+RANGE_STATUSES: tuple[RangeStatus, ...] = get_args(RangeStatus)
 
 
 @dataclass(frozen=True, eq=False)
 class RangeEnd:
     """How far a joint goes to one side from the pose of the meshes."""
 
-    status: str
-    """found: it stops at `value`; unbounded: nothing stops it; unknown: see `reason`."""
+    status: RangeStatus
     value: JointValue | None = None
     """rad or m, of the joint."""
     parts: tuple[PartName, ...] = ()
@@ -42,7 +43,7 @@ class JointRange:
     """Whether its values are lengths."""
 
     @property
-    def status(self) -> str:
+    def status(self) -> RangeStatus:
         """found where a side stops and the other is known, unbounded where neither stops, else unknown."""
         ends = (self.lower.status, self.upper.status)
         if "unknown" in ends:

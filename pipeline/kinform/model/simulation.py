@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
-from typing import Annotated
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -15,14 +15,23 @@ from kinform.model.sensors import Reading
 
 Effort = Annotated[float, "N·m or N"]
 
+DriveKind = Literal[
+    "motion", "effort", "spring", "damper", "friction", "gear_loss", "rotor", "servo", "dc_motor", "stop"
+]
+"""What acts on the shaft of a joint. rotor: the friction of a motor's own rotor."""
+SimulationStatus = Literal["done", "partial", "not requested", "refused", "stopped"]
+"""partial: joints that are not understood were held, see `failures`; refused: it cannot be simulated, see `reason`;
+stopped: it ended early."""
+SimulationLevel = Literal["", "functional", "kinematic", "dynamic"]
+""""" where nothing ran."""
+
 
 @dataclass(frozen=True)
 class DriveUse:
     """What one drive did in a dynamic run: for a prescribed motion what it must be able to do."""
 
     joint: str
-    kind: str
-    """motion, effort, spring, damper, friction, gear_loss, rotor (its friction), servo, dc_motor, stop."""
+    kind: DriveKind
     peak: Effort
     """Greatest effort at an output time, N·m or N."""
     rms: Effort
@@ -55,16 +64,11 @@ class Damping:
 
 @dataclass(frozen=True, eq=False)
 class Simulation:
-    """T output times, B bodies, n joint coordinates (order: joint_names with joint_offset).
+    """T output times, B bodies, n joint coordinates (order: joint_names with joint_offset)."""
 
-    `status`: done; partial (joints that are not understood were held, see `failures`); not requested; refused (cannot
-    be simulated, see `reason`); stopped (ended early).
-    """
-
-    status: str
+    status: SimulationStatus
     reason: str
-    level: str
-    """functional, kinematic, dynamic; "" when nothing ran."""
+    level: SimulationLevel
     time: Annotated[Array, "s"]
     """(T,) s."""
     body_names: tuple[str, ...]

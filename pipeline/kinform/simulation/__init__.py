@@ -21,9 +21,9 @@ from kinform.simulation.settings import SolverSettings
 from kinform.simulation.subject import port_model
 
 if TYPE_CHECKING:
-    from kinform.simulation.of_system import Course, simulate_system
     from kinform.simulation.outcome.sensing import Probe
     from kinform.simulation.spectra import Spectrum, amplitude_spectrum, envelope
+    from kinform.simulation.system_simulation import Course, simulate_system
 
 __all__ = [
     "CODE_VERSION", "Course", "Probe", "SolverSettings", "Spectrum", "amplitude_spectrum", "envelope", "port_model",
@@ -35,7 +35,7 @@ CODE_VERSION: int = 36
 __getattr__ = first_used(
     __name__,
     {
-        "Course": "of_system", "Probe": "outcome.sensing", "simulate_system": "of_system",
+        "Course": "system_simulation", "Probe": "outcome.sensing", "simulate_system": "system_simulation",
         "Spectrum": "spectra", "amplitude_spectrum": "spectra", "envelope": "spectra",
     },
 )  # fmt: skip

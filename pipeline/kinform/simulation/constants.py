@@ -1,19 +1,17 @@
-"""Constants of the simulation: every number that decides something and that no user sets (`SolverSettings` has those).
+"""Numbers that several parts of the simulation share; what a user may set is in `SolverSettings`.
 
-Gaps of loops are in rad and in shares of the mechanism's length; a margin is the smallest pivot of the loops over the
-largest, 0 in a singular pose. The kernel's functions are compiled with the values of these numbers in them:
+Gaps of loops are in rad and in shares of the mechanism's length. A margin is the smallest pivot of the loops over the
+largest: 0 in a singular pose. The kernel's functions are compiled with the values of these numbers in them:
 `kernel.compiled` compiles afresh where one has changed.
 """
 
 from __future__ import annotations
 
-STOP_PASSED = 1e-12
-"""rad or m beyond a limit that is passed: less is rounding."""
-STOP_HALVINGS = 60
-"""Halvings of a step to find where a stop is passed: to the last bit of its share."""
-LEAST_DRIFT = 1e-12
-"""J: drift of the energy that is rounding."""
-UNDETERMINED_SHARE = 1e-6
-"""A component of a wrench that the choice of λ changes by more than this share of itself is not determined."""
-DEPENDENT_GEARS = 1e-12
-"""Share of the greatest singular value of the gears' rows below which one depends on the others."""
+HALVINGS = 52
+"""Bisections of a step to find an event in it: 2^-52 of it is the last bit of its share."""
+STEP_PARTS = 4
+"""Parts of a step at whose ends events are looked for. Steps at the default tolerances are far shorter than a period of
+what moves (0.09 s of 2 s, of a pendulum), so that a quantity changes its sign at most once in a part; laws that swing
+faster shorten them (`solver.stops.Contact.longest`)."""
+CHUNK = 128
+"""Output times whose matrices are held at once: 80 kB each for a hundred rates, so about 10 MB."""

@@ -6,33 +6,32 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 
 from kinform.behaviour import Behaviour, EndStop, Friction, RigidBody, System
+from kinform.foundation.rounding import SINGLE
 from kinform.frozen import dataclass
 from kinform.function import FREEDOMS, acted_freedom, acting_by_force, resolve_joint, stated_ranges
 from kinform.model.assembly import Assembly
 from kinform.model.function import Drive
 from kinform.model.kinematics import Kinematics, Meshing
 from kinform.model.quantities import Reason
+from kinform.model.simulation import SimulationLevel
 from kinform.simulation.mechanism.mechanism import Mechanism
-
-WHOLE_TURN = 1e-6
-"""rad: teeth whose pitches make a turn to within this go all round."""
 
 
 @dataclass(frozen=True)
 class Choice:
     """The level, or "" with failures when the level asked for cannot be had."""
 
-    level: str
+    level: SimulationLevel
     failures: tuple[Reason, ...] = ()
     not_dynamic: tuple[Reason, ...] = ()
     """(subject, why) of what keeps it below the dynamic level, where no level is asked for."""
 
 
 def choose(
-    asked: str | None, behaviour: Behaviour, mechanism: Mechanism, adrift: tuple[str, ...], formless: bool
+    asked: SimulationLevel | None, behaviour: Behaviour, mechanism: Mechanism, adrift: tuple[str, ...], formless: bool
 ) -> Choice:
     """The level asked for, else the highest that is known. `formless`: no part has a mesh."""
-    without_forces = "functional" if formless else "kinematic"
+    without_forces: SimulationLevel = "functional" if formless else "kinematic"
     obstacles = _obstacles(behaviour, mechanism, adrift)
     if asked == "dynamic":
         return Choice("", failures=obstacles) if obstacles else Choice("dynamic")
@@ -166,7 +165,7 @@ def _teeth_counted(teeth: Meshing, types: Mapping[str, str], joints: tuple[str, 
     """How many teeth were counted on either side."""
     parts = []
     for count, name, pitch in zip(teeth.teeth, joints, teeth.pitches, strict=True):
-        whole = types[name] != "prismatic" and abs(count * pitch - 2.0 * math.pi) < WHOLE_TURN
+        whole = types[name] != "prismatic" and abs(count * pitch - 2.0 * math.pi) < SINGLE
         parts.append(f"{count} teeth" if whole else f"{count} teeth in a row")
     return " and ".join(parts)
 
@@ -192,7 +191,12 @@ def _intended_ratios(assembly: Assembly, kinematics: Kinematics, behaviour: Beha
 
 
 def notes_of_level(
-    assembly: Assembly, kinematics: Kinematics, behaviour: Behaviour, level: str, adrift: tuple[str, ...], gears: bool
+    assembly: Assembly,
+    kinematics: Kinematics,
+    behaviour: Behaviour,
+    level: SimulationLevel,
+    adrift: tuple[str, ...],
+    gears: bool,
 ) -> Iterator[str]:
     """What plays no part at this level."""
     if adrift:

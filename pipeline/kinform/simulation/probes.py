@@ -13,11 +13,12 @@ from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Kinematics
 from kinform.model.mass import MassReport
 from kinform.model.sensors import Sensor
+from kinform.model.simulation import SimulationLevel
 from kinform.simulation.outcome.sensing import Probe
 
 
 def probes_of(
-    assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, joints: Collection[str], level: str
+    assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, joints: Collection[str], level: SimulationLevel
 ) -> tuple[tuple[Probe, ...], tuple[str, ...]]:
     """The probes of sensors, and in words which sensors read nothing; `joints`: names of those that are simulated."""
     probes, silent = [], []
@@ -39,7 +40,7 @@ class _Finder:
     kinematics: Kinematics
     mass: MassReport | None
 
-    def probe(self, sensor: Sensor, joints: Collection[str], level: str) -> Probe:
+    def probe(self, sensor: Sensor, joints: Collection[str], level: SimulationLevel) -> Probe:
         """The sensor on bodies. Raises _Unread."""
         frame = self._body(sensor.frame) if sensor.frame else ""
         if sensor.kind == "reaction":
@@ -67,7 +68,7 @@ class _Finder:
                 return found.centre_of_mass
         raise _Unread(f"the centre of mass of {body} is not known: state the point")
 
-    def _reaction(self, sensor: Sensor, joints: Collection[str], level: str, frame: str) -> Probe:
+    def _reaction(self, sensor: Sensor, joints: Collection[str], level: SimulationLevel, frame: str) -> Probe:
         if level != "dynamic":
             raise _Unread(f"there are no forces at the {level} level")
         meant = resolve_joint(self.assembly, self.kinematics, sensor.joint)

@@ -12,11 +12,11 @@ from kinform.foundation.progress import Progress, Say
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Kinematics
 from kinform.model.mass import MassReport
-from kinform.model.simulation import Simulation
+from kinform.model.simulation import Simulation, SimulationLevel
 from kinform.simulation.settings import Conduct, SolverSettings
 from kinform.simulation.subject import asked_level, nothing
 
-LEVELS = ("functional", "kinematic", "dynamic")
+LEVELS: tuple[SimulationLevel, ...] = ("functional", "kinematic", "dynamic")
 
 
 def simulate(
@@ -40,9 +40,10 @@ def simulate(
     asked = asked_level(assembly, level)
     if asked is not None and asked not in LEVELS:
         raise ValueError(f'level "{asked}": expected one of {", ".join(LEVELS)}')
+    wanted = next((one for one in LEVELS if one == asked), None)
     if assembly.simulation is None and level is None and not assembly.function.driven:
         return nothing("not requested", "there is neither [simulation] nor a drive")
-    from kinform.simulation.of_assembly import simulate_assembly
+    from kinform.simulation.assembly_simulation import simulate_assembly
 
     chosen = settings or replace(SolverSettings(), free=assembly.tolerances.free)
-    return simulate_assembly(assembly, kinematics, mass, asked, behaviour, Conduct(chosen, progress, say))
+    return simulate_assembly(assembly, kinematics, mass, wanted, behaviour, Conduct(chosen, progress, say))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
+from typing import Literal
 
 from kinform.foundation.progress import Progress, Say
 from kinform.frozen import dataclass
@@ -16,8 +17,8 @@ class SolverSettings:
     """Relative error a step of the integrator: pendulum periods come out to 1e-9."""
     atol: float = 1e-12
     """Absolute error a step, rad or m."""
-    method: str = "auto"
-    """explicit; implicit; auto: explicit, and implicit once a stiff model would take it too many steps. Vibrations too
+    method: Literal["explicit", "implicit", "auto"] = "auto"
+    """auto: explicit, and implicit once a stiff model would take it too many steps. Vibrations too
     fast to be followed are damped in either but the explicit."""
     ahead: int = 20_000
     """So many: an implicit step costs what dozens of explicit ones do."""

@@ -13,24 +13,22 @@ import math
 
 import numpy as np
 
+from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
-UNEVEN = 1e-6
-"""Share of the first step by which others may differ from it: times are sums of steps, with their rounding."""
 LEAST_SAMPLES = 16
-"""Samples of a spectrum, at least: the window alone is four of its frequencies wide."""
+"""Samples of a spectrum, at least: the window alone is four of its eight frequencies wide."""
 LEAST_LINE = 3e-2
 """Share of the greatest amplitude that a line has at least: the lobes of the window beside a line have up to 2.7 % of
 it."""
-NO_LINE = 1e-9
-"""Share of the greatest sample below which a line is rounding."""
 MOST_LINES = 3
-"""Lines that are named."""
+"""Lines that are named: a choice, of what a reader takes in."""
 LEAST_PERIODS = 8.0
-"""Periods below which an envelope says no more than the curve."""
+"""Periods below which an envelope says no more than the curve: a choice."""
 LEAST_IN_PERIOD = 4.0
-"""Samples of a period, at least, for its extremes to be among them."""
+"""Samples of a period, at least, for its extremes to be among them: one is then within an eighth of a period of
+each."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +58,7 @@ def even_samples(time: Array) -> int:
     if len(time) < 2:
         return len(time)
     steps = np.diff(time)
-    uneven = np.flatnonzero(np.abs(steps - steps[0]) > UNEVEN * steps[0])
+    uneven = np.flatnonzero(np.abs(steps - steps[0]) > SINGLE * steps[0])
     return int(uneven[0]) + 1 if len(uneven) else len(time)
 
 
@@ -91,7 +89,7 @@ def _lines(amplitude: Array, samples: Array, span: float) -> tuple[Line, ...]:
     """Sines that stand out, the greatest first."""
     inner = amplitude[1:-1]
     tops = 1 + np.flatnonzero((inner > amplitude[:-2]) & (inner >= amplitude[2:]))
-    floor = max(LEAST_LINE * float(amplitude.max()), NO_LINE * float(np.abs(samples).max(initial=0.0)))
+    floor = max(LEAST_LINE * float(amplitude.max()), SOLVED * float(np.abs(samples).max(initial=0.0)))
     found = []
     for k in tops[amplitude[tops] > floor].tolist():
         side = 1 if amplitude[k + 1] > amplitude[k - 1] else -1

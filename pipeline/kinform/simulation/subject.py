@@ -12,7 +12,7 @@ from kinform.model.collisions import JointRange
 from kinform.model.contacts import Contacts
 from kinform.model.kinematics import Kinematics
 from kinform.model.mass import MassReport
-from kinform.model.simulation import Simulation
+from kinform.model.simulation import Simulation, SimulationStatus
 from kinform.model.surfaces import MeshSurfaces
 
 Failures = tuple[tuple[str, str], ...]
@@ -61,7 +61,7 @@ def refuse(reason: str, failures: Failures) -> Simulation:
     return nothing("refused", f"{reason}: {subject}: {why}", failures)
 
 
-def nothing(status: str, reason: str, failures: Failures = ()) -> Simulation:
+def nothing(status: SimulationStatus, reason: str, failures: Failures = ()) -> Simulation:
     """A simulation in which nothing ran."""
     none = np.zeros((0, 0))
     return Simulation(

@@ -10,10 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
-
-BOTH_WAYS = 1e-9
-"""Relative singular value below which wrenches given both ways depend on each other."""
 
 
 def pushes_at(points: Array, normals: Array, centre: Array, length: float) -> Array:
@@ -33,7 +31,7 @@ def uncarried(pushes: Array, both_ways: Array, wrench: Array) -> Array:
     if len(both_ways):
         # What drives give is free: only what is across of it has to be pushed.
         left, values, _ = np.linalg.svd(both_ways.T, full_matrices=True)
-        across = left[:, int(np.count_nonzero(values > BOTH_WAYS * values[0])) :]
+        across = left[:, int(np.count_nonzero(values > SOLVED * values[0])) :]
     else:
         across = np.eye(len(wrench))
     wanted, columns = across.T @ wrench / size, across.T @ pushes.T

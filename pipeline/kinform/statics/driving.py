@@ -15,6 +15,7 @@ import numpy as np
 from kinform.behaviour import RigidBody
 from kinform.behaviour.signals import Constant
 from kinform.design import Design
+from kinform.foundation.rounding import ARITHMETIC, SINGLE
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.function import SimulationRequest
@@ -24,17 +25,10 @@ from kinform.simulation.mechanism.closure import factor, rank_of
 from kinform.simulation.mechanism.construction import assemble
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.mechanism import Mechanism
-from kinform.simulation.solver.friction_known import friction_not_determined
+from kinform.simulation.solver.friction_determinacy import friction_not_determined
+from kinform.simulation.solver.friction_forces import NotDeterminedError, Rub, friction_efforts
 from kinform.simulation.solver.run_state import Run
-from kinform.simulation.solver.slip import NotDeterminedError, Rub, dry
 from kinform.simulation.solver.start import Start, Stated, begin
-
-SHARES_LOAD = 1e-6
-"""Share of a motion (rad, or lengths) below which a joint takes no part in it."""
-MOVES_AT_REST = 1e-6
-"""Share of gravity over the mechanism's length by which what is held may accelerate: rounding stays far below."""
-STAYS = 1e-12
-"""Share of the load that may be missing to hold it: rounding, of friction that just holds."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +46,7 @@ class Driving:
     @property
     def locked(self) -> bool:
         """Whether it stays without any drive."""
-        (lower, upper), nothing = self.rest, STAYS * abs(self.without)
+        (lower, upper), nothing = self.rest, ARITHMETIC * abs(self.without)
         return (lower is None or lower <= nothing) and (upper is None or upper >= -nothing)
 
     @property
@@ -117,18 +111,18 @@ def _efforts(dynamics: Dynamics, start: Start, settings: SolverSettings, own: in
     senses = {
         k: int(np.sign(motion[one.v]))
         for k, one in enumerate(dynamics.actuation.frictions)
-        if abs(motion[one.v]) > SHARES_LOAD * mechanism.scale[one.v] * abs(motion[own]) / mechanism.scale[own]
+        if abs(motion[one.v]) > SINGLE * mechanism.scale[one.v] * abs(motion[own]) / mechanism.scale[own]
     }
     if run.derivative(0.0, run.y.copy(), np.zeros_like(run.y)) < 0.0:
         return "a free motion moves no mass"
-    plain = dry(run, 0.0, run.y, {})
+    plain = friction_efforts(run, 0.0, run.y, {})
     size = float(np.abs(plain.accelerations / mechanism.scale).max(initial=0.0))
-    if size > MOVES_AT_REST * max(float(np.linalg.norm(dynamics.gravity)) / mechanism.length, MOVES_AT_REST):
+    if size > SINGLE * max(float(np.linalg.norm(dynamics.gravity)) / mechanism.length, SINGLE):
         return "gravity moves more than the drives hold: which joint holds the rest is not stated"
 
     def effort(way: int, *, at_rest: bool) -> float | None:
         try:
-            answer = dry(run, 0.0, run.y, {k: Rub(way * sense, at_rest) for k, sense in senses.items()})
+            answer = friction_efforts(run, 0.0, run.y, {k: Rub(way * sense, at_rest) for k, sense in senses.items()})
         except NotDeterminedError:
             return None
         return float(answer.needed[own])
@@ -166,4 +160,4 @@ def _motion(mechanism: Mechanism, rows: Array, loose: Actuation, own: int, free:
     null[loose.free] = factor(rows[:, loose.free], scale, rank).null if rows.size else np.diag(scale)
     part = null[own] / mechanism.scale[own]
     size = float(part @ part)
-    return None if size < SHARES_LOAD**2 else np.asarray(null @ part / size / mechanism.scale[own])
+    return None if size < SINGLE**2 else np.asarray(null @ part / size / mechanism.scale[own])

@@ -16,6 +16,7 @@ from kinform.design import Design
 from kinform.foundation.algebra.displacements import inverse, poses
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.rounding import SINGLE
 from kinform.frozen import dataclass
 from kinform.kinematics.mobility.guides import span_along
 from kinform.kinematics.separation.contact_rows import ContactRows, is_stated
@@ -27,13 +28,13 @@ from kinform.statics.disengaging import SLIDES, slide_of
 from kinform.statics.sharing import axes_of, decidable, self_stresses
 
 APART = 1e-2
-"""Share of a wrench that contacts cannot carry, beyond which no tessellation of their borders explains it."""
+"""Share of a wrench that contacts cannot carry, beyond which no tessellation of their borders explains it: a circle of
+24 edges is 1 % smaller than it."""
 CLOSE = 1e-3
-"""Share below which it is rounding; in between nobody knows."""
-NO_WRENCH = 1e-6
-"""Share of the greatest wrench of the run in any joint below which a wrench is none."""
+"""Share below which it is rounding and what fitted axes are off; in between it is undetermined. A choice."""
 LOOKS = 200
-"""Output times at which loads that redundant constraints share are looked at, besides those before a finding."""
+"""Output times at which loads that redundant constraints share are looked at, besides those before a finding: a
+choice."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +80,7 @@ class _Reactions:
     @cached_property
     def nothing(self) -> float:
         """N below which a wrench is none."""
-        return NO_WRENCH * float(np.linalg.norm(self.run.F_B[..., 3:], axis=2).max(initial=0.0))
+        return SINGLE * float(np.linalg.norm(self.run.F_B[..., 3:], axis=2).max(initial=0.0))
 
 
 @dataclass(frozen=True, eq=False)

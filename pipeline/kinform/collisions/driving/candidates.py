@@ -16,9 +16,10 @@ from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.distance_bounds import Apart, Counted, Wholes
 from kinform.collisions.pair.mate_surfaces import Kept
 from kinform.collisions.pair.passages import Path
-from kinform.collisions.pair.prepared_pair import CROSSING_LEAST, PairTest
+from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.displacements import displacements_along
+from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
 from kinform.kinematics.mobility.guides import preserved
 from kinform.model.arrays import Array, Flags, Ints
@@ -293,7 +294,7 @@ class Approach:
             self.s = math.inf
             return first
         end = window.course.displacement(until)
-        if first.overlaps or window.test.distance(end)[0] <= CROSSING_LEAST * window.test.size:
+        if first.overlaps or window.test.distance(end)[0] <= SOLVED * window.test.size:
             self._follow(following, reach)
         else:
             self.s, self._window = until, None

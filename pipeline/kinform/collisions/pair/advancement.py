@@ -16,27 +16,32 @@ import numpy as np
 from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.deep_entry import Entry, Inside
 from kinform.collisions.pair.onsets import Onsets
-from kinform.collisions.pair.prepared_pair import CROSSING_LEAST, SPECK, PairTest
+from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.pair.states import State, States
+from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 WORK = 4000
-"""Poses of one pair that one question may try."""
+"""Poses of one pair that one question may try before it is given up: a choice."""
 STEPS_TOUCHED = 12
 """Steps in touch after which what crosses is told for several at once: as many as there were, ..."""
 STEPS_AHEAD = 48
 """... and so many at most. One of a thread took 2.5 ms alone, and 0.8 ms among 48."""
 RESOLUTION = 4e-3
-"""So far a part may travel unseen where others are in touch."""
+"""So far a part may travel unseen where others are in touch, as a share of the size of the pair: a choice between time
+and what thin features may be missed."""
 OVERLAPPING = 5.0
-"""Steps are so much longer while parts overlap: all that is asked is whether they part."""
+"""Steps are so much longer while parts overlap: all that is asked is whether they separate. A choice."""
 BEHIND_FACE = (1.0, 0.2, 0.04)
-"""Shares of the resolution behind a face at which it is asked what is inside: parts may be thinner."""
+"""Shares of the resolution behind a face at which it is asked what is inside: parts may be thinner, so each is a fifth
+of the one before. A choice."""
 BEHIND_LEAST = 4.0
-"""Nothing is asked behind a face nearer than this many times what a contact is found to."""
+"""Nothing is asked behind a face nearer than this many times what a contact is found to: there it could not be told
+from the contact. A choice."""
 BEHIND_DEPTH = 0.4
-"""Share of the way behind a face by which its points are then inside."""
+"""Share of the way behind a face by which its points are then inside: less than half, so that those of a face that is
+aslant count too. A choice."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,10 +168,7 @@ class Search:
                 continue
             way = self.course.travel(right) - self.course.travel(left)
             self._look_ahead(left, stack)
-            if (
-                self.state(left).distance + self.state(right).distance
-                > (1.0 + 1e-6) * way + CROSSING_LEAST * self.test.size
-            ):
+            if self.state(left).distance + self.state(right).distance > (1.0 + SINGLE) * way + SOLVED * self.test.size:
                 # nothing comes to be inside where no facets that count meet: the end is asked all the same
                 entered = self.entered(right, end) if right >= end else None
                 if entered is not None:
@@ -204,7 +206,7 @@ class Search:
         self.overlaps = bool(crossing) and (self.test.overlapping or self.too_deep(start))
         if self.overlaps:
             depth = self._onsets.depth(start)
-            self.before = depth if depth > SPECK * self.test.size else 0.0
+            self.before = depth if depth > SOLVED * self.test.size else 0.0
             middles = crossing.segments().mean(axis=1)
             self.place = self._world(middles[np.argmin(np.linalg.norm(middles - middles.mean(axis=0), axis=1))])
             self._look_where_it_leads(start)
@@ -272,7 +274,7 @@ class Search:
         before, after = self.state(left), self.state(right)
         if before.crossing or after.crossing or (before.distance <= 0.0 and after.distance <= 0.0):
             return False
-        least = CROSSING_LEAST * self.test.size
+        least = SOLVED * self.test.size
         if before.distance > least:
             low, high = self._heights(left, right, before)
             return low > least >= high

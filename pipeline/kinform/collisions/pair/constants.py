@@ -2,5 +2,8 @@
 
 from __future__ import annotations
 
-CERTAIN = 1.0 - 1e-6
-"""Share of a distance that is trusted."""
+from kinform.foundation.rounding import SINGLE
+
+CERTAIN = 1.0 - SINGLE
+"""Share of a distance that is trusted: FCL computes with corners in doubles that came from files in single
+precision."""

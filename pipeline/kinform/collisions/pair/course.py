@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from kinform.collisions.pair.passages import Path
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
@@ -72,7 +73,7 @@ class Course:
         node, following = float(nodes[n]), float(nodes[n + 1])
         if node > low:
             return node
-        share = (travel - ways[n]) / max(ways[n + 1] - ways[n], 1e-300)
+        share = (travel - ways[n]) / max(ways[n + 1] - ways[n], TINY)
         return min(max(node + share * (following - node), low), high)
 
 

@@ -13,15 +13,17 @@ import numpy as np
 
 from kinform.collisions.pair.constants import CERTAIN
 from kinform.collisions.pair.course import Course, narrowed
-from kinform.collisions.pair.prepared_pair import SPECK, PairTest
+from kinform.collisions.pair.prepared_pair import PairTest
+from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
 UNSEEN = 0.5
-"""Share of what mates may be deep that points may travel unseen."""
+"""Share of what mates may be deep that points may travel unseen: what comes in deeper than they may is then seen before
+it is through. A choice below 1."""
 SPARSE = 0.016
-"""So far points near the other part may travel between two questions: to ask whether they are inside is dear, and what
-came in is found by halving anyhow."""
+"""So far points near the other part may travel between two questions, as a share of the size of the pair: four times
+`advancement.RESOLUTION`, as to ask whether they are inside is dear, and what came in is found by halving anyhow."""
 REFINED = 2e-3
 """Share of what a contact is found to, to which the facets that cross first, or a point that comes in, are followed:
 less than 1e-9 rad of a turn."""
@@ -49,7 +51,7 @@ class Inside:
     def __init__(self, test: PairTest, course: Course, s: float):
         self._test, self._course = test, course
         count = sum(len(probes.points) for probes in test.probes)
-        speck = SPECK * test.size
+        speck = SOLVED * test.size
         self._every = np.arange(count)
         self._passages = None if course.path is None else test.passages(course.path)
         self._last = s

@@ -19,17 +19,16 @@ from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.at_work import at_work_on
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_pose
+from kinform.foundation.rounding import SINGLE
 from kinform.model.arrays import Array
 
 SHORT_STEP = 0.01
-"""Steps below this are short."""
+"""Steps below this share of the size of the pair are short: a choice."""
 STEPS_MOST = 60
-"""Steps that are taken as wholes."""
+"""Steps that are taken with whole parts before the facets that count are followed alone: a choice."""
 STEPS_TRIED = 8
 """Steps after which it is seen whether so many reach the end: a pair that stays near is followed with the facets that
-count, which are fewer."""
-WHOLES_TOUCH = 1e-6
-"""Wholes nearer to each other than this share of a short step touch."""
+count, which are fewer. A choice."""
 
 
 class Apart:
@@ -45,7 +44,7 @@ class Apart:
 
     def touch(self, D: Array) -> bool:
         """Whether they touch, or nearly."""
-        return self.distance(D) <= WHOLES_TOUCH * SHORT_STEP * self._size
+        return self.distance(D) <= SINGLE * SHORT_STEP * self._size
 
     def step(self, course: Course, s: float, end: float) -> tuple[float, bool]:
         """A parameter after s up to which they are certainly apart, and whether that was too short a step to go on

@@ -19,6 +19,7 @@ from kinform.collisions.pair.course import narrowed
 from kinform.contacts.overlap.solids import ScaledSolid, bounds_volume, overlap_of, scaled_solid
 from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.meshes.boxes import bounds, box_corners
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh
@@ -31,7 +32,7 @@ OVERLAP_SOON = 4
 """So many of these, the first, tell whether parts go on into each other: on a longer way others of their features may
 meet."""
 OVERLAP_FINE = 1e-3
-"""Share of the way to which these places are found."""
+"""Share of the way to which these places are found: a choice."""
 OVERLAP_GROWS = 1.15
 """Parts that come to share so many times as much go into each other: those of robots that rub on each other, or are
 pressed together, share as much to within a few per cent over such a way."""
@@ -39,7 +40,7 @@ OVERLAP_SHRINKS = 0.5
 """Parts that come to share less than this part: a leaf that turns out of another has left it by half where its far end
 has travelled as far as it was in it."""
 OVERLAP_PIECES = 4
-"""Pieces that are asked about, the largest."""
+"""Pieces that are asked about, the largest: a choice."""
 
 
 Pose = Callable[[float], Array]
@@ -157,5 +158,5 @@ def _piece(first: ScaledSolid, other: Manifold, thickness: float, low: Array, hi
         begin, end = ((side - first.middle) / first.scale for side in (low - margin, high + margin))
         cut = solid ^ Manifold.cube((end - begin).tolist()).translate(begin.tolist())
         about.append(cut.translate(((first.middle - centre) / first.scale).tolist()).scale([first.scale / size] * 3))
-    volume = max(float((about[0] ^ about[1]).volume()), 1e-300)
+    volume = max(float((about[0] ^ about[1]).volume()), TINY)
     return _Piece(thickness, box_corners(low, high, np.eye(4)), volume, (about[0], about[1]), centre, size)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array, Flags
 
 _CORNERS, _NEXT = np.array([0, 1, 2]), np.array([1, 2, 0])
@@ -33,7 +34,7 @@ def crossings(first: Array, second: Array, normals: tuple[Array, Array], least: 
     along /= np.where(length > 0.0, length, 1.0)[:, None]
     spans = _span(np.concatenate([first, second]), np.concatenate([d1, d2]), np.concatenate([along, along]))
     (low1, low2), (high1, high2), (p1, p2), (q1, q2) = ((side[: len(rows)], side[len(rows) :]) for side in spans)
-    crossing[rows] = (length > 1e-9) & (np.minimum(high1, high2) - np.maximum(low1, low2) > least)
+    crossing[rows] = (length > SOLVED) & (np.minimum(high1, high2) - np.maximum(low1, low2) > least)
     segments[rows, 0] = np.where((low1 >= low2)[:, None], p1, p2)
     segments[rows, 1] = np.where((high1 <= high2)[:, None], q1, q2)
     return crossing, segments

@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 
+from kinform.foundation.rounding import SINGLE
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import MeshSurfaces, Surface
 
-MATE_ROUNDING = 1e-6
-"""By so much more than chord errors, gap and uncertainty points may be off the surface of a mate."""
 ALONG_AXIS = 0.9
-"""Cosine between axes of cylinders and of a turn, below which it is not told how far points are off."""
+"""Cosine between axes of cylinders and of a turn (26°), below which it is not computed how far points are off: a
+choice; the distance to the axis then says little of that to the surface."""
 
 
 SurfacePair = tuple[int, int]
@@ -40,7 +40,7 @@ class Mates:
         self._surfaces, self._near = surfaces, near
         self._pairs = [_of(patch, first) for patch in patches]
         self.slacks = [
-            patch.chord + 2.0 * abs(patch.gap) + sum(patch.uncertainty[1:]) + MATE_ROUNDING * size for patch in patches
+            patch.chord + 2.0 * abs(patch.gap) + sum(patch.uncertainty[1:]) + SINGLE * size for patch in patches
         ]
         """m, of each: how far its points may be off either surface."""
         self._bare: Set[SurfacePair] = {

@@ -14,19 +14,22 @@ from functools import partial
 from kinform.collisions.pair.course import Course, narrowed
 from kinform.collisions.pair.deep_entry import REFINED, Entry
 from kinform.collisions.pair.mate_surfaces import SurfacePair
-from kinform.collisions.pair.prepared_pair import CROSSING_LEAST, PairTest
+from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.pair.states import State
+from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Ints
 
 TOGETHER = 8.0
 """Surfaces that come to cross within so many chord errors of travel belong to one collision, and so does a point that
-comes in."""
+comes in. A choice."""
 FIRST_TRIED = 4
-"""So often the facets that cross first are looked for among those that cross a little later."""
+"""So often the facets that cross first are looked for among those that cross a little later: a choice; each time they
+are found to the resolution of the one before."""
 RISE = 0.02
-"""Share of what may be overlap of mates or chord errors by which the depth has to grow."""
+"""Share of what may be overlap of mates or chord errors by which the depth has to grow: a choice."""
 RISE_UNEVEN = 0.1
-"""Share of the same by which a depth that grows may have been greater before: it is measured at some points."""
+"""Share of the same by which a depth that grows may have been greater before, as it is measured at some points only: a
+choice."""
 
 
 Step = tuple[float, float]
@@ -116,7 +119,7 @@ class Onsets:
 
     def _behind(self, state: State, s: float) -> bool:
         height = state.test.height(self._course.displacement(s), state.nearest)
-        return height <= CROSSING_LEAST * self._test.size
+        return height <= SOLVED * self._test.size
 
     def _deep(self, s: float, pairs: Collection[SurfacePair]) -> bool:
         crossing = self._state(s).crossing

@@ -13,15 +13,10 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.meshes.boxes import FlatBoxes, triangle_boxes
+from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
-
-PASSAGE_ROUNDING = 1e-9
-"""By this share of a facet's extent points pass through it that pass beside: of two that share an edge, one is met."""
-
-
-TURN = 2.0 * math.pi
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +58,7 @@ class Passages:
         forward = self if path.sign > 0 else self.reversed()
         place, point, outward = forward.place, forward.point, forward.outward
         if path.turning:
-            place = np.append(place % TURN, place % TURN + TURN)
+            place = np.append(place % math.tau, place % math.tau + math.tau)
             point, outward = np.tile(point, 2), np.tile(outward, 2)
         order = np.lexsort((point, place))
         return Passages(place[order], point[order], outward[order], self.closed)
@@ -105,7 +100,7 @@ def passages(points: Array, corners: Array, turning: bool, mesh: Mesh) -> Passag
         outward = normal[:, 2] > 0.0
     with np.errstate(invalid="ignore"):
         within = np.isfinite(place)
-        least = -PASSAGE_ROUNDING * dot(normal, normal)
+        least = -SOLVED * dot(normal, normal)
         for one, other in ((first, second), (second, third), (third, first)):
             within &= dot(normal, cross(other - one, at - one)) >= least
     health = mesh.health

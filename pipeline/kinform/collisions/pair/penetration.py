@@ -16,10 +16,12 @@ from kinform.collisions.constants import DEPTH_MEASURED
 from kinform.collisions.pair.constants import CERTAIN
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.meshes.index import MeshIndex
+from kinform.foundation.rounding import TINY
 from kinform.model.arrays import Array, Flags, Ints
 
 DEPTH_ENDS = 32
-"""Ends of crossing segments between which the depth is looked for."""
+"""Ends of crossing segments between which the depth is looked for: a choice, as are the next three. More places take
+more time."""
 DEPTH_SEGMENTS = 256
 """Segments to which these are so near, or not, that they may be deep."""
 DEPTH_MIDDLES = 64
@@ -27,7 +29,7 @@ DEPTH_MIDDLES = 64
 DEPTH_INSIDE = 40
 """Of those that are, at which the depth is measured."""
 DEPTH_FINER = 4
-"""So many times as many places for a depth that is reported."""
+"""So many times as many places for a depth that is reported: twice as fine either way."""
 
 
 class Penetration:
@@ -126,7 +128,7 @@ def _from_segments(points: Array, segments: Array) -> Array:
     """(n,) m of points (n, 3) from the nearest of segments (m, 2, 3)."""
     start, along = segments[:, 0], segments[:, 1] - segments[:, 0]
     from_start = [points[:, k, None] - start[:, k] for k in range(3)]
-    share = sum(apart * along[:, k] for k, apart in enumerate(from_start)) / np.maximum(dot(along, along), 1e-300)
+    share = sum(apart * along[:, k] for k, apart in enumerate(from_start)) / np.maximum(dot(along, along), TINY)
     share = np.clip(share, 0.0, 1.0)
     square = sum((apart - share * along[:, k]) ** 2 for k, apart in enumerate(from_start))
     return np.asarray(np.sqrt(np.min(square, axis=1, initial=np.inf)))

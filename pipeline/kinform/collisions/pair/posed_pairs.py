@@ -17,6 +17,7 @@ from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import box_corners
+from kinform.foundation.rounding import ARITHMETIC, SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.mobility.guides import preserved
 from kinform.model.arrays import Array, Flags, Ints
@@ -26,16 +27,12 @@ HIGHER_KINDS = ("point", "line")
 """Patches whose place on the parts changes as they move."""
 LOWER_TYPES = ("revolute", "prismatic", "cylindrical", "spherical", "planar", "screw")
 """Joints whose twists stay the same in both bodies."""
-SPARE_SHARE = 1e-9
-"""Share of the size by which boxes may miss each other and be looked at again."""
-STILL = 1e-9
-"""rad, and share of the assembly's size, that bodies at rest to each other move by rounding."""
 REMEMBERED = 64
-"""Displacements of a pair that are kept: the same are asked for several times."""
+"""Displacements of a pair that are kept, as the same are asked for several times: the steps of one search."""
 WORLD_BOXES = 64
-"""Times for which bodies are boxed in the world, to see which of them stay away from each other."""
+"""Times for which bodies are boxed in the world, to see which of them stay away from each other: a choice."""
 CHORD_SLACK = 1.05
-"""Points between two poses may travel more than their straight distance."""
+"""Times their straight distance that points may travel between two poses: on an arc of 1 rad it is 1.04."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +105,7 @@ class _Near:
             corners = np.concatenate([_corners(self._shapes, name) for name in own])
             box = box_corners(corners.min(axis=0), corners.max(axis=0), np.eye(4))
             places, steps = _moved(self._displacements[:, body], box)
-            spare = CHORD_SLACK * np.append(steps, 0.0)[:, None] + SPARE_SHARE * self._shapes.size
+            spare = CHORD_SLACK * np.append(steps, 0.0)[:, None] + SOLVED * self._shapes.size
             lows[motion], highs[motion] = places.min(axis=1) - spare, places.max(axis=1) + spare
         out = np.zeros((count, count), bool)
         for begin, end in pairwise(np.unique(np.linspace(0, lows.shape[1], WORLD_BOXES + 1).astype(int)).tolist()):
@@ -130,7 +127,7 @@ class _Near:
         if key not in self._relative:
             relative = inverse(self._displacements[:, a]) @ self._displacements[:, b]
             change = np.abs(relative - relative[0]).max(axis=0)
-            still = max(change[:3, :3].max(), change[:3, 3].max() / self._shapes.size) < STILL
+            still = max(change[:3, :3].max(), change[:3, 3].max() / self._shapes.size) < SOLVED
             self._relative[key] = None if still else relative
         return self._relative[key]
 
@@ -155,7 +152,7 @@ class _Near:
             return out
         fixed = np.array([_corners(self._shapes, name) for _, name in every[0]])
         moved = np.array([_corners(self._shapes, name) for _, name in every[1]])
-        for rows, column in _meeting(relative, fixed, moved, SPARE_SHARE * self._shapes.size):
+        for rows, column in _meeting(relative, fixed, moved, SOLVED * self._shapes.size):
             body, other = every[1][column]
             for row in rows.tolist():
                 first, one = every[0][row]
@@ -254,7 +251,7 @@ def _units(twists: Array) -> Array:
     """Twists (k, 6) of unit turn, or of unit slide where they do not turn."""
     turning = np.linalg.norm(twists[:, :3], axis=1)
     sliding = np.linalg.norm(twists[:, 3:], axis=1)
-    return np.asarray(twists / np.where(turning > 1e-12, turning, np.maximum(sliding, 1e-300))[:, None])
+    return np.asarray(twists / np.where(turning > ARITHMETIC, turning, np.maximum(sliding, TINY))[:, None])
 
 
 def _course(bodies: tuple[int, int], nodes: Nodes, steps: Array) -> Course:

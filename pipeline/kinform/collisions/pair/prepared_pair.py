@@ -24,25 +24,22 @@ from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.vectors import perpendicular
 from kinform.foundation.at_work import at_work_on
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_pose
+from kinform.foundation.rounding import SOLVED
 from kinform.foundation.sorting import distinct
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.names import PartName
 
-SPECK = 1e-8
-"""By this much a point is inside."""
 FACET_GRID = 12
-"""Points along the side of a facet that are asked whether they are inside the other part."""
+"""Parts of the side of a facet at whose ends it is asked what is inside the other part: a choice, 91 points in all."""
 DIRECTIONS_ROUND = np.stack([np.cos(np.arange(8) * np.pi / 4), np.sin(np.arange(8) * np.pi / 4)], axis=1)
 """(8, 2) directions about a point in a plane."""
-CROSSING_LEAST = 1e-9
-"""Facets cross, and are apart, by more than this."""
 CROSSINGS_MOST = 200_000
-"""Crossing facets that one question may return."""
+"""Crossing facets that one question may return: a choice, so that memory stays bounded."""
 OVERLAP_SAME = 1.25
 """Parts that overlapped at the start, and come to overlap by no more than this share of it, come back to where they
-were; ..."""
+were: a choice; ..."""
 DEEPER = 5e-3
 """... and go into each other where it is by so much more: an arm that lies 0.3 mm in its base, of 166 mm, rubs on it by
 0.74 mm until it is clear of it."""
@@ -284,7 +281,7 @@ class PairTest:
         heights = self.heights(D, np.arange(len(places)), away=False, alike=True)
         n = int(np.argmax(heights))
         depth = float(heights[n])
-        return depth if depth > SPECK * self.size else 0.0, (self.X_WA @ np.append(places[n], 1.0))[:3]
+        return depth if depth > SOLVED * self.size else 0.0, (self.X_WA @ np.append(places[n], 1.0))[:3]
 
     def deepest(self, D: Array) -> float:
         """m: how deep the parts go into each other where they cross, or where points of one are inside the other."""
@@ -313,7 +310,7 @@ class PairTest:
         poses = [self.pose(D) for D in displacements]
         placed = [self._touching(X, some) for X, some in zip(poses, hits, strict=True) if len(some)]
         first, second, *normals = (np.concatenate(sides) for sides in zip(*placed, strict=True))
-        cross, segments = crossings(first, second, (normals[0], normals[1]), CROSSING_LEAST * self.size)
+        cross, segments = crossings(first, second, (normals[0], normals[1]), SOLVED * self.size)
         rows = np.flatnonzero(cross)
         every, segments = np.concatenate(hits)[rows], segments[rows]
         labels = self.counted(0)[every[:, 0]], self.counted(1)[every[:, 1]]
@@ -375,7 +372,7 @@ class PairTest:
     @cached_property
     def _penetration(self) -> Penetration:
         first, second = (self._shapes.index(name) for name in self.names)
-        return Penetration(first, second, CROSSING_LEAST * self.size)
+        return Penetration(first, second, SOLVED * self.size)
 
 
 def _moved(points: Array, X: Array) -> Array:

@@ -13,19 +13,21 @@ from kinform.collisions.constants import DEPTH_MEASURED
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.meshes.divided import inner_weights, longest_sides
 from kinform.foundation.meshes.index import MeshIndex
+from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import ascending
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 
 POINTS_SURFACE = 24
-"""Points on one surface."""
+"""Points on one surface: a choice."""
 POINTS_PART = 480
-"""Points on one part."""
+"""Points on one part: those of twenty surfaces. A choice."""
 POINTS_FINE = 6
-"""A surface's largest facets are divided until they are about so many times smaller than it."""
+"""A surface's largest facets are divided until they are about so many times smaller than it: 6² = 36 then cover it,
+more than are wanted."""
 POINTS_FAR = 0.05
-"""Share of the other part's diagonal beyond whose box a point needs no closer look."""
+"""Share of the other part's diagonal beyond whose box a point needs no closer look: a choice."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +73,7 @@ def _spread(corners: Array, starts: Ints, count: int) -> Array:
     columns = np.ascontiguousarray(corners.reshape(-1, 3).T)
     low, high = (np.stack([f.reduceat(side, 3 * starts) for side in columns], axis=1) for f in (np.minimum, np.maximum))
     sides = longest_sides(corners)
-    size = np.maximum(np.linalg.norm(high - low, axis=1), 1e-300)[group]
+    size = np.maximum(np.linalg.norm(high - low, axis=1), TINY)[group]
     parts = np.clip(np.ceil(POINTS_FINE * sides / size), 1, POINTS_FINE).astype(np.int64)
     pieces, owner, key = [], [], []
     for number in np.unique(parts).tolist():

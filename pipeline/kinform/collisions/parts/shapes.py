@@ -25,7 +25,8 @@ SCRAPE = 1e-3
 """By so much parts may overlap as they slide along each other: by rounding of their files and by what is left over
 where joints were fitted."""
 SCRAPE_ANGLES = 1.5
-"""What a surface may be off an exact invariance, in alignment tolerances."""
+"""What a surface may be off an exact invariance, in alignment tolerances: a choice, above 1 as the axis of the joint
+is off too."""
 
 
 @dataclass

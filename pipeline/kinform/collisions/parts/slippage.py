@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.foundation.algebra.vectors import cross, perpendiculars
+from kinform.foundation.rounding import SINGLE, SOLVED, TINY
 from kinform.foundation.sorting import ascending, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
@@ -23,9 +24,7 @@ from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
 
 DRIFT = 0.02
-"""Share of the advance of a screw by which its threads' pitch may be off."""
-EVEN = 1e-6
-"""Advance a radian, relative to a surface's radius, that is rounding."""
+"""Share of the advance of a screw by which its threads' pitch may be off: a choice; fitted pitches are better."""
 
 
 @dataclass(frozen=True)
@@ -102,14 +101,14 @@ class OwnMotions:
             rest = wanted - (wanted @ basis) @ np.swapaxes(basis, 1, 2)
             speed[members] = np.linalg.norm(rest[..., :3], axis=2) + np.linalg.norm(rest[..., 3:], axis=2)
             along = np.abs(np.einsum("ski,ki->sk", rest[..., 3:], axes))
-            screws = advance > EVEN * self._extent.radius[members, None]
-            drift[members] = np.where(screws, along / np.maximum(advance, 1e-300), 0.0)
+            screws = advance > SINGLE * self._extent.radius[members, None]
+            drift[members] = np.where(screws, along / np.maximum(advance, TINY), 0.0)
         return Slippage(speed, self._extent.radius, np.linalg.norm(axes, axis=1) > 0.0, drift)
 
     def _at(self, twists: Array, members: NDArray[np.int64]) -> Array:
         """Twists (n, k, 6) as velocities (m/s) of surfaces: of the rim by the turn, and of the middle."""
         omega = twists[..., :3]
-        size = np.maximum(self._extent.radius[members], 1e-9)[:, None, None]
+        size = np.maximum(self._extent.radius[members], SOLVED)[:, None, None]
         return np.concatenate(
             [size * omega, twists[..., 3:] + cross(omega, self._extent.middle[members, None])], axis=2
         )

@@ -5,7 +5,7 @@ carries, free to move at the joints further out. Rates are eliminated one by one
 three of them. The mass matrix of a long chain is as ill-conditioned as the fourth power of its links; here everything
 is about a point of the link's own joint, and nothing is lost by distance. Loops add as many unknown efforts λ as there
 are independent rows G, of G M⁻¹ Gᵀ λ = what is missing, each column of which is one more pass. For mechanisms of many
-rates and few loops (`choice.way`); `reduction` serves all others.
+rates and few loops (`pivoting.choose_method`); `reduction` serves all others.
 
 Poses, screws, twists and GAIN of `motion` are taken as they are; spatial vectors here are angular first, in world axes
 about the link's REFERENCE.

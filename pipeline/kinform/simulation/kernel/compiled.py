@@ -5,9 +5,9 @@ other functions are compiled into the units that use them, when such a unit has 
 under which numba caches units carry a digest of all the kernel's source: a change of one function
 compiles all of them afresh.
 
-Few mechanisms are so large that articulated bodies are the way to solve (`choice.way`), and a fifth of the time of
-compiling went into them. So there are two builds: one that lacks them, and one that has all. What lies below them is in
-both, and compiled once. `calls.Engine` takes the second where the tables say so.
+Few mechanisms are so large that articulated bodies are the way to solve (`pivoting.choose_method`), and a fifth of the
+time of compiling went into them. So there are two builds: one that lacks them, and one that has all. What lies below
+them is in both, and compiled once. `calls.Engine` takes the second where the tables say so.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from kinform.simulation.kernel import (
     tables,
     vectors,
 )
-from kinform.simulation.kernel.sparing import no_machine_code, operators_looked_up_once, variables_listed_directly
+from kinform.simulation.kernel.numba_patches import no_machine_code, operators_looked_up_once, variables_listed_directly
 
 _MODULES = (vectors, motion, masses, forces, loops, articulated, reduction, equations, crossings, steps, explicit)
 """Functions after those that they call."""

@@ -32,15 +32,19 @@ the margin times the curvature of either, below 0.005."""
 WIDEST_GAP = 0.4667
 """Share of the step: middle of the widest gap between evaluations, from a third to three fifths."""
 CROSSING_CLEAR = 0.08
-"""A share of the step: evaluations nearer to a singular pose than this are to be avoided."""
+"""A share of the step: evaluations nearer to a singular pose than this are to be avoided. A choice: the widest gap
+between evaluations leaves 0.13 to either side."""
 CROSSING_AHEAD = 1.2
-"""A pose so far, in steps, is near the step's end."""
+"""A pose so far, in steps, is near the step's end: the next step would begin too near to it. A choice."""
 SLOPES_ALIKE = 0.5
-"""Slopes of a line agree when the lesser is more than this share of the greater."""
+"""Slopes of a line agree when the lesser is more than this share of the greater: a choice; branches are nearly straight
+over a step."""
 CROSSING_PASSED = 0.05
-"""Share of the step: a pose nearer ahead than this is as good as passed."""
+"""Share of the step: a pose nearer ahead than this counts as passed: a step laid across would be twenty times shorter.
+A choice."""
 NEAREST_APPROACH = 0.2
-"""Least share of the way to a singular pose that a step towards it goes: a choice."""
+"""Least share of the way to a singular pose that a step towards it goes: a choice, so that it is reached in a few
+steps."""
 
 
 def alike(a: float, b: float) -> float:

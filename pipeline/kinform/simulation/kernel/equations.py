@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Ints
 from kinform.simulation.kernel.articulated import resist
 from kinform.simulation.kernel.forces import between, drive, law, loads, meter
@@ -20,11 +21,10 @@ from kinform.simulation.kernel.layout import (  # isort: skip
 )  # fmt: skip
 
 TORN_GAP = 1e-4
-"""Rows that depended on others leave a gap (rad, or lengths) at most as large as the rank overlooks."""
+"""Gap (rad, or lengths) up to which rows that depended on others count as closed: what the rank overlooks
+(`SolverSettings.free`)."""
 SLOW_CORRECTION = 0.05
-"""Corrections that leave more than this share of a gap are made by new factors."""
-FACTORS_STALE = 1e-9
-"""rad, or lengths: a correction of a gap so small moves so little that the factors serve once more."""
+"""Corrections that leave more than this share of a gap are made by new factors: a choice."""
 MOST_CORRECTIONS = 10
 """Corrections of a pose; they converge in three or four."""
 
@@ -195,7 +195,7 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float,
         for r in range(rank):
             vectors[GAP][r] = -gap_of(ints, nums, state, y, mode[CHOSEN][r])
             size = max(size, abs(vectors[GAP][r]))
-        stale = count > 0 and size > SLOW_CORRECTION * before if factored else before > FACTORS_STALE
+        stale = count > 0 and size > SLOW_CORRECTION * before if factored else before > SOLVED
         if stale:
             if mode[WAY][0] == 0:
                 inertias(ints, nums, work)

@@ -9,11 +9,20 @@ from __future__ import annotations
 
 import math
 
+from kinform.foundation.rounding import ARITHMETIC
 from kinform.model.arrays import Ints
-from kinform.simulation.constants import STOP_HALVINGS, STOP_PASSED
+from kinform.simulation.constants import HALVINGS, STEP_PARTS
 from kinform.simulation.kernel.crossings import laid, tip, turns_corner
 from kinform.simulation.kernel.equations import derivative, project
-from kinform.simulation.kernel.steps import ROUNDING_NOISE, interpolate, prepare, roundings, slope, try_step
+from kinform.simulation.kernel.steps import (
+    LEAST_NOISY_MARGIN,
+    ROUNDING_NOISE,
+    interpolate,
+    prepare,
+    roundings,
+    slope,
+    try_step,
+)
 
 from kinform.simulation.kernel.layout import (  # isort: skip
     COUNTS, STOPS, VECTORS, STAGES, TIMES, OUT,
@@ -27,45 +36,41 @@ from kinform.simulation.kernel.layout import (  # isort: skip
 )  # fmt: skip
 
 SAFETY = 0.9
-"""Share of the step that would just keep the tolerance: what Hairer's DOP853 takes."""
-ERROR_ROOT = 0.125
-"""The error of a step of order 8 grows with this root's inverse power, the eighth, of its length."""
+"""Share of the step that would just keep the tolerance: that of Hairer's DOP853."""
 LEAST_SHRINK = 0.2
-"""Share of a step below which the next is not made after an error, however great: a choice."""
+"""Share of a step below which the next is not made after an error, however great: a choice; DOP853 has a third."""
 LEAST_SHRINK_AT_CROSSING = 0.6
 """The same near a singular pose, where the error may be that of one evaluation: a choice."""
-HOPELESS_ERROR = 1e30
-"""Error over the tolerance from which on its root tells nothing, and the least share is taken."""
 GREATEST_GROWTH = 2.5
-"""Greatest growth of a step: with more, one can land far outside the region of stability unnoticed."""
+"""Greatest growth of a step: DOP853 allows 6, with which one can land far outside the region of stability
+unnoticed."""
 EASY_ERROR = 0.4
 """Error over the tolerance below which a step that was cut short does not shorten the next: a choice."""
 SHORTEST_STEP = 1e-13
-"""Share of the time (of 1 s at least) below which a step is none: a few hundred roundings of the time."""
+"""Share of the time (of 1 s at least) below which a step is none: 450 spacings of doubles, so that times within it are
+still apart."""
 REOPENED_SHRINK = 0.25
 """Share of a step to try where loops could not be closed at its end: a choice."""
 SHORTEST_CLOSING_STEP = 1e-9
-"""s: steps so short that still leave loops open end the run."""
+"""s: steps so short that still leave loops open end the run. A choice: nothing rigid moves measurably in a
+nanosecond."""
 STABLE_DECAY = 3.0
-"""Step times the fastest decay: the method is stable up to about 6."""
+"""Step times the fastest decay to which steps are kept: half of about 6, up to which the method is stable."""
 REAL_ROUGHNESS = 10.0
-"""Times the noise of accelerations that a change of slopes has to be to count as a decay: a choice."""
-LEAST_REAL_MARGIN = 1e-6
-"""Margin below which the noise of accelerations is not taken to grow further: bounds a quotient."""
+"""Times the noise of accelerations that a change of slopes has to be to count as a decay: a choice, an order of
+magnitude above the estimate of the noise."""
 MOST_LAYINGS = 4
-"""Times that a step is laid anew to avoid a singular pose."""
+"""Times that a step is laid anew to avoid a singular pose: a choice; each finds the tip of the V from nearer."""
 LAID_ALIKE = 0.01
-"""Share of a step: one that differs by less from the last is not worth trying."""
+"""Share of a step: one that differs by less from the last puts evaluations where they were. A choice, an eighth of
+`crossings.CROSSING_CLEAR`."""
 ROUNDINGS_EVERY = 20
-"""Steps after which roundings are looked at again."""
-STOP_PARTS = 4
-"""Parts of a step in which a joint turns back at most once: steps are far shorter than what moves in them."""
-TURN_HALVINGS = 40
-"""Halvings of a part of a step to find where a joint turns: to 1e-12 of it, enough where the curve is flat."""
+"""Steps after which roundings are measured again: two evaluations beside 240."""
 CROSSING_AROUND = 0.1
-"""Share of the step about the place where a singular pose is expected, within which it is."""
+"""Share of the step about the place where a singular pose is expected, within which it is: as `CROSSING_CLEAR`, a
+little more. A choice."""
 CROSSING_NARROWINGS = 12
-"""Times that this is narrowed, to two thirds each."""
+"""Times that this is narrowed by the golden section, to 0.62 each: to 3e-3 of it, 3e-4 of the step."""
 
 
 def sample(ints: Ints, nums: Nums, work: Work, clock: Row, t: float, y: Row, out: Row) -> None:
@@ -94,20 +99,20 @@ def passing(ints: Ints, nums: Nums, work: Work, y: Row, k: int, end: float) -> t
     """
     rate, sense = ints[COUNTS][0][POSITIONS] + ints[STOPS][k][STOP_V], float(ints[STOPS][k][SENSE])
     low, pace = 0.0, sense * y[rate]
-    for part in range(1, STOP_PARTS + 1):
-        high = end * float(part) / float(STOP_PARTS)
+    for part in range(1, STEP_PARTS + 1):
+        high = end * float(part) / float(STEP_PARTS)
         later = sense * interpolate(work, y, rate, high)
-        if beyond(ints, nums, work, y, k, high) > STOP_PASSED:
+        if beyond(ints, nums, work, y, k, high) > ARITHMETIC:
             return low, high
         if pace > 0.0 and later < 0.0:
             out, back = low, high
-            for _ in range(TURN_HALVINGS):
+            for _ in range(HALVINGS):
                 middle = 0.5 * (out + back)
                 if sense * interpolate(work, y, rate, middle) > 0.0:
                     out = middle
                 else:
                     back = middle
-            if beyond(ints, nums, work, y, k, out) > STOP_PASSED:
+            if beyond(ints, nums, work, y, k, out) > ARITHMETIC:
                 return low, out
         low, pace = high, later
     return low, -1.0
@@ -122,7 +127,7 @@ def stop_reached(ints: Ints, nums: Nums, work: Work, y: Row) -> tuple[int, float
         low, high = passing(ints, nums, work, y, k, end)
         if high < 0.0:
             continue
-        for _ in range(STOP_HALVINGS):
+        for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
             if beyond(ints, nums, work, y, k, middle) > 0.0:
                 high = middle
@@ -154,9 +159,15 @@ def look(ints: Ints, nums: Nums, work: Work, clock: Row, y: Row) -> None:
             low = low + 0.382 * (high - low)
 
 
+def fitting(error: float) -> float:
+    """Share of a step of that error over the tolerance that would keep it: the error of order 8 goes with the eighth
+    power of the length."""
+    return float(SAFETY * error**-0.125)
+
+
 def shrink(error: float, least: float) -> float:
     """Share of a step of that error over the tolerance to try next, `least` at least."""
-    return max(least, SAFETY * error**-ERROR_ROOT) if error < HOPELESS_ERROR else least
+    return max(least, fitting(error)) if error < FAILED else least
 
 
 def set_out(clock: Row) -> bool:
@@ -220,7 +231,7 @@ def fastest_decay(ints: Ints, work: Work, clock: Row, tally: Counts) -> float:
         rough += change * change
         moved += way * way
     # What rounding leaves near a singular pose is no decay.
-    least = max(clock[LEAST], LEAST_REAL_MARGIN)
+    least = max(clock[LEAST], LEAST_NOISY_MARGIN)
     real = math.sqrt(rough) > REAL_ROUGHNESS * ROUNDING_NOISE / (least * least)
     fastest = math.sqrt(rough / moved) if moved > 0.0 and real else 0.0
     tally[STIFF] = tally[STIFF] + 1 if clock[SPAN] * fastest > STABLE_DECAY else 0
@@ -271,7 +282,7 @@ def accept(ints: Ints, work: Work, y: Row, clock: Row, fastest: float) -> None:
     clock[MARGINS] = clock[MARGINS + AT_END]
     clock[NOW] = clock[REACHED]
     growth = clock[GROWTH]
-    step = h * (min(growth, SAFETY * error**-ERROR_ROOT) if error > 0.0 else growth)
+    step = h * (min(growth, fitting(error)) if error > 0.0 else growth)
     if h < wanted and error < EASY_ERROR:
         # Laid shorter than the error called for: the next need not be.
         step = max(step, wanted)

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import math
 
+from kinform.behaviour.components import LEAST_GAS
+from kinform.foundation.rounding import TINY
 from kinform.model.arrays import Ints
 from kinform.simulation.kernel.vectors import add, along, cross, dot, place, six, three
 
@@ -14,7 +16,7 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     COUNTS, SIGNALS, ACTORS, LOADS, PIECES,
     POSITIONS, RATES, TWIST, WRENCH, DOES, AT_Q, AT_V, LAW, FIRST_STATE, SECOND_STATE, METERED, EFFORT, SPRING, DAMPER,
     SERVO, MOTOR, STRAIGHT, WAVE, SHAPE, FIRST_PIECE, PIECE_COUNT,
-    FORCE, GIVEN, TURNING, FACTOR, ELASTIC, GAS, CUSHION, NEAR_STRAIGHT, LAST_GAS,
+    FORCE, GIVEN, TURNING, FACTOR, ELASTIC, GAS, CUSHION, NEAR_STRAIGHT,
     MEASURE, TORSION, DAMPED, TORSION_DAMPED, TRIAD,
     Row, Table, Index, Nums, Vector,
 )  # fmt: skip
@@ -177,7 +179,7 @@ def cushion(a: Row, b: Row, bushing: Row) -> float:
     # The rotation vector, and its torque as the gradient of the energy in it.
     scale, share = 1.0, 1.0 / 12.0
     if angle > NEAR_STRAIGHT:
-        scale = angle / max(sine, 1e-300)
+        scale = angle / max(sine, TINY)
         share = (1.0 - 0.5 * angle / math.tan(0.5 * angle)) / (angle * angle)
     r0, r1, r2 = scale * r0, scale * r1, scale * r2
     k0, k1, k2 = three(bushing, TORSION)
@@ -219,7 +221,7 @@ def between(table: Index, numbers: Table, state: Table) -> float:
         d0, d1, d2 = d0 / length, d1 / length, d2 / length
         speed = pace(b, u, v, w, d0, d1, d2) - pace(a, x, y, z, d0, d1, d2)
         if table[k][ELASTIC] == GAS:
-            left = max(spring[9] - (spring[8] - length), LAST_GAS * spring[9])
+            left = max(spring[9] - (spring[8] - length), LEAST_GAS * spring[9])
             pull = -spring[6] * math.pow(spring[9] / left, spring[10]) + spring[7] * speed
         else:
             pull = spring[6] * (length - spring[8]) + spring[7] * speed

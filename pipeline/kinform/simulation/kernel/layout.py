@@ -90,8 +90,8 @@ REFERENCE_POINT, SPATIAL, PULL, LOADED, GOING, RUNNING, CARRIED_WIDTH = 0, 3, 39
 """SPATIAL: 6 × 6 inertia of what the link carries. PULL: the wrench that it needs itself. LOADED: with what it carries.
 GOING: its acceleration over that at constant rates; RUNNING: of its reference, at those."""
 REACTION, INVERSE, SURPLUS, ROTOR, HANDLE_WIDTH = 6, 12, 13, 14, 15
-"""REACTION: inertia times the screw. INVERSE: of what the rate moves. SURPLUS: effort that is left for it.
-ROTOR: inertia of rotors on it."""
+"""REACTION: inertia times the screw. INVERSE: of what the rate moves. SURPLUS: effort that is left for it. ROTOR:
+inertia of rotors on it."""
 
 # ints[ACTORS], and their kinds.
 DOES, AT_Q, AT_V, LAW, FIRST_STATE, SECOND_STATE, METERED = range(7)
@@ -107,8 +107,6 @@ STRAIGHT_SPRING, GAS, CUSHION = range(3)
 """CUSHION: a bushing."""
 NEAR_STRAIGHT = 1e-4
 """Turns (rad) of a bushing below which 1/12 is its series: the next term is θ²/720."""
-LAST_GAS = 1e-6
-"""As `kinform.behaviour.constants.LEAST_GAS`."""
 
 # nums[SPRINGS]: two points; then stiffness or force, damping, rest or length, column, exponent; of a bushing stiffness,
 # torsion, their dampings and its axes, three numbers each.
@@ -141,9 +139,9 @@ CROSSING: time of a singular pose ahead. The others are settings, see `Run`."""
 SPAN, REACHED, ERROR, WEAR, GROWTH, MARGINS, NARROW, APPROACH, ENERGY, CLOCK = 14, 15, 16, 17, 18, 19, 32, 33, 34, 35
 """SPAN and REACHED: length and end of the step on trial. ERROR: its error over the tolerance. WEAR: smallest pivot over
 that of its choice at its end. GROWTH: what the next may be longer by. MARGINS: at its twelve evaluations and its end.
-NARROW: the margin below which branches are not told apart by what is known of lengths. APPROACH: the
-margin below which a step that goes on towards a singular pose is reported. ENERGY (J): the greatest of motion and
-weights so far. CLOCK: how many numbers."""
+NARROW: the margin below which branches are not told apart by what is known of lengths. APPROACH: the margin below which
+a step that goes on towards a singular pose is reported. ENERGY (J): the greatest of motion and weights so far. CLOCK:
+how many numbers."""
 STEPS, BUDGET, NEXT, PAUSE, STIFF, SLOPES, FRESH, HIT, LAYINGS, TALLY = range(10)
 """Steps tried; how many may be in one call; the next output, and which to come back before; steps in a row that a decay
 kept short; evaluations; whether stage 0 is to be computed; the stop reached; times that a step was laid anew; how many

@@ -1,6 +1,6 @@
 """Closes loops: independent rows and dependent rates, factors, and what follows from both.
 
-Rows and rates are chosen once (`choice`) and kept while their pivots stay good; every evaluation eliminates
+Rows and rates are chosen once (`pivoting`) and kept while their pivots stay good; every evaluation eliminates
 in that order, never by a tolerance of its own. With the rates in the
 order dependent d, free i, led l the loops say x_d = g − B x_il; motions E = (−B; 1) keep them closed.
 """
@@ -18,7 +18,8 @@ from kinform.simulation.kernel.layout import (  # isort: skip
 )  # fmt: skip
 
 PIVOT_SWAP = 1.5
-"""Rows change places for a pivot so many times as large: order is no matter of the mathematics."""
+"""Rows change places for a pivot so many times as large: a choice. Any order gives the same motion; fewer changes keep
+rows sparse."""
 
 
 def line_of(frame: Row, tip: Row, length: float, axis: int) -> tuple[float, float, float, float, float, float]:

@@ -12,11 +12,11 @@ This rests on numba's internals, which nobody promises to keep: `types.Type`, th
 `lower_builtin` and `cgutils`; in `compiled` besides on `ExternalFunction`, on the option `_nrt`, and on the names and
 places of the files of the cache. numba 0.60 to 0.68 were tried, and `pyproject.toml` admits no other.
 
-When numba moves, an ImportError here, a TypingError ("No implementation of function … getitem") or an AssertionError
-of its lowering say that one of these has changed. tests/simulation/test_kernel.py and test_reduction.py compile all
-units and compare them with the plain functions, bit by bit. One thing goes wrong in silence: a cache that is no longer
-found (`is_cached` stays False after a compilation), so that runs are left to the plain functions for longer, and each
-process that compiles does so for ten seconds. Short runs need none of this.
+When numba moves, an ImportError here, a TypingError ("No implementation of function … getitem") or an AssertionError of
+its lowering say that one of these has changed. test_compiled.py and test_reduction.py in tests/simulation/kernel
+compile all units and compare them with the plain functions, bit by bit. One thing goes wrong in silence: a cache that
+is no longer found (`is_cached` stays False after a compilation), so that runs are left to the plain functions for
+longer, and each process that compiles does so for ten seconds. Short runs need none of this.
 """
 
 from __future__ import annotations

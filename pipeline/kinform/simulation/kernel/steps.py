@@ -21,17 +21,20 @@ from kinform.simulation.kernel.layout import (  # isort: skip
 )  # fmt: skip
 
 CLOSED_SHARE = 1e-4
-"""Loops at an evaluation of a step are closed to this share of the tolerance."""
+"""Share of the tolerance to which loops are closed at an evaluation of a step: a choice, so that what is left open is
+none of its error."""
 DISTURBANCE = 2.0**-51
-"""A rounding or two of a number, as a share of it."""
+"""Share of a number by which it is disturbed to see what roundings do: twice the spacing of doubles."""
 ROUGHER_SLOPES = 4.0
-"""Times what one disturbance does to the slopes: others do more."""
+"""Times what one disturbance does to the slopes that is allowed for: others do more. A choice."""
 THIRD_ORDER_SHARE = 0.01
 """Weight of the estimate of order 3 beside that of order 5 in the error of a step: that of Hairer's DOP853."""
 ROUNDING_NOISE = 1e-13
-"""Relative rounding of accelerations, times the pivots' ratio: what remains of closed loops."""
+"""Relative rounding of accelerations, times the margin: loops are closed to 1e-14 (`SolverSettings.closed`), and a few
+such gaps remain in them. Not a level of rounding: steps near singular poses are as long as it allows."""
 LEAST_NOISY_MARGIN = 1e-5
-"""Margin below which the noise is not taken to grow further: bounds a quotient."""
+"""Margin below which the noise is not taken to grow further: bounds a quotient. A choice, far below the margins at
+which steps are laid across."""
 
 
 def slope(ints: Ints, nums: Nums, work: Work, clock: Row, t: float, y: Row, dy: Row) -> float:

@@ -6,7 +6,7 @@ import numpy as np
 
 from kinform.behaviour.components import RigidBody, System
 from kinform.model.arrays import Array, Ints
-from kinform.simulation.kernel import choice, equations, layout, masses, motion
+from kinform.simulation.kernel import equations, layout, masses, motion, pivoting
 from kinform.simulation.kernel.calls import plainly
 from kinform.simulation.kernel.layout import Nums, Row, Work
 from kinform.simulation.kernel.tables import Tables
@@ -98,8 +98,8 @@ def _place(ints: Ints, nums: Nums, work: Work, y: Row, rank: int) -> None:
     """Poses of the links at y, and the rows of the loops that are kept there."""
     motion.place_links(ints, nums, work, y)
     if rank:
-        choice.choose(ints, nums, work)
-    choice.way(ints, nums)
+        pivoting.choose_pivots(ints, nums, work)
+    pivoting.choose_method(ints, nums)
 
 
 def _weigh(ints: Ints, nums: Nums, work: Work, y: Row) -> None:

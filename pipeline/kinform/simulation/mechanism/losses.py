@@ -17,6 +17,7 @@ import numpy as np
 from kinform.behaviour.components import Gear
 from kinform.behaviour.shafts import DcMotor, Friction
 from kinform.model.arrays import Array
+from kinform.model.simulation import DriveKind
 from kinform.simulation.mechanism.mechanism import Mechanism, Slot
 from kinform.simulation.mechanism.rubbing import Lost, Rubbing
 
@@ -59,7 +60,7 @@ def _loss(
     return replace(_on(friction, slot, joint, "gear_loss"), lost=lost, lean=lean)
 
 
-def _on(friction: Friction, slot: Slot, joint: int, called: str) -> Rubbing:
+def _on(friction: Friction, slot: Slot, joint: int, called: DriveKind) -> Rubbing:
     q, v = slot.q.start + friction.freedom, slot.v.start + friction.freedom
     return Rubbing(friction, slot.name, joint, 0, np.zeros(3), q, v, -1, called=called)
 

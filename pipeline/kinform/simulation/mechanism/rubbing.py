@@ -16,6 +16,7 @@ from kinform.behaviour.shafts import Friction
 from kinform.foundation.algebra.vectors import cross_matrix
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
+from kinform.model.simulation import DriveKind
 from kinform.simulation.mechanism.mechanism import Mechanism
 
 
@@ -55,7 +56,7 @@ class Rubbing:
     """Of what a gear loses (`mechanism.losses`), whose grip is |y|; None: a wrench in the joint presses."""
     lean: float = 0.0
     """Of these: how much more it is for y along the rate, and less against it, as a share of |y|."""
-    called: str = "friction"
+    called: DriveKind = "friction"
     """What it is in results: also gear_loss and rotor."""
     thread: bool = False
     """Whether it is that of a thread, on whose flanks only what the thread itself passes on presses: drives turn the

@@ -12,16 +12,13 @@ import numpy as np
 
 from kinform.behaviour.components import System
 from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.rounding import ARITHMETIC, SINGLE
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
-from kinform.simulation.constants import DEPENDENT_GEARS
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.states import States
 from kinform.simulation.outcome.gear_forces import toothed
 from kinform.simulation.outcome.reactions import Network, Reactions, along_rates, applied
-
-VANISHING_WRENCH = 1e-6
-"""Share of the greatest wrench of the run below which wrenches are no measure of errors."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +52,7 @@ def imbalance(dynamics: Dynamics, states: States, times: Array, reactions: React
     scale = np.maximum(sizes.max(axis=1, initial=0.0), weights)
     scale = np.maximum(scale, np.abs(external[..., 3:]).max(axis=(1, 2), initial=0.0))
     # Where all wrenches pass zero at once, only rounding is left to be compared with rounding.
-    scale = np.maximum(scale, VANISHING_WRENCH * scale.max(initial=0.0))
+    scale = np.maximum(scale, SINGLE * scale.max(initial=0.0))
     errors = np.zeros((len(effort), len(mechanism.bodies)))
     held = _held(dynamics.system)
     for k, (body, link) in enumerate(zip(bodies, dynamics.body_links, strict=True)):
@@ -95,7 +92,7 @@ def _shafts(dynamics: Dynamics, states: States, reactions: Reactions, effort: Ar
     shafts = mechanism.gear_v[~toothed(dynamics.system)]
     if len(shafts):
         _, values, rows = np.linalg.svd(shafts)
-        passed = rows[: int(np.count_nonzero(values > DEPENDENT_GEARS * values[0]))]
+        passed = rows[: int(np.count_nonzero(values > ARITHMETIC * values[0]))]
         rest = rest - (rest @ passed.T) @ passed
     # A slide's effort is a force, a turn's a torque: its own screw has the unit.
     slides = ~states.screws[..., :3].any(axis=(0, 2)) if len(effort) else np.zeros(mechanism.rates, dtype=bool)

@@ -14,14 +14,14 @@ from typing import Any
 import numpy as np
 
 from kinform.model.arrays import Array
-from kinform.model.simulation import DriveUse
+from kinform.model.simulation import DriveKind, DriveUse
 from kinform.simulation.kernel import layout
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.efforts import effort_of
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.record import Record
 
-_KINDS = {
+_KINDS: dict[int, DriveKind] = {
     layout.EFFORT: "effort", layout.SPRING: "spring", layout.DAMPER: "damper", layout.SERVO: "servo",
     layout.MOTOR: "dc_motor", layout.CONTROLLED: "dc_motor",
 }  # fmt: skip
@@ -41,12 +41,12 @@ def drive_fields(dynamics: Dynamics, record: Record) -> dict[str, Any]:
     return {"drives": uses, "drive_effort": efforts, "drive_speed": record.v[:, [v for v, _, _ in acted]]}
 
 
-def _acted(dynamics: Dynamics, record: Record) -> Iterator[tuple[int, str, Array]]:
+def _acted(dynamics: Dynamics, record: Record) -> Iterator[tuple[int, DriveKind, Array]]:
     """The rate, kind and (T,) effort of each drive."""
     actuation = dynamics.actuation
     stops = {stop.v for stop in actuation.stops}
     for v in actuation.metered:
-        kind = "stop" if v in stops and v not in actuation.led else "motion"
+        kind: DriveKind = "stop" if v in stops and v not in actuation.led else "motion"
         yield v, kind, record.needed[:, v] - (_held(dynamics, record, v) if kind == "stop" else 0.0)
     states = 0
     for actor in actuation.actors:
@@ -81,7 +81,7 @@ def _rates(mechanism: Mechanism) -> dict[int, tuple[str, int, bool]]:
     }
 
 
-def _use(record: Record, on: tuple[str, int, bool], kind: str, effort: Array, v: int, meter: int) -> DriveUse:
+def _use(record: Record, on: tuple[str, int, bool], kind: DriveKind, effort: Array, v: int, meter: int) -> DriveUse:
     """`meter`: the first of its integrals among the states of `record.extra`; negative without."""
     time, rate = record.time, record.v[:, v]
     power = effort * rate

@@ -12,7 +12,8 @@ import numpy as np
 from kinform.model.arrays import Array, Ints
 
 FEW_MEET = 0.05
-"""Share of all products of two directions in a joint up to which those that are not nought are summed one by one."""
+"""Share of all products of two directions in a joint up to which those that are not zero are summed one by one: a
+choice."""
 
 
 def least_wrenches(

@@ -13,9 +13,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross_matrix
+from kinform.foundation.rounding import SINGLE, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.simulation.constants import UNDETERMINED_SHARE
 from kinform.simulation.mechanism.loop_systems import UNSEEN, alike, systems_of_loops
 from kinform.simulation.outcome.loop_freedoms import least_wrenches
 
@@ -190,7 +190,7 @@ def _answers(systems: Sequence[_Conditions], counted: int) -> list[_Answer]:
     for one, (left, values, right) in zip(systems, parts, strict=True):
         counts, many = values >= least[:, None, None], left.shape[-1]
         known = np.einsum("tgmr,tgm->tgr", left, one.rest)
-        known = np.where(counts[..., :many], known / np.maximum(values[..., :many], 1e-300), 0.0)
+        known = np.where(counts[..., :many], known / np.maximum(values[..., :many], TINY), 0.0)
         first = int(counts.sum(axis=2).min())
         held = counts[..., first:]
         free = right[..., first:, :] * ~held[..., None]
@@ -229,7 +229,7 @@ def _added(
     if len(one.unseen.loops) and not answer.free.shape[2]:
         least_of = least_wrenches(borne, share, one.unseen.loops, one.unseen.wrenches / unit, lever)
         if least_of is not None:
-            return least_of[0], least_of[1] > UNDETERMINED_SHARE, least_of[2]
+            return least_of[0], least_of[1] > SINGLE, least_of[2]
     out: Array = borne.reshape(len(whole), systems, -1)
     freedom = on_joints(one.unseen).reshape(*out.shape, -1)
     held = np.zeros((*freedom.shape[:2], freedom.shape[3]))
@@ -242,5 +242,5 @@ def _added(
         least = np.linalg.solve(inner, np.einsum("tgmz,tgm->tgz", freedom, out)[..., None])
         out = out - (freedom @ least)[..., 0]
         most = np.maximum(freedom.max(axis=(0, 3)), -freedom.min(axis=(0, 3)))
-        loose = (most > UNDETERMINED_SHARE).reshape(loose.shape)
+        loose = (most > SINGLE).reshape(loose.shape)
     return out.reshape(len(whole), systems, many, 6), loose, freedom[0]

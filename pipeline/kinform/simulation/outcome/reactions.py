@@ -17,15 +17,13 @@ import numpy as np
 from kinform.foundation.algebra.spatial import cross_force
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
+from kinform.simulation.constants import CHUNK
 from kinform.simulation.mechanism.closure import rank_of
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.states import States
 from kinform.simulation.mechanism.topology import arrange
 from kinform.simulation.outcome.gear_forces import Transmitted, toothed, transmitted
 from kinform.simulation.outcome.loop_wrenches import Shares, about, add_loops
-
-CHUNK = 128
-"""Times whose reactions are solved at once."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,9 +9,10 @@ import numpy as np
 
 from kinform.behaviour.components import System
 from kinform.foundation.algebra.spatial import quaternions, rotation_vector
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED
 from kinform.model.arrays import Array, Ints
-from kinform.model.simulation import Simulation
-from kinform.simulation.constants import LEAST_DRIFT
+from kinform.model.simulation import Simulation, SimulationLevel
+from kinform.simulation.constants import CHUNK
 from kinform.simulation.mechanism.closure import counted
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.loop_systems import loop_values
@@ -23,16 +24,11 @@ from kinform.simulation.outcome.reactions import Reactions, reactions
 from kinform.simulation.record import Record
 from kinform.simulation.settings import SolverSettings
 
-SNUG = 1e-8
-"""Gap (m or rad) up to which loops count as closed: those that fit exactly stay a million times below."""
 TRUSTED_DRIFT = 1e-5
-"""Drift of the energy over the energy exchanged; runs at the default tolerances stay a hundred times below."""
+"""Drift of the energy over the energy exchanged up to which a run is trusted: runs at the default tolerances stay a
+hundred times below."""
 SUMMED_DRIFT = 1e-8
-"""Drift of the energy over the kinetic energy that is no sign of anything, ten times that of sound runs."""
-RANK_CHUNK = 256
-"""Times whose ranks are found at once."""
-OTHER_WAY = 1e-6
-"""Share of a surface's speed along the direction that has friction from which on it slides along others too."""
+"""Drift of the energy over the kinetic energy up to which it is rounding of sums: ten times that of sound runs."""
 
 
 def while_in_mesh(mechanism: Mechanism, system: System, record: Record) -> Record:
@@ -54,7 +50,7 @@ def while_in_mesh(mechanism: Mechanism, system: System, record: Record) -> Recor
 
 
 def publish_dynamic(
-    dynamics: Dynamics, record: Record, level: str, notes: tuple[str, ...], settings: SolverSettings
+    dynamics: Dynamics, record: Record, level: SimulationLevel, notes: tuple[str, ...], settings: SolverSettings
 ) -> tuple[Simulation, States]:
     """The results with energy, reactions, their balance, and what the drives did; and the states of the links."""
     run, states = publish(dynamics.mechanism, record, level, notes, settings.free)
@@ -108,7 +104,7 @@ def _friction_fields(dynamics: Dynamics, record: Record) -> dict[str, Any]:
 def _notes_of_gaps(residual: Array) -> tuple[str, ...]:
     """What is to be said of redundant loops that the geometry does not let close exactly."""
     widest = float(residual.max(initial=0.0))
-    if not widest > SNUG:
+    if not widest > SOLVED:
         return ()
     return (
         f"redundant loops open by up to {widest:.2g} (m or rad) as they move: the geometry fits no better, "
@@ -121,7 +117,7 @@ def _notes_of_energy(times: Array, energy: Array) -> tuple[str, ...]:
     total = energy @ np.array([1.0, 1.0, -1.0])
     exchanged = float(np.ptp(energy, axis=0).max(initial=0.0)) if len(energy) else 0.0
     # Where bodies exchange energy only among each other, all that can be seen is that the sum of it stays.
-    least = LEAST_DRIFT + SUMMED_DRIFT * float(np.abs(energy[:, 0]).max(initial=0.0))
+    least = ARITHMETIC + SUMMED_DRIFT * float(np.abs(energy[:, 0]).max(initial=0.0))
     wrong = np.flatnonzero(np.abs(total - total[:1]) > TRUSTED_DRIFT * exchanged + least)
     if not len(wrong) or exchanged == 0.0:
         return ()
@@ -142,7 +138,7 @@ def _notes_of_sliding(dynamics: Dynamics, record: Record) -> tuple[str, ...]:
             continue
         paces = np.abs(record.v[:, slot.v] / scale[slot.v]).max(axis=0, initial=0.0)
         others = np.delete(paces, one.v - slot.v.start)
-        if others.max() > OTHER_WAY * paces.max() > 0.0:
+        if others.max() > SINGLE * paces.max() > 0.0:
             out[one.joint] = (
                 f"friction in {one.joint} opposes one of its freedoms alone, and it moved along others too: a surface "
                 "opposes the way in which it slides, so it is too great along the one, and missing along the others"
@@ -151,7 +147,7 @@ def _notes_of_sliding(dynamics: Dynamics, record: Record) -> tuple[str, ...]:
 
 
 def publish(
-    mechanism: Mechanism, record: Record, level: str, assumptions: tuple[str, ...], free: float
+    mechanism: Mechanism, record: Record, level: SimulationLevel, assumptions: tuple[str, ...], free: float
 ) -> tuple[Simulation, States]:
     """The record as results keep it, without energy and reactions, and the states of the links.
 
@@ -235,7 +231,7 @@ def _ranks(mechanism: Mechanism, states: States, free: float) -> Ints:
     out = np.zeros(len(states.poses), dtype=np.int64)
     if not mechanism.closed or not mechanism.rates:
         return out
-    for first in range(0, len(out), RANK_CHUNK):
-        times = slice(first, first + RANK_CHUNK)
+    for first in range(0, len(out), CHUNK):
+        times = slice(first, first + CHUNK)
         out[times] = counted(loop_values(mechanism, states.screws[times]), free)
     return out

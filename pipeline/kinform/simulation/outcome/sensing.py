@@ -12,16 +12,13 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.algebra.spatial import quaternions
+from kinform.foundation.rounding import ARITHMETIC
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
-from kinform.model.sensors import Reading
+from kinform.model.sensors import Reading, SensorKind
 from kinform.model.simulation import Simulation
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.states import States
-
-NO_TURN = 1e-12
-"""Half of an angle (rad) below which a turn has no axis."""
-
 
 AXES = ("x", "y", "z")
 
@@ -31,8 +28,7 @@ class Probe:
     """A sensor on bodies and joints of a port model, by what they are called; world axes at the pose of the model."""
 
     name: str
-    kind: str
-    """point, rotation, distance, angle, reaction."""
+    kind: SensorKind
     body: str = ""
     """Of a distance or an angle the first; of a reaction the one that it acts on."""
     other: str = ""
@@ -158,7 +154,7 @@ class _Seen:
         with np.errstate(invalid="ignore"):
             rate = np.einsum("ti,ti->t", q[:, 1:], w) / size
         # Where the bodies are as they were drawn, any turn is away from there.
-        return 2.0 * np.arctan2(size, q[:, 0]), np.where(size > NO_TURN, rate, np.linalg.norm(w, axis=1))
+        return 2.0 * np.arctan2(size, q[:, 0]), np.where(size > ARITHMETIC, rate, np.linalg.norm(w, axis=1))
 
     def _angle_about(self, probe: Probe, axis: Array) -> tuple[Array, Array]:
         """The twist of the swing and twist about the axis: of a turn about it the turn itself."""

@@ -8,10 +8,10 @@ G v = 0 on them. Joints that a law leads are put on their law wherever y is eval
 (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapters 5 and 6), and the loops are eliminated: with rates
 ordered dependent, free, led, motions E = (−B; 1) keep them closed, and Eᵀ(M a − f) = 0 has as many unknowns as
 there are freedoms. Long trees with few loops go another way, of the same result, in time that grows as their links
-(`kernel.articulated`; `kernel.choice.way` decides by what either costs).
+(`kernel.articulated`; `kernel.pivoting.choose_method` decides by what either costs).
 
 Which rows count. Redundant loops have dependent rows. Their rank is decided once, at the start, by singular values;
-rows and dependent rates are then chosen by complete pivoting (`kernel.choice`), those of joints that close loops
+rows and dependent rates are then chosen by complete pivoting (`kernel.pivoting`), those of joints that close loops
 first, and kept. Each evaluation eliminates in that order. When a pivot has fallen to a tenth of what it was when
 chosen (`SolverSettings.keep`), the kernel comes back (WORN) and the choice is made again. The margin, smallest
 pivot over largest, tells how far the pose is from a singular one.

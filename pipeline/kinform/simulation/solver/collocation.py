@@ -18,15 +18,11 @@ import numpy as np
 
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
+from kinform.simulation.solver.constants import CONVERGED
 from kinform.simulation.solver.run_state import Run
 
 COLLOCATION_ROUNDS = 40
-"""Iterations of the stages; five to ten are usual."""
-COLLOCATION_SETTLED = 1e-15
-"""Change of a state (rad, lengths, also a second) by one that ends them; below its root they also end where the noise
-of slopes keeps it from falling to half."""
-NODE_ROUNDING = 1e-16
-"""Newton's last correction of a node: below its last bit."""
+"""Iterations of the stages: five to ten are usual. A choice."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,8 +63,8 @@ def pass_over(run: Run, start: Array, begin: float, span: float, slopes: Array) 
             slopes[i] = slope
         if not np.isfinite(change):
             return None
-        if change <= COLLOCATION_SETTLED or (change < math.sqrt(COLLOCATION_SETTLED) and change > 0.5 * before):
-            # What is left is the noise of slopes.
+        if change <= CONVERGED or (change < math.sqrt(CONVERGED) and change > 0.5 * before):
+            # What is left is rounding, or the noise of slopes near the pose, which keeps it from falling further.
             break
         before = change
     else:
@@ -88,7 +84,7 @@ def places_of(stages: int) -> tuple[float, ...]:
             value = _legendre(x, stages)
             slope = stages * (x * value[stages] - value[stages - 1]) / (x * x - 1.0)
             x -= value[stages] / slope
-            if abs(value[stages] / slope) < NODE_ROUNDING:
+            if abs(value[stages] / slope) < CONVERGED:
                 break
         nodes.append(0.5 + 0.5 * x)
     return tuple(nodes)

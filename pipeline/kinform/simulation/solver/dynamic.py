@@ -17,29 +17,30 @@ from kinform.simulation.record import Record
 from kinform.simulation.settings import Conduct
 from kinform.simulation.solver.constants import LOOK
 from kinform.simulation.solver.implicit import run_implicit
-from kinform.simulation.solver.leap import leap
 from kinform.simulation.solver.run_state import Run
+from kinform.simulation.solver.singular_crossing import cross_singular_pose
 from kinform.simulation.solver.start import Start
 from kinform.simulation.solver.stiffness import is_stiff, vibration
 from kinform.simulation.solver.stops import Contact
 
 PLAIN = 20_000
-"""Evaluations times links that are made without the compiled functions: 25 μs each, 60 in loops, so about as long
-as loading them takes."""
+"""Evaluations times links that are made without the compiled functions: 25 μs each, 60 in loops, so 0.5 to 1.2 s, about
+as long as loading them takes."""
 UNREADY = 10
-"""Times more where they would have to be compiled first."""
+"""Times more where they would have to be compiled first, which takes ten seconds."""
 LONGER = 1.5
-"""Times the plain evaluations that a run must promise to take before it is compiled early: its pace may fall."""
+"""Times the plain evaluations that a run must promise to take before it is compiled early: its pace may change. A
+choice."""
 SHOWN = 60
-"""Steps from which on the whole run can be told to be longer than that."""
+"""Steps from which on the length of the whole run can be told: the first dozen grow from a short one. A choice."""
 LARGE = 1000
-"""Rates times independent rows of the loops from which on plain functions would take too long at all."""
+"""Rates times independent rows of the loops (32 of each) from which on plain functions take too long at all. A
+choice."""
 STALL = 1000
-"""Steps after which the run must have come on: at their pace it would take ten times its budget."""
-STALLED_BUDGETS = 10.0
-"""Budgets of steps that a run may promise to take before it counts as stalled."""
+"""Steps after which a run is asked how far they have brought it. It counts as stalled where at their pace it would take
+ten times its budget: a choice."""
 REPORTS = 50
-"""Times at least that the progress of a run is told."""
+"""Times at least that the progress of a run is reported: every 2 %."""
 
 
 def run_dynamic(dynamics: Dynamics, start: Start, times: Array, conduct: Conduct) -> Record:
@@ -91,7 +92,7 @@ class _Driver:
                 status = layout.SPENT
             if status == layout.DONE and run.clock[layout.NOW] >= run.clock[layout.END]:
                 return ""
-            crossed = leap(run) if status in _AT_SINGULAR_POSES else ""
+            crossed = cross_singular_pose(run) if status in _AT_SINGULAR_POSES else ""
             if crossed is None:
                 continue
             if crossed:
@@ -148,7 +149,7 @@ class _Driver:
         if run.tally[layout.STEPS] < steps + STALL:
             return False
         self.mark = int(run.tally[layout.STEPS]), float(run.clock[layout.NOW])
-        share = STALL / (STALLED_BUDGETS * run.settings.steps)
+        share = STALL / (10.0 * run.settings.steps)
         return bool(self.mark[1] - t < share * (run.times[-1] - run.times[0]))
 
     def _compile(self) -> None:

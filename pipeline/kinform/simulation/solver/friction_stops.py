@@ -10,10 +10,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
 from kinform.simulation.mechanism.actuation import Stop
+from kinform.simulation.solver.constants import MOST_EVENTS
 from kinform.simulation.solver.sticking import Sticking, ways
-from kinform.simulation.solver.stops import MOST_IMPACTS, SLOW_LEAP, STOP_MOVES, impact_on, motions
+from kinform.simulation.solver.stops import SLOW_REBOUND, impact_on, motions
 
 
 def strike(state: Sticking, number: int, t: float) -> str:
@@ -22,8 +24,8 @@ def strike(state: Sticking, number: int, t: float) -> str:
     run, base, stop = state.run, state.base, state.base.stops[number]
     tables = run.dynamics.tables
     state.impacts += 1
-    if state.impacts > MOST_IMPACTS:
-        return f"at t = {t:.6g} s {stop.joint} has struck its end stops {MOST_IMPACTS} times"
+    if state.impacts > MOST_EVENTS:
+        return f"at t = {t:.6g} s {stop.joint} has struck its end stops {MOST_EVENTS} times"
     wrong = _shared(state, stop)
     if wrong:
         return f"at t = {t:.6g} s {stop.joint} reaches its end stop, and {wrong}"
@@ -42,7 +44,7 @@ def strike(state: Sticking, number: int, t: float) -> str:
     scale = run.dynamics.mechanism.scale
     size = float(np.abs(change / scale).max(initial=0.0))
     loaded = [one.joint for one in state.rubbings if one.lost is not None or one.loaded]
-    if loaded and size > SLOW_LEAP:
+    if loaded and size > SLOW_REBOUND:
         return (
             f"at t = {t:.6g} s {stop.joint} strikes its end stop, and what the friction in {loaded[0]} does in an "
             "impact is not known, as it follows from the load: give it as an effort (effort = ...) to go on"
@@ -55,11 +57,11 @@ def strike(state: Sticking, number: int, t: float) -> str:
     run.y[-1] += work
     run.y[base.meter_of(stop.v) + 1] += work
     q[stop.q], v = stop.limit, v + change
-    rounding = STOP_MOVES * max(1.0, float(np.abs(after).max()))
-    slow = bool(np.all(after > -SLOW_LEAP))
+    rounding = SOLVED * max(1.0, float(np.abs(after).max()))
+    slow = bool(np.all(after > -SLOW_REBOUND))
     state.resting = [k for k, pace in zip(numbers, after, strict=True) if slow or pace >= -rounding]
     v[[base.stops[k].v for k in state.resting]] = 0.0
-    v[np.abs(v / scale) <= STOP_MOVES * size] = 0.0
+    v[np.abs(v / scale) <= SOLVED * size] = 0.0
     packed = tables.pack(q, v)
     run.y[: len(q) + len(v)] = packed[: len(q) + len(v)]
     state.begin(t)
@@ -85,4 +87,4 @@ def _shared(state: Sticking, stop: Stop) -> str:
 
 
 def _along(unit: Array, row: Array) -> bool:
-    return abs(float(unit @ row)) > STOP_MOVES * float(np.linalg.norm(row))
+    return abs(float(unit @ row)) > SOLVED * float(np.linalg.norm(row))

@@ -11,16 +11,14 @@ from typing import Any
 
 import numpy as np
 
+from kinform.foundation.rounding import ARITHMETIC
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
-from kinform.simulation.constants import STOP_HALVINGS, STOP_PASSED
+from kinform.simulation.constants import HALVINGS
 from kinform.simulation.kernel import layout
-from kinform.simulation.solver.paces import Controlled, Damped, lasting
+from kinform.simulation.solver.implicit_steps import ErrorControlled, Stepping, VibrationDamping, lasting_vibration
 from kinform.simulation.solver.run_state import Run
 from kinform.simulation.solver.stops import Contact
-
-REAL_ROOT = 1e-12
-"""Imaginary part of a root of a cubic that is real but for rounding."""
 
 
 def run_implicit(run: Run, contact: Contact, report: Callable[[], None], fastest: float = 0.0) -> str:
@@ -31,16 +29,16 @@ def run_implicit(run: Run, contact: Contact, report: Callable[[], None], fastest
             f"from t = {run.clock[layout.NOW]:.4g} s on the model is stiff and solved by an implicit method"
         )
     while run.clock[layout.NOW] < run.clock[layout.END]:
-        pace = Damped(run, fastest) if fastest else Controlled(run)
-        why = _until_change(run, contact, report, pace) or pace.fault()
+        stepping = VibrationDamping(run, fastest) if fastest else ErrorControlled(run)
+        why = _until_change(run, contact, report, stepping) or stepping.fault()
         if why:
             return why
-        fastest = lasting(run)
+        fastest = lasting_vibration(run)
     return ""
 
 
-def _until_change(run: Run, contact: Contact, report: Callable[[], None], pace: Controlled | Damped) -> str:
-    """Integrate until the end of the stretch, an end stop, or where another pace is to go on."""
+def _until_change(run: Run, contact: Contact, report: Callable[[], None], stepping: Stepping) -> str:
+    """Integrate until the end of the stretch, an end stop, or where other steps are to go on."""
     settings = run.settings
 
     def rates(t: float, y: Array) -> Array:
@@ -48,7 +46,7 @@ def _until_change(run: Run, contact: Contact, report: Callable[[], None], pace: 
         # A trial state may be far from any motion; what is not finite makes the method shorten its step.
         return dy if run.derivative(t, y.copy(), dy) > 0.0 else np.full_like(y, np.nan)
 
-    solver = pace.solver(rates, contact.longest())
+    solver = stepping.solver(rates, contact.longest())
     while solver.status == "running":
         contact.remember()
         before, y = float(solver.t), run.y.copy()
@@ -62,8 +60,8 @@ def _until_change(run: Run, contact: Contact, report: Callable[[], None], pace: 
             return f"at t = {solver.t:.6g} s the motion becomes too fast to follow, also by the implicit method"
         hit, place = _passed(run, solver, before)
         dense = solver.dense_output()
-        _sample(run, dense, pace, place)
-        run.y[:] = pace.corrected(dense(place)) if hit >= 0 else solver.y
+        _sample(run, dense, stepping, place)
+        run.y[:] = stepping.corrected(dense(place)) if hit >= 0 else solver.y
         run.clock[layout.NOW], run.clock[layout.STEP] = place, solver.h_abs
         run.tally[layout.HIT] = hit
         if contact.release_if_pulled():
@@ -79,7 +77,7 @@ def _until_change(run: Run, contact: Contact, report: Callable[[], None], pace: 
             solver.y = run.y.copy()
             solver.f = rates(place, solver.y)
         report()
-        if pace.ends(solver, y, place - before):
+        if stepping.ends(solver, y, place - before):
             return ""
         if run.tally[layout.STEPS] > settings.steps:
             return f"at t = {place:.6g} s {settings.steps} steps were used up: the model is stiff"
@@ -95,11 +93,11 @@ def _passed(run: Run, solver: Any, before: float) -> tuple[int, float]:
             continue
         # The curve over the step is a cubic: where it turns, and its ends, are where it reaches farthest.
         beyond = _Beyond(dense, int(at), int(sense), float(tables.nums[layout.STOPS][k, 0]))
-        past = next((t for t in (*beyond.turns(before, end), end) if beyond(t) > STOP_PASSED), None)
+        past = next((t for t in (*beyond.turns(before, end), end) if beyond(t) > ARITHMETIC), None)
         if past is None:
             continue
         low, high = before, past
-        for _ in range(STOP_HALVINGS):
+        for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
             low, high = (low, middle) if beyond(middle) > 0.0 else (middle, high)
         hit, end = k, high
@@ -123,13 +121,13 @@ class _Beyond:
         share = np.linspace(0.0, 1.0, 4)
         cubic = np.linalg.solve(np.vander(share), [self(begin + x * (end - begin)) for x in share])
         roots = np.roots(np.polyder(cubic))
-        real = np.sort(roots[np.abs(roots.imag) < REAL_ROOT].real)
+        real = np.sort(roots[np.abs(roots.imag) < ARITHMETIC].real)
         return [float(begin + x * (end - begin)) for x in real if 0.0 < x < 1.0]
 
 
-def _sample(run: Run, dense: Any, pace: Controlled | Damped, until: float) -> None:
+def _sample(run: Run, dense: Any, stepping: Stepping, until: float) -> None:
     """Outputs up to a time in the last step."""
     while run.tally[layout.NEXT] < len(run.times) and run.times[run.tally[layout.NEXT]] <= until:
         t = float(run.times[run.tally[layout.NEXT]])
-        run.sample(t, np.ascontiguousarray(pace.corrected(dense(t))), run.out[run.tally[layout.NEXT]])
+        run.sample(t, np.ascontiguousarray(stepping.corrected(dense(t))), run.out[run.tally[layout.NEXT]])
         run.tally[layout.NEXT] += 1

@@ -6,12 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
 from kinform.simulation.mechanism.actuation import Actuation
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.record import Record
 from kinform.simulation.settings import Conduct, SolverSettings
-from kinform.simulation.solver.follow import DETERMINED, Follower, Led
+from kinform.simulation.solver.continuation import Follower, Led
 from kinform.simulation.solver.start import Start
 
 
@@ -50,7 +51,7 @@ def notes_of_rest(mechanism: Mechanism, actuation: Actuation, start: Start, sett
     follower = _follower(mechanism, actuation, start, settings)
     scale = mechanism.scale[follower.unknown]
     size = np.abs(follower.loose / scale[:, None]).max(axis=1, initial=0.0)
-    loose = set(follower.unknown[size > DETERMINED].tolist())
+    loose = set(follower.unknown[size > SOLVED].tolist())
     closing = np.abs(mechanism.closure_at(start.q)).max(axis=0, initial=0.0) > 0.0
     still: list[str] = []
     yielding: list[str] = []

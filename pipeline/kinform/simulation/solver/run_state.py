@@ -19,12 +19,11 @@ FIRST_STEP = 1e-3
 STIFF_PATIENCE = 15.0
 """Steps in a row that a decay kept short before the run is looked at for stiffness: those of Hairer's DOP853."""
 PASSED_BEFORE_STOP = 1e-3
-"""s: a singular pose nearer than this to where a run stopped is why it did, and was not passed."""
+"""s: a singular pose nearer than this to where a run stopped is why it did, and was not passed. A choice: steps that
+shrink towards one are far shorter."""
 APPROACHED = 3e-3
-"""Margin below which a step that ends there was not laid across a singular pose ahead, but came too near."""
-FAR_BEHIND = 3.0 * APPROACHED
-"""Margin above which a pose that could not be leaped over is behind, and others are looked for: a choice. Forty
-four-bars in a row never come above 0.05."""
+"""Margin below which a step that ends there was not laid across a singular pose ahead, but came too near. A pose that
+could not be crossed is behind from three times this on. Choices: forty four-bars in a row never come above 0.05."""
 
 
 class Run:
@@ -126,7 +125,7 @@ class Run:
     def look_ahead(self, wanted: bool) -> None:
         """Whether the kernel is to come back where a step ends near a singular pose; after one that could not be leaped
         over, not before it is far behind."""
-        if wanted and self.clock[layout.MARGINS] > FAR_BEHIND:
+        if wanted and self.clock[layout.MARGINS] > 3.0 * APPROACHED:
             self.clock[layout.APPROACH] = APPROACHED
         elif not wanted:
             self.clock[layout.APPROACH] = 0.0

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from kinform.foundation.meant import first_names
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.simulation.mechanism.actuation import Actuation
@@ -15,18 +16,14 @@ from kinform.simulation.mechanism.closure import Factor, factor, rank_of, settle
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.states import gaps_at, poses_at
 from kinform.simulation.settings import SolverSettings
-from kinform.simulation.solver.follow import Follower, Led
+from kinform.simulation.solver.continuation import Follower, Led
 
-LEAST_MOTION = 1e-9
-"""Share of the greatest rate above which rates are motions."""
 START_SHARE = 0.03
-"""Of a motion (rad, or lengths) from the start that shows whether the loops bear it."""
+"""Of a motion (rad, or lengths) from the start that shows whether the loops bear it: a choice, so long that what opens
+them stands out from rounding, so short that Newton closes what does not."""
 START_GAP = 0.01
-"""Share of the square of that motion: loops that open by more do not bear it, as its curvature opens them by less."""
-START_NAMED = 1e-6
-"""Share of the greatest rate of a motion that tears loops from which on a joint is named."""
-CONTRADICTION, CONTRADICTION_LEAST = 1e-9, 1e-12
-"""Relative and absolute difference (rad or m, a second) from a law of motion that an initial value may have."""
+"""Share of the square of that motion: loops that stay open by more do not bear it. The curvature of a motion that they
+bear opens them by about its square, and Newton closes that."""
 
 
 OVERDRIVEN = (
@@ -157,7 +154,7 @@ def _opens(follower: Follower, v: Array) -> bool:
 def _notes_of_least(mechanism: Mechanism, follower: Follower, v: Array) -> tuple[str, ...]:
     """What loops share out between joints, and nothing that is stated decides how: a loose pin turns with either."""
     rates = np.abs(v[follower.undetermined])
-    moving = follower.undetermined[rates > LEAST_MOTION * float(rates.max(initial=0.0))]
+    moving = follower.undetermined[rates > SOLVED * float(rates.max(initial=0.0))]
     if not len(moving):
         return ()
     return (
@@ -174,7 +171,7 @@ def _contradictions(actuation: Actuation, stated: tuple[Stated, ...]) -> tuple[s
         for k in np.flatnonzero(actuation.led == value.v):
             wanted, law = (value.position, value.velocity), (values[k], rates[k])
             wanted = (law[0], wanted[1]) if value.solved else wanted
-            if not np.allclose(wanted, law, rtol=CONTRADICTION, atol=CONTRADICTION_LEAST):
+            if not np.allclose(wanted, law, rtol=SOLVED, atol=ARITHMETIC):
                 notes.append(f"{value.name} starts where its motion law puts it, not at its initial value")
     return tuple(notes)
 
@@ -210,7 +207,7 @@ def torn_at_start(mechanism: Mechanism, actuation: Actuation, start: Start, rank
         motion = motions[k]
         _, gap, _ = settle(mechanism, moved[k], free, rank, settings)
         if gap > most:
-            moving = free[np.abs(motion) > START_NAMED * np.abs(motion).max()]
+            moving = free[np.abs(motion) > SINGLE * np.abs(motion).max()]
             return first_names(mechanism.joints_of(moving))
     return ""
 

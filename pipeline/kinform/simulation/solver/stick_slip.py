@@ -17,8 +17,10 @@ import numpy as np
 
 from kinform.behaviour.signals import Sine
 from kinform.foundation.algebra.vectors import norm
+from kinform.foundation.rounding import SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
+from kinform.simulation.constants import HALVINGS, STEP_PARTS
 from kinform.simulation.kernel import layout
 from kinform.simulation.kernel.calls import engine, ready
 from kinform.simulation.mechanism.actuation import Stop
@@ -26,23 +28,21 @@ from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.states import states_at
 from kinform.simulation.record import FrictionRecord, Record
 from kinform.simulation.settings import Conduct
-from kinform.simulation.solver.constants import LAW_PARTS, RELEASE_HALVINGS
+from kinform.simulation.solver.constants import CONVERGED, LAW_PARTS
+from kinform.simulation.solver.friction_forces import NotDeterminedError, set_efforts
 from kinform.simulation.solver.friction_stops import strike
 from kinform.simulation.solver.run_state import Run
-from kinform.simulation.solver.slip import NotDeterminedError, set_efforts
 from kinform.simulation.solver.start import Start
 from kinform.simulation.solver.sticking import Hold, Sticking, grouped, ways
 
-LAST_OUTPUT = 1e-9
-"""Share of the output step within which the end of a run is the last multiple of it."""
 SLIP_PARTS = 8
-"""Parts of a step at which rates are looked at for a reversal: more often than a polynomial of order 7 turns."""
-STICK_PARTS = 4
-"""Parts of a step at which what sticks is looked at; laws that swing shorten the steps (`Contact.longest`)."""
+"""Parts of a step at whose ends rates are looked at for a reversal: the dense output, a polynomial of order 7, turns
+less often."""
 MOST_SWITCHES = 100_000
-"""Changes between sticking and slipping before a run gives up."""
+"""Changes between sticking and slipping before a run gives up: a choice."""
 SWITCHES_AT_ONCE = 8
-"""Changes at one and the same time, for each friction, before a run gives up: three are ordinary."""
+"""Changes at one and the same time, for each friction, before a run gives up as one that goes to and fro: three are
+ordinary."""
 
 
 Dense = Callable[[float], Array]
@@ -187,7 +187,7 @@ class _Driver:
         else:
             state.stopped(what, t)
         before, count = self.at_once
-        self.at_once = (t, count + 1) if t <= before + LAST_OUTPUT * (run.times[-1] - run.times[0]) else (t, 1)
+        self.at_once = (t, count + 1) if t <= before + SOLVED * (run.times[-1] - run.times[0]) else (t, 1)
         if (
             self.at_once[1] > SWITCHES_AT_ONCE * (len(state.rubbings) + len(state.base.stops))
             or state.switches > MOST_SWITCHES
@@ -231,7 +231,7 @@ class _Driver:
                 return known[t][way]
 
             for way in (1, -1):
-                when = _falls(partial(left, way=way), begin, end, STICK_PARTS)
+                when = _falls(partial(left, way=way), begin, end, STEP_PARTS)
                 if when is not None:
                     found.append((when, hold, way))
         return min(found, key=lambda change: change[0]) if found else None
@@ -280,7 +280,7 @@ def _falls(function: Callable[[float], float], begin: float, end: float, parts: 
             low = function(before)
             if low <= 0.0:
                 return before if before > begin or low < 0.0 else _after(function, begin, float(t))
-            return float(brentq(function, before, float(t), xtol=4.0 * np.spacing(max(abs(end), 1e-300)), rtol=1e-15))
+            return float(brentq(function, before, float(t), xtol=4.0 * np.spacing(max(abs(end), TINY)), rtol=CONVERGED))
         before = float(t)
     return None
 
@@ -290,8 +290,8 @@ def _after(function: Callable[[float], float], begin: float, end: float) -> floa
     from scipy.optimize import brentq
 
     t = end
-    for _ in range(RELEASE_HALVINGS):
+    for _ in range(HALVINGS):
         t = begin + 0.5 * (t - begin)
         if function(t) > 0.0:
-            return float(brentq(function, t, end, rtol=1e-15))
+            return float(brentq(function, t, end, rtol=CONVERGED))
     return begin

@@ -13,21 +13,15 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from kinform.behaviour.signals import Constant
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.simulation.mechanism.actuation import Actuation, Stop
 from kinform.simulation.mechanism.closure import factor, rank_of
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.rubbing import Rubbing
+from kinform.simulation.solver.friction_forces import Answer, NotDeterminedError, Rub, friction_efforts
 from kinform.simulation.solver.run_state import Run
-from kinform.simulation.solver.slip import Answer, NotDeterminedError, Rub, dry
-
-STICK_ROUNDING = 1e-12
-"""Share of the limit by which what holds may exceed it and still sticks: a block at exactly atan μ stays."""
-SAME_MOTION = 1e-9
-"""Sine of the angle between the ways in which two frictions depend on the free motions, below which it is one."""
-DEAD_CENTRE = 1e-6
-"""Share of a free motion below which a joint takes no part in it, as at a dead centre: its rate turns."""
 
 
 def ways(dynamics: Dynamics, actuation: Actuation, q: Array, free: float, rates: Sequence[int] | None = None) -> Array:
@@ -51,18 +45,18 @@ def grouped(rows: Array) -> tuple[list[list[int]], list[int], list[int]]:
     groups: list[list[int]] = []
     led = []
     for k, row in enumerate(rows):
-        if size[k] < DEAD_CENTRE:
+        if size[k] < SINGLE:
             led.append(k)
             continue
         for group in groups:
             other = rows[group[0]] / size[group[0]]
-            if float(np.linalg.norm(row / size[k] - (row @ other) / size[k] * other)) < SAME_MOTION:
+            if float(np.linalg.norm(row / size[k] - (row @ other) / size[k] * other)) < SOLVED:
                 group.append(k)
                 break
         else:
             groups.append([k])
     firsts = np.array([rows[group[0]] / size[group[0]] for group in groups]).reshape(len(groups), rows.shape[1])
-    if len(groups) and np.linalg.matrix_rank(firsts, tol=DEAD_CENTRE) < len(groups):
+    if len(groups) and np.linalg.matrix_rank(firsts, tol=SINGLE) < len(groups):
         return groups, led, [k for group in groups for k in group]
     return groups, led, []
 
@@ -145,7 +139,7 @@ class Sticking:
         v, a = self.rates(), self.answer(t, self.run.y).accelerations
         for k in undecided:
             at = self.rubbings[k].v
-            still = abs(v[at]) <= STICK_ROUNDING * abs(a[at])
+            still = abs(v[at]) <= ARITHMETIC * abs(a[at])
             self.senses[k] = int(np.sign(a[at] if still else v[at]))
 
     def let_all_go(self) -> None:
@@ -211,7 +205,7 @@ class Sticking:
     def answer(self, t: float, y: Array, others: Mapping[int, Rub] | None = None) -> Answer:
         """What all frictions do, `others` beside those that slip. Raises NotDeterminedError."""
         held = [hold.held for hold in self.holds if hold.group >= 0]
-        return dry(self.run, t, y, self.acting | dict(others or {}), held)
+        return friction_efforts(self.run, t, y, self.acting | dict(others or {}), held)
 
     def limits(self, answer: Answer) -> Array:
         """(m,) what each friction takes at most at rest, against what it holds or the way in which it slips."""
@@ -234,8 +228,10 @@ class Sticking:
         one = self.rubbings[hold.held]
         a, scale = self.answer(t, self.run.y).accelerations, self.run.dynamics.mechanism.scale
         # At the moment of release all that moves it is balanced, but for rounding of what there is without friction.
-        size = max(float(np.abs(x / scale).max()) for x in (a, dry(self.run, t, self.run.y, {}).accelerations))
-        if way * a[one.v] / scale[one.v] < -DEAD_CENTRE * size:
+        size = max(
+            float(np.abs(x / scale).max()) for x in (a, friction_efforts(self.run, t, self.run.y, {}).accelerations)
+        )
+        if way * a[one.v] / scale[one.v] < -SINGLE * size:
             raise NotDeterminedError(
                 f"at t = {t:.6g} s {one.joint} can neither stick nor slip: more friction than what moves it bears"
             )
@@ -255,7 +251,7 @@ class Sticking:
 
     def _takes_part(self, k: int) -> bool:
         """Whether the joint moves when its group does, at the present pose."""
-        return float(np.linalg.norm(self._rows()[k])) > DEAD_CENTRE
+        return float(np.linalg.norm(self._rows()[k])) > SINGLE
 
     def _rows(self) -> Array:
         run = self.run
@@ -285,5 +281,6 @@ class Sticking:
 
 
 def _share(left: float, size: float) -> float:
-    """What is left of a limit as a share of the greater of it and what is needed; 0 within rounding."""
-    return 0.0 if abs(left) <= STICK_ROUNDING * size else left / size
+    """What is left of a limit as a share of the greater of it and what is needed; 0 within rounding: a block on a slope
+    of exactly atan μ stays."""
+    return 0.0 if abs(left) <= ARITHMETIC * size else left / size

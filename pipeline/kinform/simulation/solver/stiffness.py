@@ -17,7 +17,8 @@ from kinform.simulation.kernel import layout
 from kinform.simulation.solver.run_state import Run
 
 FAST_DECAY = 0.4
-"""Decay within a step, as an exponent, from which on it is what limits the step."""
+"""Decay within a step, as an exponent, from which on it is what limits the step: a choice, well inside the region of
+stability, which ends at 6."""
 VIBRATES = 0.05
 """Phase (rad) of a vibration within a step from which on it is what limits the step: with the tolerances it is 0.3 to
 1, whatever the amplitude, as that of a vibration which matters is far above them."""

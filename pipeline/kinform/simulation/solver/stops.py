@@ -13,28 +13,22 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from kinform.behaviour.signals import Constant, Sine
+from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.model.arrays import Array, Ints
+from kinform.simulation.constants import HALVINGS, STEP_PARTS
 from kinform.simulation.kernel import layout
 from kinform.simulation.mechanism.actuation import Actuation, Stop
 from kinform.simulation.mechanism.closure import factor
 from kinform.simulation.mechanism.dynamics import Dynamics
-from kinform.simulation.solver.constants import LAW_PARTS, RELEASE_HALVINGS
+from kinform.simulation.solver.constants import LAW_PARTS, MOST_EVENTS
 from kinform.simulation.solver.run_state import Run
 
-MOST_IMPACTS = 1000
-"""Impacts in one run, after which it chatters."""
-STOP_MOVES = 1e-9
-"""Share of a joint in the motions that are left, from which on it moves in one of them."""
-SLOW_LEAP = 1e-7
-"""rad/s or m/s: leaps from stops so slow that they end at once."""
-AT_STOP = 1e-9
-"""rad or m: so far beyond a stop a joint is at it."""
-IMPACT_ROUNDING = 1e-6
-"""Share of the greatest pace at an impact up to which a joint may seem to go on beyond its stop."""
-RELEASE_PARTS = 4
-"""Parts of a step at whose ends a held stop is asked whether it pulls."""
-RELEASE_BUDGET = 1000
-"""Steps to go again from the start of a step to a time within it."""
+SLOW_REBOUND = 1e-7
+"""rad/s or m/s: rebounds so slow count as the end of a sequence of ever smaller ones without end (Zeno impacts). A
+choice: under gravity such a rebound lasts 2e-8 s and goes 5e-16 m."""
+REPEATED_STEPS = 1000
+"""Steps in which to go again from the start of a step to a time within it, which one or two usually do: a choice, so
+that a run which cannot ends."""
 
 
 class Contact:
@@ -59,8 +53,8 @@ class Contact:
         stop = run.dynamics.actuation.stops[int(run.tally[layout.HIT])]
         self.impacts += 1
         t = float(run.clock[layout.NOW])
-        if self.impacts > MOST_IMPACTS:
-            return f"at t = {t:.6g} s {stop.joint} has struck its end stops {MOST_IMPACTS} times"
+        if self.impacts > MOST_EVENTS:
+            return f"at t = {t:.6g} s {stop.joint} has struck its end stops {MOST_EVENTS} times"
         tables, stops = run.dynamics.tables, [*self.holding, stop]
         q, v = tables.unpack(run.y)
         loose = self._held([])
@@ -82,10 +76,10 @@ class Contact:
         run.y[-1] += work
         run.y[self.run.dynamics.actuation.meter_of(stop.v) + 1] += work
         v = v + change
-        rounding = STOP_MOVES * max(1.0, float(np.abs(after).max()))
+        rounding = SOLVED * max(1.0, float(np.abs(after).max()))
         leaving = [each for each, pace in zip(stops, after, strict=True) if pace < -rounding]
-        if all(after > -SLOW_LEAP) and leaving:
-            # Ever smaller leaps, without end: what would soon be back stays, unless it is pulled off.
+        if all(after > -SLOW_REBOUND) and leaving:
+            # Zeno impacts: what would soon be back stays, unless it is pulled off.
             still = v.copy()
             still[[each.v for each in leaving]] = 0.0
             if self._stay(stops, q, still) and max(self._pull(each) for each in self.holding) <= 0.0:
@@ -111,7 +105,7 @@ class Contact:
         kept: list[Stop] = []
         for stop in wanted:
             free = self._held(kept).free
-            if np.linalg.norm(motions(self.run.dynamics, q, free, self.run.rank(free))[stop.v]) > STOP_MOVES:
+            if np.linalg.norm(motions(self.run.dynamics, q, free, self.run.rank(free))[stop.v]) > SOLVED:
                 kept.append(stop)
         actuation = self._held(kept)
         self.holding = kept
@@ -144,13 +138,13 @@ class Contact:
         between = self._between(y, begin, reached, until)
         if between is None:
             return False
-        asked = (*np.linspace(begin, until, RELEASE_PARTS + 1)[1:-1], until)
+        asked = (*np.linspace(begin, until, STEP_PARTS + 1)[1:-1], until)
         pulled = next((t for t in asked if self._pulled(t, between(t))), None)
         if pulled is None:
             return False
         end, step = float(run.clock[layout.END]), float(run.clock[layout.STEP])
         low, high = begin, float(pulled)
-        for _ in range(RELEASE_HALVINGS):
+        for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
             self._again(middle)
             low, high = (low, middle) if self._pulled(middle, run.y) else (middle, high)
@@ -187,7 +181,7 @@ class Contact:
         run = self.run
         run.y[:], run.clock[layout.NOW], run.tally[layout.NEXT] = self._before
         run.clock[layout.END], run.clock[layout.STEP], run.tally[layout.FRESH] = t, 1.0, 1
-        run.tally[layout.BUDGET] = RELEASE_BUDGET
+        run.tally[layout.BUDGET] = REPEATED_STEPS
         run.tally[layout.PAUSE] = len(run.times) + 1
         if t > self._before[1]:
             run.advance()
@@ -224,7 +218,7 @@ def beyond(stops: Sequence[Stop], q: Array) -> tuple[tuple[str, str], ...]:
             "the model is written): state an initial value on this side of the stop, or move the stop",
         )
         for stop in stops
-        if stop.sense * (q[stop.q] - stop.limit) > AT_STOP
+        if stop.sense * (q[stop.q] - stop.limit) > SOLVED
     )
 
 
@@ -246,13 +240,13 @@ def impact_on(null: Array, matrix: Array, v: Array, stops: Sequence[Stop]) -> tu
     back = np.array([stop.restitution for stop in stops]) * np.maximum(pace, 0.0)
     root = np.linalg.cholesky(null.T @ matrix @ null)
     ways = np.linalg.solve(root, outward.T)
-    held = np.linalg.norm(outward, axis=1) > STOP_MOVES
+    held = np.linalg.norm(outward, axis=1) > SOLVED
     pushes = np.zeros(len(stops))
     if held.any():
         pushes[held] = _pushes(ways[:, held], (pace + back)[held])
     change = -null @ np.linalg.solve(root.T, ways @ pushes)
     after = pace + np.array([stop.sense * change[stop.v] for stop in stops])
-    if (after > IMPACT_ROUNDING * np.abs(pace).max()).any():
+    if (after > SINGLE * np.abs(pace).max()).any():
         return None
     return change, after
 
