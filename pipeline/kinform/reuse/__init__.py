@@ -20,9 +20,9 @@ what its fingerprint leaves out. No file time, path, host or order of events cou
 
 `CODE_VERSION` is an integer in the `__init__` of each package whose code decides results. Raise it by one in a change
 after which the package may give other bits for some input, however few: another joint, number, order or message. Leave
-it where results stay the same: names, moved code, docstrings, speed. If in doubt, raise it: that costs each user one run
+it where results stay the same: names, moved code, docstrings, speed. If in doubt, raise it: that costs users one run
 from nothing, and forgetting it leaves stale results. Between releases it is what tells two states of the code apart;
-`benchmarks/golden.py` shows whether it has to be raised. It is stated by hand rather than computed, since a digest of the
+`benchmarks/golden.py` shows whether it has to be raised. It is stated by hand rather than computed: a digest of the
 source would change with every comment, and reading all source would take longer than a run that reuses everything.
 
 What is smaller than a stage is reused in the same way, each with a fingerprint of its own:
