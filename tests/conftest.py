@@ -1,8 +1,11 @@
-"""Runs that tests share."""
+"""Runs that tests share, and the command as a user runs it."""
 
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
+from collections.abc import Callable
 from pathlib import Path
 
 # before numpy is imported: the threads of BLAS wait for each other in loops, on processors that other workers need
@@ -49,3 +52,32 @@ def derive_design(tmp_path_factory):
         return known[manifest]
 
     return derive
+
+
+@pytest.fixture
+def kinform(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Run `kinform ARGUMENTS` in tmp_path, in a process of its own; stdout and stderr are pipes."""
+    from support.command_line import environment
+
+    def run(*arguments: object, cwd: Path = tmp_path, **extra: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [sys.executable, "-m", "kinform_cli", *map(str, arguments)],
+            cwd=cwd,
+            env=environment(**extra),
+            capture_output=True,
+            text=True,
+            timeout=120,
+        )
+
+    return run
+
+
+@pytest.fixture
+def command(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Run `kinform ARGUMENTS` in tmp_path, in this process: where nothing is asked of the process itself."""
+    from support.command_line import ran_here
+
+    def run(*arguments: object, cwd: Path = tmp_path, **extra: str) -> subprocess.CompletedProcess[str]:
+        return ran_here(*arguments, cwd=cwd, **extra)
+
+    return run

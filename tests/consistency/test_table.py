@@ -287,7 +287,7 @@ ELSEWHERE = {
     "KF415": "tests/descriptions/test_described.py",
     "KF417": "tests/descriptions/test_free_links.py",
     "KF412": "tests/collisions/test_ranges.py",
-    "KF450": "tests/cli/test_change.py",
+    "KF450": "tests/system/test_change.py",
     "KF505": "tests/collisions/test_ranges.py",
     "KF506": "tests/consistency/test_separating.py",
     "KF507": "tests/consistency/test_separating.py",

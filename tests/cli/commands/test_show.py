@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from pathlib import Path
 
 import pytest
+from support.places import FIXTURES
 
 from kinform import results as results_file
 
-FOUR_BAR = Path(__file__).parents[2] / "fixtures" / "mechanisms" / "four_bar" / "four_bar.toml"
+FOUR_BAR = FIXTURES / "mechanisms" / "four_bar" / "four_bar.toml"
 
 
 @pytest.fixture
@@ -35,7 +35,7 @@ def test_mobility_says_what_moves_what_is_redundant_and_draws_it(command, result
 
 def test_the_lead_of_a_screw_is_in_the_units_of_the_design(command, derive_design, tmp_path):
     path = tmp_path / "screw.h5"
-    results_file.write(derive_design(FOUR_BAR.parents[2] / "pairs" / "screw_right" / "screw_right.toml"), path)
+    results_file.write(derive_design(FIXTURES / "pairs" / "screw_right" / "screw_right.toml"), path)
     shown = command("show", path, "mobility", COLUMNS="200")
     assert " mm a turn" in shown.stdout
     assert " m a turn" not in shown.stdout
