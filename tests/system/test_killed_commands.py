@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import os
 import shutil
 import signal
 import subprocess
 import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -27,10 +30,9 @@ COMMANDS = {
 }
 STEPS = """
 import os, signal, sys
+from kinform import results
 from kinform.results import replacement
 from kinform_cli.main import main
-
-left = int(sys.argv.pop(1))
 
 def counted(step):
     def taken(*given, **named):
@@ -41,10 +43,24 @@ def counted(step):
         return step(*given, **named)
     return taken
 
-os.fsync, os.replace = counted(os.fsync), counted(os.replace)
-os.open = counted(os.open)
-sys.exit(main(sys.argv[1:]))
+os.chdir("../whole")
+assert main(sys.argv[1:]) in (0, 1)
+os.chdir("../work")
+print("ready", flush=True)
+for line in sys.stdin:
+    left = int(line)
+    if not (child := os.fork()):
+        os.dup2(os.open("errors.tmp", os.O_WRONLY | os.O_CREAT | os.O_TRUNC), 2)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        os.fsync, os.replace = counted(os.fsync), counted(os.replace)
+        os.open = counted(os.open)
+        code = main(sys.argv[1:])
+        sys.stderr.flush()
+        os._exit(code)
+    print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
 """
+"""Runs a command as it is in the folder `whole`, which imports all that it needs. Then in a fork for each line of stdin,
+which says after how many steps of writing the deed is done."""
 KILL = "os.kill(os.getpid(), signal.SIGKILL)"
 FULL = "raise OSError(28, 'No space left on device')"
 
@@ -67,26 +83,42 @@ def contents(folder: Path) -> dict[str, bytes]:
     }
 
 
-def stopped(folder: Path, deed: str, step: int, words: tuple[str, ...]) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-c", STEPS.format(deed=deed), str(step), *words, "-q"]
-    return subprocess.run(command, cwd=folder, env=environment(), capture_output=True, text=True, timeout=120)
+@contextlib.contextmanager
+def stopping(folder: Path, deed: str, words: tuple[str, ...]) -> Iterator[Callable[[int], tuple[int, str]]]:
+    """Exit code and errors of the command, stopped after so many steps of writing. A copy of the folder, `whole`, has
+    what the command does that nothing stops."""
+    shutil.copytree(folder, folder.parent / "whole")
+    command = [sys.executable, "-c", STEPS.format(deed=deed), *words, "-q"]
+    with subprocess.Popen(
+        command, cwd=folder, env=environment(), stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as runner:
+
+        def stopped(step: int) -> tuple[int, str]:
+            print(step, file=runner.stdin, flush=True)
+            code = int(runner.stdout.readline())
+            errors = folder / "errors.tmp"
+            text = errors.read_text()
+            errors.unlink()
+            return code, text
+
+        assert "ready\n" in iter(runner.stdout.readline, "")
+        yield stopped
+        runner.stdin.close()
 
 
-def step_by_step(folder: Path, deed: str, words: tuple[str, ...]) -> list[subprocess.CompletedProcess[str]]:
+def step_by_step(folder: Path, deed: str, words: tuple[str, ...]) -> list[tuple[int, str]]:
     """The command stopped at its first step of writing, at its second, and so on, until it ends; whatever is there
     after each is what it would have written, and a last run writes the rest and leaves nothing behind."""
-    whole = folder.parent / "whole"
-    shutil.copytree(folder, whole)
-    assert ran_here(*words, "-q", cwd=whole).returncode == 0
-    expected = contents(whole)
     runs = []
-    for step in range(100):
-        ran = stopped(folder, deed, step, words)
-        there = contents(folder)
-        assert all(expected[name] == data for name, data in there.items()), step
-        if ran.returncode == 0:
-            break
-        runs.append(ran)
+    with stopping(folder, deed, words) as stopped:
+        expected = contents(folder.parent / "whole")
+        for step in range(100):
+            code, errors = stopped(step)
+            there = contents(folder)
+            assert all(expected[name] == data for name, data in there.items()), step
+            if code == 0:
+                break
+            runs.append((code, errors))
     assert contents(folder) == expected
     assert not list(folder.rglob("*.tmp"))
     return runs
@@ -98,7 +130,7 @@ def step_by_step(folder: Path, deed: str, words: tuple[str, ...]) -> list[subpro
 def test_a_command_that_is_killed_at_any_step_leaves_whole_files_and_the_next_one_the_rest(what, folder) -> None:
     runs = step_by_step(folder, KILL, COMMANDS[what])
     assert len(runs) >= 3
-    assert {ran.returncode for ran in runs} == {-signal.SIGKILL}
+    assert {code for code, _ in runs} == {-signal.SIGKILL}
 
 
 @pytest.mark.parametrize(
@@ -106,10 +138,10 @@ def test_a_command_that_is_killed_at_any_step_leaves_whole_files_and_the_next_on
 )
 def test_a_disk_that_is_full_at_any_step_is_told_and_nothing_half_written_stays(what, folder) -> None:
     runs = step_by_step(folder, FULL, COMMANDS[what])
-    for ran in runs:
-        assert ran.returncode == 2
-        assert "No space left on device" in ran.stderr
-        assert "Traceback" not in ran.stderr
+    for code, errors in runs:
+        assert code == 2
+        assert os.strerror(errno.ENOSPC) in errors
+        assert "Traceback" not in errors
 
 
 @pytest.mark.parametrize(
@@ -156,7 +188,8 @@ def test_a_killed_command_loses_nothing_that_was_there(folder: Path) -> None:
     before = contents(folder)
     text = (folder / NAME).read_text()
     (folder / NAME).write_text(text.replace('"steel"', '"brass"'))
-    assert stopped(folder, KILL, 2, ("run", NAME, "-o", "r.h5")).returncode == -signal.SIGKILL
+    with stopping(folder, KILL, ("run", NAME, "-o", "r.h5")) as stopped:
+        assert stopped(2)[0] == -signal.SIGKILL
     (folder / NAME).write_text(text)
     assert contents(folder) == before
     assert os.listdir(folder)
