@@ -59,8 +59,8 @@ for line in sys.stdin:
         os._exit(code)
     print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
 """
-"""Runs a command as it is in the folder `whole`, which imports all that it needs. Then in a fork for each line of stdin,
-which says after how many steps of writing the deed is done."""
+"""Runs a command as it is in the folder `whole`, which imports all that it needs; then in a fork for each line of
+stdin, which says after how many steps of writing the deed is done."""
 KILL = "os.kill(os.getpid(), signal.SIGKILL)"
 FULL = "raise OSError(28, 'No space left on device')"
 
