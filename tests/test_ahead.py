@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 from support.places import FIXTURES
 
 import kinform
@@ -16,7 +18,7 @@ def test_a_run_gives_the_same_with_something_done_ahead_of_it(tmp_path, monkeypa
     kinform.run(FOUR_BAR, alone)
     monkeypatch.setattr(ahead, "LARGE", 0)
     monkeypatch.setattr(joint_ranges, "SHARED_FACETS", 0)
-    monkeypatch.setattr("kinform.contacts.find.LITTLE_PAIRS", -1)
+    monkeypatch.setattr(sys.modules["kinform.contacts.find"], "LITTLE_PAIRS", -1)
     made = []
     of = ahead.of
     monkeypatch.setattr(ahead, "of", lambda assembly: made.append(of(assembly)) or made[-1])

@@ -117,8 +117,9 @@ def test_what_is_not_computed_names_the_command_that_computes_it(tmp_path: Path)
     commands = {"contacts": "contacts", "joints": "joints", "bodies": "joints", "mobility": "joints", "mass": "mass",
                 "behaviour": "simulate", "simulation": "simulate", "findings": "check"}  # fmt: skip
     for name, command in commands.items():
-        with pytest.raises(kinform.StageError, match=f"kinform {command}"):
+        with pytest.raises(kinform.StageError) as caught:
             getattr(results, name)
+        assert caught.value.needs == command
     assert "seeker_1dof" in repr(results)
 
 
@@ -133,7 +134,7 @@ def test_a_representation_names_joints_and_counts(outcome: kinform.Outcome) -> N
 
 def test_meshes_in_place_of_a_manifest_need_their_unit(tmp_path: Path) -> None:
     meshes = sorted((FIXTURES / "pairs/revolute_collars").glob("*.stl"))
-    with pytest.raises(kinform.InputError, match="unit"):
+    with pytest.raises(kinform.InputError):
         kinform.run(meshes)
     assert len(kinform.run(meshes, units="mm").parts) == 2
 
@@ -186,8 +187,9 @@ class TestSummary:
 
         results = kinform.Results(stages.import_(SEEKER))
         assert results.summary()["joints"] is None
-        with pytest.raises(kinform.StageError, match="kinform joints"):
+        with pytest.raises(kinform.StageError) as caught:
             results.summary("joints")
+        assert caught.value.needs == "joints"
 
     def test_an_unknown_topic_lists_the_known_ones(self, outcome: kinform.Outcome) -> None:
         with pytest.raises(ValueError, match="mobility"):

@@ -93,4 +93,4 @@ def test_what_is_no_results_of_joints_is_told_with_the_command_that_makes_them(t
     assert ran.returncode == 2 and "kinform run arm.urdf -o arm.h5" in ran.stderr
     assert ran_here("import", "arm.urdf", "-o", "arm.h5", cwd=tmp_path).returncode == 0
     ran = ran_here("catalog", "find", "--like", "arm.h5", cwd=tmp_path)
-    assert ran.returncode == 2 and "arm.h5: error: has no results of `kinform joints`" in ran.stderr
+    assert ran.returncode == 2 and "arm.h5: error: " in ran.stderr and "kinform joints" in ran.stderr

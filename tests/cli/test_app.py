@@ -145,4 +145,4 @@ def test_help_reads_at_80_columns(command: Callable[..., Ran]) -> None:
 def test_meshes_without_a_unit_are_told_what_to_add(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "a.stl").write_bytes(bytes(84))
     assert main(["init", str(tmp_path / "a.stl")]) == 2
-    assert "add --units mm" in capsys.readouterr().err
+    assert "--units mm" in capsys.readouterr().err

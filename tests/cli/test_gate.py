@@ -61,7 +61,9 @@ def test_no_color_and_a_pipe_change_no_code_and_no_byte(format, red, capsys, mon
     assert "\x1b" not in plain
 
 
-@pytest.mark.parametrize("format", FORMATS)
+@pytest.mark.parametrize(
+    "format", [pytest.param(f, marks=[] if f in ("full", "json") else pytest.mark.slow) for f in FORMATS]
+)
 def test_a_reader_that_leaves_early_changes_no_code(format, red):
     command = [sys.executable, "-m", "kinform_cli", "check", str(red), "-f", format]
     running = subprocess.Popen(command, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

@@ -75,9 +75,10 @@ def test_what_stops_a_write_leaves_the_old_file_and_no_other(
     assert path.read_bytes() == before
     assert _only(tmp_path) == ["r.h5"]
     if expected is ResultsError:
-        assert "r.h5" in str(caught.value)
-        assert "No space left" in str(caught.value)
-        assert "remedy:" in str(caught.value)
+        problem = caught.value.problem
+        assert problem.file == str(path)
+        assert os.strerror(errno.ENOSPC) in problem.message
+        assert problem.remedy
 
 
 def test_a_first_write_that_is_stopped_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -114,14 +115,13 @@ def test_a_link_stays_a_link_and_its_target_is_replaced(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "words"),
-    [("", "folder, not a file"), ("absent/r.h5", "absent does not exist"), ("pipe", "device or a pipe")],
+    "name", [pytest.param("", id="a folder"), pytest.param("absent/r.h5", id="below no folder"), "pipe"]
 )
-def test_what_is_no_place_for_a_file_is_refused(name: str, words: str, tmp_path: Path) -> None:
+def test_what_is_no_place_for_a_file_is_refused(name: str, tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
-    with pytest.raises(ResultsError, match=words) as caught:
+    with pytest.raises(ResultsError) as caught:
         results.write(_design("one"), tmp_path / name)
-    assert "remedy:" in str(caught.value)
+    assert caught.value.problem.remedy
     assert _only(tmp_path) == ["pipe"]
     assert stat.S_ISFIFO((tmp_path / "pipe").stat().st_mode)
 
@@ -130,8 +130,9 @@ def test_what_is_no_place_for_a_file_is_refused(name: str, words: str, tmp_path:
 def test_a_file_that_is_not_ours_is_never_overwritten(content: bytes, tmp_path: Path) -> None:
     path = tmp_path / "notes.txt"
     path.write_bytes(content)
-    with pytest.raises(ResultsError, match=r"notes\.txt: .*not overwritten\n  remedy: "):
+    with pytest.raises(ResultsError) as caught:
         results.write(_design("one"), path)
+    assert caught.value.problem.file == str(path) and caught.value.problem.remedy
     assert path.read_bytes() == content
 
 
@@ -164,7 +165,7 @@ def test_a_read_only_folder_is_refused_and_its_file_stays(name: str) -> None:
         before = (folder / "r.h5").read_bytes()
         (folder / "r.h5").chmod(0o666)
         folder.chmod(0o555)
-        with _ordinary_user(), pytest.raises(ResultsError, match=r"read-only\n  remedy: "):
+        with _ordinary_user(), pytest.raises(ResultsError):
             results.write(_design("new"), folder / name)
         folder.chmod(0o755)
         assert (folder / "r.h5").read_bytes() == before
@@ -177,7 +178,7 @@ def test_a_read_only_file_is_refused() -> None:
         path = Path(above) / "r.h5"
         results.write(_design("old"), path)
         path.chmod(0o444)
-        with _ordinary_user(), pytest.raises(ResultsError, match="file is read-only"):
+        with _ordinary_user(), pytest.raises(ResultsError):
             results.write(_design("new"), path)
         assert results.read(path).assembly.name == "old"
 
@@ -255,11 +256,11 @@ def test_a_disk_that_is_full_loses_nothing_that_was_there(limit: int, tmp_path: 
         "import dataclasses\n"
         "new = dataclasses.replace(design, assembly=dataclasses.replace(design.assembly, name='new' * 20000))\n"
         "try:\n    results.write(new, sys.argv[1])\n"
-        "except ResultsError as error:\n    print(error)\n"
+        "except ResultsError:\n    print('refused')\n"
     )
     # without bytecode: Python would keep what the limit leaves of it, and stumble over that for ever
     command = [sys.executable, "-B", "-c", code, str(path), str(limit)]
     ran = subprocess.run(command, capture_output=True, text=True, check=True)
-    assert "cannot be written" in ran.stdout
+    assert ran.stdout == "refused\n"
     assert path.read_bytes() == before
     assert _only(tmp_path) == ["r.h5"]

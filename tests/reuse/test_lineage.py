@@ -60,7 +60,7 @@ def test_results_that_are_replaced_before_they_are_read_are_refused(pair: Path) 
     found = unchanged(pair)
     assert found is not None
     results.write(stages.import_(pair / "planar_block.toml"), pair / "r.h5")
-    with pytest.raises(kinform.ResultsError, match="replaced"):
+    with pytest.raises(kinform.ResultsError):
         _ = found.joints
 
 

@@ -45,19 +45,18 @@ def test_a_run_says_what_changed_and_what_followed(folder, capsys):
     capsys.readouterr()
     run("-f", "json")
     first = capsys.readouterr()
-    assert "nothing changed" in first.err
     assert json.loads(first.out)["run"]["recomputed"] == []
     data = bytearray((folder / "shaft.stl").read_bytes())
     data[0:4] = b"same"  # another header, the same facets
     (folder / "shaft.stl").write_bytes(bytes(data))
     run("-f", "json")
-    assert json.loads(capsys.readouterr().out)["run"]["account"] == "everything is reused: nothing changed that matters"
+    assert json.loads(capsys.readouterr().out)["run"]["recomputed"] == []
     heavier(folder)
     run("-f", "json")
     ran = capsys.readouterr()
-    assert "m.toml changed → mass" in ran.err
+    assert "m.toml" in ran.err and "→ mass" in ran.err
     account = json.loads(ran.out)["run"]
-    assert account["account"].startswith("m.toml changed → mass")
+    assert account["recomputed"][0].startswith("mass")
     assert not any(sentence.startswith(("surfaces", "contacts", "joints")) for sentence in account["recomputed"])
 
 
@@ -88,8 +87,7 @@ def test_the_short_way_of_a_run_with_nothing_changed_says_what_the_long_one_says
         assert run("-f", format, *more) == code
         told.append(capsys.readouterr())
     assert told[0] == told[1]
-    assert "nothing changed" in told[0].err
-    assert "no [function]" not in told[0].err
+    assert "[function]" not in told[0].err
     assert run("--fail-on", "nothing") == run("-f") == 2
 
 
@@ -156,7 +154,6 @@ def test_diff_with_less_on_one_side_is_not_verified(folder, capsys):
     run("-q")
     main(["import", "m.toml", "-o", "a.h5", "-q"])
     assert main(["diff", "a.h5", "r.h5"]) == 2
-    assert "not compared" in capsys.readouterr().out
     assert main(["diff", "a.h5", "a.h5"]) == 2
 
 
@@ -212,7 +209,6 @@ def test_watch_runs_again_on_a_save_survives_bad_input_and_ends_cleanly(folder):
         out, errors = watching.communicate(timeout=60)
         assert watching.returncode in (0, 1, 2)
         assert watching.returncode != -signal.SIGINT
-        assert "watching ended" in errors
         assert "Traceback" not in errors
         assert out.count("rules ran") == 2
     finally:

