@@ -8,6 +8,12 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+if os.environ.pop("PYTHONDONTWRITEBYTECODE", ""):
+    # no bytecode beside the source; but each worker and hundreds of processes would compile all of kinform again, and
+    # each worker all tests. So all share a folder, which later sessions find again.
+    sys.dont_write_bytecode = False
+    sys.pycache_prefix = str(Path(__file__).parents[1] / ".pytest_cache" / "bytecode")
+    os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix
 # before numpy is imported: the threads of BLAS wait for each other in loops, on processors that other workers need
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
@@ -19,17 +25,6 @@ from support.places import FIXTURES
 # no test fails because a machine is busy: neither examples nor what draws them have a time to keep
 settings.register_profile("any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("any machine")
-
-
-@pytest.fixture(scope="session", autouse=True)
-def bytecode_kept(tmp_path_factory):
-    """Where Python is to leave no bytecode beside the source, hundreds of processes would each compile all of kinform
-    again: for the length of the session they share a folder for it."""
-    with pytest.MonkeyPatch.context() as patch:
-        if os.environ.get("PYTHONDONTWRITEBYTECODE"):
-            patch.delenv("PYTHONDONTWRITEBYTECODE")
-            patch.setenv("PYTHONPYCACHEPREFIX", str(common(tmp_path_factory) / "bytecode"))
-        yield
 
 
 @pytest.fixture(scope="session")
