@@ -86,7 +86,7 @@ def allowed(parameter) -> set[str]:
 
 def sources() -> list[Path]:
     python = [path for root in ("pipeline", "cli") for path in sorted((ROOT / root).rglob("*.py"))]
-    return python + [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+    return python + sorted(ROOT.glob("*.md")) + sorted((ROOT / "docs").glob("*.md"))
 
 
 def test_commands_in_sources_and_documents_are_taken():
