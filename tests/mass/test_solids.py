@@ -1,4 +1,5 @@
-"""Shells of one mesh: what they weigh together, and what is said where they cannot be the faces of one solid."""
+"""The integrals of a solid without symmetry; and shells of one mesh: what they weigh together, and what is said where
+they cannot be the faces of one solid."""
 
 from __future__ import annotations
 
@@ -8,8 +9,21 @@ from tests.support.solids import ball, block
 
 import kinform
 from kinform.api import Assembly
+from kinform.mass.solids import integrate_solid
 
 DENSITY = 1000.0
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0, 0.0), (100.0, -50.0, 7.0)])
+def test_the_integrals_of_a_corner_are_its_closed_forms(place):
+    """x, y, z ≥ 0 and x + y + z ≤ 1: ∫x = 1/24, ∫x² = 1/60, ∫xy = 1/120."""
+    vertices = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]) + place
+    found = integrate_solid(vertices, np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]))
+    assert found.volume == pytest.approx(1 / 6, rel=1e-9)
+    np.testing.assert_allclose(found.centroid, np.array(place) + 0.25, rtol=1e-12)
+    about_corner = np.eye(3) / 24 - np.full((3, 3), 1 / 120)
+    c = np.full(3, 0.25)
+    np.testing.assert_allclose(found.inertia, about_corner - (c @ c * np.eye(3) - np.outer(c, c)) / 6, atol=1e-9)
 
 
 def shell(solid, at=(0.0, 0.0, 0.0), inward=False):
