@@ -14,7 +14,7 @@ from kinform import results
 from kinform.design import Design
 
 SETTINGS = settings(
-    max_examples=8,
+    max_examples=4,
     deadline=None,
     phases=[Phase.generate],  # these values are too large to be shrunk in good time
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.large_base_example],

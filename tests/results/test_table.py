@@ -24,8 +24,8 @@ def test_a_column_that_came_later_may_be_missing(tmp_path):
             read_rows(hold(file), "joints", new)
 
 
-def test_a_results_file_from_before_drives_named_their_freedom_is_read(tmp_path, derive_design):
-    design = derive_design(FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml")
+def test_a_results_file_from_before_drives_named_their_freedom_is_read(tmp_path):
+    design = stages.import_(FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml")
     results.write(design, tmp_path / "old.h5")
     with editing(tmp_path / "old.h5") as file:
         name = "assembly/function/drives"

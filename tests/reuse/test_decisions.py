@@ -10,9 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.short_four_bar import four_bar
+from support.short_four_bar import four_bar, run
 
-import kinform
 from kinform import results
 from kinform.model.kinematics import Release
 from kinform.reuse.packing import pack, seal, unpack
@@ -22,7 +21,7 @@ from kinform.reuse.packing import pack, seal, unpack
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("built") / "four_bar"
     four_bar(folder)
-    kinform.run(folder / "four_bar.toml", folder / "r.h5")
+    run(folder / "four_bar.toml", folder / "r.h5")
     return folder
 
 
@@ -43,8 +42,8 @@ def decisions(path: Path) -> dict[str, tuple[str, str]]:
 
 
 def as_from_nothing(folder: Path) -> bool:
-    kinform.run(folder / "four_bar.toml", folder / "r.h5")
-    kinform.run(folder / "four_bar.toml", folder / "fresh.h5")
+    run(folder / "four_bar.toml", folder / "r.h5")
+    run(folder / "four_bar.toml", folder / "fresh.h5")
     return (folder / "r.h5").read_bytes() == (folder / "fresh.h5").read_bytes()
 
 
@@ -95,9 +94,9 @@ def test_a_file_from_before_decisions_were_kept_is_read_and_gives_the_same(folde
     marks = dataclasses.replace(design.fingerprints, decisions={}, inputs={})
     results.write(dataclasses.replace(design, fingerprints=marks), folder / "r.h5")
     changed(folder, "axis = [0, 0, 1]", "axis = [0, 1, 0]")
-    again = kinform.run(folder / "four_bar.toml", folder / "r.h5")
+    again = run(folder / "four_bar.toml", folder / "r.h5")
     assert again.recomputed
-    kinform.run(folder / "four_bar.toml", folder / "fresh.h5")
+    run(folder / "four_bar.toml", folder / "fresh.h5")
     assert (folder / "r.h5").read_bytes() == (folder / "fresh.h5").read_bytes()
 
 

@@ -23,7 +23,7 @@ from kinform.reuse.digest import digest
 
 PACKAGE = Path(kinform.__file__).parent
 SETTINGS = settings(
-    max_examples=3,
+    max_examples=2,
     deadline=None,
     phases=[Phase.generate],
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.large_base_example],
