@@ -64,6 +64,8 @@ def test_who_follows_is_told_of_every_page_and_of_what_cannot_be_read():
 @pytest.fixture
 def watching(tmp_path):
     """`kinform watch --report` on a copy of a fixture: the address of the page, and the manifest."""
+    if program() is None:
+        pytest.skip("no Chromium: the page is not opened in a browser")
     folder = shutil.copytree(FIXTURES / "pairs" / "revolute_collars", tmp_path / "design")
     manifest = folder / "revolute_collars.toml"
     command = [sys.executable, "-m", "kinform_cli", "watch", manifest, "-o", tmp_path / "a.h5", "--report"]
@@ -87,8 +89,6 @@ def watching(tmp_path):
 
 
 def test_the_page_loads_itself_again_on_save_and_keeps_its_view(watching):
-    if program() is None:
-        pytest.skip("no Chromium: the page is not opened in a browser")
     address, manifest = watching
     browser = Browser()
     try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import re
@@ -19,10 +20,20 @@ from kinform_cli.main import main
 PAIR = FIXTURES / "pairs" / "revolute_collars"
 
 
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    """A hinge and its results, which are those of its files also in a copy of the folder."""
+    folder = tmp_path_factory.mktemp("built")
+    shutil.copytree(PAIR, folder, dirs_exist_ok=True)
+    (folder / "revolute_collars.toml").rename(folder / "m.toml")
+    with contextlib.chdir(folder):
+        assert run("-q") == 0
+    return folder
+
+
 @pytest.fixture
-def folder(tmp_path, monkeypatch):
-    shutil.copytree(PAIR, tmp_path, dirs_exist_ok=True)
-    (tmp_path / "revolute_collars.toml").rename(tmp_path / "m.toml")
+def folder(built, tmp_path, monkeypatch):
+    shutil.copytree(built, tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

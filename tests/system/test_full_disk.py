@@ -53,6 +53,7 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in sorted(folder.iterdir()) if path.is_file() and path.name != "fill"}
 
 
+@pytest.mark.slow
 def test_a_full_disk_loses_nothing_and_what_is_missing_comes_when_there_is_room(small_disk, capsys):
     for path in PAIR.glob("*.stl"):
         shutil.copy(path, small_disk / path.name)

@@ -23,6 +23,8 @@ NAMES = "|".join(sorted(COMMAND.commands))  # type: ignore[attr-defined]
 QUOTED = re.compile(r"`(?:[A-Z]+=\d+ )?kinform ([^`]+)`")
 TOLD = re.compile(rf"(?:^|[\s(:$])kinform ((?:{NAMES})\b[^`\n]*)")
 END = re.compile(r"  |, |;|\)| #| \(| and | does |: |(?<=\w)\.$|\. | \| | > | && ")
+MAYBE = re.compile(r"""(?<!from )\bkinform [a-z{"'-]""")
+"""Before a module is parsed."""
 HOLE = "X1"
 """Stands for what a message fills in."""
 
@@ -93,6 +95,8 @@ def test_commands_in_sources_and_documents_are_taken():
     wrong, seen = [], set()
     for path in sources():
         whole = path.read_text(encoding="utf-8")
+        if path.suffix == ".py" and not MAYBE.search(whole):
+            continue
         for text in texts(ast.parse(whole)) if path.suffix == ".py" else [whole]:
             for words in suggested(text):
                 seen.add(tuple(words))
@@ -120,7 +124,13 @@ def test_codes_that_rules_name_are_rules():
             assert code in known, f"{rule.code} names {code}"
 
 
-@pytest.mark.parametrize("fixture", sorted(path.name for path in (FIXTURES / "broken").iterdir()))
+@pytest.mark.parametrize(
+    "fixture",
+    [
+        pytest.param(path.name, marks=pytest.mark.slow if path.name == "seeker_wrong_units" else [])
+        for path in sorted((FIXTURES / "broken").iterdir())
+    ],
+)
 def test_what_findings_suggest_is_taken(fixture, derive_design):
     design = derive_design(FIXTURES / "broken" / fixture / f"{fixture}.toml")
     text = " ".join(render(design.report, design, "full").split())

@@ -8,16 +8,17 @@ from pathlib import Path
 import pytest
 from support.places import FIXTURES
 
+from kinform import results
 from kinform_cli.main import main
 
 TWIN = FIXTURES / "broken" / "seeker_gimbal_overlaps"
 
 
 @pytest.fixture(scope="module")
-def overlapping(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def overlapping(tmp_path_factory: pytest.TempPathFactory, derive_design) -> Path:
     """Results of a design with one error (KF201)."""
     file = tmp_path_factory.mktemp("baseline") / "r.h5"
-    assert main(["run", str(TWIN / f"{TWIN.name}.toml"), "-o", str(file), "-q"]) == 1
+    results.write(derive_design(TWIN / f"{TWIN.name}.toml"), file)
     return file
 
 

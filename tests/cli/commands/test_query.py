@@ -9,19 +9,18 @@ from pathlib import Path
 import pytest
 from support.places import FIXTURES
 
+from kinform import results as results_file
 from kinform_cli.main import main
 
 
 @pytest.fixture(scope="module")
-def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+def results(tmp_path_factory: pytest.TempPathFactory, derive_design) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("questions")
     out = {}
     for name in ("planar_block", "revolute_collars"):
         file = folder / f"{name}.h5"
         manifest = FIXTURES / "pairs" / name / f"{name}.toml"
-        assert main(["import", str(manifest), "-o", str(file), "-q"]) == 0
-        assert main(["contacts", str(file), "-o", str(file), "-q"]) == 0
-        assert main(["joints", str(file), "-o", str(file), "-q"]) == 0
+        results_file.write(derive_design(manifest), file)
         out[name] = file
     return out
 
@@ -52,10 +51,9 @@ def test_one_joint_shows_its_patches_its_gap_and_its_alternatives(
 
 
 def test_a_joint_is_shown_by_the_name_that_its_designer_gave_it(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    results: dict[str, Path], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    file = str(tmp_path / "hinge.h5")
-    main(["run", str(FIXTURES / "pairs/revolute_collars/revolute_collars.toml"), "-o", file, "-q"])
+    file = str(results["revolute_collars"])
     (joint,) = json.loads(printed(capsys, "show", file, "joints", "-f", "json"))["joints"]
     (intended,) = json.loads(printed(capsys, "query", file, "--intended", "-f", "json"))["joints"]
     assert intended["name"] != joint["name"]
