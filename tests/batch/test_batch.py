@@ -67,6 +67,7 @@ def test_results_are_the_bytes_of_single_runs_though_a_worker_was_killed(done, t
         (tmp_path / "one.h5").unlink()
 
 
+@pytest.mark.slow
 def test_ctrl_c_keeps_what_is_written_and_is_told_in_one_line(tmp_path):
     """What Dask leaves behind was warned of by the process that clears up after it."""
     for name in ("a", "b", "c", "d"):
