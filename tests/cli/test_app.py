@@ -118,7 +118,7 @@ def test_usage_errors_name_what_is_wrong_and_exit_2(
     assert "Traceback" not in errors
 
 
-@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+@pytest.mark.parametrize("shell", ["bash", *(pytest.param(s, marks=pytest.mark.sweep) for s in ("zsh", "fish"))])
 def test_a_completion_script_is_printed_for_each_shell(shell: str, kinform: Callable[..., Ran]) -> None:
     ran = kinform("--show-completion", shell, _TYPER_COMPLETE_TEST_DISABLE_SHELL_DETECTION="1")
     assert ran.returncode == 0

@@ -79,7 +79,7 @@ WORK = {
 }
 
 
-QUICK = ("kinform.stages.contacts", "kinform.stages.simulate")
+QUICK = ("kinform.stages.contacts",)
 
 
 @pytest.mark.parametrize(
@@ -123,6 +123,7 @@ def test_ctrl_c_before_the_command_listens_is_told_in_one_line() -> None:
     assert (done.returncode, done.stdout, done.stderr) == (2, "", "kinform: error: interrupted\n")
 
 
+@pytest.mark.slow
 def test_ctrl_c_of_a_terminal_reaches_all_processes_and_is_told_once(folder: Path) -> None:
     sleeping = HELD.format(deed="import time; time.sleep(600)")
     command = [sys.executable, "-c", sleeping, "kinform.stages.check", "check", "r.h5"]

@@ -26,7 +26,9 @@ def drawn(rows: Rows, width: int) -> list[str]:
     return [line.rstrip() for line in console.file.getvalue().splitlines()]  # type: ignore[attr-defined]
 
 
-@pytest.mark.parametrize("fixture", ["seeker/5_complete/seeker", "mechanisms/four_bar/four_bar"])
+@pytest.mark.parametrize(
+    "fixture", ["seeker/5_complete/seeker", pytest.param("mechanisms/four_bar/four_bar", marks=pytest.mark.sweep)]
+)
 def test_off_a_terminal_no_line_is_wider_than_eighty_and_no_number_has_an_exponent(
     fixture, derive_design, tmp_path, capsys, monkeypatch
 ):

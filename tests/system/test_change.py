@@ -89,7 +89,7 @@ def test_a_run_with_nothing_changed_parses_no_mesh_and_says_the_same(folder, cap
     assert (folder / "r.h5").stat().st_mtime > 1.6e9
 
 
-@pytest.mark.parametrize("format", ["full", "json", "github"])
+@pytest.mark.parametrize("format", ["json", *(pytest.param(f, marks=pytest.mark.sweep) for f in ("full", "github"))])
 def test_the_short_way_of_a_run_with_nothing_changed_says_what_the_long_one_says(folder, capsys, format):
     code = run("-q")
     capsys.readouterr()
@@ -102,7 +102,9 @@ def test_the_short_way_of_a_run_with_nothing_changed_says_what_the_long_one_says
     assert run("--fail-on", "nothing") == run("-f") == 2
 
 
-@pytest.mark.parametrize("spoil", ["mesh", "manifest", "nothing there"])
+@pytest.mark.parametrize(
+    "spoil", ["mesh", *(pytest.param(s, marks=pytest.mark.sweep) for s in ("manifest", "nothing there"))]
+)
 def test_the_short_way_refuses_bad_input_as_the_long_one_does(folder, capsys, spoil):
     run("-q")
     before = (folder / "r.h5").read_bytes()
@@ -227,6 +229,7 @@ def test_watch_runs_again_on_a_save_survives_bad_input_and_ends_cleanly(folder):
         watching.communicate()
 
 
+@pytest.mark.slow
 def test_watch_sees_a_file_that_was_missing_appear(folder):
     text = (folder / "m.toml").read_text()
     (folder / "m.toml").write_text(text + '[[part]]\nname = "lid"\nmesh = "lid.stl"\n')

@@ -59,7 +59,14 @@ def on_a_terminal(tmp_path_factory, derive_design):
     return show
 
 
-@pytest.mark.parametrize("topic", ["assembly", "contacts", "joints", "mobility", "mass", "simulation", "findings"])
+@pytest.mark.parametrize(
+    "topic",
+    [
+        "assembly",
+        "simulation",
+        *(pytest.param(t, marks=pytest.mark.sweep) for t in ("contacts", "joints", "mobility", "mass", "findings")),
+    ],
+)
 def test_nothing_is_wider_than_the_terminal_or_coloured(on_a_terminal, topic):
     lines = on_a_terminal(topic)
     assert max(map(len, lines)) <= 80
