@@ -1,6 +1,6 @@
 # Two commands do all the set-up: `make demo` runs kinform on the bundled seeker, `make test` runs all checks but for
-# the few tests that take minutes, which `make test-slow` runs, and the copies of all fixtures of `make test-sweep`.
-# `make test-least` runs them with the oldest packages allowed.
+# the few tests that take minutes, which `make test-slow` runs, and the full products of scale, pose, order and
+# tessellation, which `make test-sweep` runs every night. `make test-least` uses the oldest packages allowed.
 # Tests that need other programs (GHDL, rumoca, MuJoCo, Drake, …) skip unless `make validators` has installed them.
 PYTHON ?= python3
 VENV ?= .venv
@@ -12,7 +12,7 @@ DEMO = fixtures/seekers/seeker_2dof/seeker_2dof.toml
 OUT ?= build
 WORKERS ?= 2
 
-.PHONY: demo test test-slow test-sweep test-least fuzz lint validators lock fixtures docs clean
+.PHONY: demo test test-slow test-sweep test-least fuzz lint ruff validators lock fixtures docs clean
 .DELETE_ON_ERROR:
 
 demo: $(VENV)/.installed
@@ -23,14 +23,17 @@ demo: $(VENV)/.installed
 	@echo
 	@echo "the page with all of it, to be opened in a browser: $(OUT)/seeker.html"
 
-test: lint
-	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
+# mypy checks while tests run: it takes a minute of one processor where it has no cache, and a second where it has.
+test: ruff
+	@$(BIN)/mypy > $(VENV)/mypy.log 2>&1 & types=$$!; \
+	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal; tests=$$?; \
+	wait $$types; types=$$?; cat $(VENV)/mypy.log; [ $$tests = 0 ] && [ $$types = 0 ]
 
 test-slow: $(VENV)/.developing
-	$(BIN)/python -m pytest -n $(WORKERS) -m slow
+	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal -m slow
 
 test-sweep: $(VENV)/.developing
-	$(BIN)/python -m pytest -n $(WORKERS) -m sweep
+	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal -m sweep
 
 # The suite with the oldest version of each package that pyproject.toml allows, in an environment of its own.
 test-least: $(LEAST)/.installed
@@ -47,10 +50,12 @@ $(LEAST)/.installed: pyproject.toml
 fuzz: $(VENV)/.developing
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python fuzz/run.py $(TARGETS) --folder $(OUT)/fuzz
 
-lint: $(VENV)/.developing
+lint: ruff
+	$(BIN)/mypy
+
+ruff: $(VENV)/.developing
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/mypy
 
 $(VENV)/bin/python:
 	$(PYTHON) -m venv $(VENV)
@@ -61,8 +66,7 @@ $(VENV)/.installed: pyproject.toml | $(VENV)/bin/python
 	@touch $@
 
 $(VENV)/.developing: pyproject.toml requirements-dev.lock | $(VENV)/bin/python
-	$(BIN)/python -m pip install --quiet --requirement requirements-dev.lock
-	$(BIN)/python -m pip install --quiet --no-deps --editable .
+	$(BIN)/python -m pip install --quiet --no-deps --requirement requirements-dev.lock --editable .
 	@touch $@ $(VENV)/.installed
 
 validators: $(VENV)/.validators

@@ -1,10 +1,19 @@
-"""Runs that tests share."""
+"""Runs that tests share, and the command as a user runs it."""
 
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
+from collections.abc import Callable
 from pathlib import Path
 
+if os.environ.pop("PYTHONDONTWRITEBYTECODE", ""):
+    # no bytecode beside the source; but each worker and hundreds of processes would compile all of kinform again, and
+    # each worker all tests. So all share a folder, which later sessions find again.
+    sys.dont_write_bytecode = False
+    sys.pycache_prefix = str(Path(__file__).parents[1] / ".pytest_cache" / "bytecode")
+    os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix
 # before numpy is imported: the threads of BLAS wait for each other in loops, on processors that other workers need
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
@@ -16,17 +25,6 @@ from support.places import FIXTURES
 # no test fails because a machine is busy: neither examples nor what draws them have a time to keep
 settings.register_profile("any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("any machine")
-
-
-@pytest.fixture(scope="session", autouse=True)
-def bytecode_kept(tmp_path_factory):
-    """Where Python is to leave no bytecode beside the source, hundreds of processes would each compile all of kinform
-    again: for the length of the session they share a folder for it."""
-    with pytest.MonkeyPatch.context() as patch:
-        if os.environ.get("PYTHONDONTWRITEBYTECODE"):
-            patch.delenv("PYTHONDONTWRITEBYTECODE")
-            patch.setenv("PYTHONPYCACHEPREFIX", str(common(tmp_path_factory) / "bytecode"))
-        yield
 
 
 @pytest.fixture(scope="session")
@@ -49,3 +47,32 @@ def derive_design(tmp_path_factory):
         return known[manifest]
 
     return derive
+
+
+@pytest.fixture
+def kinform(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Run `kinform ARGUMENTS` in tmp_path, in a process of its own; stdout and stderr are pipes."""
+    from support.command_line import environment
+
+    def run(*arguments: object, cwd: Path = tmp_path, **extra: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [sys.executable, "-m", "kinform_cli", *map(str, arguments)],
+            cwd=cwd,
+            env=environment(**extra),
+            capture_output=True,
+            text=True,
+            timeout=120,
+        )
+
+    return run
+
+
+@pytest.fixture
+def command(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Run `kinform ARGUMENTS` in tmp_path, in this process: where nothing is asked of the process itself."""
+    from support.command_line import ran_here
+
+    def run(*arguments: object, cwd: Path = tmp_path, **extra: str) -> subprocess.CompletedProcess[str]:
+        return ran_here(*arguments, cwd=cwd, **extra)
+
+    return run

@@ -14,8 +14,6 @@ import traceback
 from collections.abc import Sequence
 from typing import NoReturn
 
-_FAILED = 2
-
 
 def main(arguments: Sequence[str]) -> int:
     """Run the command with these arguments; returns its exit code."""
@@ -45,7 +43,7 @@ def main(arguments: Sequence[str]) -> int:
 
 def entry() -> NoReturn:
     """The console script."""
-    code = _FAILED
+    code = 2  # as `errors.NOT_VERIFIED`, which may be what cannot be imported
     try:
         from kinform_cli import console, interrupts, supervision
 
@@ -76,4 +74,4 @@ def _last_words() -> None:
             traceback.print_exc()
         sys.stderr.flush()
     except BaseException:  # there is nobody to tell
-        os._exit(_FAILED)
+        os._exit(2)

@@ -16,14 +16,12 @@ topic alone. A fifth more is shown whole."""
 
 
 _T = TypeVar("_T")
-_SLACK = MOST_OF_TOPIC // 5
-"""Lines more that are shown rather than counted."""
 
 
 def beginning(items: Sequence[_T], short: bool) -> Sequence[_T]:
     """Of items that take a line at least each: all, or with `short` as many as `Shortened` can show and one more, so
     that it says that there are others."""
-    return tuple(islice(items, MOST_OF_TOPIC + _SLACK + 1)) if short else items
+    return tuple(islice(items, 6 * MOST_OF_TOPIC // 5 + 1)) if short else items
 
 
 class Shortened:
@@ -41,7 +39,7 @@ class Shortened:
             lines += segment.text.count("\n")
             if lines == MOST_OF_TOPIC and not left:
                 left = len(held)
-            if lines > MOST_OF_TOPIC + _SLACK:
+            if lines > 6 * MOST_OF_TOPIC // 5:
                 yield from held[:left]
                 yield Text(f"… and more: {self._remedy}", style="yellow")
                 return

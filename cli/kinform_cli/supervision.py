@@ -19,9 +19,6 @@ GRACE = 1.5
 """Seconds after Ctrl-C in which the work may end by itself, with its own words; the promise is two."""
 
 
-_FAILED = 2
-
-
 board: mmap.mmap | None = None
 """Where the process that does the work notes what native code is at work on (`kinform.foundation.at_work`)."""
 
@@ -88,7 +85,7 @@ def _code(status: int, asked: bool) -> int:
             f"native code crashed (signal {-code}, {name}){_subject()}; an output file that existed is as it was\n"
             "  remedy: run it again with KINFORM_DEBUG=1 to see where, and report it with its input"
         )
-    return _FAILED
+    return 2
 
 
 def _subject() -> str:

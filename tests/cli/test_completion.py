@@ -22,10 +22,10 @@ def file(derive_design, tmp_path_factory):
     [
         ("explain KF41", {rule.code for rule in RULES if rule.code.startswith("KF41")}),
         ("query FILE ho", {"housing"}),
-        ("query FILE housing outer", {"outer", "outer_gimbal"}),
+        pytest.param("query FILE housing outer", {"outer", "outer_gimbal"}, marks=pytest.mark.sweep),
         ("show FILE joints --joint ya", {"yaw", "yaw_motor/spin"}),
-        ("show FILE joints --joint base~", {"base~outer"}),
-        ("query no.h5 ho", set()),
+        pytest.param("show FILE joints --joint base~", {"base~outer"}, marks=pytest.mark.sweep),
+        pytest.param("query no.h5 ho", set(), marks=pytest.mark.sweep),
     ],
 )
 def test_a_shell_is_offered_names(kinform, file, line, offered):

@@ -56,6 +56,10 @@ def begun(folder: Path, place: str, *words: str, deed: str = DEAF) -> subprocess
     return at_work(command, folder, (folder / "begun").exists)
 
 
+def _interrupted_once(errors: str) -> None:
+    assert errors.startswith("kinform: error: interrupted") and errors.count("\n") == 1
+
+
 def alive(process: int) -> bool:
     """Whether it runs; one that ended and was not asked for is none."""
     try:
@@ -75,7 +79,7 @@ WORK = {
 }
 
 
-QUICK = ("kinform.stages.contacts", "kinform.stages.simulate")
+QUICK = ("kinform.stages.contacts",)
 
 
 @pytest.mark.parametrize(
@@ -87,7 +91,8 @@ def test_ctrl_c_is_heard_while_native_code_hears_nothing(place: str, folder: Pat
     running.send_signal(signal.SIGINT)
     out, errors = running.communicate(timeout=60)
     assert running.returncode == 2
-    assert (out, errors) == ("", "kinform: error: interrupted; an output file that existed is as it was\n")
+    assert out == ""
+    _interrupted_once(errors)
     assert not alive(int((folder / "worker").read_text()))
     assert (folder / "r.h5").read_bytes() == before
     assert not list(folder.glob("*.tmp"))
@@ -107,7 +112,7 @@ def test_ctrl_c_that_a_library_drops_is_told_and_not_what_comes_of_it(folder: Pa
     running = begun(folder, "kinform.stages.import_", *WORK["kinform.stages.import_"], deed=DROPPED)
     out, errors = running.communicate(timeout=60)
     assert (running.returncode, out) == (2, "")
-    assert errors == "kinform: error: interrupted; an output file that existed is as it was\n"
+    _interrupted_once(errors)
 
 
 def test_ctrl_c_before_the_command_listens_is_told_in_one_line() -> None:
@@ -118,6 +123,7 @@ def test_ctrl_c_before_the_command_listens_is_told_in_one_line() -> None:
     assert (done.returncode, done.stdout, done.stderr) == (2, "", "kinform: error: interrupted\n")
 
 
+@pytest.mark.slow
 def test_ctrl_c_of_a_terminal_reaches_all_processes_and_is_told_once(folder: Path) -> None:
     sleeping = HELD.format(deed="import time; time.sleep(600)")
     command = [sys.executable, "-c", sleeping, "kinform.stages.check", "check", "r.h5"]
@@ -125,7 +131,7 @@ def test_ctrl_c_of_a_terminal_reaches_all_processes_and_is_told_once(folder: Pat
     os.killpg(running.pid, signal.SIGINT)
     _, errors = running.communicate(timeout=60)
     assert running.returncode == 2
-    assert errors == "kinform: error: interrupted; an output file that existed is as it was\n"
+    _interrupted_once(errors)
 
 
 def test_workers_in_native_code_end_with_the_command(folder: Path) -> None:
@@ -151,7 +157,14 @@ def test_workers_in_native_code_end_with_the_command(folder: Path) -> None:
             time.sleep(0.05)
 
 
-@pytest.mark.parametrize("deed", ["os.kill(os.getpid(), signal.SIGSEGV)", "os.abort()", "os.kill(os.getpid(), 9)"])
+@pytest.mark.parametrize(
+    "deed",
+    [
+        "os.kill(os.getpid(), signal.SIGSEGV)",
+        pytest.param("os.abort()", marks=pytest.mark.slow),
+        "os.kill(os.getpid(), 9)",
+    ],
+)
 def test_a_crash_of_native_code_is_told_and_never_a_verdict(deed: str, folder: Path) -> None:
     before = (folder / "r.h5").read_bytes()
     running = begun(folder, "kinform.stages.check", "check", "r.h5", "-o", "r.h5", deed=deed)
@@ -184,7 +197,9 @@ def overlapping(tmp_path_factory, derive_design) -> Path:
 OVERLAPPING = "seeker_gimbal_overlaps"
 
 
-@pytest.mark.parametrize("place", NATIVE)
+@pytest.mark.parametrize(
+    "place", [pytest.param(p, marks=[] if p.endswith("pair_contacts") else pytest.mark.slow) for p in NATIVE]
+)
 def test_a_crash_of_native_code_names_the_parts_it_was_at_work_on(place: str, overlapping: Path) -> None:
     (overlapping / "begun").unlink(missing_ok=True)
     running = begun(overlapping, place, *NATIVE[place], deed="os.kill(os.getpid(), signal.SIGSEGV)")
@@ -195,6 +210,7 @@ def test_a_crash_of_native_code_names_the_parts_it_was_at_work_on(place: str, ov
     assert {told[1], told[2]} <= {part.name for part in results.read(overlapping / "r.h5").assembly.parts}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", ["kinform.collisions.pair.prepared_pair._hits"])
 def test_ctrl_c_is_heard_within_a_call_of_the_collisions(place: str, overlapping: Path) -> None:
     (overlapping / "begun").unlink(missing_ok=True)
@@ -205,7 +221,7 @@ def test_ctrl_c_is_heard_within_a_call_of_the_collisions(place: str, overlapping
     assert "interrupted" in errors
 
 
-@pytest.mark.parametrize("signal_", [signal.SIGKILL, signal.SIGTERM])
+@pytest.mark.parametrize("signal_", [signal.SIGKILL, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)])
 def test_who_kills_the_command_kills_its_work(signal_: signal.Signals, folder: Path) -> None:
     running = begun(folder, "kinform.stages.check", "check", "r.h5")
     running.send_signal(signal_)

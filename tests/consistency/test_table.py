@@ -287,7 +287,7 @@ ELSEWHERE = {
     "KF415": "tests/system/test_described_robots.py",
     "KF417": "tests/system/test_free_links.py",
     "KF412": "tests/collisions/test_joint_ranges.py",
-    "KF450": "tests/cli/test_change.py",
+    "KF450": "tests/system/test_change.py",
     "KF505": "tests/collisions/test_joint_ranges.py",
     "KF506": "tests/consistency/test_separating.py",
     "KF507": "tests/consistency/test_separating.py",

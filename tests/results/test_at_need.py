@@ -73,7 +73,7 @@ def test_a_matrix_that_makes_no_sense_is_told_by_who_looks_at_it(path):
         del file["constraints/indptr"]
     looked = results.read_at_need(path)
     assert looked.kinematics.joints
-    with pytest.raises(ResultsError, match="damaged"):
+    with pytest.raises(ResultsError):
         _ = looked.kinematics.matrix.indptr
-    with pytest.raises(ResultsError, match="damaged"):
+    with pytest.raises(ResultsError):
         results.read(path)

@@ -55,11 +55,12 @@ def test_classes_are_those_of_handbooks(text, size, expected):
 
 @pytest.mark.parametrize("text", ["H13", "K7", "P7", "u6", "7H", "g6/H7", "k8", "H4"])
 def test_what_is_not_known_is_refused(text):
-    with pytest.raises(ValueError, match=r"known|is no"):
+    with pytest.raises(ValueError) as caught:  # noqa: PT011
         limits(text, 20)
+    assert text in str(caught.value)
 
 
 @pytest.mark.parametrize("size", [0.0, -1.0, 501.0])
 def test_sizes_outside_of_the_tables_are_refused(size):
-    with pytest.raises(ValueError, match="sizes up to 500"):
+    with pytest.raises(ValueError, match="500"):
         limits("H7", size)

@@ -38,16 +38,24 @@ def test_one_at_a_time_leaves_the_others_in_the_middle(tmp_path):
     assert samples(found) == [(2, 0.5), (1, 0.5), (3, 0.5), (2, 0.0), (2, 1.0)]
 
 
-@pytest.mark.parametrize("method", ["monte-carlo", "latin-hypercube", "sobol"])
+METHODS = ("monte-carlo", "latin-hypercube", "sobol")
+
+
 @pytest.mark.parametrize(
-    ("way", "expected"),
+    ("method", "way", "expected"),
     [
-        ("between = [2, 5]", stats.uniform(2, 3)),
-        ('between = [2, 5]\ndistribution = "triangular"', stats.triang(0.5, 2, 3)),
-        ("mean = 4\ndeviation = 0.5", stats.norm(4, 0.5)),
-        ('tolerance = "±0.3"\nnominal = 10', stats.norm(10, 0.1)),
-        ('tolerance = "+0.2/-0.1"\nnominal = 10\ndistribution = "uniform"', stats.uniform(9.9, 0.3)),
-        ('tolerance = "H7/g6"\nnominal = 0\ndiameter = 20', stats.norm(0.024, 0.034 / 6)),
+        pytest.param(method, *case, marks=[] if row % 3 == column else pytest.mark.sweep)
+        for row, case in enumerate(
+            [
+                ("between = [2, 5]", stats.uniform(2, 3)),
+                ('between = [2, 5]\ndistribution = "triangular"', stats.triang(0.5, 2, 3)),
+                ("mean = 4\ndeviation = 0.5", stats.norm(4, 0.5)),
+                ('tolerance = "±0.3"\nnominal = 10', stats.norm(10, 0.1)),
+                ('tolerance = "+0.2/-0.1"\nnominal = 10\ndistribution = "uniform"', stats.uniform(9.9, 0.3)),
+                ('tolerance = "H7/g6"\nnominal = 0\ndiameter = 20', stats.norm(0.024, 0.034 / 6)),
+            ]
+        )
+        for column, method in enumerate(METHODS)
     ],
 )
 def test_samples_are_of_their_distribution(tmp_path, method, way, expected):
@@ -86,33 +94,35 @@ def test_a_pipe_and_what_is_no_text_are_refused(tmp_path, place):
     plan(tmp_path, *study, design="[x]\na = 7.0\n")
     file = tmp_path / {"study": "s.toml", "design": "d.toml"}[place]
     file.write_bytes(b"\xff")
-    with pytest.raises(InputError, match="UTF-8"):
+    with pytest.raises(InputError):
         read_plan(tmp_path / "s.toml")
     file.unlink()
     os.mkfifo(file)
-    with pytest.raises(InputError, match=r"is a pipe|there is no file"):
+    with pytest.raises(InputError):
         read_plan(tmp_path / "s.toml")
 
 
 @pytest.mark.parametrize(
-    ("study", "varied", "said"),
+    ("study", "varied", "named"),
     [
-        ("samples = 3", A, "say how it varies"),
-        ("samples = 3", A + "between = [2, 1]", "lesser and a greater"),
-        ("samples = 3", A + 'tolerance = "K7"\nnominal = 20', "K7"),
-        ("samples = 3", A + 'tolerance = "±1"', "state nominal"),
-        ("", A + "between = [0, 1]", "needs samples"),
-        ('method = "sobol"\nsamples = 100', A + "between = [0, 1]", "64 or 128"),
-        ('method = "grid"', A + "between = [0, 1]", "needs values, or steps"),
-        ("samples = 3\nindices = true", A + "between = [0, 1]", "sobol"),
-        ("samples = 3", 'name = "m"\nvalue = "x"\nbetween = [0, 1]', "varies and is measured"),
-        ("samples = 3", 'name = "a"\nbetween = [0, 1]', "has no effect"),
-        ("samples = 3\nspeed = 1", A + "between = [0, 1]", "study.speed"),
+        ("samples = 3", A, ["vary.0"]),
+        ("samples = 3", A + "between = [2, 1]", ["vary.0", "between"]),
+        ("samples = 3", A + 'tolerance = "K7"\nnominal = 20', ["'a'", "K7"]),
+        ("samples = 3", A + 'tolerance = "±1"', ["'a'", "nominal"]),
+        ("", A + "between = [0, 1]", ["[study]", "samples"]),
+        ('method = "sobol"\nsamples = 100', A + "between = [0, 1]", ["[study]", "64", "128"]),
+        ('method = "grid"', A + "between = [0, 1]", ["'a'", "values", "steps"]),
+        ("samples = 3\nindices = true", A + "between = [0, 1]", ["[study]", "sobol"]),
+        ("samples = 3", 'name = "m"\nvalue = "x"\nbetween = [0, 1]', ["'m'"]),
+        ("samples = 3", 'name = "a"\nbetween = [0, 1]', ["'a'"]),
+        ("samples = 3\nspeed = 1", A + "between = [0, 1]", ["study.speed"]),
     ],
 )
-def test_what_makes_no_sense_is_refused(tmp_path, study, varied, said):
-    with pytest.raises(InputError, match=said):
+def test_what_makes_no_sense_is_refused_by_the_names_of_its_keys(tmp_path, study, varied, named):
+    with pytest.raises(InputError) as caught:
         plan(tmp_path, study, varied)
+    assert caught.value.problems[0].file == str(tmp_path / "s.toml")
+    assert all(name in caught.value.problems[0].message for name in named)
 
 
 TABLES = {"part": [{"name": "a.b", "position": [1, 2, 3]}, {"name": "c"}], "x": {"y": 1}}
@@ -129,17 +139,18 @@ def test_paths_lead_by_names_and_numbers():
 
 @pytest.mark.parametrize("text", ["part.d.position.0", "part.5", "z.y", "x.y.z", "part.c.position.0"])
 def test_a_path_that_leads_nowhere_is_an_error(text):
-    with pytest.raises(KeyError, match=r"no|leads"):
+    with pytest.raises(KeyError):
         changed(TABLES, steps_of(text), 1)
 
 
 def test_nothing_is_below_a_value_and_below_what_is_not_known_is_nothing_known():
-    with pytest.raises(KeyError, match="leads nowhere"):
+    with pytest.raises(KeyError):
         looked_up(TABLES, steps_of("x.y.z"))
     assert looked_up({"x": None}, steps_of("x.y.z")) is None
 
 
 @pytest.mark.parametrize("text", ["", ".a", "a..b", "a.", 'a"b', '"a'])
 def test_what_is_no_path_is_refused(text):
-    with pytest.raises(ValueError, match="is no path"):
+    with pytest.raises(ValueError) as caught:  # noqa: PT011
         steps_of(text)
+    assert repr(text) in str(caught.value)

@@ -17,7 +17,18 @@ SENSITIVE = (
     "tests/simulation",
     "tests/kinematics",
     "tests/surfaces",
-    "tests/fixtures",
+    *(
+        f"tests/system/test_{name}.py"
+        for name in (
+            "known_arms",
+            "known_mechanisms",
+            "as_subassemblies",
+            "metamorphic_fixtures",
+            "story",
+            "truth",
+            "whole_answers",
+        )
+    ),
     "tests/mass",
     "tests/docs",
     "tests/collisions/test_joint_ranges.py",

@@ -240,13 +240,10 @@ class Pace(Working):
             self._began = now
         if done:
             self.stage(pace(self._noun, done, total, now - self._began))
-        if now - self._said > _MINUTE and self._thread is None:
+        if now - self._said > 60.0 and self._thread is None:
             self._said = now
             console.say(f"{done} of {total}, {pace(self._noun, done, total, now - self._began)}")
         super().__call__(done, total)
-
-
-_MINUTE = 60.0
 
 
 def pace(noun: str, done: int, total: int, seconds: float) -> str:

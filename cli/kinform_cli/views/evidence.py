@@ -7,15 +7,13 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from kinform.design import Design
+from kinform.foundation.rounding import SINGLE
 from kinform.foundation.words import angle, counted, length
 from kinform.kinematics import Insight, insight
 from kinform.model.kinematics import Joint, Release
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths, singular, vector
 from kinform_cli.views.joints import blockers, sentence
-
-NO_TURN = 1e-7
-"""rad below which the uncertainty of an axis is not told: meshes in single precision do not say so much."""
 
 
 def render(design: Design, name: str) -> RenderableType:
@@ -44,7 +42,7 @@ def render(design: Design, name: str) -> RenderableType:
 def _uncertainty(joint: Joint, lengths: Lengths) -> list[str]:
     """How well the fits know its axis and place."""
     known = [
-        *([f"axis known to {angle(joint.axis_uncertainty, 2)}"] if joint.axis_uncertainty > NO_TURN else []),
+        *([f"axis known to {angle(joint.axis_uncertainty, 2)}"] if joint.axis_uncertainty > SINGLE else []),
         *([f"place to {length(joint.point_uncertainty, lengths.unit, 2)}"] if _tells(joint, lengths) else []),
     ]
     if known:

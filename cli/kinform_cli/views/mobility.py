@@ -9,6 +9,7 @@ from dataclasses import replace
 from rich.console import RenderableType
 
 from kinform.design import Design
+from kinform.foundation.rounding import ARITHMETIC, SINGLE
 from kinform.foundation.words import counted, length, rate
 from kinform.function.body_titles import body_titles
 from kinform.kinematics import Motions, adrift, adrift_in_words
@@ -21,14 +22,9 @@ from kinform_cli.text import NONE, Lengths
 
 MOST_NAMES = 8
 """Bodies or joints that are listed for a freedom; the JSON has them all. A choice."""
-NO_ANGLE = 1e-7
-"""Radians below which a misfit of directions is none: single precision tells no less of a direction."""
-NO_SHIFT = 1e-12
-"""Share of the largest part below which a misfit of places is none: rounding."""
-SHOWN_SHIFT = 1e-6
-"""Share of the largest part from which on the shift of a joint is listed: below are the roundings of mesh files."""
 SHOWN_TURN = 1e-5
-"""Radians from which on its turn is: noise, and no rounding. A choice."""
+"""Radians from which on the turn of a joint is listed: ten times what the rounding of mesh files turns an axis by.
+Chosen, not measured."""
 MOST_MOVES = 12
 """Joints that were moved that are listed; the JSON has them all. A choice."""
 
@@ -162,12 +158,12 @@ def _misfit(design: Design) -> list[str]:
     misfit = kinematics.misfit
     size = design.assembly.largest or 1.0
     most = []
-    if misfit.distance > NO_SHIFT * size:
+    if misfit.distance > ARITHMETIC * size:
         most.append(f"{length(misfit.distance, units, 2)} at {misfit.distance_at}")
-    if misfit.angle >= NO_ANGLE:
+    if misfit.angle >= SINGLE:
         most.append(f"{math.degrees(misfit.angle):.2g}° at {misfit.angle_at}")
     lines = [f"misfit of axes that were made to agree: {', '.join(most) or 'none'}"]
-    shown = [m for m in kinematics.moves if m.distance > SHOWN_SHIFT * size or m.angle > SHOWN_TURN]
+    shown = [m for m in kinematics.moves if m.distance > SINGLE * size or m.angle > SHOWN_TURN]
     for move in shown[:MOST_MOVES]:
         lines.append(
             f"  {move.joint} was moved by {length(move.distance, units, 2)} and {math.degrees(move.angle):.2g}°"

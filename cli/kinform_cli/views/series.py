@@ -13,11 +13,11 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.foundation.rounding import SOLVED
 from kinform.model.simulation import Simulation
 from kinform.reports.values.runs import coordinates
 from kinform_cli.tables import Rows
 from kinform_cli.text import Lengths, degrees, number, scaled
-from kinform_cli.views.constants import REST
 
 SPARK_WIDTH = 20
 """Characters of a line of blocks: with the extremes it fits in 80 columns where names are short."""
@@ -75,7 +75,7 @@ def _series(run: Simulation, lengths: Lengths) -> Iterator[Series]:
     efforts: list[Measured] = []
     columns = list(coordinates(run))
     rest = {
-        unit: REST * np.nanmax(np.abs(run.joint_position[:, [c for *_, u, c in columns if u == unit]]), initial=0.0)
+        unit: SOLVED * np.nanmax(np.abs(run.joint_position[:, [c for *_, u, c in columns if u == unit]]), initial=0.0)
         for unit in sorted({unit for *_, unit, _ in columns})
     }
     for name, _, unit, column in columns:
@@ -108,7 +108,7 @@ def _beyond_rounding(measured: list[Measured]) -> Iterator[Series]:
     """Those that are more than rounding beside the greatest of them."""
     sizes = [float(np.nanmax(np.abs(values))) for *_, values in measured]
     for item, size in zip(measured, sizes, strict=True):
-        if size > REST * max(sizes):
+        if size > SOLVED * max(sizes):
             yield _in_words(*item)
 
 

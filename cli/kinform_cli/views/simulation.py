@@ -10,12 +10,12 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from kinform.design import Design
+from kinform.foundation.rounding import SOLVED
 from kinform.foundation.words import by_cause, counted
 from kinform.function import as_intended, designers_joints
 from kinform.model.simulation import Simulation
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths, degrees, number, quantity
-from kinform_cli.views.constants import REST
 
 BALANCED = 1e-8
 """Share of the largest energy below which the balance is as exact as the integration is asked to be."""
@@ -80,7 +80,7 @@ def _drives(run: Simulation) -> list[RenderableType]:
         unit = "N" if use.slides or slides.get(use.joint) == "prismatic" else "N·m"
         efforts = (quantity(value, unit) for value in (use.peak, use.rms))
         # what goes in and comes out again leaves rounding, which differs between machines
-        rest = REST * use.peak_power * float(run.time[-1] - run.time[0])
+        rest = SOLVED * use.peak_power * float(run.time[-1] - run.time[0])
         work = use.work if abs(use.work) > rest else 0.0
         power = quantity(use.peak_power, "W"), quantity(work, "J")
         speed = quantity(use.peak_speed, "m/s" if unit == "N" else "rad/s")

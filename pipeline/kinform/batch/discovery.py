@@ -21,7 +21,8 @@ from kinform.foundation.regular import not_a_file
 from kinform.frozen import dataclass
 
 HEAD = 65536
-"""Bytes of an XML file in which its root element is looked for."""
+"""Bytes of an XML file in which its root element is looked for: a comment with a licence before it
+takes some thousand."""
 
 
 DESCRIPTIONS = (".urdf", ".xacro", ".sdf", ".world", ".mjcf", ".xml")

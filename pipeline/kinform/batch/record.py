@@ -8,8 +8,9 @@ import json
 from collections.abc import Mapping
 from dataclasses import field
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
+from kinform.batch.task import FailureKind
 from kinform.errors import InputError, Problem
 from kinform.frozen import dataclass
 from kinform.model.findings import SEVERITIES
@@ -39,8 +40,8 @@ class Row:
     inconclusive: int = 0
     seconds: float = 0.0
     tries: int = 1
-    failure: str = ""
-    """Why there are no results: worker died, time limit, memory limit, input, internal error; "" where there are."""
+    failure: FailureKind | Literal[""] = ""
+    """Why there are no results; "" where there are."""
     problems: tuple[Problem, ...] = ()
     notes: tuple[str, ...] = ()
     """What its run said besides."""

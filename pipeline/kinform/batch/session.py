@@ -19,7 +19,7 @@ from kinform.errors import InputError, Problem, ResultsError
 from kinform.frozen import dataclass
 
 KEEPING = 5.0
-"""s between two writings of the record: what a killed batch has to look at again."""
+"""s between two writings of the record: what a killed batch has to look at again. Chosen, not measured."""
 
 
 @dataclass(frozen=True)

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import field
-from typing import Any
+from typing import Any, Literal
 
 from kinform.errors import Problem
 from kinform.frozen import dataclass
 
-DIED, TIME, MEMORY, INPUT, INTERNAL = "worker died", "time limit", "memory limit", "input", "internal error"
+FailureKind = Literal["worker died", "time limit", "memory limit", "input", "internal error"]
 """Why a task has no result."""
+DIED: FailureKind = "worker died"
+TIME: FailureKind = "time limit"
+MEMORY: FailureKind = "memory limit"
+INPUT: FailureKind = "input"
+INTERNAL: FailureKind = "internal error"
 
 
 @dataclass(frozen=True)
@@ -43,8 +48,7 @@ class Task:
 class Failure:
     """Why there is no result."""
 
-    kind: str
-    """One of the kinds above."""
+    kind: FailureKind
     problems: tuple[Problem, ...]
 
 
@@ -59,6 +63,6 @@ class Answer:
     tries: int = 1
 
 
-def failed(kind: str, message: str, remedy: str | None = None) -> Failure:
+def failed(kind: FailureKind, message: str, remedy: str | None = None) -> Failure:
     """The failure that says this."""
     return Failure(kind, (Problem(message, None, None, remedy),))

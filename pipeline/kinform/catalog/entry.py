@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Sequence
+from typing import Literal
 
 import numpy as np
 
@@ -25,7 +26,8 @@ _UNDECIDED = "KF902"
 """The rule that lists the requirements that nobody could decide."""
 _KINDS = ("KF42", "KF43")
 """How the codes of the rules of single kinds of requirements begin."""
-VERDICTS = ("verified", "findings", "not verified")
+Verdict = Literal["verified", "findings", "not verified"]
+VERDICTS: tuple[Verdict, ...] = ("verified", "findings", "not verified")
 """By exit code of the gate."""
 
 
@@ -82,8 +84,8 @@ class Entry:
     """kg, of everything; None where that of a part is not known."""
     size: Triple | None
     """m, sides of the box around all meshes along the world's axes."""
-    verdict: str | None
-    """verified, findings, not verified; None where it was not checked."""
+    verdict: Verdict | None
+    """None where it was not checked."""
     joints: tuple[CatalogJoint, ...]
     requirements: tuple[CatalogRequirement, ...]
     graph: str = ""

@@ -13,14 +13,13 @@ import numpy as np
 from kinform.catalog.build import digest_of
 from kinform.catalog.entry import CatalogJoint, Entry
 from kinform.catalog.store import entry_from, open_catalog
+from kinform.foundation.rounding import SINGLE
 from kinform.frozen import dataclass
 
 MOST_ALIKE = 20
 """Designs that are named as like another one; a choice."""
 LOOKED_AT = 120
 """Designs of the same graph and mobility, those of the nearest size, whose axes are compared: 0.05 s. A choice."""
-PARALLEL = 1e-6
-"""Sine of the angle below which two axes are parallel."""
 
 
 JOINT_TYPES = (
@@ -135,7 +134,7 @@ def _between(a: CatalogJoint, b: CatalogJoint) -> tuple[float, float]:
     if a.point is None or b.point is None or "prismatic" in (a.type, b.type):
         return turn, 0.0
     apart = np.array(b.point) - np.array(a.point)
-    if sine > PARALLEL:
+    if sine > SINGLE:
         return turn, abs(float(apart @ across)) / sine
     return turn, float(np.linalg.norm(np.cross(u, apart)))
 

@@ -172,7 +172,7 @@ def _joint(row: sqlite3.Row) -> CatalogJoint:
 
 _TYPES: dict[str, tuple[type, ...]] = {
     "str": (str,), "int": (int,), "str | None": (str, type(None)), "int | None": (int, type(None)),
-    "float | None": (float, type(None)),
+    "float | None": (float, type(None)), "Verdict | None": (str, type(None)),
 }  # fmt: skip
 """What a field may hold: SQLite keeps any value in any column."""
 

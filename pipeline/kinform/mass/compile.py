@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.meshes.shell_faults import shell_faults
-from kinform.mass.constants import FLAT
+from kinform.foundation.rounding import ARITHMETIC
 from kinform.mass.principal import impossible, principal
 from kinform.mass.solids import SolidIntegrals, integrate_solid, mass_bound
 from kinform.model.arrays import Array, freeze
@@ -152,7 +152,7 @@ class _SolidShape:
         if self.reason:
             return
         integrals = integrate_solid(mesh.vertices, mesh.faces)
-        flat = FLAT * mesh.diagonal**3
+        flat = ARITHMETIC * mesh.diagonal**3
         if abs(integrals.volume) <= flat:
             self.reason = "the mesh encloses no volume"
         elif integrals.volume < 0.0:

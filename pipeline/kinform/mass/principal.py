@@ -5,12 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical, cross
+from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.model.arrays import Array
 
-EQUAL_MOMENTS = 1e-9
-"""Moments that differ by less than this share of the largest are one: rounding makes their axes."""
-ROUNDED_MOMENTS = 1e-6
-"""Share of the largest moment by which stated moments may break a law: six printed digits."""
 NEAREST = 1e-3
 """How much shorter the projection of a world's axis may be than the longest, where x goes before y before z, as in the
 sign of an axis."""
@@ -26,7 +23,7 @@ def principal(inertia: Array) -> tuple[Array, Array]:
     if not np.all(np.isfinite(inertia)):
         return np.full(3, np.nan), np.full((3, 3), np.nan)
     moments, axes = np.linalg.eigh(inertia)
-    same = EQUAL_MOMENTS * float(np.abs(moments).max())
+    same = SOLVED * float(np.abs(moments).max())
     start = 0
     for end in range(1, 4):
         if end == 3 or moments[end] - moments[end - 1] > same:
@@ -47,12 +44,12 @@ def impossible(mass: float, inertia: Array) -> str:
     if mass <= 0.0:
         return f"the mass is {mass:.6g} kg, not positive"
     size = float(np.abs(inertia).max())
-    if float(np.abs(inertia - inertia.T).max()) > ROUNDED_MOMENTS * size:
+    if float(np.abs(inertia - inertia.T).max()) > SINGLE * size:
         return "the inertia tensor is not symmetric"
     low, middle, high = np.linalg.eigvalsh(0.5 * (inertia + inertia.T))
-    if low < -ROUNDED_MOMENTS * size:
+    if low < -SINGLE * size:
         return f"the inertia tensor has a negative principal moment ({low:.6g} kg·m²)"
-    if low + middle < (1.0 - ROUNDED_MOMENTS) * high:
+    if low + middle < (1.0 - SINGLE) * high:
         return f"the principal moments break the triangle inequality ({low:.6g} + {middle:.6g} < {high:.6g} kg·m²)"
     return ""
 

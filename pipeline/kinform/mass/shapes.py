@@ -9,8 +9,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from kinform.foundation.rounding import ARITHMETIC
 from kinform.frozen import dataclass
-from kinform.mass.constants import FLAT
 from kinform.mass.solids import integrate_solid
 from kinform.model.arrays import Array
 from kinform.model.assembly import Part
@@ -40,7 +40,7 @@ def solid_of(parts: Iterable[Part]) -> Solid | None:
             continue
         closed = part.solid and mesh.health.watertight and mesh.health.consistent_winding
         integrals = integrate_solid(mesh.vertices, mesh.faces) if closed else None
-        if integrals is None or abs(integrals.volume) <= FLAT * mesh.diagonal**3:
+        if integrals is None or abs(integrals.volume) <= ARITHMETIC * mesh.diagonal**3:
             left.append(str(part.name))
             continue
         sign, R = (1.0 if integrals.volume > 0.0 else -1.0), part.X_WP[:3, :3]

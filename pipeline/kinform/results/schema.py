@@ -7,6 +7,8 @@ anything is made of it: a digest proves that a file is as somebody wrote it, not
 
 from __future__ import annotations
 
+from typing import Literal
+
 from kinform.frozen import dataclass
 from kinform.model.collisions import RANGE_STATUSES
 from kinform.model.findings import OUTCOMES, SEVERITIES
@@ -29,8 +31,8 @@ Length = int | str | Last | None
 class Form:
     """An array."""
 
-    kind: str
-    """As NumPy names it: f, i or u."""
+    kind: Literal["f", "i", "u"]
+    """As NumPy names it."""
     shape: tuple[Length, ...]
     or_none: bool = False
     """Whether there may be nothing along its first axis: then the others say nothing."""

@@ -5,18 +5,25 @@ what a run would give, and computing it again would take minutes; but nobody may
 stale. So nothing is reused because it is likely to be right: it is reused where it is known that computing it would
 give the same bits, and a test compares whole files.
 
-How it is known. A stage says in one record what its result depends on (`dependence`): the rooms of the code that makes
+How it is known. A stage says in one record what its result depends on (`dependence`): the packages whose code makes
 it, what it sees of the assembly, earlier results, settings. Of that a hash is made, the fingerprint, which is written
 into the results file beside the result:
 
     JOINTS = Stage("joints", code={"joints": ("kinematics", "foundation")}, fills=("kinematics",),
                    view=views.for_joints, needs=("surfaces", "contacts"))
 
-    fingerprint = hash("joints", version of kinform, CODE_VERSION of those rooms, hash of each input)
+    fingerprint = hash("joints", version of kinform, CODE_VERSION of those packages, hash of each input)
 
 Equal fingerprints are the licence to reuse (`advance`), and where they are not equal, the hashes of single inputs say
 why ("contacts changed"). The stage is given the view and nothing else of the assembly, so it cannot come to depend on
 what its fingerprint leaves out. No file time, path, host or order of events counts.
+
+`CODE_VERSION` is an integer in the `__init__` of each package whose code decides results. Raise it by one in a change
+after which the package may give other bits for some input, however few: another joint, number, order or message. Leave
+it where results stay the same: names, moved code, docstrings, speed. If in doubt, raise it: that costs users one run
+from nothing, and forgetting it leaves stale results. Between releases it is what tells two states of the code apart;
+`benchmarks/golden.py` shows whether it has to be raised. It is stated by hand rather than computed: a digest of the
+source would change with every comment, and reading all source would take longer than a run that reuses everything.
 
 What is smaller than a stage is reused in the same way, each with a fingerprint of its own:
 

@@ -25,7 +25,7 @@ MOTION = (
     "contacts",
     "foundation",
 )
-"""Rooms whose code decides what a simulation comes out as."""
+"""Packages whose code decides what a simulation comes out as."""
 RESULTS: dict[str, Callable[[Design], Any]] = {
     "surfaces": lambda design: design.surfaces,
     "contacts": lambda design: design.contacts,
@@ -43,7 +43,7 @@ class Stage:
 
     name: str
     code: Mapping[str, tuple[str, ...]]
-    """Kinds of results, each with the rooms whose code decides it."""
+    """Kinds of results, each with the packages whose code decides it."""
     fills: tuple[str, ...] = ()
     """Fields of Design that it fills, the one that is never None last."""
     marks: tuple[str, ...] = ()
@@ -97,6 +97,6 @@ FINDINGS = Stage(
 STAGES = (CONTACTS, JOINTS, MASS, SIMULATION, FINDINGS)
 """Those after the import, in their order: what a stage made is dropped when one before it makes something new."""
 CODE = {"assembly": ("form", "formats", "foundation")} | {
-    kind: rooms for stage in STAGES for kind, rooms in stage.code.items()
+    kind: packages for stage in STAGES for kind, packages in stage.code.items()
 }
-"""Rooms whose code decides the results of each kind, the assembly that is read first."""
+"""Packages whose code decides the results of each kind, the assembly that is read first."""

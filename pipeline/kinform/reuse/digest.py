@@ -22,7 +22,8 @@ _RESULTS = frozenset({"MeshSurfaces", "Contacts", "Patch", "Kinematics", "MassRe
 """Classes of results of stages, by name, so that none need be imported: large, never changed, and part of the inputs
 of several stages."""
 _FEW = 4096
-"""Values up to which nothing is gathered before it is hashed."""
+"""Values up to which nothing is gathered before it is hashed, and an array is copied rather than given as it is.
+Chosen, not measured."""
 _PACKED = struct.Struct("<d").pack
 _REAL, _INTEGER = np.dtype("<f8"), np.dtype("<i8")
 _hashes: weakref.WeakKeyDictionary[Any, str] = weakref.WeakKeyDictionary()

@@ -32,19 +32,19 @@ def mark(kind: str, inputs: Inputs) -> str:
 
 def versions_of(kind: str) -> list[int]:
     """The versions of all code that decides results of a kind; imports none of it."""
-    return [_version_of(room) for room in CODE[kind]]
+    return [_version_of(package) for package in CODE[kind]]
 
 
-def _version_of(room: str) -> int:
-    module = sys.modules.get(f"kinform.{room}")
-    version = getattr(module, "CODE_VERSION", None)  # not there yet while the room is being imported
-    return stated_version(room) if version is None else int(version)
+def _version_of(package: str) -> int:
+    module = sys.modules.get(f"kinform.{package}")
+    version = getattr(module, "CODE_VERSION", None)  # not there yet while the package is being imported
+    return stated_version(package) if version is None else int(version)
 
 
 @functools.cache
-def stated_version(room: str) -> int:
-    """As the text of the room says, since importing it takes longer than a run that reuses everything."""
-    for file in (f"{room}/__init__.py", f"{room}.py"):
+def stated_version(package: str) -> int:
+    """As the text of the package says, since importing it takes longer than a run that reuses everything."""
+    for file in (f"{package}/__init__.py", f"{package}.py"):
         try:
             text = pkgutil.get_data("kinform", file) or b""
         except OSError:  # another kind of module, or compiled only
@@ -52,7 +52,7 @@ def stated_version(room: str) -> int:
         stated = re.search(rb"^CODE_VERSION(?:: int)? = (\d+)$", text, re.MULTILINE)
         if stated is not None:
             return int(stated[1])
-    return int(importlib.import_module(f"kinform.{room}").CODE_VERSION)
+    return int(importlib.import_module(f"kinform.{package}").CODE_VERSION)
 
 
 def of_assembly(assembly: Assembly) -> Inputs:

@@ -8,20 +8,22 @@ from html import escape
 
 import numpy as np
 
+from kinform.foundation.rounding import ARITHMETIC, SOLVED
 from kinform.foundation.words import number
 from kinform.model.arrays import Array
-from kinform.study.constants import NOTHING_VARIES
 
 BINS_MOST = 60
 """Bars of a histogram at most: thinner than 4 px they are no more to be told apart. A choice."""
 
 
 _WIDTH, _HEIGHT = 320, 220
+"""px of a picture: three stand side by side on a page 1,000 px wide."""
 _LEFT, _RIGHT, _TOP, _BOTTOM = 62, 12, 10, 40
+"""px of the margins: labels of seven characters on the left, two lines of text below."""
 _TICKS = 4
-"""Steps between ticks of an axis, about."""
+"""Steps between ticks of an axis, about: five labels fit. Chosen, not measured."""
 _DOTS = 2000
-"""Samples that are drawn."""
+"""Samples that are drawn: more cover each other, and make the page large. Chosen, not measured."""
 
 
 def histogram(label: str, values: Array, limits: Sequence[float]) -> str:
@@ -69,14 +71,14 @@ class _Axis:
         """Round values within the axis, least first."""
         rough = (self.high - self.low) / _TICKS
         power = 10.0 ** math.floor(math.log10(rough))
-        step = next(m * power for m in (1.0, 2.0, 5.0, 10.0) if m * power >= rough * (1.0 - 1e-9))
-        first, last = math.ceil(self.low / step - 1e-9), math.floor(self.high / step + 1e-9)
+        step = next(m * power for m in (1.0, 2.0, 5.0, 10.0) if m * power >= rough * (1.0 - SOLVED))
+        first, last = math.ceil(self.low / step - SOLVED), math.floor(self.high / step + SOLVED)
         return [k * step for k in range(first, last + 1)]
 
 
 def _bins(values: Array) -> int | Array:
     """Bars, or their edges where values are few and whole, as of a mobility."""
-    if float(np.ptp(values)) <= NOTHING_VARIES * float(np.abs(values).max()):
+    if float(np.ptp(values)) <= ARITHMETIC * float(np.abs(values).max()):
         return np.array(_span([float(values.min())]))
     low, high = float(values.min()), float(values.max())
     if np.all(values == np.round(values)) and high - low < BINS_MOST:
@@ -91,7 +93,7 @@ def _span(values: Sequence[float]) -> tuple[float, float]:
     """Least and greatest, with room beside them; not less room than rounding shows."""
     low, high = min(values), max(values)
     size = max(abs(low), abs(high))
-    room = 0.04 * (high - low) if high - low > NOTHING_VARIES * size else 0.05 * size or 1.0
+    room = 0.04 * (high - low) if high - low > ARITHMETIC * size else 0.05 * size or 1.0
     return low - room, high + room
 
 

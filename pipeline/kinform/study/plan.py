@@ -22,7 +22,8 @@ SIGMAS = 3.0
 whose capability is 1, so that 0.27 % lie outside. What drawings are commonly read as."""
 
 
-METHODS = ("grid", "one-at-a-time", "latin-hypercube", "sobol", "monte-carlo")
+Method = Literal["grid", "one-at-a-time", "latin-hypercube", "sobol", "monte-carlo"]
+Distribution = Literal["uniform", "normal", "triangular"]
 
 
 class _Table(BaseModel):
@@ -34,7 +35,7 @@ class Study(_Table):
 
     design: str
     """The manifest or description, relative to this file."""
-    method: Literal["grid", "one-at-a-time", "latin-hypercube", "sobol", "monte-carlo"] = "monte-carlo"
+    method: Method = "monte-carlo"
     samples: Annotated[int, Field(ge=1, le=SAMPLES_MOST)] | None = None
     seed: Annotated[int, Field(ge=0)] = 0
     indices: bool = False
@@ -51,7 +52,7 @@ class Vary(_Table):
     between: tuple[float, float] | None = None
     steps: Annotated[int, Field(ge=2)] | None = None
     """Of a grid."""
-    distribution: Literal["uniform", "normal", "triangular"] | None = None
+    distribution: Distribution | None = None
     mean: float | None = None
     deviation: Annotated[float, Field(gt=0)] | None = None
     tolerance: str | None = None
@@ -120,10 +121,10 @@ class Axis:
     name: str
     steps: tuple[str, ...] | None
     values: tuple[Any, ...] | None = None
-    distribution: str = "uniform"
+    distribution: Distribution = "uniform"
     low: float = 0.0
     high: float = 0.0
-    """Limits; of a normal distribution mean ± deviation times `constants.SIGMAS`."""
+    """Limits; of a normal distribution mean ± deviation times `SIGMAS`."""
     count: int | None = None
     """Steps of a grid."""
     unit: str = ""

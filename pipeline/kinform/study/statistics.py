@@ -12,13 +12,13 @@ import math
 import numpy as np
 from scipy import stats
 
+from kinform.foundation.rounding import ARITHMETIC
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
-from kinform.study.constants import NOTHING_VARIES
 from kinform.study.session import Outcome
 
 CONFIDENCE = 0.95
-"""Of intervals; a choice."""
+"""Of all intervals: what is commonly given."""
 WORST = 5
 """Samples that are listed as the worst of a measure; a choice."""
 RESAMPLES = 999
@@ -169,7 +169,7 @@ def _rank(given: Array, values: Array) -> float | None:
 
 
 def _constant(values: Array) -> bool:
-    return bool(np.ptp(values) <= NOTHING_VARIES * np.max(np.abs(values)))
+    return bool(np.ptp(values) <= ARITHMETIC * np.max(np.abs(values)))
 
 
 def _indices(outcome: Outcome, values: Array) -> tuple[Array, Array, Array] | None:
