@@ -8,9 +8,10 @@ from dataclasses import replace
 from typing import Protocol
 
 from kinform.consistency.context import Context, Need
-from kinform.consistency.outcome import Outcome, decided, triple
+from kinform.consistency.outcome import Outcome, decided
 from kinform.frozen import dataclass
 from kinform.model.findings import SEVERITIES, Finding
+from kinform.requirements.answer import triple
 
 Findings = Iterable[Finding]
 """What is wrong; a check that gives no more than this has decided."""

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.algebra.vectors import cross
-from kinform.frozen import dataclass
 from kinform.function.configurations import DEPENDENT, Chain, close
 from kinform.model.arrays import Array, Flags
+from kinform.requirements.evidence import Coverage
 
 SAMPLES = 4000
 """Configurations in the box of ranges."""
@@ -58,17 +58,6 @@ APPROACH_STEP = 0.5
 """rad, or share of the size, that one step changes a coordinate at most."""
 AT_BOUND = 1e-12
 """How near a coordinate is to the end of its range when it is held there."""
-
-
-@dataclass(frozen=True, eq=False)
-class Coverage:
-    """Of each target the least distance that was found (m, or rad for directions), and what came there."""
-
-    distance: Array
-    """(k,)."""
-    nearest: Array
-    """(k, 3) the point (m, world) or the direction that came nearest."""
-    samples: int
 
 
 def cover(chain: Chain, body: str, carried: Array, targets: Array, *, directions: bool, near: float = 0.0) -> Coverage:

@@ -18,7 +18,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from kinform.consistency.comparisons.limits import coarse
 from kinform.consistency.comparisons.ranges import joint_as_intended, shown
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive
@@ -28,6 +27,7 @@ from kinform.model.findings import Finding
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
 from kinform.model.simulation import Simulation
+from kinform.requirements.runs import coarse
 
 BEYOND = 1e-6
 """Share of the range (rad or m where it is endless) by which a motion may pass its end: a drive to just there is no

@@ -18,7 +18,8 @@ from kinform.function import resolve_joint
 from kinform.model.collisions import RangeEnd
 from kinform.model.function import IntendedJoint, Requirement
 from kinform.model.kinematics import Joint, Kinematics
-from kinform.reports.page.phrases import axis_words, contact, joint_sentence, point_words, requirement_words
+from kinform.reports.page.phrases import axis_words, contact, joint_sentence, point_words
+from kinform.requirements.words import requirement_words
 
 MARKS = {
     "agrees": "✓", "disagrees": "✕", "doubtful": "▲", "not decided": "?", "not stated": "–", "not checked": "?",

@@ -3,20 +3,51 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from dataclasses import field
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import perpendicular
 from kinform.frozen import dataclass
-from kinform.function.requirement_kinds import Box, Cone, Region
 from kinform.model.arrays import Array
 
 INSIDE = 240
-"""Directions inside of a cone."""
+"""Directions inside of a cone: of one with a half angle of 40° none is farther than 4.5° from one of them. Chosen, with
+`ALONG`, so that a region has 300 targets or so: each is approached, and the report says how large holes can be."""
 RIM = 48
-"""Directions on its rim."""
+"""Directions on its rim, 7.5° of the turn apart."""
 ALONG = 7
-"""Places along each edge of a box."""
+"""Places along each edge of a box: 343 in all."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cone:
+    """Directions within `half_angle` (rad) of the unit `axis` (3,)."""
+
+    axis: Array
+    half_angle: float
+
+
+@dataclass(frozen=True, eq=False)
+class Box:
+    """A box between two corners (3,) m along the axes of a frame with the pose `X_WF` (4, 4)."""
+
+    lower: Array
+    upper: Array
+    X_WF: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Poses:
+    """Single places (n, 3) m, or single directions (n, 3)."""
+
+    points: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    directions: Array = field(default_factory=lambda: np.zeros((0, 3)))
+
+
+Region = Cone | Box | Poses
+REGIONS: Mapping[str, type[Region]] = {"cone": Cone, "box": Box, "poses": Poses}
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,7 +1,7 @@
 """Types that several tables of the manifest share.
 
 Pydantic checks shapes and types here; what one key says about another is checked in `form.readers`, where
-every problem can be given the line of its own key.
+every problem can be given the line of its own key, and by kinds of requirements.
 """
 
 from __future__ import annotations
@@ -11,10 +11,12 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 from kinform.form.constants import LARGEST_NUMBER, NAME_LENGTH
-from kinform.frozen import dataclass
 
 PATH_LENGTH = 4095
 """Characters of the path of a file: what Linux takes."""
+ROWS_MOST = 10_000
+"""Rows of a law or a curve that is written in the manifest; longer ones are CSV files. Chosen, not measured: 100 s at a
+hundred a second."""
 
 
 Finite = Annotated[float, Field(ge=-LARGEST_NUMBER, le=LARGEST_NUMBER, allow_inf_nan=False)]
@@ -32,19 +34,6 @@ Reference = Annotated[str, StringConstraints(min_length=1, max_length=PATH_LENGT
 Pair = Annotated[list[Reference], Field(min_length=2, max_length=2)]
 Unit = Literal["m", "cm", "mm", "um", "in", "ft"]
 JointType = Literal["fixed", "revolute", "prismatic", "cylindrical", "spherical", "planar", "screw", "universal"]
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """What the value of a requirement's key is, so that it can be brought to SI, the world and full names.
-
-    length, angle: a number or list of numbers. point, direction: three numbers, or a list of such.
-    joint_value: degrees or lengths by the type of the joint that `joint` names. joint_values: a list of
-    tables of them by joint. place, joint: a name or list of names. path: a CSV file, whose rows are added to the
-    table as `rows`. frame: lengths that stay in the manifest's frame, whose pose is then added as `X_WF`.
-    """
-
-    kind: str
 
 
 class Table(BaseModel):
