@@ -27,11 +27,13 @@ if TYPE_CHECKING:
     from kinform.consistency import Outcome
 
 GRAIN_SHARE = 0.1
-"""Values are rounded to this share of their tolerance: rounding cannot make a difference by itself."""
+"""Values are rounded to this share of their tolerance: rounding cannot make a difference by itself. Of two
+roundings each is off by half of it, a tenth of the tolerance together."""
 DIRECTION_PLACES = 6
 """Decimals of directions: 1e-6 rad is far below any tolerance of angles that a lock has."""
 LENGTH_ERROR = 1e-3
-"""By so much a direction in a lock may miss the length 1; more is a mistake of who wrote it."""
+"""By so much a direction in a lock may miss the length 1; more is a mistake of who wrote it. Numbers of three digits
+pass."""
 
 
 SCHEMA = "kinform/behaviour-lock/1"

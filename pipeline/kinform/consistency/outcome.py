@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Literal
 
 from kinform.frozen import dataclass
-from kinform.model.findings import Finding
+from kinform.model.findings import Finding, OutcomeName
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """Answer of one rule: `kind` is decided, inconclusive or skipped.
+    """Answer of one rule.
 
     An inconclusive rule may carry findings too: about what it could decide, and notes that say what
     it could not.
     """
 
-    kind: str
+    kind: Literal["decided", "inconclusive", "skipped"]
     findings: tuple[Finding, ...] = ()
     reason: str = ""
 
     @property
-    def name(self) -> str:
+    def name(self) -> OutcomeName:
         """passed, failed, inconclusive or skipped; notes alone do not fail a rule."""
         if self.kind != "decided":
             return self.kind

@@ -24,13 +24,13 @@ from kinform.model.arrays import Array
 from kinform.requirements.evidence import Nearest, Swept
 
 BUDGET = 4000
-"""Poses that are measured before giving up."""
+"""Poses that are measured before giving up: seconds at a millisecond each. Chosen, not measured."""
 FIRST = 1e-3
-"""Share of the shortest step to which the first pose that falls short is found."""
+"""Share of the shortest step to which the first pose that falls short is found: ten halvings."""
 FLOOR = 1e-4
-"""Shortest step, of the size of the smaller group, ..."""
+"""Shortest step, of the size of the smaller group: 0.01 mm of a part of 100 mm, what is machined. ..."""
 FLOOR_TOGETHER = 10.0
-"""... and how many times that where several joints move at once."""
+"""... and how many times that where several joints move at once: cells of two joints are a hundred times fewer then."""
 
 
 def along(groups: Apart, first: Array, second: Array, required: float) -> Swept:

@@ -10,6 +10,7 @@ import textwrap
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from itertools import groupby
+from typing import Literal, get_args
 
 from kinform.design import Design
 from kinform.foundation.words import counted, one_line, shortened, shortened_ends
@@ -42,7 +43,8 @@ BRIEF_NAME = 28
 """Characters of the name of the ground: with the rest of its line it fits in 80."""
 
 
-_KINDS = ("warning", "not decided", "error")
+ItemKind = Literal["warning", "not decided", "error"]
+_KINDS: tuple[ItemKind, ...] = get_args(ItemKind)
 """What is told line by line, the worst last."""
 
 
@@ -50,7 +52,7 @@ _KINDS = ("warning", "not decided", "error")
 class _Item:
     """A finding that is no note, or a rule that could not decide."""
 
-    kind: str
+    kind: ItemKind
     code: str
     rule: str
     subject: tuple[str, ...]

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.consistency.comparisons.gathering import NAMED_MOST
 from kinform.consistency.context import Context
 from kinform.consistency.questions.near_motion import Correction, NearMotion, near_motions
 from kinform.foundation.words import angle, length, listed, number
 from kinform.function.joint_names import stated_as
-
-MOST_CORRECTIONS = 4
-"""Corrections, and joints of the loops, that are named of one motion that loops nearly make: a choice."""
 
 
 def nearly_moves(context: Context) -> str:
@@ -22,20 +20,18 @@ def out_of_place(context: Context) -> str:
     """Joints that a little correction of one of which makes loops move, in words; "" without."""
     found = [_name(context, one.joint) for near in near_motions(context.kinematics) for one in near.corrections]
     names = sorted(set(found), key=found.index)
-    more = len(names) - MOST_CORRECTIONS
-    return " or ".join(f"'{name}'" for name in names[:MOST_CORRECTIONS]) + (
-        f" or one of {more} more" if more > 0 else ""
-    )
+    more = len(names) - NAMED_MOST
+    return " or ".join(f"'{name}'" for name in names[:NAMED_MOST]) + (f" or one of {more} more" if more > 0 else "")
 
 
 def _sentence(context: Context, near: NearMotion) -> str:
     names = [_name(context, name) for name in near.moves]
-    shown = near.corrections[:MOST_CORRECTIONS]
+    shown = near.corrections[:NAMED_MOST]
     ways = [f"'{_name(context, one.joint)}' were {_way(context, one)}" for one in shown]
     more = len(near.corrections) - len(shown)
     rest = f" (or one of {more} more)" if more else ""
-    others = len(names) - MOST_CORRECTIONS
-    few = names if others <= 1 else [*names[:MOST_CORRECTIONS], f"{others} more"]
+    others = len(names) - NAMED_MOST
+    few = names if others <= 1 else [*names[:NAMED_MOST], f"{others} more"]
     return f"the loops of {listed(few)} would move if {' or '.join(ways)}{rest}"
 
 

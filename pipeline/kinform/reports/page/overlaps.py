@@ -10,12 +10,13 @@ from manifold3d import Error, Manifold, Mesh64
 from kinform.design import Design
 from kinform.foundation.at_work import at_work_on
 from kinform.foundation.processes import threads_ran
+from kinform.foundation.rounding import TINY
 from kinform.model.assembly import Part
 from kinform.model.contacts import Interference
 from kinform.reports.page.meshes import Shape, shape_of_facets
 
 MOST_OVERLAPS = 200
-"""Overlaps that are cut out; further ones are marked at their place alone."""
+"""Overlaps that are cut out; further ones are marked at their place alone. Chosen, not measured."""
 
 
 def overlap_shapes(design: Design) -> list[Shape | None]:
@@ -53,7 +54,7 @@ def _scaling(design: Design) -> tuple[np.ndarray, float]:
         return np.zeros(3), 1.0
     places = np.concatenate(boxes)
     low, high = places.min(axis=0), places.max(axis=0)
-    return 0.5 * (low + high), 2.0 ** math.ceil(math.log2(max(float((high - low).max()), 1e-300)))
+    return 0.5 * (low + high), 2.0 ** math.ceil(math.log2(max(float((high - low).max()), TINY)))
 
 
 def _solid(part: Part, known: dict[str, Manifold | None], centre: np.ndarray, scale: float) -> Manifold | None:

@@ -10,7 +10,8 @@ from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint
 
 LEAST_GAP = 1e-7
-"""m: smaller gaps are not told; meshes are seldom finer."""
+"""m: smaller gaps are not told. A mesh of 100 mm in single precision has steps of 1e-8 m, and surfaces are fitted to
+some of them."""
 
 
 def joint_sentence(joint: Joint, units: str) -> str:

@@ -10,6 +10,7 @@ from importlib.resources import files
 import numpy as np
 
 from kinform.design import Design
+from kinform.foundation.rounding import ARITHMETIC
 from kinform.foundation.units import metres_per
 from kinform.function import designers_joints, stated_ranges
 from kinform.model.arrays import Ints
@@ -21,9 +22,9 @@ from kinform.reports.page.subjects import wanted_names
 from kinform.reports.values.runs import coordinates
 
 MOST_PLOTS = 48
-"""Plots of one group."""
+"""Plots of one group: twelve rows of four. Chosen, not measured."""
 MOST_SPECTRA = 24
-"""Spectra, and envelopes, of a page."""
+"""Spectra, and envelopes, of a page: each shows another frequency of few. Chosen, not measured."""
 
 
 def plot_groups(design: Design) -> list[tuple[str, list[str], str]]:
@@ -110,7 +111,7 @@ def _without_far_limits(plot: Plot) -> Plot:
     if not every:
         return plot
     low, high = min(every), max(every)
-    room = max(high - low, 1e-12)
+    room = max(high - low, ARITHMETIC)
     near = tuple(limit for limit in plot.limits if low - room <= limit[1] <= high + room)
     far = "".join(
         f", {label} {number(value)}{plot.unit} not shown" for label, value in plot.limits if (label, value) not in near

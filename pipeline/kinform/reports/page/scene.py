@@ -27,11 +27,11 @@ BODY_COLOURS = (
 )  # fmt: skip
 """Of the other bodies, one after the other and again from the first."""
 SIGN_SIZE = 1.25
-"""A joint's sign over half the extent of its contact."""
+"""A joint's sign over half the extent of its contact, so that it stands out of the part. Chosen by eye."""
 LEAST_SIGN, MOST_SIGN = 0.045, 0.16
 """Shares of the assembly's size between which a sign stays."""
 EMPTY_BOX = 0.05
-"""m, to each side of a scene that is a point."""
+"""m, to each side of a scene that is a point. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
