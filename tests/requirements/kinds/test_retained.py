@@ -1,4 +1,4 @@
-"""What contacts say: clearances of fits, and what can leave."""
+"""What can leave an assembly, by what contacts say."""
 
 from __future__ import annotations
 
@@ -7,38 +7,15 @@ from dataclasses import replace
 import pytest
 from generators.solids import box, join
 from support.manifests import manifest
+from support.numbers import numbers
 from support.places import FIXTURES
-from support.requirements import bar, requiring, state, wall
+from support.requirements import state
 
 from kinform import stages
-from kinform.consistency import check
 
 
 def fixture(derive_design, name):
     return derive_design(FIXTURES / "pairs" / name / f"{name}.toml")
-
-
-def test_the_radial_clearance_of_a_shaft(derive_design):
-    made = fixture(derive_design, "cylindrical_gap_015")
-    fit = {"between": ["shaft", "block"]}
-    assert state(made, "fit", minimum=0.14e-3, maximum=0.16e-3, **fit)[0] == "met"
-    assert state(made, "fit", minimum=0.16e-3, **fit)[0] == "violated"
-    found, finding = state(made, "fit", maximum=0.1e-3, **fit)
-    assert found == "violated"
-    assert "0.15 mm" in finding.found
-    press = fixture(derive_design, "cylindrical_press_002")
-    assert state(press, "fit", minimum=-0.025e-3, maximum=-0.015e-3, **fit)[0] == "met"
-    assert state(press, "fit", minimum=0.0, **fit)[0] == "violated"
-    apart = fixture(derive_design, "free_apart")
-    names = [p.name for p in apart.assembly.parts]
-    assert state(apart, "fit", between=names, minimum=0.0)[0] == "undecided"
-
-
-def test_the_clearance_of_a_drawer_counts_both_sides(derive_design):
-    made = fixture(derive_design, "prismatic_drawer")
-    fit = {"between": ["drawer", "cabinet"]}
-    assert state(made, "fit", minimum=0.19e-3, maximum=0.21e-3, **fit)[0] == "met"
-    assert state(made, "fit", maximum=0.15e-3, **fit)[0] == "violated"
 
 
 def test_what_can_leave_is_not_retained(derive_design):
@@ -47,7 +24,7 @@ def test_what_can_leave_is_not_retained(derive_design):
     ball = next(p.name for p in table.assembly.parts if p.name != table.assembly.ground)
     found, finding = state(table, "retained", part=ball)
     assert found == "violated"
-    assert "lift off along +z" in finding.message
+    assert numbers(finding.found) == [0.0, 0.0, 1.0]
     # it rolls away sideways too, and nothing says where that ends
     assert state(table, "retained", part=ball, directions=[[0, 0, 1.0]])[0] == "undecided"
     socket = fixture(derive_design, "spherical_open")
@@ -76,12 +53,6 @@ def test_a_slide_with_stops_holds_its_part(derive_design):
     assert state(open_, "retained", part="drawer")[0] == "violated"
     both = [[0, 0, 1.0], [0, 0, -1.0]]
     assert state(open_, "retained", part="drawer", directions=both)[0] == "met"
-
-
-def test_answers_do_not_depend_on_the_order_of_parts(derive_design):
-    made = requiring(bar(wall(), reach=60), "clear", between=["bar", "base"], over="ranges")
-    turned = replace(made, assembly=replace(made.assembly, parts=made.assembly.parts[::-1]))
-    assert check(made).findings == check(turned).findings
 
 
 @pytest.mark.parametrize("mirrored", [False, True])

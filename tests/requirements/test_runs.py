@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support.devices import Z, intended, joint, rod, sine
+from support.numbers import numbers
 from support.requirements import ORIGIN, G, Y, circle, design, state, wheel
 from support.sleds import sled
 
@@ -23,7 +24,7 @@ def test_the_peak_speed_of_a_driven_joint():
     assert state(made, "speed", joint="spin", limit=1.001 * peak)[0] == "met"
     found, finding = state(made, "speed", joint="spin", limit=0.999 * peak)
     assert found == "violated"
-    assert "94.2" in finding.found
+    assert numbers(finding.found) == [pytest.approx(math.degrees(peak), rel=1e-3)]
     assert state(replace(made, simulation=None), "speed", joint="spin", limit=10.0)[0] == "undecided"
 
 
@@ -50,9 +51,7 @@ def test_a_drive_beside_the_curve_of_its_motor():
     # a motor that keeps its torque up to its greatest speed: each side of the box by itself
     for fast, strong, wanted in ((1.002, 1.002, "met"), (0.998, 1.002, "violated"), (1.002, 0.998, "violated")):
         box = {"speeds": [0.0, 0.5 * fast * speed, fast * speed], "efforts": [strong * peak] * 3}
-        found, finding = state(made, "torque_speed", joint="spin", **box)
-        assert found == wanted
-        assert wanted == "met" or "at " in finding.remedy
+        assert state(made, "torque_speed", joint="spin", **box)[0] == wanted
     assert state(wheel(), "torque_speed", joint="spin", speeds=[0.0, 1.0], efforts=[1.0, 0.0])[0] == "undecided"
 
 
@@ -75,7 +74,7 @@ def test_the_peak_reaction_of_a_joint():
     assert state(reacting, "reaction", joint="spin", force=4.99)[0] == "violated"
     found, finding = state(reacting, "reaction", joint="spin", torque=1.99)
     assert found == "violated"
-    assert "t = 0.07 s" in finding.message
+    assert numbers(finding.found) == [2.0]
     open_ = np.array([[False, False, False, True, False, False]])
     doubtful = replace(made, simulation=replace(made.simulation, F_A=wrench, undetermined=open_))
     assert state(doubtful, "reaction", joint="spin", force=100.0)[0] == "undecided"
@@ -197,8 +196,8 @@ def test_a_motion_beyond_the_stated_range_is_told_in_the_designers_sense(axis, b
     found = [f for f in check(made).findings if f.code == "KF413"]
     assert len(found) == fires
     if fires:
-        assert "30°" in found[0].found
-        assert "10°" in found[0].intended
+        assert abs(numbers(found[0].found)[0]) == 30.0
+        assert 10.0 in map(abs, numbers(found[0].intended))
 
 
 @pytest.mark.parametrize("phase", [0.0, 30.0, 90.0])
@@ -214,7 +213,6 @@ def test_a_motion_of_whole_oscillations_between_output_times_leaves_its_range_un
     report = check(made)
     (ran,) = [rule for rule in report.rules if rule.code == "KF413"]
     assert ran.outcome == "inconclusive"
-    assert "output times 2 s apart" in ran.reason
 
 
 @pytest.mark.parametrize(("velocity", "side"), [(1000, "upper"), (-1000, "lower"), (15, "")])
@@ -222,4 +220,4 @@ def test_bodies_without_meshes_leave_their_range_too(tmp_path, velocity, side):
     path = tmp_path / "sled.toml"
     path.write_text(sled("bed", "sled", "range = [-10, 10]", velocity=velocity))
     found = [f for f in kinform.run(path).findings if f.code == "KF413"]
-    assert [f"beyond the {side} end" in f.message for f in found] == ([True] if side else [])
+    assert len(found) == bool(side)

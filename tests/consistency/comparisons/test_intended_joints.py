@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support.assemblies import assembly, intended
+from support.diagonal import diagonal
 from support.solids import box, part, random_pose, rod
 
 from kinform import contacts, kinematics, surfaces
@@ -31,22 +32,18 @@ def answered(kind, base, away, *, complete, names=("base", "disc"), scale=1e-3):
     found = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
     touching = contacts.find(made, found)
     (one,) = compare_joints(made, touching, kinematics.derive(made, found, touching), [joint])
-    return answer_of(made, one).answer, one.reason
+    return answer_of(made, one).answer
 
 
-@pytest.mark.parametrize("complete", [False, True])
-@pytest.mark.parametrize("scale", [1e-4, 1e-3, 1.0])
-@pytest.mark.parametrize("kind", BASES)
+@diagonal(kind=list(BASES), scale=[1e-4, 1e-3, 1.0], complete=[False, True])
 def test_a_disc_that_slides_on_a_plate_up_to_a_round_wall_is_not_denied(kind, scale, complete):
     for names in (("base", "disc"), ("z", "disc")):
-        answer, reason = answered("planar", *BASES[kind], complete=complete, names=names, scale=scale)
-        assert answer == "undecided"
-        assert "in one sense alone, and may be a stop" in reason
+        assert answered("planar", *BASES[kind], complete=complete, names=names, scale=scale) == "undecided"
 
 
 @pytest.mark.parametrize("kind", BASES)
 def test_away_from_it_it_slides_and_what_it_does_not_do_is_denied(kind):
     base, away = BASES[kind]
     beside = away + (2.0 if kind == "post" else -2.0)
-    assert answered("planar", base, beside, complete=False)[0] == "agrees"
-    assert answered("cylindrical", base, away, complete=False)[0] == "contradicts"
+    assert answered("planar", base, beside, complete=False) == "agrees"
+    assert answered("cylindrical", base, away, complete=False) == "contradicts"

@@ -62,15 +62,11 @@ def test_what_an_unknown_mass_leaves_open():
     parts = tuple(replace(p, override=None) if p.name == "lower" else p for p in made.assembly.parts)
     model = replace(made.assembly, parts=parts)
     made = replace(made, assembly=model, mass=compile_mass(model, made.kinematics))
-    found, finding = state(made, "hold", joint="shoulder", limit=100.0)
-    assert found == "undecided"
-    assert "'lower'" in finding.message
+    assert state(made, "hold", joint="shoulder", limit=100.0)[0] == "undecided"
 
 
 @pytest.mark.parametrize(("bend", "found"), [(29.0, "met"), (30.0, "met"), (31.0, "undecided"), (-31.0, "undecided")])
 def test_a_pose_outside_of_the_range_is_not_held(bend, found):
     made = arm(elbow=(-math.radians(30.0), math.radians(30.0)))
     pose = {"elbow": math.radians(bend)}
-    answer, finding = state(made, "hold", joint="shoulder", limit=100.0, poses=[pose])
-    assert answer == found
-    assert found == "met" or "joint 'elbow' would be outside of its range" in finding.message
+    assert state(made, "hold", joint="shoulder", limit=100.0, poses=[pose])[0] == found

@@ -120,9 +120,8 @@ def test_a_freedom_that_is_only_infinitesimal_is_found(sticks):
     (finding,) = (f for f in design.report.findings if f.code == "KF305")
     assert finding.severity == "warning"
     assert finding.subject == ("base~link1", "base~link2", "link1~link2")
-    assert "only infinitesimal" in finding.message
     # what a velocity allows is no mobility
-    assert any(f.code == "KF301" and "1 only infinitesimal" in f.message for f in design.report.findings)
+    assert "KF301" in codes(design)
     assert "KF306" not in codes(design)
 
 
@@ -130,7 +129,8 @@ def test_a_pose_from_which_two_motions_lead_is_found(sticks):
     design = sticks("flat parallelogram", 1)
     (finding,) = (f for f in design.report.findings if f.code == "KF306")
     assert finding.severity == "warning"
-    assert "2 freedoms in this pose, 2 branches (1 and 1 freedoms) were found that lead out of it" in finding.message
+    (certificate,) = (one for one in design.kinematics.mobility.certificates if one.singular)
+    assert certificate.branches == (1, 1)
     assert not codes(design) & {"KF301", "KF305"}
 
 

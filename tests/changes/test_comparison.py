@@ -47,7 +47,7 @@ def with_joint(joint, **fields):
 
 def told(after, before=DESK, *tolerances):
     found = compare(before, after, Tolerance.of(tolerances))
-    return [(change.kind, change.subject[0], change.message) for change in found.changes]
+    return [(change.kind, change.subject[0]) for change in found.changes]
 
 
 def test_a_behaviour_is_the_same_as_itself():
@@ -57,73 +57,86 @@ def test_a_behaviour_is_the_same_as_itself():
 
 CASES = {
     "type": (with_joint(HINGE, type="cylindrical", freedoms=2),
-             [("joint-type", "door~frame", "was revolute, is cylindrical, 1 freedom gained")]),
-    "status": (with_joint(HINGE, status="blocked"), [("joint-status", "door~frame", "was determined, is blocked")]),
+             [("joint-type", "door~frame")]),
+    "status": (with_joint(HINGE, status="blocked"), [("joint-status", "door~frame")]),
     "axis beside": (
         with_joint(HINGE, axis=Axis((0.0, 0.0, 1.0), (0.1003, 0.0, 0.9))),
-        [("axis-moved", "door~frame", "axis moved by 0.3 mm")],
+        [("axis-moved", "door~frame")],
     ),
     "axis tilted about its point": (
         with_joint(HINGE, axis=Axis((math.sin(0.01), 0.0, math.cos(0.01)), (0.1, 0.0, 0.5))),
-        [("axis-tilted", "door~frame", "axis tilted by 0.573°")],
+        [("axis-tilted", "door~frame")],
     ),
     "upper end": (with_joint(HINGE, range_upper=math.radians(26.0)),
-                  [("range", "door~frame", "upper end of the range -4°")]),
+                  [("range", "door~frame")]),
     "lower end of a slide": (with_joint(SLIDE, range_lower=-0.098),
-                             [("range", "drawer~frame", "lower end of the range +2 mm")]),
+                             [("range", "drawer~frame")]),
     "free": (
         with_joint(HINGE, range_upper=math.inf),
-        [("range", "door~frame", "upper end of the range was 30°, is unbounded")],
+        [("range", "door~frame")],
     ),
-    "gone": (replace(DESK, joints=(HINGE,)), [("joint-gone", "drawer~frame", "is gone (prismatic)")]),
+    "gone": (replace(DESK, joints=(HINGE,)), [("joint-gone", "drawer~frame")]),
     "mobility": (
         replace(DESK, mobility=(("effective", 1), *DESK.mobility[3:])),
-        [("mobility", "effective", "effective mobility was 2, is 1: 1 freedom lost")],
+        [("mobility", "effective")],
     ),
     "heavier": (
         replace(DESK, masses=(replace(DESK.masses[0], mass=1.512), *DESK.masses[1:])),
-        [("mass", "door", "mass +12 g")],
+        [("mass", "door")],
     ),
     "weight unknown": (
         replace(DESK, masses=(replace(DESK.masses[0], mass=None), *DESK.masses[1:])),
-        [("mass", "door", "mass is no longer known")],
+        [("mass", "door")],
     ),
     "centre": (
         replace(DESK, masses=(replace(DESK.masses[0], centre_of_mass=(0.0, 0.2, 0.001)), *DESK.masses[1:])),
-        [("centre-of-mass", "door", "centre of mass moved by 1 mm")],
+        [("centre-of-mass", "door")],
     ),
     "inertia": (
         replace(DESK, masses=(replace(DESK.masses[0], principal_moments=(1e-3, 2e-3, 2e-3)), *DESK.masses[1:])),
-        [("inertia", "door", "principal moments changed by up to 20 %")],
+        [("inertia", "door")],
     ),
     "collision": (
         replace(DESK, interferences=((("door", "drawer"), 2e-3), *DESK.interferences)),
-        [("interference-new", "door", "overlap by 2 mm")],
+        [("interference-new", "door")],
     ),
     "perhaps no collision": (
         replace(DESK, interferences=(), possible_overlaps=(("door", "frame"),)),
-        [("interference-gone", "door", "may still overlap")],
+        [("interference-gone", "door")],
     ),
-    "no collision": (replace(DESK, interferences=()), [("interference-gone", "door", "no longer overlap")]),
+    "no collision": (replace(DESK, interferences=()), [("interference-gone", "door")]),
     "deeper": (replace(DESK, interferences=((("door", "frame"), 3e-4),)),
-               [("interference", "door", "overlap +0.2 mm")]),
+               [("interference", "door")]),
     "refused": (replace(DESK, simulation=("refused", "")),
-                [("simulation", "simulation", "was dynamic done, is refused")]),
+                [("simulation", "simulation")]),
     "findings": (
         replace(DESK, findings=(("KF402", ("hinge",), "error", 1),)),
         [
-            ("finding-gone", "KF304", "note is gone (freedom idle)"),
-            ("finding-new", "KF402", "error is new (joint wrong type)"),
+            ("finding-gone", "KF304"),
+            ("finding-new", "KF402"),
         ],
     ),
-    "ground": (replace(DESK, ground="door"), [("ground", "door", "is the ground instead of 'frame'")]),
+    "ground": (replace(DESK, ground="door"), [("ground", "door")]),
 }  # fmt: skip
+
+
+AMOUNTS = {
+    "type": (1.0, "freedoms"), "axis beside": (3e-4, "m"), "axis tilted about its point": (0.01, "rad"),
+    "upper end": (-math.radians(4.0), "rad"), "lower end of a slide": (2e-3, "m"), "free": (None, None),
+    "mobility": (-1.0, "freedoms"), "heavier": (0.012, "kg"), "weight unknown": (None, None), "centre": (1e-3, "m"),
+    "collision": (2e-3, "m"), "no collision": (-1e-4, "m"), "deeper": (2e-4, "m"),
+}  # fmt: skip
+"""By case how much has changed, and its unit."""
 
 
 @pytest.mark.parametrize("case", CASES)
 def test_a_change_is_told(case):
     after, expected = CASES[case]
     assert told(after) == expected
+    if case in AMOUNTS:
+        (change,) = compare(DESK, after).changes
+        amount, unit = AMOUNTS[case]
+        assert (change.amount, change.unit) == (amount if amount is None else pytest.approx(amount), unit)
     assert compare(DESK, after).code == 1
     assert compare(after, DESK).code == 1
 
@@ -131,17 +144,14 @@ def test_a_change_is_told(case):
 def test_an_axis_that_points_the_other_way_has_not_moved_and_turns_the_range_round():
     other = Axis((0.0, 0.0, -1.0), (0.1, 0.0, -7.0))
     assert told(with_joint(HINGE, axis=other, range_lower=-HINGE.range_upper, range_upper=-HINGE.range_lower)) == []
-    assert told(with_joint(HINGE, axis=other)) == [
-        ("range", "door~frame", "lower end of the range +60°"),
-        ("range", "door~frame", "upper end of the range +60°"),
-    ]
+    found = compare(DESK, with_joint(HINGE, axis=other)).changes
+    assert [(change.kind, change.amount) for change in found] == [("range", pytest.approx(math.radians(60)))] * 2
 
 
 @pytest.mark.parametrize("side", ["lower", "upper"])
 def test_an_end_that_is_no_longer_known_is_told(side):
     after = with_joint(HINGE, **{f"range_{side}": None})
-    assert [(kind, name) for kind, name, _ in told(after)] == [("range", "door~frame")]
-    assert "is not known" in told(after)[0][2]
+    assert [(kind, name) for kind, name in told(after)] == [("range", "door~frame")]
     assert compare(after, DESK).code == 1
 
 
@@ -163,7 +173,6 @@ def test_ranges_that_only_one_side_computed_are_no_change_and_not_verified():
 def test_lengths_are_told_in_the_units_of_the_assembly():
     moved = with_joint(HINGE, axis=Axis((0.0, 0.0, 1.0), (0.1254, 0.0, 0.5)))
     (change,) = compare(DESK, replace(moved, units="in")).changes
-    assert change.message == "axis moved by 1 in"
     assert change.after == "(4.937, 0, 19.685) in"
     assert (change.amount, change.place) == (pytest.approx(0.0254), (0.1254, 0.0, 0.5))
 
@@ -174,8 +183,8 @@ def test_a_body_that_takes_in_another_has_fixed_their_joint():
         joints=(replace(SLIDE, name="door~drawer", bodies=("door", "drawer")),), masses=DESK.masses[:2],
     )  # fmt: skip
     found = told(after)
-    assert ("joint-type", "door~frame", "became fixed: both are 'door' now") in found
-    assert not any(subject in ("drawer~frame", "door~drawer") and kind == "joint-gone" for kind, subject, _ in found)
+    assert ("joint-type", "door~frame") in found
+    assert not any(subject in ("drawer~frame", "door~drawer") and kind == "joint-gone" for kind, subject in found)
 
 
 def test_a_body_with_a_new_name_keeps_its_joints_and_its_mass():
@@ -185,8 +194,8 @@ def test_a_body_with_a_new_name_keeps_its_joints_and_its_mass():
         masses=(DESK.masses[0], replace(DESK.masses[1], name="bolt"), DESK.masses[2]),
     )  # fmt: skip
     assert told(renamed) == [
-        ("body-renamed", "bolt", "was named 'drawer'"),
-        ("body-parts", "bolt", "has 'bolt' in addition"),
+        ("body-renamed", "bolt"),
+        ("body-parts", "bolt"),
     ]
 
 
@@ -202,7 +211,7 @@ def test_bodies_in_the_other_order_turn_the_range_round():
         DESK, bodies=(DESK.bodies[1], DESK.bodies[2], ("gate", ("door",))), joints=(SLIDE, turned),
         masses=(*DESK.masses[1:], replace(DESK.masses[0], name="gate")),
     )  # fmt: skip
-    assert told(after) == [("body-renamed", "gate", "was named 'door'")]
+    assert told(after) == [("body-renamed", "gate")]
 
 
 @pytest.mark.parametrize(
@@ -222,7 +231,7 @@ def test_within_the_tolerance_nothing_changed(after, tolerance):
 
 @pytest.mark.parametrize("text", ["", "mm", "1", "-1mm", "1 parsec", "nan mm", "1e999mm"])
 def test_a_tolerance_that_is_none_is_refused(text):
-    with pytest.raises(ValueError, match="is no tolerance"):
+    with pytest.raises(ValueError):  # noqa: PT011
         Tolerance.of([text])
 
 
@@ -275,7 +284,7 @@ def test_a_part_with_another_name_and_the_same_mesh_is_renamed_and_nothing_else(
         masses=(*DESK.masses[1:], replace(DESK.masses[0], name="gate")), ranges=("drawer~frame", "frame~gate"),
         interferences=((("frame", "gate"), 1e-4),), findings=(("KF304", ("gate",), "note", 1),),
     )  # fmt: skip
-    assert told(gate, before) == [("part-renamed", "gate", "was named 'door', with the same mesh")]
+    assert told(gate, before) == [("part-renamed", "gate")]
     # another mesh is another part
     other = replace(gate, shapes=(*before.shapes[1:], ("gate", "z")))
-    assert {"body-gone", "body-new", "joint-gone", "joint-new"} <= {kind for kind, _, _ in told(other, before)}
+    assert {"body-gone", "body-new", "joint-gone", "joint-new"} <= {kind for kind, _ in told(other, before)}

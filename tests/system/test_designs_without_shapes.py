@@ -48,7 +48,6 @@ def test_sticks_with_ranges_are_verified_and_given_ranges_are_skipped(derive_des
     found = {rule.code: rule for rule in design.report.rules}
     assert found["KF301"].outcome == "passed"
     assert found["KF904"].outcome == "skipped"
-    assert "2 ranges given by the function" in found["KF904"].reason
     # nothing that is about shapes passes without shapes
     assert {found[code].outcome for code in ("KF201", "KF204", "KF205", "KF206", "KF412")} == {"skipped"}
 
@@ -108,5 +107,5 @@ def test_a_region_that_only_joints_free_of_their_coupling_reach_is_not_a_pass(de
     (tmp_path / "tied").mkdir()
     tied = derive_design(arm(tmp_path / "tied", mobility=1, extra=reach + coupling(1)))
     (note,) = (f for f in tied.report.findings if f.code == "KF902")
-    assert "coupling is stated" in note.message
+    assert note.subject == ("tip",)
     assert verdict(tied.report) == 2

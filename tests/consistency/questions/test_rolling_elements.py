@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from support import bearings
 from support.bearings import KINDS, Bearing, Size, answers_of
+from support.diagonal import diagonal
 from support.solids import random_pose
 
 SIZES = [
@@ -23,13 +24,24 @@ CAGED = ("needles, cage", "needles, flanges and cage")
 """What a thin cage touches is in doubt in some tessellations."""
 
 
-def some(values, kept):
-    """All of these; those but the one that is `kept` are slow tests."""
-    return [value if value == kept else pytest.param(value, marks=pytest.mark.slow) for value in values]
+def some(values, often):
+    """The values, of which every so many are tried each time; the others are slow tests."""
+    return [pytest.param(value, marks=() if k % often == 0 else pytest.mark.slow) for k, value in enumerate(values)]
 
 
-@pytest.mark.parametrize("k", some(range(3), 0))
-@pytest.mark.parametrize("kind", KINDS)
+def each_with_one(kinds, values, often):
+    """Each kind with one of the values, which take turns, as `some`; the other combinations are of the sweep. `often`
+    has no factor in common with the number of values, so that each of these is tried."""
+    return [
+        pytest.param(
+            kind, value, marks=pytest.mark.sweep if k % len(values) != i else () if k % often == 0 else pytest.mark.slow
+        )
+        for k, kind in enumerate(kinds)
+        for i, value in enumerate(values)
+    ]
+
+
+@diagonal(kind=list(KINDS), k=range(3))
 def test_the_joint_of_a_bearing_is_told(kind, k):
     found = answers_of(KINDS[kind](SIZES[k]), np.random.default_rng(k), SCALES[k])
     outcome, why = found.outcome()
@@ -37,8 +49,7 @@ def test_the_joint_of_a_bearing_is_told(kind, k):
     assert outcome in allowed, why
 
 
-@pytest.mark.parametrize("play", some([0.002, 0.035], 0.035))
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(("kind", "play"), each_with_one(KINDS, [0.035, 0.002], often=3))
 def test_play_makes_nothing_certain_that_is_wrong(kind, play):
     """Elements that keep farther apart from their races than parts that touch do are not in contact with these, and may
     carry them all the same."""
@@ -58,14 +69,15 @@ def shifted(bearing: Bearing, by: float) -> Bearing:
     return replace(bearing, solids=moved)
 
 
-@pytest.mark.parametrize("by", some([1e-4, 2e-3, 2e-2], 2e-3))
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(("kind", "by"), each_with_one(KINDS, [2e-3, 1e-4, 2e-2], often=4))
 def test_elements_that_are_not_quite_in_their_place_make_nothing_certain_that_is_wrong(kind, by):
     outcome, why = answers_of(shifted(KINDS[kind](SIZES[1]), by), np.random.default_rng(2)).outcome()
     assert outcome in ("agrees", "undecided"), why
 
 
-@pytest.mark.parametrize("kind", ["needles", "needles, flanges and collars", "balls", "tapers, rib", "thrust rollers"])
+@pytest.mark.parametrize(
+    "kind", some(["needles", "needles, flanges and collars", "balls", "tapers, rib", "thrust rollers"], often=2)
+)
 def test_one_or_two_elements_bear_no_shaft(kind):
     for count in (1, 2):
         found = answers_of(KINDS[kind](replace(SIZES[0], count=count)), np.random.default_rng(count))
@@ -80,14 +92,14 @@ def test_a_shaft_that_slides_out_of_its_needles_is_no_revolute_joint():
     assert (revolute.answer, revolute.free) == ("not held", "cylindrical, 2 freedoms by contact")
 
 
-def test_wedged_elements_are_told():
+def test_of_wedged_elements_nothing_is_certain():
     found = answers_of(KINDS["tapers"](SIZES[1]), np.random.default_rng(0))
-    assert "wedged between contacts that lean against each other by little" in found.reason
+    assert found.right.answer == "undecided"
 
 
 def test_what_a_bowl_holds_to_second_order_is_not_said_to_be_free():
     found = answers_of(KINDS["self-aligning balls"](SIZES[1]), np.random.default_rng(0))
-    assert "leave 4 freedoms at this instant" in found.reason
+    assert found.right.answer == "undecided"
 
 
 @pytest.mark.parametrize("kind", ["needles, flanges and collars", "balls"])
@@ -110,10 +122,8 @@ def test_a_pose_far_away_does_not_matter(monkeypatch):
     assert found.outcome()[0] == "agrees"
 
 
-def test_a_function_that_states_all_joints_of_a_bearing_is_not_denied():
+@pytest.mark.parametrize("kind", some([kind for kind in KINDS if kind != "tapers"], often=4))
+def test_a_function_that_states_all_joints_of_a_bearing_is_not_denied(kind):
     """Balls go with the shaft then, and bear it in the bowl of the ring together."""
-    codes = {}
-    for kind, bearing in ((kind, KINDS[kind](SIZES[1])) for kind in KINDS if kind != "tapers"):
-        found = answers_of(bearing, np.random.default_rng(3), complete=True)
-        codes[kind] = found.right.answer
-    assert set(codes.values()) <= {"agrees", "undecided"}, codes
+    found = answers_of(KINDS[kind](SIZES[1]), np.random.default_rng(3), complete=True)
+    assert found.right.answer in ("agrees", "undecided")

@@ -122,7 +122,7 @@ def test_parts_that_nothing_connects_are_drawn_beside():
     assert at[2:, 0].min() > at[:2, 0].max() + 30.0
 
 
-FOUR_BAR = Path(__file__).parents[2] / "fixtures" / "mechanisms" / "four_bar" / "four_bar.toml"
+FOUR_BAR = Path(__file__).parents[3] / "fixtures" / "mechanisms" / "four_bar" / "four_bar.toml"
 
 
 def test_the_summary_of_a_four_bar_names_its_freedom_and_its_redundancy(derive_design):

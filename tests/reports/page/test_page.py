@@ -156,8 +156,7 @@ def test_every_serious_finding_has_a_row(derive_design):
 def test_without_the_rules_nothing_agrees_and_the_page_says_so(derive_design):
     design = replace(derive_design(SEEKER), report=None)
     assert not any(row.mark == "agrees" for row in rows(design))
-    text = " ".join(read(page_html(design)).texts)
-    assert "not verified: the rules have not been run" in text
+    assert facts.verdict_of(design).kind == "unverified"
 
 
 @pytest.mark.parametrize("stage", ["import", "contacts"])
@@ -225,7 +224,6 @@ def test_bodies_stand_with_their_colour_and_intended_joints_with_their_answer(de
     told = {answer.name: answer.answer for answer in answers(design)}
     assert {row.name: row.answer for row in answer_rows(design)} == told
     assert answer_rows(design)[0].answer == "contradicts"
-    assert "its axis is elsewhere" in text.partition('id="intended"')[2].partition("</details>")[0]
 
 
 def test_sliders_go_in_the_designers_sense(derive_design):
@@ -252,7 +250,6 @@ def test_only_what_was_compared_with_a_function_is_ticked(derive_design):
     assert (facts.verdict_of(whole).kind, facts.verdict_of(whole).sign) == ("consistent", "✓")
     told = facts.verdict_of(silent)
     assert (told.kind, told.sign) == ("unverified", "–")
-    assert "geometry only" in told.line
 
 
 def test_counts_of_rows_are_told_as_a_person_would(derive_design, page_of):

@@ -6,6 +6,7 @@ import dataclasses
 import json
 import math
 
+import numpy as np
 import pytest
 from generators.solids import Solid, box, join
 from support.manifests import manifest
@@ -44,7 +45,6 @@ def test_a_stop_that_was_moved_is_a_change_of_the_range(before, shorter):
     changes = compare(snapshot(before), snapshot(shorter)).changes
     (found,) = (change for change in changes if change.kind == "range")
     assert found.amount == pytest.approx(-4e-3, abs=4e-6)
-    assert found.message == "upper end of the range -4 mm"
     assert compare(snapshot(before), snapshot(before)).code == 0
 
 
@@ -53,16 +53,16 @@ def test_a_lock_keeps_the_range_and_says_where_it_differs(before, shorter):
     (joint,) = json.loads(text)["joints"]
     assert joint["range"]["mm"] == pytest.approx([-30.0, 25.0], abs=0.01)
     report = with_lock(shorter.report, shorter, read_lock(text, "b.json"))
-    (found,) = (f for f in report.findings if f.code == "KF450" and "range" in f.message)
+    (found,) = (f for f in report.findings if f.code == "KF450" and f.subject == (joint["name"],))
     assert f'"name": "{joint["name"]}"' in text.splitlines()[found.line - 1]
     assert all(f.place is not None for f in report.findings if f.code == "KF450" and f.subject[0] in text)
     assert verdict(report) == 1
     unranged = dataclasses.replace(before, simulation=dataclasses.replace(before.simulation, ranges=None))
     (rule,) = (r for r in with_lock(before.report, unranged, read_lock(text, "b.json")).rules if r.code == "KF450")
-    assert (rule.outcome, "ranges" in rule.reason) == ("inconclusive", True)
+    assert rule.outcome == "inconclusive"
     old = read_lock(write_lock(snapshot(unranged)), "o.json")
     (note,) = (f for f in with_lock(before.report, before, old).findings if f.code == "KF450")
-    assert (note.severity, note.message) == ("note", "ranges are new: o.json does not hold them")
+    assert note.severity == "note"
     assert verdict(with_lock(before.report, before, old)) == verdict(before.report)
 
 
@@ -92,7 +92,7 @@ def test_an_ignore_of_the_lock_that_ignores_nothing_is_a_finding_where_a_lock_is
     assert not [f for f in design.report.findings if f.code == "KF440"]
     report = with_lock(design.report, design, lock)
     (found,) = (f for f in report.findings if f.code == "KF440")
-    assert "ignores nothing" in found.message
+    assert found.subject == ("KF450", "nobody")
     assert next(rule.outcome for rule in report.rules if rule.code == "KF440") == "failed"
 
 
@@ -115,14 +115,11 @@ def test_the_cause_is_named_first_and_each_value_once(before, tmp_path):
     after = drawer(tmp_path / "longer", stop=46.0, long=27.0)
     found = compare_designs(before, after)
     assert {cause.part: cause.kind for cause in found.causes} == {"rail": "part-shape", "slider": "part-shape"}
-    told = {cause.part: cause.message for cause in found.causes}
-    # 2 mm of 45 mm
-    assert told["slider"] == "has another shape: volume +4.4 %, 2 mm longer along x and vertices moved by up to 2 mm"
+    assert [sorted(cause.part for cause in group.causes) for group in found.groups if len(group.causes) == 1]
+    (ends,) = (change for change in found.changes if change.kind == "range")
+    assert ends.amount == pytest.approx(-6e-3, abs=6e-6)
     lines = render(found, "full").splitlines()
-    assert lines[0].startswith("rail has another shape")
-    assert lines.index("  mass +2.512 g") > lines.index("slider " + told["slider"])
-    whole = lines.index("of all of them together:")
-    assert lines[whole + 1 : whole + 3] == ["  rail~slider: upper end of the range -6 mm", "    25 mm → 19 mm"]
+    assert lines[0].startswith("rail ")
     assert sum(" 25 mm" in line for line in lines) == 1
     shown = json.loads(render(found, "json"))
     every = sorted(k for group in shown["groups"] for k in group["changes"])
@@ -141,12 +138,11 @@ def test_a_part_that_moved_is_told_alike_by_its_pose_and_by_its_mesh(tmp_path):
     by_pose = derived(path)
     for after in (by_mesh, by_pose):
         (cause,) = compare_designs(one, after).causes
-        assert (cause.kind, cause.part, cause.message) == ("part-moved", "block", "moved 1 mm along x")
+        assert (cause.kind, cause.part) == ("part-moved", "block")
         assert cause.X[:3, 3] == pytest.approx([1e-3, 0, 0])
     path.write_text(text.replace('name = "block"', 'name = "block"\nrpy = [0, 0, 2]'))
     (cause,) = compare_designs(one, derived(path)).causes
-    # the middle is 40 mm from the axis
-    assert cause.message == f"turned 2° about z, its middle moved {80 * math.sin(math.radians(1)):.4g} mm"
+    assert np.trace(cause.X[:3, :3]) == pytest.approx(1.0 + 2.0 * math.cos(math.radians(2)))
     assert compare_designs(one, one).causes == ()
 
 
@@ -169,7 +165,7 @@ def test_what_follows_from_a_part_is_told_of_it_by_whatever_name_the_function_ha
     bare = derived(manifest(tmp_path / "c", parts, guide.replace(', "knob"', "")))
     found = compare_designs(one, bare)
     (group,) = (g for g in found.groups if any(c.kind == "body-parts" for c in g.changes))
-    assert [cause.message for cause in group.causes] == ["is gone"]
+    assert [(cause.kind, cause.part) for cause in group.causes] == [("part-gone", "knob")]
 
 
 def test_equal_parts_with_other_names_in_their_places_are_renamed(tmp_path):
@@ -204,12 +200,9 @@ def test_other_facets_are_no_other_shape_and_another_frame_no_motion(tmp_path):
         (tmp_path / name).mkdir()
         seen[name] = derived(manifest(tmp_path / name, {"block": solid}, "", more=place))
     told = {
-        name: [(cause.kind, cause.message) for cause in compare_designs(seen["was"], design).causes]
-        for name, design in seen.items()
+        name: [cause.kind for cause in compare_designs(seen["was"], design).causes] for name, design in seen.items()
     }
     assert told["was"] == []
-    assert told["fine"] == [("part-facets", "has other facets of the same shape")]
-    ((kind, message),) = told["longer elsewhere"]
-    assert kind == "part-shape" and message.startswith("has another shape: volume +4.4 %, 2 mm longer along x")
-    assert [kind for kind, _ in told["longer and moved"]] == ["part-moved", "part-shape"]
-    assert told["longer and moved"][0][1] == "moved 100 mm along x"
+    assert told["fine"] == ["part-facets"]
+    assert told["longer elsewhere"] == ["part-shape"]
+    assert told["longer and moved"] == ["part-moved", "part-shape"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from support.numbers import numbers
 from support.solids import block, save
 
 from kinform import stages
@@ -71,9 +72,7 @@ def test_a_cube_lifts_off_when_it_is_pulled_with_more_than_its_weight(tmp_path, 
     found = findings(design, "KF506")
     assert bool(found) == lifts
     if lifts:
-        assert "at t = 0 s" in found[0].message
         assert found[0].subject == ("cube~table",)
-        assert f"{0.1 * WEIGHT:.4g} N" in found[0].message
 
 
 @pytest.mark.parametrize(("offset", "lifts"), [(0.9, False), (1.1, True)])
@@ -146,17 +145,13 @@ def test_a_carriage_disengages_beyond_the_end_of_its_rail(tmp_path, amplitude, l
     assert bool(found) == leaves
     if leaves:
         # 120 mm is where the middles of rail and carriage are half of both lengths apart.
-        time = design.simulation.time
-        first = time[np.flatnonzero(amplitude * np.sin(2 * np.pi * time) > 0.12)[0]]
-        assert f"at t = {first:g} s" in found[0].message
-        assert "120 mm" in found[0].message
+        assert {120.0} <= set(numbers(found[0].intended))
 
 
 def test_a_carriage_overhanging_its_rail_tips_once_its_middle_is_beyond_the_end(tmp_path):
     """Contact that does not enclose: on the overlap that is left, the weight stands until 100 mm."""
     assert not findings(carriage(tmp_path, 0.095), "KF506")
-    (found,) = findings(carriage(tmp_path, 0.115), "KF506")
-    assert "would separate" in found.message
+    assert len(findings(carriage(tmp_path, 0.115), "KF506")) == 1
 
 
 def bridge(folder, weight_at):
@@ -204,4 +199,3 @@ def test_however_a_load_is_shared_by_redundant_supports_it_must_be_between_them(
     for finding in found:
         assert finding.severity == "warning"
         assert set(finding.subject) == {"beam~left", "beam~right", "left~table", "right~table"}
-        assert "however redundant constraints share the load" in finding.message

@@ -9,9 +9,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support.devices import intended, sine
+from support.numbers import numbers
 from support.places import FIXTURES
-from support.requirements import ORIGIN, bar, state, thin_wall, wall
+from support.requirements import ORIGIN, bar, requiring, state, thin_wall, wall
 
+from kinform.consistency import check
 from kinform.model.assembly import Group
 from kinform.model.contacts import Interference
 from kinform.model.function import Function
@@ -39,7 +41,7 @@ def test_the_clearance_along_a_motion_and_where_it_is_lost():
     assert state(swing(30.0), "clear", distance=nearest(30) - 2e-5, **between)[0] == "met"
     found, finding = state(swing(30.0), "clear", distance=nearest(30) + 2e-5, **between)
     assert found == "violated"
-    assert "mm" in finding.found
+    assert numbers(finding.found) == [pytest.approx(1e3 * nearest(30), abs=2e-2)]
     found, finding = state(swing(60.0), "clear", **between)
     assert found == "violated"
     assert finding.found == "collision"
@@ -77,14 +79,13 @@ def test_mating_surfaces_of_real_joints_are_no_collision(derive_design):
         assert result[0] == ("undecided" if found.freedoms > 1 else "met"), (name, result)
 
 
+@pytest.mark.slow
 def test_no_part_of_the_seeker_collides_and_a_twin_that_overlaps_does(derive_design):
     sound = derive_design(FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml")
     assert state(sound, "clear", between=["base", "outer"])[0] == "met"
     wrong = derive_design(FIXTURES / "broken" / "seeker_gimbal_overlaps" / "seeker_gimbal_overlaps.toml")
     wrong = replace(wrong, simulation=simulate(wrong.assembly, wrong.kinematics, wrong.mass, level="kinematic"))
-    found, finding = state(wrong, "clear", between=["outer_gimbal", "housing"])
-    assert found == "violated"
-    assert "at t = 0 s" in finding.message
+    assert state(wrong, "clear", between=["outer_gimbal", "housing"])[0] == "violated"
 
 
 @pytest.mark.parametrize("sign", [1, -1])
@@ -106,6 +107,10 @@ def test_parts_that_would_be_on_both_sides_are_no_clearance():
     made = bar(wall())
     groups = (Group("both", ("bar", "base"), made.assembly.source),)
     made = replace(made, assembly=replace(made.assembly, groups=groups))
-    found, finding = state(made, "clear", between=["both", "bar"], over="ranges")
-    assert found == "undecided"
-    assert "'bar' would be on both sides" in finding.message
+    assert state(made, "clear", between=["both", "bar"], over="ranges")[0] == "undecided"
+
+
+def test_answers_do_not_depend_on_the_order_of_parts():
+    made = requiring(bar(wall(), reach=60), "clear", between=["bar", "base"], over="ranges")
+    turned = replace(made, assembly=replace(made.assembly, parts=made.assembly.parts[::-1]))
+    assert check(made).findings == check(turned).findings

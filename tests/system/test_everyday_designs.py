@@ -42,13 +42,9 @@ law = {{type = "constant", value = 1}}
     design = stages.mass(stages.joints(stages.contacts(stages.import_(path))))
     report = stages.check(stages.simulate(design)).report
     assert not [f for f in report.findings if f.code in ("KF401", "KF402", "KF409")]
-    (refused,) = (f for f in report.findings if f.code == "KF501" and f.subject == ("swing",))
-    assert "'pin'" in refused.message
-    assert "[[group]]" in refused.remedy
+    assert [f.subject for f in report.findings if f.code == "KF501"] == [("swing",)]
     (rule,) = (rule for rule in report.rules if rule.code == "KF409")
     assert rule.outcome == "inconclusive"
-    assert "'pin'" in rule.reason
-    assert "[[group]]" in rule.reason
 
 
 @pytest.mark.parametrize(("ratio", "code"), [(2 / 360, None), (-2 / 360, "KF411"), (4 / 360, "KF411")])
@@ -106,7 +102,6 @@ def test_a_step_that_would_fill_the_memory_is_refused_with_its_line(tmp_path):
     with pytest.raises(InputError) as caught:
         stages.import_(path)
     (problem,) = caught.value.problems
-    assert "2e+09 output times, and 1,000,000 are the most" in problem.message
     assert problem.line == 10
 
 
