@@ -14,7 +14,7 @@ from kinform.consistency import RULES
 from kinform.consistency.requirements import RequirementRule
 from kinform.form import schema
 from kinform.requirements import KINDS, all_kinds, kind_of
-from kinform.requirements.table import quantities
+from kinform.requirements.quantity import quantities
 
 ADDED = {"rows"}
 """Fields of records that the reader adds."""

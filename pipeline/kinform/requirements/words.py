@@ -8,7 +8,7 @@ from kinform.foundation import words
 from kinform.model.assembly import Assembly
 from kinform.model.function import Requirement
 from kinform.requirements import KINDS, kind_of
-from kinform.requirements.table import Quantity, quantities
+from kinform.requirements.quantity import Quantity, quantities
 
 ADDED = ("rows", "X_WF")
 """Values that kinform adds for itself."""

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from support import bearings
 from support.bearings import KINDS, Bearing, Size, answers_of
-from support.diagonal import diagonal
 from support.solids import random_pose
 
 SIZES = [
@@ -41,7 +40,7 @@ def each_with_one(kinds, values, often):
     ]
 
 
-@diagonal(kind=list(KINDS), k=range(3))
+@pytest.mark.parametrize(("kind", "k"), each_with_one(KINDS, range(3), often=2))
 def test_the_joint_of_a_bearing_is_told(kind, k):
     found = answers_of(KINDS[kind](SIZES[k]), np.random.default_rng(k), SCALES[k])
     outcome, why = found.outcome()
@@ -49,7 +48,7 @@ def test_the_joint_of_a_bearing_is_told(kind, k):
     assert outcome in allowed, why
 
 
-@pytest.mark.parametrize(("kind", "play"), each_with_one(KINDS, [0.035, 0.002], often=3))
+@pytest.mark.parametrize(("kind", "play"), each_with_one(KINDS, [0.035, 0.002], often=5))
 def test_play_makes_nothing_certain_that_is_wrong(kind, play):
     """Elements that keep farther apart from their races than parts that touch do are not in contact with these, and may
     carry them all the same."""
@@ -69,7 +68,7 @@ def shifted(bearing: Bearing, by: float) -> Bearing:
     return replace(bearing, solids=moved)
 
 
-@pytest.mark.parametrize(("kind", "by"), each_with_one(KINDS, [2e-3, 1e-4, 2e-2], often=4))
+@pytest.mark.parametrize(("kind", "by"), each_with_one(KINDS, [2e-3, 1e-4, 2e-2], often=5))
 def test_elements_that_are_not_quite_in_their_place_make_nothing_certain_that_is_wrong(kind, by):
     outcome, why = answers_of(shifted(KINDS[kind](SIZES[1]), by), np.random.default_rng(2)).outcome()
     assert outcome in ("agrees", "undecided"), why
@@ -122,7 +121,7 @@ def test_a_pose_far_away_does_not_matter(monkeypatch):
     assert found.outcome()[0] == "agrees"
 
 
-@pytest.mark.parametrize("kind", some([kind for kind in KINDS if kind != "tapers"], often=4))
+@pytest.mark.parametrize("kind", some([kind for kind in KINDS if kind != "tapers"], often=6))
 def test_a_function_that_states_all_joints_of_a_bearing_is_not_denied(kind):
     """Balls go with the shaft then, and bear it in the bowl of the ring together."""
     found = answers_of(KINDS[kind](SIZES[1]), np.random.default_rng(3), complete=True)

@@ -18,7 +18,7 @@ from kinform.form.readers.function import FunctionReader
 from kinform.foundation.meant import in_quotes
 from kinform.model.function import Requirement
 from kinform.requirements import kind_of
-from kinform.requirements.table import Quantity
+from kinform.requirements.quantity import Quantity
 
 
 def requirements_of(reader: FunctionReader) -> Iterator[Requirement]:

@@ -15,7 +15,8 @@ from kinform.requirements.answer import Answer, Margin, met, undecided, violated
 from kinform.requirements.bounds import amount
 from kinform.requirements.evidence import Evidence
 from kinform.requirements.kind import Fault, Kind, Record
-from kinform.requirements.table import DIRECTION, JOINT, PLACE, POINT, Quantity, RequirementTable
+from kinform.requirements.quantity import DIRECTION, JOINT, PLACE, POINT, Quantity
+from kinform.requirements.table import RequirementTable
 
 
 class Balance(RequirementTable):

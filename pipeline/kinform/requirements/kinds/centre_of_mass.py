@@ -15,7 +15,8 @@ from kinform.requirements.answer import Answer, Margin, met, violated
 from kinform.requirements.bounds import amount, whose
 from kinform.requirements.evidence import Evidence
 from kinform.requirements.kind import Kind, Record
-from kinform.requirements.table import LENGTH, PLACE, POINT, RequirementTable
+from kinform.requirements.quantity import LENGTH, PLACE, POINT
+from kinform.requirements.table import RequirementTable
 
 
 class CentreOfMass(RequirementTable):

@@ -22,8 +22,9 @@ from kinform.requirements.bounds import shared_parts
 from kinform.requirements.evidence import Chain, Evidence, PairOfGroups, Swept
 from kinform.requirements.joints import shown_value
 from kinform.requirements.kind import Kind, Record
+from kinform.requirements.quantity import LENGTH, PLACE
 from kinform.requirements.runs import simulated
-from kinform.requirements.table import LENGTH, PLACE, RequirementTable, side_faults
+from kinform.requirements.table import RequirementTable, side_faults
 
 Over = Literal["ranges", "motion"]
 Pair = tuple[Body, Sequence[str], Body, Sequence[str]]

@@ -14,7 +14,8 @@ from kinform.requirements.driving import driven_in, worst
 from kinform.requirements.evidence import Evidence
 from kinform.requirements.joints import Poses
 from kinform.requirements.kind import Kind, Record
-from kinform.requirements.table import JOINT, JOINT_VALUES, RequirementTable
+from kinform.requirements.quantity import JOINT, JOINT_VALUES
+from kinform.requirements.table import RequirementTable
 
 REMEDY = "Take a steeper lead, a smaller radius, other materials or lubrication, or rolling bodies."
 LOAD = "State the load: a [[function.load]], or gravity with the masses."

@@ -15,7 +15,8 @@ from kinform.requirements.answer import Answer, least, met, undecided, worst_of
 from kinform.requirements.bounds import Compared, beside_bounds, shared_parts
 from kinform.requirements.evidence import Evidence
 from kinform.requirements.kind import Fault, Kind, Record
-from kinform.requirements.table import LENGTH, PLACE, RequirementTable, bound_faults, side_faults
+from kinform.requirements.quantity import LENGTH, PLACE
+from kinform.requirements.table import RequirementTable, bound_faults, side_faults
 
 TITLES = {"radial": "radial clearance", "both sides": "clearance between planes", "gap": "gap between planes"}
 REMEDY = "Change one of the two sizes."

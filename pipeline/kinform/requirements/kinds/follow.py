@@ -16,8 +16,9 @@ from kinform.model.arrays import Array
 from kinform.requirements.answer import Answer, Margin, met, undecided, violated
 from kinform.requirements.evidence import Deviation, Evidence
 from kinform.requirements.kind import Kind, Record
+from kinform.requirements.quantity import ANGLE, LENGTH, PLACE, POINT, Quantity
 from kinform.requirements.runs import simulated
-from kinform.requirements.table import ANGLE, LENGTH, PLACE, POINT, Quantity, RequirementTable
+from kinform.requirements.table import RequirementTable
 
 REMEDY = "Correct the drives or the geometry, or the path."
 

@@ -15,7 +15,8 @@ from kinform.requirements.driving import driven_in, worst
 from kinform.requirements.evidence import Evidence
 from kinform.requirements.joints import Poses, effort, pose_words, single_joint, unit_of_effort
 from kinform.requirements.kind import Kind, Record
-from kinform.requirements.table import JOINT, JOINT_EFFORT, JOINT_VALUES, RequirementTable
+from kinform.requirements.quantity import JOINT, JOINT_EFFORT, JOINT_VALUES
+from kinform.requirements.table import RequirementTable
 
 REMEDY = "Balance the joint, lighten what it carries, or take a stronger drive."
 STATE = "State masses, drives and joints so that the load is determined."

@@ -14,7 +14,8 @@ from kinform.requirements.answer import Answer
 from kinform.requirements.bounds import Compared, amount, beside_bounds, whose
 from kinform.requirements.evidence import Evidence
 from kinform.requirements.kind import Kind, Record
-from kinform.requirements.table import DIRECTION, PLACE, POINT, Quantity, RequirementTable, bound_faults
+from kinform.requirements.quantity import DIRECTION, PLACE, POINT, Quantity
+from kinform.requirements.table import RequirementTable, bound_faults
 
 INERTIA_SPREAD = 5.0 / 3.0
 """Relative error of the inertia for that of the mass: at equal proportions mass grows with the third power of the

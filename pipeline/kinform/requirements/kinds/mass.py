@@ -13,7 +13,8 @@ from kinform.requirements.answer import Answer
 from kinform.requirements.bounds import Compared, amount, beside_bounds, whose
 from kinform.requirements.evidence import Evidence
 from kinform.requirements.kind import Kind, Record
-from kinform.requirements.table import PLACE, Quantity, RequirementTable, bound_faults
+from kinform.requirements.quantity import PLACE, Quantity
+from kinform.requirements.table import RequirementTable, bound_faults
 
 KG = Quantity("number", "kg")
 REMEDY = "Change the shape, the material or the bound."

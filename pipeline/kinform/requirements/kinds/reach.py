@@ -17,8 +17,9 @@ from kinform.model.arrays import Array
 from kinform.requirements.answer import Answer, met, undecided, violated
 from kinform.requirements.evidence import Carrier, Chain, Coverage, Evidence
 from kinform.requirements.kind import Fault, Kind, Record, record_values
+from kinform.requirements.quantity import ANGLE, DIRECTION, LENGTH, PLACE, POINT, Quantity
 from kinform.requirements.regions import REGIONS, Region, Targets, targets_of
-from kinform.requirements.table import ANGLE, DIRECTION, LENGTH, PLACE, POINT, Quantity, RequirementTable
+from kinform.requirements.table import RequirementTable
 
 REACHED_SHARE = 1e-3
 """Share of the assembly's size within which a place is reached, where no tolerance is stated. Chosen, not measured:

@@ -15,8 +15,9 @@ from kinform.requirements.answer import Answer, met, undecided, worst_of
 from kinform.requirements.bounds import Compared
 from kinform.requirements.evidence import Evidence
 from kinform.requirements.kind import Fault, Kind, Record
+from kinform.requirements.quantity import JOINT, Quantity
 from kinform.requirements.runs import peak_beside_limit, simulated
-from kinform.requirements.table import JOINT, Quantity, RequirementTable
+from kinform.requirements.table import RequirementTable
 
 REMEDY = "Lighten or slow what moves, support it better, or take a larger bearing."
 COMPUTE = "Run the simulation with a version of kinform that computes reactions."

@@ -19,7 +19,8 @@ from kinform.model.kinematics import Body, Joint, Kinematics, Release, Separatio
 from kinform.requirements.answer import Answer, met, undecided, violated
 from kinform.requirements.evidence import Evidence
 from kinform.requirements.kind import Kind, Record
-from kinform.requirements.table import DIRECTION, PLACE, RequirementTable
+from kinform.requirements.quantity import DIRECTION, PLACE
+from kinform.requirements.table import RequirementTable
 
 SAME_DIRECTION = math.cos(math.radians(1.0))
 """Cosine of the angle within which directions agree. Chosen, not measured: directions are read off drawings to a

@@ -14,7 +14,8 @@ from kinform.requirements.driving import driven_in, worst
 from kinform.requirements.evidence import Evidence
 from kinform.requirements.joints import Poses, effort
 from kinform.requirements.kind import Kind, Record
-from kinform.requirements.table import JOINT, JOINT_VALUES, RequirementTable
+from kinform.requirements.quantity import JOINT, JOINT_VALUES
+from kinform.requirements.table import RequirementTable
 
 REMEDY = "Take a smaller lead, a larger radius or a greater coefficient at rest, or add a brake."
 LOAD = "State the load: a [[function.load]], or gravity with the masses."

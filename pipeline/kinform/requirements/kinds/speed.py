@@ -14,8 +14,9 @@ from kinform.requirements.bounds import Compared
 from kinform.requirements.evidence import Evidence
 from kinform.requirements.joints import shown_value, unit_of_value
 from kinform.requirements.kind import Kind, Record
+from kinform.requirements.quantity import JOINT, Quantity
 from kinform.requirements.runs import peak_beside_limit, run_of_joint
-from kinform.requirements.table import JOINT, Quantity, RequirementTable
+from kinform.requirements.table import RequirementTable
 
 
 class Speed(RequirementTable):

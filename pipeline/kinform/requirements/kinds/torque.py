@@ -14,8 +14,9 @@ from kinform.requirements.bounds import Compared
 from kinform.requirements.evidence import Evidence
 from kinform.requirements.joints import effort, is_driven, unit_of_effort
 from kinform.requirements.kind import Kind, Record
+from kinform.requirements.quantity import JOINT, JOINT_EFFORT
 from kinform.requirements.runs import peak_beside_limit, run_of_joint
-from kinform.requirements.table import JOINT, JOINT_EFFORT, RequirementTable
+from kinform.requirements.table import RequirementTable
 
 REMEDY = "Slow the motion, balance what moves, or take a stronger drive."
 

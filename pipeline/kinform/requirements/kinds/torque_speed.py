@@ -18,8 +18,9 @@ from kinform.requirements.bounds import Compared
 from kinform.requirements.evidence import Evidence
 from kinform.requirements.joints import effort, is_driven, shown_value
 from kinform.requirements.kind import Fault, Kind, Record
+from kinform.requirements.quantity import JOINT, JOINT_EFFORT, Quantity
 from kinform.requirements.runs import peak_beside_limit, run_of_joint
-from kinform.requirements.table import JOINT, JOINT_EFFORT, Quantity, RequirementTable
+from kinform.requirements.table import RequirementTable
 
 REMEDY = "Slow the motion, change the gear ratio, or take another motor."
 
