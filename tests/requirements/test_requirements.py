@@ -65,3 +65,8 @@ def test_rules_load_no_kind_before_a_requirement_of_it_is_judged():
     script = "import sys, kinform.consistency as c; c.RULES; c.check; print([m for m in sys.modules if '.kinds.' in m])"
     told = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True, cwd=ROOT)
     assert told.stdout.strip() == "[]"
+
+
+def test_the_readme_names_every_kind():
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert [name for name in sorted(KINDS) if f"`{name}`" not in text] == []
