@@ -165,6 +165,7 @@ def test_efficiencies_of_a_train_multiply(tmp_path):
     assert "72" in findings["KF434"].message
 
 
+@pytest.mark.slow
 def test_a_worm_in_a_train_locks_it(tmp_path):
     """Teeth that rub alike both ways lock below one half; what is stated of the way back counts where it is."""
     for first, back, locks in ((0.8, "", False), (0.49, "", True), (0.51, "", False)):

@@ -101,7 +101,7 @@ def test_what_a_bowl_holds_to_second_order_is_not_said_to_be_free():
     assert found.right.answer == "undecided"
 
 
-@pytest.mark.parametrize("kind", ["needles, flanges and collars", "balls"])
+@pytest.mark.parametrize("kind", some(["needles, flanges and collars", "balls"], often=2))
 def test_the_order_of_the_parts_does_not_matter(kind):
     bearing = KINDS[kind](SIZES[0])
     names = {name: f"{'zyx'[int(name[-1]) % 3]}{name}" for name in bearing.solids if name[-1].isdigit()}
@@ -110,6 +110,7 @@ def test_the_order_of_the_parts_does_not_matter(kind):
         assert answers_of(one, np.random.default_rng(4)).outcome()[0] == "agrees"
 
 
+@pytest.mark.slow
 def test_a_pose_far_away_does_not_matter(monkeypatch):
     def far(rng, reach):
         X = random_pose(rng, reach)

@@ -53,6 +53,7 @@ def test_a_yes_needs_ranges_and_a_no_does_not():
     assert state(made, "reach", region=places((0.7, 0, 0)), **tip)[0] == "violated"
 
 
+@pytest.mark.slow
 def test_reach_along_a_closed_loop_is_decided_by_the_range_of_the_crank():
     on = lambda degrees: (0.15 + 0.1 * math.sin(math.radians(degrees)), 0, 0.1 * math.cos(math.radians(degrees)))
     middle = {"part": "coupler", "point": [0.15, 0, 0.1], "tolerance": 1e-5}

@@ -9,8 +9,6 @@ SIDE_FRAMES = 16
 measured: a second at 30 a second, there and back."""
 SHOWN_TURN = math.radians(28.0)
 """rad, greatest turn of a driver whose range is not known. Chosen by eye: what moves is seen, and little collides."""
-MOST_POINTS = 600
-"""Points of an effort over its speed: twice the columns of a curve over time, as it may pass each twice."""
 PORTION = 1 << 16
 """Pixels, or pieces of lines, that are worked on at once: with some dozen numbers each they take a few megabytes."""
 ZLIB_EFFORT = 6

@@ -22,9 +22,7 @@ from kinform.reports.page.subjects import wanted_names
 from kinform.reports.values.runs import coordinates
 
 MOST_PLOTS = 48
-"""Plots of one group: twelve rows of four. Chosen, not measured."""
-MOST_SPECTRA = 24
-"""Spectra, and envelopes, of a page: each shows another frequency of few. Chosen, not measured."""
+"""Plots of one group: twelve rows of four; of spectra, and of envelopes, half as many. Chosen, not measured."""
 
 
 def plot_groups(design: Design) -> list[tuple[str, list[str], str]]:
@@ -50,9 +48,9 @@ def plot_groups(design: Design) -> list[tuple[str, list[str], str]]:
     sized = sizing_svgs(design, run, titles)
     if sized:
         out.append(("Effort over speed of the drives", sized, ""))
-    repeating = [*_sensors(design, run), *_driven(run, titles)][:MOST_SPECTRA]
+    repeating = [*_sensors(design, run), *_driven(run, titles)][: MOST_PLOTS // 2]
     spectra = [svg for svg in (spectrum_svg(plot, run.time) for plot in repeating) if svg]
-    enveloped = [plot for one in repeating for plot in envelope_plots(one, run.time)][:MOST_SPECTRA]
+    enveloped = [plot for one in repeating for plot in envelope_plots(one, run.time)][: MOST_PLOTS // 2]
     if spectra:
         out.append(("Spectra of sensors and drives", spectra, METHOD))
     if enveloped:

@@ -10,7 +10,6 @@ import numpy as np
 
 from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
-from kinform.reports.page.constants import MOST_POINTS
 from kinform.reports.page.curves import (
     MOST_COLUMNS,
     PLOT_BOTTOM,
@@ -110,7 +109,7 @@ def _course(scales: _Scales, spectrum: Spectrum, last: float, floor: float) -> s
     """The path through the amplitudes up to the last frequency; of long spectra the greatest of each column."""
     shown = spectrum.frequency <= last
     frequency, amplitude = spectrum.frequency[shown], np.maximum(spectrum.amplitude[shown], floor)
-    if len(amplitude) > MOST_POINTS:
+    if len(amplitude) > 2 * MOST_COLUMNS:
         edges = np.linspace(0, len(amplitude), MOST_COLUMNS + 1).astype(int)
         keep = [a + int(amplitude[a:b].argmax()) for a, b in zip(edges[:-1], edges[1:], strict=True)]
         frequency, amplitude = frequency[keep], amplitude[keep]
