@@ -88,26 +88,27 @@ def test_unbounded_ranges_survive(four_bar):
     "text", ["", "[]", "{}", '{"schema": "kinform/behaviour-lock/9"}', '{"schema": "kinform/behaviour-lock/1"}']
 )
 def test_what_is_no_lock_is_refused_by_name(text):
-    with pytest.raises(InputError, match=r"b\.json: this is no lock"):
+    with pytest.raises(InputError) as caught:
         read_lock(text, "b.json")
+    assert [problem.file for problem in caught.value.problems] == ["b.json"]
 
 
 @pytest.mark.parametrize(
-    ("edit", "told"),
+    "edit",
     [
-        (lambda lock: lock["tolerances"].update(length_mm=math.nan), "NaN is no number"),
-        (lambda lock: lock["tolerances"].update(length_mm=-0.1), "length_mm"),
-        (lambda lock: lock["tolerances"].update(mass_percent=-1), "mass_percent"),
-        (lambda lock: lock["mobility"].update(effective="one"), "mobility effective is 'one'"),
-        (lambda lock: lock["mobility"].update(effective=1.5), "mobility effective is 1.5"),
-        (lambda lock: lock["joints"][0].update(axis=[0, 0, 0]), "not of length 1"),
-        (lambda lock: lock["bodies"][0].pop("mass_g"), "has no mass_g"),
+        lambda lock: lock["tolerances"].update(length_mm=math.nan),
+        lambda lock: lock["tolerances"].update(length_mm=-0.1),
+        lambda lock: lock["tolerances"].update(mass_percent=-1),
+        lambda lock: lock["mobility"].update(effective="one"),
+        lambda lock: lock["mobility"].update(effective=1.5),
+        lambda lock: lock["joints"][0].update(axis=[0, 0, 0]),
+        lambda lock: lock["bodies"][0].pop("mass_g"),
     ],
 )
-def test_a_lock_edited_into_one_that_would_pass_anything_is_refused(four_bar, edit, told):
+def test_a_lock_edited_into_one_that_would_pass_anything_is_refused(four_bar, edit):
     lock = json.loads(write_lock(snapshot(four_bar)))
     edit(lock)
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError):
         read_lock(json.dumps(lock), "b.json")
 
 
@@ -117,4 +118,4 @@ def test_a_joint_whose_axis_was_taken_out_of_the_lock_differs(four_bar):
     report = with_lock(four_bar.report, four_bar, read_lock(json.dumps(lock), "b.json"))
     (found,) = (finding for finding in report.findings if finding.code == "KF450")
     assert found.subject == (lock["joints"][0]["name"],)
-    assert "known now" in found.message
+    assert found.severity == "error"

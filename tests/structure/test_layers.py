@@ -16,6 +16,7 @@ ROOT = Path(__file__).parents[2]
 SOURCES = {"kinform": ROOT / "pipeline", "kinform_cli": ROOT / "cli"}
 LAYERS = (
     ("version",), ("frozen",), ("errors",), ("model",), ("foundation",),
+    ("form.tables", "form.constants"), ("requirements",),
     ("form", "formats", "formats.*.reading"), ("surfaces",), ("contacts",), ("mechanism",),
     ("kinematics",), ("mass",), ("function",), ("behaviour",), ("collisions",), ("simulation",), ("design",),
     ("statics",), ("consistency",), ("reuse",), ("results",), ("exports", "formats.*.writing"), ("reports",),

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.consistency import check
+from kinform.consistency import RULES, check
+from kinform.consistency.requirements import RequirementRule
 from kinform.design import Design
 from kinform.mass import compile_mass
 from kinform.model.function import Function, Requirement, SimulationRequest
@@ -19,12 +20,8 @@ from support.solids import box, part
 X, Y, Z, ORIGIN = (1.0, 0, 0), (0, 1.0, 0), (0, 0, 1.0), (0, 0, 0)
 G = 9.81
 
-CODES = {
-    "reach": "KF421", "follow": "KF422", "clear": "KF423", "hold": "KF424", "torque": "KF425", "speed": "KF426",
-    "reaction": "KF427", "mass": "KF428", "centre_of_mass": "KF429", "inertia": "KF430", "balance": "KF431",
-    "retained": "KF432", "fit": "KF433", "efficiency": "KF434", "self_locking": "KF435",
-    "torque_speed": "KF436",
-}  # fmt: skip
+CODES = {rule.kind: rule.code for rule in RULES if isinstance(rule, RequirementRule)}
+"""By kind of requirement the code of its rule."""
 
 
 def design(parts, joints, *, wanted=(), drives=(), loads=(), run=False, **request):

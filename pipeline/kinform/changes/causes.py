@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from typing import Literal
 
 from kinform.changes.behaviours import Snapshot
 from kinform.changes.change import Change
@@ -24,12 +25,14 @@ OF_THE_WHOLE = ("mobility", "simulation")
 """Kinds of changes that are about no part."""
 
 
+CauseKind = Literal["part-moved", "part-shape", "part-facets", "part-material", "part-new", "part-gone"]
+
+
 @dataclass(frozen=True, eq=False)
 class Cause:
     """What was done to one part."""
 
-    kind: str
-    """part-moved, part-shape, part-facets, part-material, part-new or part-gone."""
+    kind: CauseKind
     part: str
     """By its name now, or as it was where it is gone."""
     message: str

@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     from kinform.consistency import Outcome
 
 GRAIN_SHARE = 0.1
-"""Values are rounded to this share of their tolerance: rounding cannot make a difference by itself."""
-DIRECTION_PLACES = 6
-"""Decimals of directions: 1e-6 rad is far below any tolerance of angles that a lock has."""
+"""Values are rounded to this share of their tolerance: rounding cannot make a difference by itself. Of two
+roundings each is off by half of it, a tenth of the tolerance together."""
 LENGTH_ERROR = 1e-3
-"""By so much a direction in a lock may miss the length 1; more is a mistake of who wrote it."""
+"""By so much a direction in a lock may miss the length 1; more is a mistake of who wrote it. Numbers of three digits
+pass."""
 
 
 SCHEMA = "kinform/behaviour-lock/1"
@@ -191,7 +191,8 @@ def _joint(joint: JointState, grain: _Grain) -> dict[str, Any]:
     }  # fmt: skip
     for name, axis in (("axis", joint.axis), ("axis2", joint.axis2)):
         if axis is not None:
-            row[name] = [round(x, DIRECTION_PLACES) + 0.0 for x in axis.direction]
+            # 1e-6 rad is far below any tolerance of angles that a lock has
+            row[name] = [round(x, 6) + 0.0 for x in axis.direction]
     point = joint.centre if joint.axis is None or joint.axis.point is None else joint.axis.point
     if point is not None:
         row["point_mm"] = grain.place(point)

@@ -5,22 +5,19 @@ A mesh is known again whatever frame it is written in, in whatever order and wit
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 
 from kinform.foundation.algebra.displacements import inverse, twist_of
 from kinform.foundation.meshes.closest import closest_facets
+from kinform.foundation.rounding import SINGLE, SOLVED, TINY
 from kinform.foundation.words import angle, direction, length, listed
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh, Part
 
-SAME_SHAPE = 1e-6
-"""Share of a part's size by which vertices may miss a displaced mesh: what files of single precision round."""
-SAME_PLACE = 1e-7
-"""Share of a part's size, and rad, below which it has not moved: rounding of poses."""
 SAME_VOLUME = 0.005
 """%: smaller differences of volume are told as none, as they would be told as 0.00 %."""
-ALONG = 1e-6
-"""By how much the component of a direction may miss 1 for the direction to be that of an axis."""
 
 
 def displacement(was: Part, part: Part) -> tuple[Array | None, bool]:
@@ -43,7 +40,7 @@ def displacement(was: Part, part: Part) -> tuple[Array | None, bool]:
 
 def _near(was: Part, part: Part) -> float:
     """m: by how much the same place may differ, as files and poses round it."""
-    return max(SAME_SHAPE * _size(part), was.step, part.step)
+    return max(SINGLE * _size(part), was.step, part.step)
 
 
 def _box(points: Array) -> Array:
@@ -102,7 +99,7 @@ def moved(X: Array, was: Part, part: Part, units: str) -> str:
     """ "moved 1 mm along x", "turned 2° about z"; empty where the displacement is rounding."""
     size = _size(part)
     same = was.mesh is None or part.mesh is None or was.mesh.digest == part.mesh.digest
-    least = SAME_PLACE * size if same else max(SAME_PLACE * size, was.step, part.step)
+    least = SINGLE * size if same else max(SINGLE * size, was.step, part.step)
     twist = twist_of(X)
     turn = float(np.linalg.norm(twist[:3]))
     place = part.X_WP[:3, 3] if part.mesh is None else _middle_of(part)
@@ -130,18 +127,18 @@ def _size(part: Part) -> float:
     if part.mesh is None:
         return 1.0
     low, high = part.mesh.box
-    return max(float(np.linalg.norm(high - low)), 1e-9)
+    return max(float(np.linalg.norm(high - low)), SOLVED)
 
 
 def _along(unit: Array) -> str:
     """x, -z, or the components."""
     k = int(np.argmax(np.abs(unit)))
-    if abs(abs(float(unit[k])) - 1.0) < ALONG:
+    if abs(abs(float(unit[k])) - 1.0) < SINGLE:
         return ("" if unit[k] > 0.0 else "-") + "xyz"[k]
     return direction(np.round(unit, 3))
 
 
-def reshaped(was: Part, part: Part, X: Array | None, units: str) -> tuple[str, str]:
+def reshaped(was: Part, part: Part, X: Array | None, units: str) -> tuple[Literal["part-shape", "part-facets"], str]:
     """The kind of a cause, and its words, of a part with other facets that was displaced by X: by how much its volume,
     its box and its surface differ, along the axes of its frame, or of the world where that is another frame."""
     if was.mesh is None or part.mesh is None:
@@ -171,7 +168,7 @@ def _apart(one: Array, faces_one: Ints, two: Array, faces_two: Ints) -> float | 
     """m: how far corners and middles of the facets of either of two meshes (n, 3), (m, 3) lie from the other; None
     where there are too many to be measured."""
     low, high = one.min(axis=0), one.max(axis=0)
-    unit, worst = max(float(np.linalg.norm(high - low)), 1e-300), 0.0
+    unit, worst = max(float(np.linalg.norm(high - low)), TINY), 0.0
     meshes = [((points - low) / unit, faces) for points, faces in ((one, faces_one), (two, faces_two))]
     for (points, faces), (others, of_others) in (meshes, meshes[::-1]):
         found = closest_facets(np.concatenate([points, points[faces].mean(axis=1)]), others[of_others])

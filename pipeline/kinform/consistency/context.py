@@ -20,7 +20,7 @@ from kinform.consistency.comparisons.intended_joints import compare_joints
 from kinform.consistency.comparisons.known import bodies_of
 from kinform.consistency.comparisons.links import Weighed, weighed
 from kinform.consistency.comparisons.plausibility import Doubt, doubts
-from kinform.consistency.outcome import Answer, Outcome, inconclusive, skipped, triple
+from kinform.consistency.outcome import Outcome, inconclusive, skipped
 from kinform.consistency.questions.captive_parts import Afloat, AfloatParts
 from kinform.design import Design
 from kinform.foundation.meshes.shell_faults import ShellFaults, shell_faults
@@ -32,6 +32,7 @@ from kinform.model.function import PASSIVE, Function, Requirement
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.mass import MassReport
 from kinform.model.simulation import Simulation
+from kinform.requirements.answer import Answer, triple
 
 DAMPED_UNSEEN = 1e-6
 """Share of the energy exchanged that went with vibrations which the solver damped, up to which the motion is known:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from kinform.consistency.comparisons.gathering import ALIKE_MOST, NAMED_MOST
 from kinform.consistency.context import Unused
 from kinform.consistency.outcome import Outcome
 from kinform.consistency.profiles import SETTLED, at_most
@@ -17,10 +18,6 @@ from kinform.model.findings import Finding, Ignored, RuleOutcome
 FEW_WARNINGS = 6
 """Warnings of one rule on a robot description that are told one by one: the sides of three joints. Of more, nobody
 reads the last."""
-WORST_WARNINGS = 3
-"""Of more, so many are told; the rest is one finding."""
-NAMED_WARNINGS = 4
-"""Of these, so many are named."""
 
 
 DOUBT = "KF9"
@@ -78,12 +75,12 @@ def _few(findings: Sequence[Finding]) -> Iterator[Finding]:
     if len(warnings) <= FEW_WARNINGS:
         yield from warnings
         return
-    told, rest = warnings[:WORST_WARNINGS], warnings[WORST_WARNINGS:]
+    told, rest = warnings[:ALIKE_MOST], warnings[ALIKE_MOST:]
     yield from told
     about = [" and ".join(f"'{name}'" for name in finding.subject[:2]) for finding in rest]
-    text = f"{len(rest)} more of this rule, none worse: {'; '.join(about[:NAMED_WARNINGS])}"
-    if len(about) > NAMED_WARNINGS:
-        text += f' and {len(about) - NAMED_WARNINGS} more; `[check] profile = "design"` lists all'
+    text = f"{len(rest)} more of this rule, none worse: {'; '.join(about[:NAMED_MOST])}"
+    if len(about) > NAMED_MOST:
+        text += f' and {len(about) - NAMED_MOST} more; `[check] profile = "design"` lists all'
     subject = tuple(dict.fromkeys(name for finding in rest for name in finding.subject))
     yield replace(rest[0], subject=subject, message=text, found=None, intended=None, place=None)
 

@@ -29,6 +29,9 @@ passes, fails, is inconclusive (something that it is about could not be decided)
 not apply). Findings are errors, warnings or notes. Exit code of the gate: 1 with findings at or above
 `--fail-on` (default error); else 2 when nothing was checked or a rule is inconclusive; else 0.
 
+A stable rule keeps its code, its name and what it finds until the next major version. A rule in preview may
+change with any version.
+
 `kinform explain CODE` prints the text of one rule. This page is generated from the rules by
 `python -m kinform.consistency docs/rules.md`.
 """
@@ -50,13 +53,13 @@ def explain(code: str) -> str:
     wanted = code.strip().casefold()
     for rule in RULES:
         if wanted == rule.code.casefold() or "-".join(wanted.split()) == rule.name:
-            return f"{rule.code} {rule.name} ({rule.severity})\n\n{_text(rule)}\n"
+            return f"{rule.code} {rule.name} ({_standing(rule)})\n\n{_text(rule)}\n"
     word = meaning(code)
     if word is not None:
         return word
     family = [rule for rule in RULES if len(wanted) > 1 and rule.code.casefold().startswith(wanted)]
     if family:
-        return "".join(f"{rule.code} {rule.name} ({rule.severity})\n" for rule in family)
+        return "".join(f"{rule.code} {rule.name} ({_standing(rule)})\n" for rule in family)
     raise UnknownRuleError(code, _near(wanted))
 
 
@@ -77,8 +80,14 @@ def rules_markdown() -> str:
         for rule in RULES:
             if rule.code.startswith(prefix):
                 text = re.sub(r"^([A-Z][a-z ]+): ", r"**\1.** ", _text(rule), flags=re.MULTILINE)
-                lines.append(f"\n### {rule.code} {rule.name}\n\nSeverity: {rule.severity}.\n\n{text}")
+                standing = f"Severity: {rule.severity}. Stability: {rule.stability}."
+                lines.append(f"\n### {rule.code} {rule.name}\n\n{standing}\n\n{text}")
     return "\n".join(lines) + "\n"
+
+
+def _standing(rule: Rule) -> str:
+    """Severity, and that a rule is in preview."""
+    return rule.severity if rule.stability == "stable" else f"{rule.severity}, {rule.stability}"
 
 
 def _text(rule: Rule) -> str:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from kinform.consistency.comparisons.answers import answer_counts, answers
 from kinform.consistency.context import Context
 from kinform.consistency.control import Applied, apply, idle_ignore, is_selected, means, unused_entries
-from kinform.consistency.outcome import Margin, Outcome, decided, skipped
+from kinform.consistency.outcome import Outcome, decided, skipped
 from kinform.consistency.places import with_place
 from kinform.consistency.requirements import RequirementRule
 from kinform.consistency.rule import Rule
@@ -17,6 +17,7 @@ from kinform.consistency.rules.kf450_behaviour_differs_from_lock import RULE as 
 from kinform.design import Design
 from kinform.model.checks import CheckSettings
 from kinform.model.findings import CheckReport, Finding, RuleOutcome
+from kinform.requirements.answer import Margin
 
 
 def check(design: Design) -> CheckReport:

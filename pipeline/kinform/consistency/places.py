@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.consistency.context import Context
-from kinform.consistency.outcome import triple
 from kinform.consistency.rule import Declared
 from kinform.function import resolve_joint
 from kinform.model.assembly import Part
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
+from kinform.requirements.answer import triple
 
 
 def with_place(context: Context, finding: Finding) -> Finding:

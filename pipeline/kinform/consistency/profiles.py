@@ -10,7 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-DESCRIPTION: Mapping[str, str] = {
+from kinform.model.checks import Profile
+from kinform.model.findings import SEVERITIES, Severity
+
+DESCRIPTION: Mapping[str, Severity] = {
     "KF101": "note",
     "KF102": "warning",
     "KF103": "note",
@@ -44,10 +47,8 @@ SETTLED = frozenset({"KF203", "KF204", "KF303", "KF402", "KF403", "KF404", "KF40
 """Rules whose doubts, in a description, are notes and leave nothing undecided: meshes that are for looking at do not
 say more."""
 
-_ORDER = ("note", "warning", "error")
 
-
-def at_most(code: str, severity: str, profile: str) -> str:
+def at_most(code: str, severity: Severity, profile: Profile) -> Severity:
     """The severity of a finding of a rule under a profile."""
     limit = DESCRIPTION.get(code) if profile == "description" else None
-    return severity if limit is None or _ORDER.index(severity) <= _ORDER.index(limit) else limit
+    return severity if limit is None or SEVERITIES.index(severity) <= SEVERITIES.index(limit) else limit

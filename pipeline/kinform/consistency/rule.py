@@ -5,15 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from typing import Protocol
+from typing import Literal, Protocol
 
 from kinform.consistency.context import Context, Need
-from kinform.consistency.outcome import Outcome, decided, triple
+from kinform.consistency.outcome import Outcome, decided
 from kinform.frozen import dataclass
-from kinform.model.findings import SEVERITIES, Finding
+from kinform.model.findings import Finding, Severity, severity_of
+from kinform.requirements.answer import triple
 
 Findings = Iterable[Finding]
 """What is wrong; a check that gives no more than this has decided."""
+Stability = Literal["stable", "preview"]
+"""Findings of a stable rule change with a major version only; those of a rule in preview may change with any."""
 
 
 class Declared(Protocol):
@@ -31,7 +34,7 @@ class Rule:
 
     code: str
     name: str
-    severity: str
+    severity: Severity
     """Of its findings, where nothing speaks for another."""
     documentation: str | None
     """Docstring of the rule's module: what is checked, why it matters, what to do, an example."""
@@ -42,6 +45,7 @@ class Rule:
     speaks_for: tuple[str, ...] = ()
     """Codes of rules that leave it to this one to say what they could not decide: where one of them is selected, so
     is this."""
+    stability: Stability = "stable"
 
     def outcome(self, context: Context) -> Outcome:
         """What the rule says of a design: why something that it needs is not there, else what its check says."""
@@ -54,9 +58,7 @@ class Rule:
 
     def at(self, severity: str) -> Rule:
         """The rule with findings of another severity."""
-        if severity not in SEVERITIES:
-            raise ValueError(f"unknown severity {severity!r}: expected one of {', '.join(SEVERITIES)}")
-        return replace(self, severity=severity)
+        return replace(self, severity=severity_of(severity))
 
     def finding(
         self,

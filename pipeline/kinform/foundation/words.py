@@ -90,6 +90,15 @@ def direction(vector: Iterable[float]) -> str:
     return f"({', '.join(number(round(float(v), 4) + 0.0) for v in vector)})"
 
 
+def axis(direction: Iterable[float]) -> str:
+    """A direction (3,) as x, -z, or its components."""
+    values = [round(float(v), 4) + 0.0 for v in direction]
+    for k, name in enumerate("xyz"):
+        if abs(values[k]) == 1.0 and values.count(0.0) == 2:
+            return name if values[k] > 0.0 else f"-{name}"
+    return "(" + ", ".join(f"{v:g}" for v in values) + ")"
+
+
 def telling(shown: Callable[[float, int], str], *values: float) -> Callable[[float], str]:
     """`shown` with as many significant digits, four at least, as tell the values apart: nothing is said to be "5 mm,
     required is at most 5 mm"."""

@@ -15,17 +15,13 @@ from collections.abc import Mapping
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.rounding import SINGLE
 from kinform.foundation.words import counted
 from kinform.frozen import dataclass
 from kinform.function.joint_names import Resolution, resolve_joint
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Joint, Kinematics
-
-FREEDOM_AT_REST = 1e-6
-"""Share of the fastest joint's rate (slides over the size) below which a freedom of a joint is at rest in a motion:
-far above rounding, and far below what the ends of a ram turn or slide when it moves."""
-
 
 FREEDOMS: Mapping[str, tuple[str, ...]] = {
     "revolute": ("turn",),
@@ -132,7 +128,7 @@ def _left(kinematics: Kinematics, joint: Joint) -> tuple[list[int], str]:
             whole = max(whole, float(np.abs(moved).max()))
             if name == joint.name:
                 rates += moved
-        turn, slide = (bool(abs(value) > FREEDOM_AT_REST * whole) for value in rates)
+        turn, slide = (bool(abs(value) > SINGLE * whole) for value in rates)
         idle = idle or (freedom.idle and turn)
         if not freedom.idle:
             moves.append((turn, slide))

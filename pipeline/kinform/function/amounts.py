@@ -7,37 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross
-from kinform.frozen import dataclass
 from kinform.mass import weighed_together
-from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.mass import MassReport
-
-
-@dataclass(frozen=True, eq=False)
-class Amount:
-    """Several parts together, world axes, at the pose of the meshes."""
-
-    mass: float
-    """kg."""
-    centre: Array
-    """(3,) m."""
-    inertia: Array
-    """(3, 3) kg·m² about the centre."""
-    bound: float
-    """Relative bound of the mass's error."""
-
-    def about(self, axis: Array, point: Array | None) -> float:
-        """Moment of inertia (kg·m²) about the unit axis through the point (m), or through the centre."""
-        about_centre = float(axis @ self.inertia @ axis)
-        if point is None:
-            return about_centre
-        return about_centre + self.mass * self.distance(axis, point) ** 2
-
-    def distance(self, axis: Array, point: Array) -> float:
-        """Distance (m) of the centre of mass from a line."""
-        return float(np.linalg.norm(cross(axis, self.centre - point)))
+from kinform.requirements.evidence import Amount
 
 
 def amount_of(assembly: Assembly, report: MassReport, parts: Sequence[str]) -> Amount | str:

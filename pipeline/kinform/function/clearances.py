@@ -23,23 +23,13 @@ from kinform.model.arrays import Array, Flags
 from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.contacts import Contacts
 from kinform.model.surfaces import MeshSurfaces
+from kinform.requirements.evidence import Nearest
 
 GRID = 8
 """Divisions of a triangle's side by points between which a place to look at is found; a choice."""
 
 
 _GRID = np.array([[i, j, GRID - i - j] for i in range(GRID + 1) for j in range(GRID + 1 - i)]) / GRID
-
-
-@dataclass(frozen=True, eq=False)
-class Nearest:
-    """The least distance in one pose: between which parts, and where."""
-
-    distance: float
-    """m; 0 where they collide."""
-    parts: tuple[str, str]
-    place: Array
-    """(3,) m, in the world at the pose of the meshes of the first group: about where they are nearest."""
 
 
 @dataclass(frozen=True, eq=False)

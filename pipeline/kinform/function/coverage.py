@@ -13,37 +13,35 @@ from numpy.typing import NDArray
 
 from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.algebra.vectors import cross
-from kinform.frozen import dataclass
+from kinform.foundation.rounding import ARITHMETIC, SOLVED, TINY
 from kinform.function.configurations import DEPENDENT, Chain, close
 from kinform.model.arrays import Array, Flags
+from kinform.requirements.evidence import Coverage
 
 SAMPLES = 4000
-"""Configurations in the box of ranges."""
+"""Configurations in the box of ranges: 16 values of each of three joints. Chosen, not measured."""
 WALK = 600
-"""Configurations along closed loops."""
-WALK_STEP = 0.25
-"""rad, or share of the size, of a step of that walk in the coordinate that moves most; a choice."""
+"""Configurations along closed loops, each of which takes a closure of its own: 24 by 24 of two freedoms. Chosen, not
+measured."""
 WALK_TRIES = 8
 """Steps for each configuration after which the walk ends."""
-RANGE_ROUNDING = 1e-9
-"""rad, or share of the size, by which such a step may leave a range."""
 STARTS = 6
-"""Samples from which each target is approached."""
+"""Samples from which each target is approached: the nearest may lie behind the end of a range. Chosen, not measured."""
 AGAIN = 40
 """How many of the farthest targets are approached again, ..."""
 STARTS_AGAIN = 48
-"""... and from how many samples."""
+"""... and from how many samples: one that is missed makes the region not reached. Both chosen, not measured."""
 TOGETHER = 400
-"""Approaches that are made at once, so that their arrays stay small."""
+"""Approaches that are made at once: with 20 coordinates their matrices take 1 MB, what a cache holds."""
 TURNS = 60
-"""Steps of an approach at most."""
+"""Steps of an approach at most: with `APPROACH_STEP` a coordinate may go five turns. Chosen, not measured."""
 TARGET_CLOSED = 1e-8
-"""Residual at which the loops of an approach count as closed."""
+"""Residual at which the loops of an approach count as closed: it ends damped, a step before `SOLVED`."""
 FAR = 1.0
 """Loops may close in several ways: what is farther (rad, or sizes) from all that the walk came through is not
 counted."""
 STIFF = 10.0
-"""Weight of a loop that is open beside a target that is missed."""
+"""Weight of a loop that is open beside a target that is missed: loops close first. Chosen, not measured."""
 DAMPING = 1e-3
 """Levenberg and Marquardt's damping at the start, ..."""
 DAMPING_BETTER = 0.2
@@ -55,20 +53,8 @@ DAMPING_RANGE = (1e-12, 1e6)
 DAMPING_STUCK = 1e2
 """When no approach comes nearer and none is damped by less, all have ended."""
 APPROACH_STEP = 0.5
-"""rad, or share of the size, that one step changes a coordinate at most."""
-AT_BOUND = 1e-12
-"""How near a coordinate is to the end of its range when it is held there."""
-
-
-@dataclass(frozen=True, eq=False)
-class Coverage:
-    """Of each target the least distance that was found (m, or rad for directions), and what came there."""
-
-    distance: Array
-    """(k,)."""
-    nearest: Array
-    """(k, 3) the point (m, world) or the direction that came nearest."""
-    samples: int
+"""rad, or share of the size, that one step changes a coordinate at most: within 30° a first order is of use. The walk
+along closed loops takes half of it, so that it does not jump from one branch to another. Chosen, not measured."""
 
 
 def cover(chain: Chain, body: str, carried: Array, targets: Array, *, directions: bool, near: float = 0.0) -> Coverage:
@@ -126,8 +112,8 @@ def _sampled(chain: Chain) -> Array:
         if not len(loose):
             break
         way = rng.normal(size=len(loose)) @ loose
-        stepped = close(chain, base + WALK_STEP * way / np.abs(way).max(), free)
-        slack = RANGE_ROUNDING
+        stepped = close(chain, base + APPROACH_STEP / 2.0 * way / np.abs(way).max(), free)
+        slack = SOLVED
         if stepped is not None and ((stepped >= low - slack) & (stepped <= high + slack)).all():
             closed.append(stepped)
     return np.array(closed)
@@ -171,13 +157,13 @@ def _approach(
     image, miss, rows, residual = _linear(chain, tip, image_of, q, aims, directions)
     for _ in range(TURNS):
         gradient = (np.swapaxes(rows, 1, 2) @ residual[..., None])[..., 0]
-        stuck = ((q <= low + AT_BOUND) & (gradient > 0.0)) | ((q >= high - AT_BOUND) & (gradient < 0.0))
+        stuck = ((q <= low + ARITHMETIC) & (gradient > 0.0)) | ((q >= high - ARITHMETIC) & (gradient < 0.0))
         active = np.where(stuck[:, None, :], 0.0, rows)
         normal = np.swapaxes(active, 1, 2) @ active
         normal += damping[:, None, None] * np.eye(system.coordinates)
         step = -np.linalg.solve(normal, (np.swapaxes(active, 1, 2) @ residual[..., None]))[..., 0]
         longest = np.abs(step).max(axis=1, keepdims=True)
-        step *= np.minimum(1.0, APPROACH_STEP / np.maximum(longest, 1e-300))
+        step *= np.minimum(1.0, APPROACH_STEP / np.maximum(longest, TINY))
         trial = np.clip(q + step, low, high)
         new_image, new_miss, new_rows, new_residual = _linear(chain, tip, image_of, trial, aims, directions)
         better = new_miss < miss

@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from collections.abc import Collection
 
-from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.contacts import Contacts, Patch
+from kinform.requirements.evidence import FitClearance
 
 OPPOSED = -math.cos(math.radians(1.0))
 """Cosine of normals below which two planes face away from each other."""
@@ -20,24 +20,12 @@ OPPOSED = -math.cos(math.radians(1.0))
 ROUND = ("cylinder", "sphere", "cone")
 
 
-@dataclass(frozen=True, eq=False)
-class Clearance:
-    """One fit: of round surfaces (radial), between planes (both sides), or of planes on one side (gap)."""
-
-    kind: str
-    value: float
-    """m; negative is press."""
-    error: float
-    """m: of the fitted surfaces, and of their chords where facets alone speak."""
-    place: Array
-
-
-def clearances(contacts: Contacts, first: Collection[str], second: Collection[str]) -> tuple[Clearance, ...]:
+def clearances(contacts: Contacts, first: Collection[str], second: Collection[str]) -> tuple[FitClearance, ...]:
     """All fits between parts of the two groups; of round surfaces where there are any, else of planes."""
     mates = [p for p in contacts.patches if _between(p, first, second) and not p.one_sided and len(p.points)]
     rounds = [p for p in mates if p.kind in ROUND]
     if rounds:
-        return tuple(Clearance("radial", p.gap, p.uncertainty[1], p.points.mean(axis=0)) for p in rounds)
+        return tuple(FitClearance("radial", p.gap, p.uncertainty[1], p.points.mean(axis=0)) for p in rounds)
     planes = [p for p in mates if p.kind == "plane"]
     out, paired = [], set()
     for i, a in enumerate(planes):
@@ -46,11 +34,11 @@ def clearances(contacts: Contacts, first: Collection[str], second: Collection[st
             if float(_out(a, first) @ _out(b, first)) < OPPOSED:
                 error = a.uncertainty[1] + b.uncertainty[1]
                 middle = 0.5 * (a.points.mean(axis=0) + b.points.mean(axis=0))
-                out.append(Clearance("both sides", a.gap + b.gap, error, middle))
+                out.append(FitClearance("both sides", a.gap + b.gap, error, middle))
                 paired |= {i, j}
     for i, a in enumerate(planes):
         if i not in paired:
-            out.append(Clearance("gap", a.gap, a.uncertainty[1], a.points.mean(axis=0)))
+            out.append(FitClearance("gap", a.gap, a.uncertainty[1], a.points.mean(axis=0)))
     return tuple(out)
 
 

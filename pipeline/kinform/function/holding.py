@@ -13,19 +13,13 @@ import numpy as np
 
 from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.algebra.vectors import cross
-from kinform.function.configurations import DEPENDENT, SOLVED, Chain, close
+from kinform.foundation.rounding import SINGLE, SOLVED
+from kinform.function.configurations import DEPENDENT, Chain, close
 from kinform.model.arrays import Array
 
-STILL = 1e-9
-"""Twist of a body in a unit motion below which it does not move."""
 POSE_STEPS = 20
-"""Steps in which joints are brought to a pose, so that loops are followed and not jumped."""
-MOVES = 1e-6
-"""Rate by which a joint may miss a unit motion that is asked of it."""
-NO_WORK = 1e-6
-"""Share of the work of the joint's motion that forces may do along what else is free, ..."""
-LEAST_WORK = 1e-9
-"""... and W below which that motion counts as so much."""
+"""Steps in which joints are brought to a pose, so that loops are followed and not jumped: 9° each of half a
+turn. Chosen, not measured."""
 
 
 Force = Callable[[str, Array], tuple[Array, Array] | None]
@@ -75,7 +69,7 @@ def holding_effort(
     aim = np.zeros(len(matrix))
     aim[-1] = 1.0
     motion = np.linalg.lstsq(matrix, aim, rcond=SOLVED)[0]
-    if float(np.abs(matrix @ motion - aim).max()) > MOVES:
+    if float(np.abs(matrix @ motion - aim).max()) > SINGLE:
         return f"joint '{joint}' cannot move while the other drives stand still: it shares the load with them"
     power = _powers(chain, q, state.columns[0], springs, force)
     work = _work(power, motion)
@@ -85,7 +79,7 @@ def holding_effort(
         left = _work(power, loose)
         if isinstance(left, str):
             return left
-        if abs(left) > NO_WORK * max(abs(work), LEAST_WORK):
+        if abs(left) > SINGLE * max(abs(work), SOLVED):
             return "gravity moves more than the drives hold: which joint holds the rest is not stated"
     return -work * chain.coordinates[own].unit
 
@@ -110,7 +104,7 @@ def _powers(
         for k, wrench in enumerate(wrenches):
             twist = (chain.system.reach[k] * rates) @ columns
             omega, v = twist[:3], twist[3:] * length
-            if max(np.abs(twist[:3]).max(), np.abs(twist[3:]).max()) < STILL:
+            if max(np.abs(twist[:3]).max(), np.abs(twist[3:]).max()) < SOLVED:
                 continue
             if wrench is None:
                 unknown.append(chain.bodies[k])

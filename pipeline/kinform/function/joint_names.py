@@ -54,6 +54,16 @@ def resolve_joint(assembly: Assembly, kinematics: Kinematics, name: str) -> Reso
     return Resolution(name, None, ("", ""), None, 1, f'there is no joint "{name}"; known: {known or "none"}')
 
 
+def stated_as(assembly: Assembly, kinematics: Kinematics, joint: str) -> tuple[str, int]:
+    """The name that the designer gave a derived joint, else its own, and the sign of the designer's values against
+    kinform's."""
+    for intended in assembly.function.joints:
+        resolution = resolve_joint(assembly, kinematics, intended.name)
+        if resolution.joint is not None and resolution.joint.name == joint:
+            return intended.name, resolution.sign
+    return joint, 1
+
+
 def stated_ranges(assembly: Assembly, kinematics: Kinematics) -> Iterator[tuple[str, tuple[float, float]]]:
     """(name of the derived joint, range in kinform's sign: rad or m), as the function states them, in its order."""
     for intended in assembly.function.joints:

@@ -9,24 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.frozen import dataclass
 from kinform.model.arrays import Array
-
-
-@dataclass(frozen=True, eq=False)
-class Deviation:
-    """The greatest deviations, with their times; angle None where the path has no orientation."""
-
-    distance: float
-    """m."""
-    time: float
-    place: Array
-    """(3,) m: where the point is then."""
-    angle: float | None
-    """rad."""
-    angle_time: float
-    error: float
-    """m: bound of what interpolation between output times adds."""
+from kinform.requirements.evidence import Deviation
 
 
 def deviation(time: Array, p_WB: Array, q_WB: Array, point: Array, path: Array) -> Deviation:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from kinform.frozen import dataclass
+from kinform.model.findings import Severity
 from kinform.model.quantities import columns
+
+Profile = Literal["design", "description"]
+"""Which severities findings have: `consistency.profiles`."""
 
 
 @dataclass(frozen=True)
@@ -26,10 +30,9 @@ class CheckSettings:
 
     select: tuple[str, ...] = ()
     """Codes, names, or the beginnings of codes ("KF2"); empty: all."""
-    severity: tuple[Annotated[tuple[str, str], columns("rule", "severity")], ...] = ()
+    severity: tuple[Annotated[tuple[str, Severity], columns("rule", "severity")], ...] = ()
     """(rule, severity of its findings), sorted."""
     ignore: tuple[Ignore, ...] = ()
     file: str | None = None
     line: int | None = None
-    profile: str = "design"
-    """design or description: which severities findings have (`consistency.profiles`)."""
+    profile: Profile = "design"

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal, get_args
 
 from kinform.frozen import dataclass
 from kinform.model.quantities import columns
 
-SEVERITIES = ("note", "warning", "error")
-OUTCOMES = ("passed", "failed", "inconclusive", "skipped", "ignored")
+Severity = Literal["note", "warning", "error"]
+SEVERITIES: tuple[Severity, ...] = get_args(Severity)
+"""From the least to the worst."""
+OutcomeName = Literal["passed", "failed", "inconclusive", "skipped", "ignored"]
+OUTCOMES: tuple[OutcomeName, ...] = get_args(OutcomeName)
 
 
 @dataclass(frozen=True)
@@ -18,7 +21,7 @@ class Finding:
     code: str
     rule: str
     """Name of the rule in words with hyphens: "joint-wrong-type"."""
-    severity: str
+    severity: Severity
     subject: tuple[str, ...]
     """Parts, joint or requirement, by name."""
     message: str
@@ -37,8 +40,7 @@ class Ignored:
     """A finding that is accepted: by `[check]` in the manifest, with its reason, or by a baseline."""
 
     finding: Finding
-    by: str
-    """manifest or baseline."""
+    by: Literal["manifest", "baseline"]
     reason: str = ""
 
 
@@ -49,7 +51,7 @@ class RuleOutcome:
 
     code: str
     rule: str
-    outcome: str
+    outcome: OutcomeName
     reason: str = ""
 
 
@@ -77,15 +79,21 @@ class CheckReport:
         return sum(rule.outcome == "inconclusive" for rule in self.rules)
 
 
+def severity_of(word: str) -> Severity:
+    """The severity of that name; ValueError where there is none."""
+    for severity in SEVERITIES:
+        if severity == word:
+            return severity
+    raise ValueError(f"unknown severity {word!r}: expected one of {', '.join(SEVERITIES)}")
+
+
 def verdict(report: CheckReport, fail_on: str = "error") -> int:
     """Exit code of the gate: 0 verified, 1 findings at or above `fail_on`, 2 not verified.
 
     Not verified: no rule ran, or one was inconclusive. Where 1 and 2 both apply, 1. `fail_on`: note,
     warning or error; ValueError otherwise.
     """
-    if fail_on not in SEVERITIES:
-        raise ValueError(f"unknown severity {fail_on!r}: expected one of {', '.join(SEVERITIES)}")
-    level = SEVERITIES.index(fail_on)
+    level = SEVERITIES.index(severity_of(fail_on))
     if any(SEVERITIES.index(finding.severity) >= level for finding in report.findings):
         return 1
     return 2 if report.ran == 0 or report.inconclusive else 0

@@ -10,6 +10,7 @@ import textwrap
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from itertools import groupby
+from typing import Literal, get_args
 
 from kinform.design import Design
 from kinform.foundation.words import counted, one_line, shortened, shortened_ends
@@ -30,11 +31,9 @@ COMPARED = ("KF3", "KF4")
 """Rules, by how their codes begin, that compare with what is stated: what was found says little without it."""
 TOLD_NOTES = ("KF509",)
 """Rules whose notes stand on the first screen with all that was found: what was simulated at all."""
-LEAST_BESIDE = 12
-"""Characters beside a rule below which a finding goes below it: two shortened names and what was found need so many."""
 LEAST_NAME = 12
 """Characters of the name of a part to which names are shortened before what was found is: both its ends are still
-recognised. A choice."""
+recognised. Where less than that is left beside a rule, a finding goes below it. Chosen, not measured."""
 MANY_JOINTS = 9
 """Derived joints from which a design without a complete function is told how it gets fewer: contact alone counts each
 part that is screwed on; few mechanisms are meant to have so many. A choice."""
@@ -42,7 +41,8 @@ BRIEF_NAME = 28
 """Characters of the name of the ground: with the rest of its line it fits in 80."""
 
 
-_KINDS = ("warning", "not decided", "error")
+ItemKind = Literal["warning", "not decided", "error"]
+_KINDS: tuple[ItemKind, ...] = get_args(ItemKind)
 """What is told line by line, the worst last."""
 
 
@@ -50,7 +50,7 @@ _KINDS = ("warning", "not decided", "error")
 class _Item:
     """A finding that is no note, or a rule that could not decide."""
 
-    kind: str
+    kind: ItemKind
     code: str
     rule: str
     subject: tuple[str, ...]
@@ -192,7 +192,7 @@ def _single(item: _Item, width: int) -> list[list[str]]:
     """The forms of the only finding of its rule: beside it where there is room."""
     below = [[item.head, *form] for form in _below(item, width)]
     left = width - len(item.head) - 2
-    if left < LEAST_BESIDE:
+    if left < LEAST_NAME:
         return below
     uncut = _uncut(item, left)
     whole = f"{item.head}: {_subject(item)}{_told(item)}"

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 WIDTH = 80
-"""Columns of text at a terminal."""
+"""Columns of text at a terminal: what every terminal shows."""
 OVERLAP_COLOUR = "#f0283a"
 """Of solids that occupy the same space."""
 EYE_TURN, EYE_RISE = -0.95, 0.42
 """rad, the direction from which everything is seen: angle about z, and above the ground; that of the viewer's start."""
 FINDING_MARGIN = 1.35
-"""The same in the picture of a finding."""
+"""The same in the picture of a finding. Chosen by eye."""
 FINDING_ZOOM, FINDING_SHIFT = 1.12, 0.4
 """How much closer the picture of a finding with a place is, and how far it moves towards the place."""

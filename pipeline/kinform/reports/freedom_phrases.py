@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from kinform.foundation.rounding import SOLVED
 from kinform.kinematics.wording import axis_word
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Freedom, Joint
@@ -37,7 +38,7 @@ def freedom_text(
 def follower_rates(freedom: Freedom, joints: dict[str, Joint], unit: str, size: float) -> list[tuple[str, str]]:
     """(joint, rate) of the joints that follow the driver: per radian or length unit of `size` (m) of the driver."""
     driver = next(
-        ((j, c) for j, c, rate in freedom.drives if j == freedom.driver and abs(abs(rate) - 1.0) < 1e-9), None
+        ((j, c) for j, c, rate in freedom.drives if j == freedom.driver and abs(abs(rate) - 1.0) < SOLVED), None
     )
     per = unit if driver is not None and _slides(joints[driver[0]], driver[1]) else "rad"
     out = []

@@ -12,6 +12,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -24,7 +25,8 @@ from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Body
 from kinform.model.tolerances import Tolerances
 
-ANSWERS = ("agrees", "not held", "contradicts", "no contact", "undecided")
+AnswerName = Literal["agrees", "not held", "contradicts", "no contact", "undecided"]
+ANSWERS: tuple[AnswerName, ...] = get_args(AnswerName)
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +36,7 @@ class Answer:
     name: str
     between: tuple[str, str]
     type: str
-    answer: str
+    answer: AnswerName
     joint: str | None
     """The derived joint."""
     angle: float | None
@@ -78,7 +80,7 @@ def answers(design: Design) -> tuple[Answer, ...]:
     return tuple(answer_of(assembly, one) for one in compared)
 
 
-def _kind(tolerances: Tolerances, c: Comparison) -> tuple[str, str, str]:
+def _kind(tolerances: Tolerances, c: Comparison) -> tuple[AnswerName, str, str]:
     """The answer, what else is free, and what forbids it."""
     if c.state == "taken":
         assert c.joint is not None

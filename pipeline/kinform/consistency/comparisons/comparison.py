@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Literal
 
 import numpy as np
 
@@ -22,6 +23,9 @@ FROM_GEOMETRY = ("fixed", "revolute", "prismatic", "cylindrical", "spherical", "
 """Joint types that contact alone can prove so far; of others only an assumption speaks."""
 
 
+ComparisonState = Literal["stated", "taken", "one body", "absent", "undecided", "found"]
+
+
 @dataclass(frozen=True, eq=False)
 class Comparison:
     """One intended joint and what was found of it. Angles in rad, lengths in m; None: not comparable.
@@ -35,7 +39,7 @@ class Comparison:
 
     intended: IntendedJoint
     bodies: tuple[Body, Body]
-    state: str
+    state: ComparisonState
     reason: str = ""
     type: str = ""
     axis: Array | None = None

@@ -20,15 +20,15 @@ from kinform.model.function import Coupling as Stated
 from kinform.model.kinematics import Coupling, Joint, Kinematics
 
 UNCOUNTED_TEETH = 1e-2
-"""Relative: what the ratio of teeth at one pose may be off."""
-COUNTED_TEETH = 1e-3
-"""Relative: what a stated ratio may be rounded by where the teeth are counted."""
-SCREW_PITCH = 1e-3
-"""Relative: what the pitch of a screw may be off."""
+"""Relative: what the ratio of teeth at one pose may be off: facets of flanks change it from pose to pose. Chosen, not
+measured."""
+ROUNDED_RATIO = 1e-3
+"""Relative: what a stated ratio of counted teeth, or a stated pitch, may be off: rounded to four digits."""
 UNCERTAIN_RATIO = 0.05
-"""Relative uncertainty, for each coupling of a chain, beyond which a ratio says nothing."""
+"""Relative uncertainty, for each coupling of a chain, beyond which a ratio says nothing: gears of 20 and 21 teeth
+differ by so much."""
 DEVIATIONS = 3.0
-"""Standard uncertainties of a derived ratio within which a stated one agrees."""
+"""Standard uncertainties of a derived ratio within which a stated one agrees: 99.7 % of a normal distribution."""
 
 
 @dataclass(frozen=True)
@@ -63,13 +63,13 @@ def derived_ratio(
             return f"'{coupling.through}' is a cam: its ratio is another in every pose"
         if coupling.meshing is not None:
             ratio *= coupling.meshing.ratio if forward else 1.0 / coupling.meshing.ratio
-            relative += COUNTED_TEETH
+            relative += ROUNDED_RATIO
             continue
         ratio *= coupling.ratio if forward else 1.0 / coupling.ratio
         spread = coupling.uncertainty / abs(coupling.ratio) if math.isfinite(coupling.uncertainty) else 0.0
         relative += max(
             DEVIATIONS * spread,
-            SCREW_PITCH if coupling.kind == "screw" else UNCOUNTED_TEETH,
+            ROUNDED_RATIO if coupling.kind == "screw" else UNCOUNTED_TEETH,
         )
     if relative > UNCERTAIN_RATIO * len(chain):
         return f"the {shown_ratio(assembly, stated, ratio)} is uncertain by {100 * relative:.2g} %"
@@ -210,5 +210,5 @@ def _leads(kinematics: Kinematics) -> Iterator[Coupling]:
             if coupling.through in moved or slides[0] in moved:
                 rates.append((moved.get(slides[0], 0.0), moved.get(coupling.through, 0.0)))
         ratios = [slide / screw for slide, screw in rates if screw]
-        if len(ratios) == len(rates) > 0 and ratios[0] and np.ptp(ratios) <= SCREW_PITCH * abs(ratios[0]):
+        if len(ratios) == len(rates) > 0 and ratios[0] and np.ptp(ratios) <= ROUNDED_RATIO * abs(ratios[0]):
             yield replace(coupling, joints=(slides[0], coupling.through), ratio=ratios[0])

@@ -10,7 +10,9 @@ from kinform.frozen import dataclass
 from kinform.model.findings import Finding
 
 ALIKE_MOST = 3
-"""Findings of one kind in one description that are told one by one; more are one finding, of the worst."""
+"""Findings of one kind that are told one by one; more are one finding, of the worst. Chosen, not measured."""
+NAMED_MOST = 4
+"""Subjects of such a finding that are named: as `words.quoted` does."""
 
 
 @dataclass(frozen=True)

@@ -6,12 +6,13 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from kinform.consistency.comparisons.comparison import FROM_GEOMETRY, Comparison
+from kinform.consistency.comparisons.comparison import FROM_GEOMETRY, Comparison, ComparisonState
 from kinform.consistency.comparisons.known import Known
 from kinform.consistency.comparisons.with_play import with_play
 from kinform.consistency.questions.rolling_elements import Rolling
 from kinform.consistency.questions.through_intermediates import HelperMotion, motion_through_helpers
 from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.rounding import TINY
 from kinform.foundation.words import counted, quoted
 from kinform.kinematics.joints.bodies.as_stated import leaves_free, may_end
 from kinform.kinematics.partition.parting import joint_twists
@@ -105,7 +106,9 @@ def loose_joint(assembly: Assembly, kinematics: Kinematics, intended: IntendedJo
     return next((one for one in kinematics.left_out or () if one.parts(first, second)), None)
 
 
-def _rolling_certainty(intended: IntendedJoint, motion: HelperMotion, through: Rolling, size: float) -> tuple[str, str]:
+def _rolling_certainty(
+    intended: IntendedJoint, motion: HelperMotion, through: Rolling, size: float
+) -> tuple[ComparisonState, str]:
     """Whether what rolling elements leave is known: what they leave beside the intended joint for this instant alone
     may be held by them all the same."""
     if through.doubt:
@@ -123,7 +126,7 @@ def _rolling_certainty(intended: IntendedJoint, motion: HelperMotion, through: R
 
 def _end_certainty(
     intended: IntendedJoint, found: Joint, patches: Sequence[Patch], first: Body, size: float
-) -> tuple[str, str]:
+) -> tuple[ComparisonState, str]:
     """Whether it is known that a line of contact holds, which may only end what is intended, in one sense."""
     wanted, lines = joint_twists(intended), [patch for patch in patches if patch.kind == "line"]
     if found.type == intended.type or wanted is None or not lines:
@@ -136,7 +139,7 @@ def _end_certainty(
     )
 
 
-def _certainty(intended: IntendedJoint, found: str, used: Sequence[Joint]) -> tuple[str, str]:
+def _certainty(intended: IntendedJoint, found: str, used: Sequence[Joint]) -> tuple[ComparisonState, str]:
     doubtful = [joint for joint in used if joint.status == "ambiguous"]
     if doubtful:
         return "undecided", f"joint '{doubtful[0].name}' is ambiguous: {doubtful[0].reason}"
@@ -159,7 +162,7 @@ def _shares(intended: IntendedJoint, kind: str, found: Array) -> bool:
         return np.concatenate([twists[:, :3], twists[:, 3:] + cross(twists[:, :3], middle)], axis=1)
 
     together = np.concatenate([at(found), at(wanted)])
-    scale = max(float(np.abs(together[:, 3:]).max()), 1e-300)
+    scale = max(float(np.abs(together[:, 3:]).max()), TINY)
     together = together / np.r_[np.ones(3), np.full(3, scale)]
     return int(np.linalg.matrix_rank(together, tol=SHARED_MOTION)) < len(found) + len(wanted)
 

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.consistency.comparisons.gathering import NAMED_MOST
 from kinform.consistency.context import Context
 from kinform.consistency.questions.near_motion import Correction, NearMotion, near_motions
-from kinform.consistency.requirements import stated_as
 from kinform.foundation.words import angle, length, listed, number
-
-MOST_CORRECTIONS = 4
-"""Corrections, and joints of the loops, that are named of one motion that loops nearly make: a choice."""
+from kinform.function.joint_names import stated_as
 
 
 def nearly_moves(context: Context) -> str:
@@ -20,23 +18,25 @@ def nearly_moves(context: Context) -> str:
 
 def out_of_place(context: Context) -> str:
     """Joints that a little correction of one of which makes loops move, in words; "" without."""
-    found = [stated_as(context, one.joint)[0] for near in near_motions(context.kinematics) for one in near.corrections]
+    found = [_name(context, one.joint) for near in near_motions(context.kinematics) for one in near.corrections]
     names = sorted(set(found), key=found.index)
-    more = len(names) - MOST_CORRECTIONS
-    return " or ".join(f"'{name}'" for name in names[:MOST_CORRECTIONS]) + (
-        f" or one of {more} more" if more > 0 else ""
-    )
+    more = len(names) - NAMED_MOST
+    return " or ".join(f"'{name}'" for name in names[:NAMED_MOST]) + (f" or one of {more} more" if more > 0 else "")
 
 
 def _sentence(context: Context, near: NearMotion) -> str:
-    names = [stated_as(context, name)[0] for name in near.moves]
-    shown = near.corrections[:MOST_CORRECTIONS]
-    ways = [f"'{stated_as(context, one.joint)[0]}' were {_way(context, one)}" for one in shown]
+    names = [_name(context, name) for name in near.moves]
+    shown = near.corrections[:NAMED_MOST]
+    ways = [f"'{_name(context, one.joint)}' were {_way(context, one)}" for one in shown]
     more = len(near.corrections) - len(shown)
     rest = f" (or one of {more} more)" if more else ""
-    others = len(names) - MOST_CORRECTIONS
-    few = names if others <= 1 else [*names[:MOST_CORRECTIONS], f"{others} more"]
+    others = len(names) - NAMED_MOST
+    few = names if others <= 1 else [*names[:NAMED_MOST], f"{others} more"]
     return f"the loops of {listed(few)} would move if {' or '.join(ways)}{rest}"
+
+
+def _name(context: Context, joint: str) -> str:
+    return stated_as(context.assembly, context.kinematics, joint)[0]
 
 
 def _way(context: Context, one: Correction) -> str:

@@ -23,17 +23,20 @@ from kinform.foundation.words import length, mass, number, quoted, volume
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Part, Source
+from kinform.model.findings import Severity
 
 LARGE = 20.0
-"""Diagonal (m) above which the units are doubted."""
+"""Diagonal (m) above which the units are doubted: few machines are larger, and one of 20 mm in metres is. Chosen, not
+measured."""
 MASSIVE = 1000.0
-"""Volume of solid material (m³) above which the units are doubted."""
+"""Volume of solid material (m³) above which the units are doubted: 8000 t of steel. Chosen, not measured."""
 TINY: Mapping[str, float] = {"um": 3e-6}
 """Diagonal (m) below which the units are doubted, for each unit; `TINY_ELSE` where not listed."""
 TINY_ELSE = 3e-3
-"""m."""
+"""m: few assemblies are smaller, and one of 3 m in millimetres is. Chosen, not measured."""
 OUTLIER = 100.0
-"""A part so many times larger than all others together is doubted."""
+"""A part so many times larger than all others together is doubted: less than the 1000 between metres and millimetres,
+more than a base plate is larger than what stands on it. Chosen, not measured."""
 MIXED = 1000.0
 """Parts whose largest is so many times larger than the smallest, with a gap between two sizes of `OUTLIER`, are in
 different units: metres and millimetres."""
@@ -54,7 +57,7 @@ placeholder of a nanogram is stated for is not."""
 class Doubt:
     """One implausible size."""
 
-    severity: str
+    severity: Severity
     subject: tuple[str, ...]
     message: str
     found: str

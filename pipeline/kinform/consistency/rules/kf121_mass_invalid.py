@@ -22,14 +22,12 @@ from kinform.consistency.comparisons.links import described_links
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive, skipped
 from kinform.consistency.rule import Rule
+from kinform.foundation.rounding import SOLVED
 from kinform.foundation.words import mass, number, quoted
 from kinform.mass.principal import impossible
 from kinform.model.assembly import Part, Source
 from kinform.model.findings import Finding
 from kinform.model.mass import MassProperties
-
-TRIANGLE_ROUNDING = 1e-9
-"""Relative rounding that the triangle inequality of the moments is allowed (thin discs reach equality)."""
 
 
 def check(context: Context) -> Outcome:
@@ -119,13 +117,9 @@ def _impossible(properties: MassProperties) -> str:
         return "the inertia is not a number"
     low, middle, high = sorted(float(m) for m in moments)
     shown = f"principal moments {number(low)}, {number(middle)} and {number(high)} kg·m²"
-    if low < -TRIANGLE_ROUNDING * high or high <= 0.0:
+    if low < -SOLVED * high or high <= 0.0:
         return f"{shown}: none may be negative"
-    return (
-        f"{shown}: the largest exceeds the sum of the others"
-        if high > (low + middle) * (1.0 + TRIANGLE_ROUNDING)
-        else ""
-    )
+    return f"{shown}: the largest exceeds the sum of the others" if high > (low + middle) * (1.0 + SOLVED) else ""
 
 
 def _explained(part: Part) -> bool:

@@ -26,16 +26,16 @@ from kinform.model.descriptions import Coverage, DescribedLink
 from kinform.model.findings import Finding
 
 BARE_SHARE = 0.15
-"""Share of the visual's area that may lie outside of the collision geometry: rounded covers by boxes stay below."""
+"""Share of the visual's area that may lie outside of the collision geometry: rounded covers by boxes stay below.
+Chosen, not measured."""
 BARE_DEPTH = 0.10
-"""Share of the link's size by which it may reach out there."""
+"""Share of the link's size by which it may reach out there. Chosen, not measured: what matters collides by more."""
 FAR_BEYOND = 0.30
 """Share of the link's size by which collision geometry may reach beyond the visual: boxes and cylinders around slender
 links."""
-THOUSAND = 1000.0
-"""Metres over millimetres."""
 THOUSAND_SPREAD = 5.0
-"""Factor about it within which two sizes of one link say so."""
+"""Factor about 1000, metres over millimetres, within which two sizes of one link say that their units differ. Chosen,
+not measured: collision geometry is hardly five times as large or small as what is seen."""
 
 
 def check(context: Context) -> Outcome:
@@ -53,7 +53,7 @@ def _of_link(context: Context, link: DescribedLink, coverage: Coverage) -> list[
     units, size = context.units, coverage.size
     ratio = coverage.collision_size / size
     factor = max(ratio, 1.0 / ratio) if ratio > 0.0 else 1.0
-    if 1.0 / THOUSAND_SPREAD < factor / THOUSAND < THOUSAND_SPREAD:
+    if 1.0 / THOUSAND_SPREAD < factor / 1000.0 < THOUSAND_SPREAD:
         larger, smaller = ("collision", "visual") if ratio > 1.0 else ("visual", "collision")
         across = sorted((coverage.collision_size, size))
         text = (

@@ -42,14 +42,12 @@ from kinform.model.assembly import Source
 from kinform.model.descriptions import Description
 from kinform.model.findings import Finding
 
-SAME_LOOK = 0.02
-"""Share of a link's size by which its geometry may be off the image of the other side: screws, labels, connectors."""
-SAME_MASS = 0.02
-"""Relative difference of masses of two sides."""
-SAME_CENTRE = 0.02
-"""Share of the size by which a centre of mass may be off the image of the other side's."""
+SAME = 0.02
+"""Share of a link's size by which its geometry and its centre of mass may be off the image of the other side, and
+relative difference of their masses: screws, labels, connectors. Chosen, not measured."""
 SAME_INERTIA = 0.10
-"""Relative difference of inertias of two sides, products included."""
+"""Relative difference of inertias of two sides, products included: they go with the square of distances, and what is
+off by `SAME` at both ends of the size is off by some times as much. Chosen, not measured."""
 
 
 _Told = tuple[float, Pair, str]
@@ -130,14 +128,14 @@ class _Judge:
             return 0.0, self.sides.mirror
         images = [self.sides.mirror, *(brought(turn, left, right) for turn in self.sides.turns)]
         offs = [unlike(image, left, right) for image in images]
-        best = 0 if offs[0] <= SAME_LOOK else min(range(len(offs)), key=offs.__getitem__)
+        best = 0 if offs[0] <= SAME else min(range(len(offs)), key=offs.__getitem__)
         return offs[best], images[best]
 
     def _looks(self) -> Iterator[_Told]:
         for pair in self.sides.pairs:
             if self._seen(pair):
                 off, _ = self._image(pair)
-                if off > SAME_LOOK:
+                if off > SAME:
                     yield off, pair, f"it differs by {number(100.0 * off, 2)} % of its size"
 
     def _mass_mirrored(self, pair: Pair) -> bool:
@@ -148,9 +146,9 @@ class _Judge:
             return False
         size = max(one.size, other.size)
         masses, centres, inertias = inertial_off(self.sides.mirror, one, other)
-        same = masses <= SAME_MASS and centres <= SAME_CENTRE * size and inertias <= SAME_INERTIA
+        same = masses <= SAME and centres <= SAME * size and inertias <= SAME_INERTIA
         beside = np.linalg.norm(self.sides.mirror.of(left.centroid) - right.centroid)
-        return bool(same and beside > SAME_CENTRE * size)
+        return bool(same and beside > SAME * size)
 
     def _inertials(self) -> Iterator[_Told]:
         for pair in self.sides.pairs:
@@ -158,19 +156,17 @@ class _Judge:
             if left is None or right is None or not (left.possible and right.possible):
                 continue
             off, image = self._image(pair)
-            if off > SAME_LOOK:
+            if off > SAME:
                 continue
             masses, centres, inertias = inertial_off(image, left, right)
             size = max(left.size, right.size)
             words = [
-                f"the masses differ by {number(100.0 * masses, 2)} %" if masses > SAME_MASS else "",
-                f"the centre is {length(centres, self.context.units, 3)} from there"
-                if centres > SAME_CENTRE * size
-                else "",
+                f"the masses differ by {number(100.0 * masses, 2)} %" if masses > SAME else "",
+                f"the centre is {length(centres, self.context.units, 3)} from there" if centres > SAME * size else "",
                 f"the inertias differ by {number(100.0 * inertias, 2)} %" if inertias > SAME_INERTIA else "",
             ]
             if any(words):
-                bad = max(masses / SAME_MASS, centres / (SAME_CENTRE * size), inertias / SAME_INERTIA)
+                bad = max(masses / SAME, centres / (SAME * size), inertias / SAME_INERTIA)
                 yield bad, pair, ", ".join(filter(None, words))
 
 

@@ -11,13 +11,11 @@ Example: an M6 lead screw with a pitch of 1 mm where 1.25 mm is intended.
 
 from __future__ import annotations
 
+from kinform.consistency.comparisons.couplings import ROUNDED_RATIO
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, skipped
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import length
-
-SAME_PITCH = 1e-3
-"""Relative difference of pitches that counts as equal."""
 
 
 def check(context: Context) -> Outcome:
@@ -28,7 +26,7 @@ def check(context: Context) -> Outcome:
         if not c.right_type or c.type != "screw" or wanted is None or c.pitch is None:
             continue
         count += 1
-        if abs(c.pitch - wanted) > SAME_PITCH * abs(wanted):
+        if abs(c.pitch - wanted) > ROUNDED_RATIO * abs(wanted):
             pitch, intended = (f"{length(p, context.units)} a turn" for p in (c.pitch, wanted))
             findings.append(
                 RULE.finding(

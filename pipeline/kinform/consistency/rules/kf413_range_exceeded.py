@@ -18,20 +18,17 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from kinform.consistency.comparisons.limits import coarse
 from kinform.consistency.comparisons.ranges import joint_as_intended, shown
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive
 from kinform.consistency.rule import Rule
+from kinform.foundation.rounding import SINGLE
 from kinform.foundation.words import number, quoted, telling
 from kinform.model.findings import Finding
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
 from kinform.model.simulation import Simulation
-
-BEYOND = 1e-6
-"""Share of the range (rad or m where it is endless) by which a motion may pass its end: a drive to just there is no
-finding."""
+from kinform.requirements.runs import coarse
 
 
 def check(context: Context) -> Outcome:
@@ -61,7 +58,7 @@ def _beyond(context: Context, run: Simulation, intended: IntendedJoint, joint: J
     """A finding for each side that the motion passes."""
     values = sign * run.joint_position[:, int(run.joint_offset[run.joint_names.index(joint.name)])]
     lower, upper = intended.range or (-math.inf, math.inf)
-    allowed = BEYOND * (upper - lower) if math.isfinite(upper - lower) else BEYOND
+    allowed = SINGLE * (upper - lower) if math.isfinite(upper - lower) else SINGLE
     for side, end, toward in (("lower", lower, -1.0), ("upper", upper, 1.0)):
         k = int((toward * values).argmax())
         value = float(values[k])

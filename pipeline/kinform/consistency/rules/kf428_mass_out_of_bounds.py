@@ -12,23 +12,6 @@ Example: `kind = "mass"`, `of = "camera"`, `maximum = 0.2` for a camera of 230 g
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.limits import Quantity, amount, beside_bounds, whose
-from kinform.consistency.context import Context
-from kinform.consistency.outcome import Answer
-from kinform.consistency.requirements import MASSES, requirement_rule
-from kinform.foundation.words import mass
-from kinform.function.requirement_kinds import Mass
+from kinform.consistency.requirements import requirement_rule
 
-REMEDY = "Change the shape, the material or the bound."
-
-
-def judge(context: Context, requirement: Mass) -> Answer:
-    """The mass beside its bounds."""
-    whole = amount(context, requirement.of)
-    if isinstance(whole, Answer):
-        return whole
-    quantity = Quantity(f"the mass of {whose(requirement.of)}", mass, REMEDY, "kg", whole.centre)
-    return beside_bounds(quantity, whole.mass, whole.bound * whole.mass, requirement.minimum, requirement.maximum)
-
-
-RULE = requirement_rule("KF428", "mass-out-of-bounds", Mass, __doc__, judge, MASSES)
+RULE = requirement_rule("KF428", "mass-out-of-bounds", "mass", __doc__)

@@ -15,41 +15,6 @@ Example: `kind = "efficiency"`, `joint = "screw"`, `minimum = 0.3`.
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.driving import driven_in, worst
-from kinform.consistency.context import Context
-from kinform.consistency.outcome import Answer, Margin, met, undecided, violated
-from kinform.consistency.requirements import SINGLE, requirement_rule
-from kinform.foundation.words import counted
-from kinform.function.requirement_kinds import Efficiency
+from kinform.consistency.requirements import requirement_rule
 
-REMEDY = "Take a steeper lead, a smaller radius, other materials or lubrication, or rolling bodies."
-LOAD = "State the load: a [[function.load]], or gravity with the masses."
-
-
-def judge(context: Context, requirement: Efficiency) -> Answer:
-    """The least efficiency of all poses beside the minimum."""
-    name = requirement.joint
-    found = driven_in(context, name, requirement.poses)
-    if isinstance(found, Answer):
-        return found
-    for shown, driving, _ in found:
-        if driving.efficiency is None:
-            return undecided(f"at {shown}: nothing loads joint '{name}', so that it has no efficiency", LOAD)
-    shown, driving, joint = worst(found, lambda one: -(one.efficiency or 0.0))
-    least = driving.efficiency or 0.0
-    limit = f"at least {100.0 * requirement.minimum:.4g} %"
-    value = f"{100.0 * least:.4g} %"
-    text = f"moving joint '{name}' slowly against its load has an efficiency of {value} at {shown}"
-    if least == 0.0:
-        text = f"no effort moves joint '{name}' against its load at {shown}: friction grows with it"
-    margin = Margin(least - requirement.minimum, "")
-    if least < requirement.minimum:
-        return violated(
-            f"{text}, required is {limit}", found=value, intended=limit, place=joint.point, remedy=REMEDY,
-            margin=margin,
-        )  # fmt: skip
-    text = f"{text}, the least of {counted(len(found), 'pose')}"
-    return met(text, found=value, intended=limit, margin=margin)
-
-
-RULE = requirement_rule("KF434", "efficiency-too-low", Efficiency, __doc__, judge, SINGLE)
+RULE = requirement_rule("KF434", "efficiency-too-low", "efficiency", __doc__)

@@ -20,7 +20,8 @@ from kinform.consistency.rule import Rule
 from kinform.foundation.words import number
 
 LOOP_RESIDUAL = 1e-6
-"""Residual relative to the size of the assembly (m), and absolute (rad)."""
+"""Residual relative to the size of the assembly (m), and absolute (rad): a micrometre in a
+metre. Chosen, not measured."""
 
 
 def check(context: Context) -> Outcome:

@@ -1,4 +1,4 @@
-"""The manifest, schema 1, as pydantic tables. Types and shapes only; see `common` for why."""
+"""The manifest, schema 1, as pydantic tables. Types and shapes only; see `form.tables` for why."""
 
 from __future__ import annotations
 
@@ -6,9 +6,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from kinform.form.manifest import check, common, function, parts, requirements
+from kinform.form.manifest import check, function, parts
 from kinform.form.manifest.check import CheckTable
-from kinform.form.manifest.common import Finite, Positive, Table, Vector
 from kinform.form.manifest.function import WHICH_FREEDOM, FreedomName, FunctionTable
 from kinform.form.manifest.parts import (
     AssemblyTable,
@@ -22,17 +21,16 @@ from kinform.form.manifest.parts import (
     TolerancesTable,
 )
 from kinform.form.manifest.sensors import Sensor
+from kinform.form.tables import Finite, Positive, Table, Vector
 
 __all__ = [
     "Initial",
     "Manifest",
     "SimulationTable",
     "check",
-    "common",
     "function",
     "json_schema",
     "parts",
-    "requirements",
 ]
 
 

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, StringConstraints
 
-from kinform.form.manifest.common import Reference, Table
+from kinform.form.tables import Reference, Table
 
 
 class IgnoreTable(Table):

@@ -2,13 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from functools import reduce
+from operator import or_
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
 
-from kinform.form.manifest.common import Finite, JointType, Name, NonNegative, Positive, Reference, Table, Vector
-from kinform.form.manifest.requirements import ROWS_MOST, Require
 from kinform.form.manifest.springs import Bushing, GasSpring, PointSpring
+from kinform.form.tables import (
+    ROWS_MOST,
+    Finite,
+    JointType,
+    Name,
+    NonNegative,
+    Positive,
+    Reference,
+    Table,
+    Vector,
+)
+from kinform.requirements import all_kinds
+from kinform.requirements.table import RequirementTable
 
 COUNT_MOST = 1_000_000
 """The largest mobility that can be stated: more than six times the parts that a design may have."""
@@ -238,6 +251,12 @@ class Load(Table):
     )
     frame: Literal["world", "body"] = Field("world", description="fixed in the world, or turning with the body")
     law: LawTable | None = Field(None, description="what force and torque are multiplied by over time; default 1")
+
+
+if TYPE_CHECKING:
+    Require = RequirementTable
+else:
+    Require = Annotated[reduce(or_, [kind.table for kind in all_kinds()]), Field(discriminator="kind")]
 
 
 class FunctionTable(Table):

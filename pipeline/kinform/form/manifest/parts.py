@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from kinform.form.manifest.common import (
+from kinform.form.tables import (
     Colour,
     Finite,
     JointType,

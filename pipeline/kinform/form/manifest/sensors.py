@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from kinform.form.manifest.common import Name, Pair, Reference, Table, Vector
+from kinform.form.tables import Name, Pair, Reference, Table, Vector
 
 _FRAME = "part or group in whose axes, and as seen from which, values are; default the world"
 

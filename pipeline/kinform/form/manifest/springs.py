@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from kinform.form.manifest.common import Name, NonNegative, Pair, Positive, Table, Vector
+from kinform.form.tables import Name, NonNegative, Pair, Positive, Table, Vector
 
 Points = Annotated[list[Vector], Field(min_length=2, max_length=2)]
 Two = Annotated[list[Positive], Field(min_length=2, max_length=2)]

@@ -13,7 +13,6 @@ import numpy as np
 from kinform.errors import InputError, Problem
 from kinform.form.constants import FILES_DEEP, PARTS_MOST
 from kinform.form.files import DesignFiles, MeshUse, earlier_meshes, no_file
-from kinform.form.manifest.common import Posed
 from kinform.form.manifest.parts import Group as GroupTable
 from kinform.form.manifest.parts import Part as PartTable
 from kinform.form.manifest.parts import TolerancesTable
@@ -28,6 +27,7 @@ from kinform.form.readers.requirements import requirements_of
 from kinform.form.readers.sensors import sensors_of
 from kinform.form.readers.springs import springs_of
 from kinform.form.sources import AS_IT_IS, Reading, is_source
+from kinform.form.tables import Posed
 from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.foundation.memory import keep_heap
 from kinform.foundation.regular import AS_A_FILE, not_a_file

@@ -21,7 +21,7 @@ from kinform.form.readers.open_manifest import Scope
 from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.foundation.rounding import SINGLE
 from kinform.model.assembly import Assumption
-from kinform.model.checks import CheckSettings, Ignore
+from kinform.model.checks import CheckSettings, Ignore, Profile
 from kinform.model.function import (
     Coupling,
     Drive,
@@ -280,7 +280,7 @@ class FunctionReader:
     def check(self) -> CheckSettings:
         """`[check]` of the top manifest."""
         table = self.scope.manifest.check
-        usual = "description" if self.scope.described else "design"
+        usual: Profile = "description" if self.scope.described else "design"
         if table is None:
             return CheckSettings(profile=usual)
         ignore = tuple(

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Literal
 
 from kinform.consistency import Comparison, compare_joints
 from kinform.design import Design
@@ -16,15 +17,20 @@ from kinform.foundation import words
 from kinform.frozen import dataclass
 from kinform.function import resolve_joint
 from kinform.model.collisions import RangeEnd
+from kinform.model.findings import Severity
 from kinform.model.function import IntendedJoint, Requirement
 from kinform.model.kinematics import Joint, Kinematics
-from kinform.reports.page.phrases import axis_words, contact, joint_sentence, point_words, requirement_words
+from kinform.reports.page.phrases import axis_words, contact, joint_sentence, point_words
+from kinform.requirements.words import requirement_words
 
-MARKS = {
+MarkName = Literal["agrees", "disagrees", "doubtful", "not decided", "not stated", "not checked"]
+MARKS: dict[MarkName, str] = {
     "agrees": "✓", "disagrees": "✕", "doubtful": "▲", "not decided": "?", "not stated": "–", "not checked": "?",
 }  # fmt: skip
 """What a row says, and its sign."""
-ORDER = ("disagrees", "doubtful", "not decided", "not checked", "agrees", "not stated")
+MARK_OF: dict[Severity, MarkName] = {"error": "disagrees", "warning": "doubtful", "note": "not decided"}
+"""The mark of a finding that no row is about."""
+ORDER: tuple[MarkName, ...] = ("disagrees", "doubtful", "not decided", "not checked", "agrees", "not stated")
 """What the page shows first."""
 
 
@@ -36,7 +42,7 @@ class Row:
     form: str = ""
     behaviour: str = ""
     function: str = ""
-    mark: str = ""
+    mark: MarkName = "not stated"
     findings: tuple[int, ...] = ()
     """Positions in the report."""
 
@@ -94,7 +100,7 @@ class _Table:
             if k not in self.used and (finding.severity != "note" or finding.code in self.undecided):
                 of_form = finding.code < "KF300"
                 behaviour = finding.found or finding.message
-                mark = {"error": "disagrees", "warning": "doubtful", "note": "not decided"}[finding.severity]
+                mark = MARK_OF[finding.severity]
                 name = ", ".join(finding.subject) or finding.rule
                 form, behaviour = (behaviour, "") if of_form else ("", behaviour)
                 yield Row(name, form, behaviour, finding.intended or "", mark, (k,))
@@ -193,6 +199,7 @@ class _Table:
         self.used.update(findings)
         severities = {self.findings[k].severity for k in findings}
         undecided = rule in self.undecided or any(self.findings[k].code in self.undecided for k in findings)
+        mark: MarkName
         if severities - {"note"}:
             mark = "disagrees" if "error" in severities else "doubtful"
         elif self.design.report is None:

@@ -16,12 +16,13 @@ from kinform.reports.page.figures import Figure, Floats, Samples, bands, dot
 from kinform.reports.page.raster import View
 
 FINER = 2
-"""Pixels of the drawing to a pixel of the picture, each way."""
+"""Pixels of the drawing to a pixel of the picture, each way: four samples a pixel, the least that smooth edges need."""
 OUTLINE_STEP = 6.0
 """px: where depth changes by more from one pixel to the next, there is an outline; and what is nearer by more,
-covers."""
+covers. Chosen by eye."""
 OUTLINE_COSINE = 0.86
-"""Cosine of the change of direction from one pixel to the next above which there is none (31°)."""
+"""Cosine of the change of direction from one pixel to the next above which there is none (31°). Chosen
+by eye, with the brightness below."""
 OUTLINE_SHADE = 0.52
 """Brightness of outlines."""
 

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from kinform.foundation.rounding import ARITHMETIC, SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
@@ -20,15 +21,14 @@ PLOT_WIDTH, PLOT_HEIGHT = 380.0, 168.0
 PLOT_LEFT, PLOT_RIGHT, PLOT_TOP, PLOT_BOTTOM = 54.0, 366.0, 12.0, 142.0
 """px, of the area of the curves."""
 MOST_COLUMNS = 300
-"""Columns of a curve; in each the least and the greatest value are kept."""
+"""Columns of a curve, about its pixels on the page; in each the least and the greatest value are kept."""
 MOST_EVENTS = 40
-"""Collisions that are marked in a plot."""
+"""Collisions that are marked in a plot: more touch each other. Chosen, not measured."""
 TICKS = 4.0
-"""Steps of a scale at least about so many, before they are made round."""
+"""Steps of a scale at least about so many, before they are made round: what stands
+beside the axis without crowding. Chosen, not measured."""
 ROUND_STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 """Round steps of a scale, times a power of ten."""
-FLAT = 1e-9
-"""Curves that vary by less than this share of their values are flat lines."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,13 +133,13 @@ def ticks_of(plot: Plot) -> list[float]:
     every = np.concatenate([s.values for s in plot.series] + [np.array([v for _, v in plot.limits])])
     every = every[np.isfinite(every)]
     low, high = (float(every.min()), float(every.max())) if len(every) else (0.0, 1.0)
-    if high - low <= FLAT * max(abs(low), abs(high), 1e-12):
+    if high - low <= SOLVED * max(abs(low), abs(high), ARITHMETIC):
         pad = abs(high) * 0.5 or 1.0
         low, high = low - pad, high + pad
     raw = (high - low) / TICKS
     power = 10.0 ** math.floor(math.log10(raw))
     step = next(m * power for m in ROUND_STEPS if m * power >= 0.999 * raw)
-    first, last = math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9)
+    first, last = math.floor(low / step + SOLVED), math.ceil(high / step - SOLVED)
     return [k * step if k else 0.0 for k in range(first, last + 1)]
 
 

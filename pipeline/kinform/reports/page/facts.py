@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Literal
 
 from kinform.consistency import explain
 from kinform.design import Design
@@ -12,24 +13,25 @@ from kinform.foundation import words
 from kinform.frozen import dataclass
 from kinform.function import as_intended, designers_joints
 from kinform.model.collisions import JointRange, RangeEnd
-from kinform.model.findings import SEVERITIES, RuleOutcome
+from kinform.model.findings import SEVERITIES, RuleOutcome, Severity
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.reports.page.phrases import assumption, joint_sentence, patch_words
 from kinform.reports.page.subjects import wanted_names
 from kinform.reports.phrases import rule_counts, severity_counts, verdict_line, verdict_told, where
 
 MOST_LISTED_PATCHES = 14
-"""Patches that a joint lists; the rest are counted."""
+"""Patches that a joint lists; the rest are counted. Chosen, not measured."""
 
 
-SIGNS = {"error": "✕", "warning": "▲", "note": "●"}
+VerdictKind = Literal["consistent", "inconsistent", "unverified"]
+SIGNS: dict[Severity, str] = {"error": "✕", "warning": "▲", "note": "●"}
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """`kind`: consistent, inconsistent or unverified; `sign` says it without colour."""
+    """`sign` says the kind without colour."""
 
-    kind: str
+    kind: VerdictKind
     sign: str
     line: str
     counts: str
@@ -43,7 +45,7 @@ class FindingFacts:
     """Position in the report."""
     code: str
     rule: str
-    severity: str
+    severity: Severity
     sign: str
     subject: str
     message: str
@@ -87,7 +89,9 @@ def verdict_of(design: Design) -> Verdict:
         return Verdict("unverified", "?", "not verified: the rules have not been run", "run `kinform check`")
     line = verdict_line(design.report)
     stated = design.assembly.function.stated
-    kind = line if line == "inconsistent" or (line == "consistent" and stated) else "unverified"
+    kind: VerdictKind = "inconsistent" if line == "inconsistent" else "unverified"
+    if line == "consistent" and stated:
+        kind = "consistent"
     unsure = "–" if line == "consistent" else "?"
     sign = {"consistent": "✓", "inconsistent": "✕", "unverified": unsure}[kind]
     told = verdict_told(design.report, stated)

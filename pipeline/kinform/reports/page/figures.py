@@ -13,18 +13,18 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.foundation.rounding import ARITHMETIC, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
+from kinform.reports.page.constants import PORTION
 from kinform.reports.page.meshes import Shape
 from kinform.reports.page.raster import AXES, Buffers, View, rasterise
 
 MOST_SAMPLED = 4_000_000
-"""Samples of a whole shape: 80 MB. Of larger ones, ..."""
+"""Samples of a whole shape: 80 MB. Chosen, not measured. Of larger ones, ..."""
 WHOLE_OF_SEEN = 4
 """... and of those that have so many times as many as a picture shows of them, as of a machine beside the screw that it
 is about, only what the picture shows is drawn."""
-BAND = 1 << 15
-"""Pixels that are shaded at once: they stay in the processor's cache."""
 
 
 Floats = NDArray[np.float32]
@@ -145,7 +145,7 @@ def _shade(light: Floats, normal: Floats, buffers: Buffers, corners: Array, face
         weights = _weights(corners, facet, column + 0.5, row + 0.5)
         vertices = faces[facet].T
         turned = np.array([sum(w * axis[k] for w, k in zip(weights, vertices, strict=True)) for axis in normals])
-        turned /= np.maximum(np.sqrt(dot(turned, turned)), 1e-300)
+        turned /= np.maximum(np.sqrt(dot(turned, turned)), TINY)
         turned *= np.where(turned[2] < 0.0, -1.0, 1.0)
         light.reshape(-1)[pixel] = _light(turned)
         normal.reshape(3, -1)[:, pixel] = turned
@@ -158,7 +158,7 @@ def dot(a: Array | Floats, b: Array | Floats) -> Array:
 
 def bands(height: int, width: int) -> Iterator[slice]:
     """Rows in portions that stay in the processor's cache: a picture at once takes more than twice the time."""
-    step = max(1, BAND // max(width, 1))
+    step = max(1, PORTION // max(width, 1))
     for start in range(0, height, step):
         yield slice(start, min(start + step, height))
 
@@ -168,7 +168,7 @@ def _weights(corners: Array, facet: Ints, x: Array, y: Array) -> Array:
     (ax, ay), (bx, by), (cx, cy) = (corners[facet, k, :2].T for k in range(3))
     ux, uy, vx, vy = bx - ax, by - ay, cx - ax, cy - ay
     area = ux * vy - uy * vx
-    area = np.where(np.abs(area) < 1e-12, np.inf, area)
+    area = np.where(np.abs(area) < ARITHMETIC, np.inf, area)
     px, py = x - ax, y - ay
     s = (px * vy - py * vx) / area
     t = (ux * py - uy * px) / area

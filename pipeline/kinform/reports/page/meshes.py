@@ -13,15 +13,18 @@ from numpy.typing import NDArray
 
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import shared_edges
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
 
 CREASE = math.radians(32.0)
-"""rad: facets that meet at more than this are not shaded as one surface; polygons of twelve sides still are."""
+"""rad: facets that meet at more than this are not shaded as one surface; polygons of twelve sides still are, as with
+`Tolerances.smooth_edge`."""
 LINE_ANGLE = math.radians(18.0)
-"""rad: edges between two surfaces that meet at more than this are drawn."""
+"""rad: edges between two surfaces that meet at more than this are drawn. Chosen by eye: polygons of
+twenty sides, which stand for circles, have none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +48,7 @@ class Shape:
             [sum(np.bincount(self.faces[:, k], facet[:, i], minlength=count) for k in range(3)) for i in range(3)],
             axis=1,
         )
-        return np.asarray(out / np.maximum(np.linalg.norm(out, axis=1, keepdims=True), 1e-300))
+        return np.asarray(out / np.maximum(np.linalg.norm(out, axis=1, keepdims=True), TINY))
 
 
 def shape_of(mesh: Mesh, surfaces: MeshSurfaces | None) -> Shape:
@@ -95,7 +98,7 @@ def _edges(vertices: Array, faces: Ints) -> tuple[Ints, Ints, Ints, Array]:
     """Edges of two facets: the facets, the ends (n, 2), the angle between their normals (rad)."""
     a, b, c = (vertices[faces[:, k]] for k in range(3))
     normal = np.cross(b - a, c - a)
-    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), TINY)
     edges = shared_edges(faces, len(vertices))
     first, second = edges.facets.T
     cosine = np.einsum("ij,ij->i", normal[first], normal[second])

@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 
 from kinform.design import Design
 from kinform.foundation import words
 from kinform.foundation.algebra.spatial import quaternions, to_matrix
+from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
 from kinform.function import DesignersJoint, designers_joints, stated_ranges
 from kinform.model.arrays import Array
@@ -24,7 +26,8 @@ from kinform.reports.page.freedoms import Showing, Span, freedom_motions
 from kinform.reports.page.subjects import wanted_names
 
 MOST_FRAMES = 600
-"""Poses of a simulated motion that are embedded; of longer ones an even choice."""
+"""Poses of a simulated motion that are embedded; of longer ones an even choice. Twenty seconds at 30 a
+second."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +36,7 @@ class Mark:
 
     time: float
     """Parameter of the movement."""
-    kind: str
+    kind: Literal["collision", "end"]
     """collision: parts meet, and what follows could not happen; end: the run stopped."""
     text: str
     parts: tuple[PartName, ...] = ()
@@ -45,8 +48,7 @@ class Mark:
 class Movement:
     """Poses of some bodies from one end to the other."""
 
-    kind: str
-    """simulation or freedom."""
+    kind: Literal["simulation", "freedom", "proposal", "revision"]
     name: str
     note: str
     time: Array
@@ -195,7 +197,7 @@ class _Spans:
         item, out = self.ranges[showing.driver], []
         for end, reach, sign in zip((item.lower, item.upper), showing.ends, (-1, 1), strict=True):
             value = self._stop(end)
-            if value is None or not end.parts or not 0.0 <= sign * value <= sign * reach * (1.0 + 1e-9):
+            if value is None or not end.parts or not 0.0 <= sign * value <= sign * reach * (1.0 + SOLVED):
                 continue
             units = self.design.assembly.units
             told = self.signs.get(showing.driver, 1) * value

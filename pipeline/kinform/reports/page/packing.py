@@ -15,9 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.model.arrays import Array, Ints
+from kinform.reports.page.constants import ZLIB_EFFORT
 
-PACKING_EFFORT = 6
-"""Of zlib: 9 takes twice the time."""
 STEPS = 65535
 """Steps across a box: 16 bits."""
 
@@ -60,4 +59,4 @@ class Blob:
 
     def text(self) -> str:
         """All of it, deflated, as base64."""
-        return base64.b64encode(zlib.compress(b"".join(self.sections), PACKING_EFFORT)).decode("ascii")
+        return base64.b64encode(zlib.compress(b"".join(self.sections), ZLIB_EFFORT)).decode("ascii")

@@ -10,6 +10,7 @@ from importlib.resources import files
 import numpy as np
 
 from kinform.design import Design
+from kinform.foundation.rounding import ARITHMETIC
 from kinform.foundation.units import metres_per
 from kinform.function import designers_joints, stated_ranges
 from kinform.model.arrays import Ints
@@ -21,9 +22,7 @@ from kinform.reports.page.subjects import wanted_names
 from kinform.reports.values.runs import coordinates
 
 MOST_PLOTS = 48
-"""Plots of one group."""
-MOST_SPECTRA = 24
-"""Spectra, and envelopes, of a page."""
+"""Plots of one group: twelve rows of four; of spectra, and of envelopes, half as many. Chosen, not measured."""
 
 
 def plot_groups(design: Design) -> list[tuple[str, list[str], str]]:
@@ -49,9 +48,9 @@ def plot_groups(design: Design) -> list[tuple[str, list[str], str]]:
     sized = sizing_svgs(design, run, titles)
     if sized:
         out.append(("Effort over speed of the drives", sized, ""))
-    repeating = [*_sensors(design, run), *_driven(run, titles)][:MOST_SPECTRA]
+    repeating = [*_sensors(design, run), *_driven(run, titles)][: MOST_PLOTS // 2]
     spectra = [svg for svg in (spectrum_svg(plot, run.time) for plot in repeating) if svg]
-    enveloped = [plot for one in repeating for plot in envelope_plots(one, run.time)][:MOST_SPECTRA]
+    enveloped = [plot for one in repeating for plot in envelope_plots(one, run.time)][: MOST_PLOTS // 2]
     if spectra:
         out.append(("Spectra of sensors and drives", spectra, METHOD))
     if enveloped:
@@ -110,7 +109,7 @@ def _without_far_limits(plot: Plot) -> Plot:
     if not every:
         return plot
     low, high = min(every), max(every)
-    room = max(high - low, 1e-12)
+    room = max(high - low, ARITHMETIC)
     near = tuple(limit for limit in plot.limits if low - room <= limit[1] <= high + room)
     far = "".join(
         f", {label} {number(value)}{plot.unit} not shown" for label, value in plot.limits if (label, value) not in near

@@ -10,7 +10,8 @@ from kinform.reports.page import agreement, facts
 from kinform.reports.page.pictures import Artist
 
 MOST_PICTURE_FILES = 40
-"""Findings that the summary tells, the worst first; errors and warnings among them get a picture."""
+"""Findings that the summary tells, the worst first; errors and warnings among them get a picture. Chosen,
+not measured."""
 
 
 def page_pictures(artist: Artist, notes: bool = False, progress: Progress | None = None) -> dict[str, bytes]:

@@ -12,16 +12,14 @@ import zlib
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.foundation.rounding import ARITHMETIC, SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.reports.constants import EYE_RISE, EYE_TURN
+from kinform.reports.page.constants import PORTION, ZLIB_EFFORT
 
-PNG_EFFORT = 6
-"""Of zlib: 9 takes three times as long for 3 % less."""
-PORTION = 1 << 16
-"""Pixels that are worked on at once: some megabytes."""
 VIEW_MARGIN = 1.08
-"""Size of a picture over that of what it holds."""
+"""Size of a picture over that of what it holds: a margin of 4 % on each side. Chosen by eye."""
 
 
 NOTHING = np.uint64(0xFFFFFFFFFFFFFFFF)
@@ -66,7 +64,7 @@ class Buffers:
 def view_of(seen: Array, width: int, height: int, margin: float = VIEW_MARGIN) -> View:
     """The view that holds all places (n, 3), given in the axes of the eye."""
     low, high = seen.min(axis=0), seen.max(axis=0)
-    span = np.maximum(high - low, 1e-9 * max(float((high - low).max()), 1e-9))
+    span = np.maximum(high - low, SOLVED * max(float((high - low).max()), SOLVED))
     scale = min(width / (margin * span[0]), height / (margin * span[1]))
     return View(0.5 * (low + high), float(scale), width, height)
 
@@ -84,7 +82,7 @@ class _DepthBuffer:
 def rasterise(view: View, corners: Array) -> Buffers:
     """What is in front at each pixel, of facets (t, 3, 3) given as `view.project` gives their corners."""
     low = float(corners[..., 2].min(initial=0.0))
-    reach = max(float(corners[..., 2].max(initial=1.0)) - low, 1e-300)
+    reach = max(float(corners[..., 2].max(initial=1.0)) - low, TINY)
     buffer = _DepthBuffer(np.full(view.width * view.height, NOTHING), low, reach)
     rows = _rows(view, corners)
     begin = 0
@@ -149,7 +147,7 @@ def _fill(view: View, corners: Array, rows: _Rows, lengths: Ints, part: slice, b
     a, b, c = (corners[facet, k] for k in range(3))
     u, v = b - a, c - a
     area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
-    area = np.where(np.abs(area) < 1e-12, np.inf, area)
+    area = np.where(np.abs(area) < ARITHMETIC, np.inf, area)
     slope_x = (u[:, 2] * v[:, 1] - v[:, 2] * u[:, 1]) / area
     slope_y = (v[:, 2] * u[:, 0] - u[:, 2] * v[:, 0]) / area
     base = a[:, 2] + slope_y * (rows.row[part] + 0.5 - a[:, 1]) - slope_x * (a[:, 0] - 0.5)
@@ -167,7 +165,7 @@ def png(pixels: NDArray[np.uint8]) -> bytes:
     rows[:, 1:] -= pixels[:, :-1]
     flat = np.concatenate([np.full((height, 1), 1, np.uint8), rows.astype(np.uint8).reshape(height, -1)], axis=1)
     head = struct.pack(">IIBBBBB", width, height, 8, {3: 2, 4: 6}[depth], 0, 0, 0)
-    chunks = ((b"IHDR", head), (b"IDAT", zlib.compress(flat.tobytes(), PNG_EFFORT)), (b"IEND", b""))
+    chunks = ((b"IHDR", head), (b"IDAT", zlib.compress(flat.tobytes(), ZLIB_EFFORT)), (b"IEND", b""))
     return b"\x89PNG\r\n\x1a\n" + b"".join(_chunk(*chunk) for chunk in chunks)
 
 

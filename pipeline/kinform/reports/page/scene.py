@@ -27,11 +27,9 @@ BODY_COLOURS = (
 )  # fmt: skip
 """Of the other bodies, one after the other and again from the first."""
 SIGN_SIZE = 1.25
-"""A joint's sign over half the extent of its contact."""
+"""A joint's sign over half the extent of its contact, so that it stands out of the part. Chosen by eye."""
 LEAST_SIGN, MOST_SIGN = 0.045, 0.16
 """Shares of the assembly's size between which a sign stays."""
-EMPTY_BOX = 0.05
-"""m, to each side of a scene that is a point."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +92,8 @@ class Scene:
         found = np.concatenate(places) if places else np.zeros((1, 3))
         low, high = found.min(axis=0), found.max(axis=0)
         if float((high - low).max()) <= 0.0:
-            low, high = low - EMPTY_BOX, high + EMPTY_BOX
+            # a scene that is a point gets a box of 0.1 m
+            low, high = low - 0.05, high + 0.05
         return low, high
 
     @property

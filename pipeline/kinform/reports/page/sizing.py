@@ -16,8 +16,8 @@ from kinform.design import Design
 from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array
 from kinform.model.simulation import DriveUse, Simulation
-from kinform.reports.page.constants import MOST_POINTS
 from kinform.reports.page.curves import (
+    MOST_COLUMNS,
     PLOT_BOTTOM,
     PLOT_HEIGHT,
     PLOT_LEFT,
@@ -90,7 +90,7 @@ def _figure(title: str, use: DriveUse, speeds: Array, efforts: Array, speed_unit
 def _course(x: Callable[[float], float], y: Callable[[float], float], speeds: Array, efforts: Array) -> str:
     """The path through the points of the run, thinned evenly where there are many."""
     keep: Sequence[int] = range(len(speeds))
-    if len(speeds) > MOST_POINTS:
-        spread = np.linspace(0, len(speeds) - 1, MOST_POINTS).round().astype(int).tolist()
+    if len(speeds) > 2 * MOST_COLUMNS:
+        spread = np.linspace(0, len(speeds) - 1, 2 * MOST_COLUMNS).round().astype(int).tolist()
         keep = sorted({*spread, int(np.abs(efforts).argmax()), int(np.abs(speeds).argmax())})
     return "M" + "L".join(f"{x(float(speeds[k])):.1f} {y(float(efforts[k])):.1f}" for k in keep)

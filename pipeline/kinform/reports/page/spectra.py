@@ -8,8 +8,8 @@ from html import escape
 
 import numpy as np
 
+from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
-from kinform.reports.page.constants import MOST_POINTS
 from kinform.reports.page.curves import (
     MOST_COLUMNS,
     PLOT_BOTTOM,
@@ -30,9 +30,8 @@ SPECTRUM_DECADES = 4
 """Decades of amplitude that a spectrum shows: sensors are rarely better, and the lobes of the window fade
 below."""
 LEAST_FREQUENCIES = 24
-"""Frequencies that a spectrum shows at least; else twice as many as stand above its lowest decade."""
-NO_SPECTRUM = 1e-9
-"""Share of the greatest value below which amplitudes are rounding."""
+"""Frequencies that a spectrum shows at least; else twice as many as stand above its lowest decade. Chosen, not
+measured."""
 
 
 METHOD = (
@@ -53,7 +52,7 @@ def spectrum_svg(plot: Plot, time: Array) -> str:
     drawn = [(label, spectrum) for label, spectrum in found if spectrum is not None]
     top = max((float(spectrum.amplitude.max()) for _, spectrum in drawn), default=0.0)
     size = max(float(np.nanmax(np.abs(series.values), initial=0.0)) for series in plot.series)
-    if not top > NO_SPECTRUM * size:
+    if not top > SOLVED * size:
         return ""
     high = math.ceil(math.log10(top))
     low = high - SPECTRUM_DECADES
@@ -110,7 +109,7 @@ def _course(scales: _Scales, spectrum: Spectrum, last: float, floor: float) -> s
     """The path through the amplitudes up to the last frequency; of long spectra the greatest of each column."""
     shown = spectrum.frequency <= last
     frequency, amplitude = spectrum.frequency[shown], np.maximum(spectrum.amplitude[shown], floor)
-    if len(amplitude) > MOST_POINTS:
+    if len(amplitude) > 2 * MOST_COLUMNS:
         edges = np.linspace(0, len(amplitude), MOST_COLUMNS + 1).astype(int)
         keep = [a + int(amplitude[a:b].argmax()) for a, b in zip(edges[:-1], edges[1:], strict=True)]
         frequency, amplitude = frequency[keep], amplitude[keep]

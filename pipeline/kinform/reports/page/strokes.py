@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array, Ints
 from kinform.model.kinematics import Joint
+from kinform.reports.page.constants import PORTION
 
 SIGNAL_COLOUR = "#e8590c"
 """Of what a finding is about."""
 ARC_PIECES = 28
-"""Pieces of an arc."""
-MOST_AT_ONCE = 50_000
-"""Pixels of pieces of lines that are looked at in one pass: with more they no longer fit in the processor's cache."""
+"""Pieces of an arc: a circle of 150 px is off by half a pixel."""
 
 
 Image = NDArray[np.float32]
@@ -86,7 +86,7 @@ def polylines(image: Image, lines: Sequence[Array], width: float) -> None:
     on, begin = np.zeros(image.shape[:2], bool), 0
     while begin < len(over):
         done = over[begin - 1] if begin else 0
-        stop = max(begin + 1, int(np.searchsorted(over, done + MOST_AT_ONCE, side="right")))
+        stop = max(begin + 1, int(np.searchsorted(over, done + PORTION, side="right")))
         part = slice(begin, stop)
         _mark(on, starts[part], ends[part], low[part], high[part], width)
         begin = stop
@@ -102,7 +102,7 @@ def _mark(on: NDArray[np.bool_], starts: Array, ends: Array, low: Ints, high: In
     column += low[:, 0][piece]
     row += low[:, 1][piece]
     u, v = (ends - starts).T
-    length = np.maximum(np.hypot(u, v), 1e-9)[piece]
+    length = np.maximum(np.hypot(u, v), SOLVED)[piece]
     u, v = u[piece], v[piece]
     x, y = column - starts[:, 0][piece], row - starts[:, 1][piece]
     along, aside = (x * u + y * v) / length, np.abs(x * v - y * u) / length
@@ -150,7 +150,7 @@ def _box(image: Image, points: Array, margin: float) -> Pixels | None:
 def _along(box: Pixels, start: Array, end: Array) -> tuple[Array, Array, float]:
     """How far along and aside of the line from start to end (2,) px each pixel is, (rows, columns), and its length."""
     (u, v), (a, b) = (end - start).tolist(), start.tolist()
-    length = max(float(np.hypot(u, v)), 1e-9)
+    length = max(float(np.hypot(u, v)), SOLVED)
     x, y = box[0] - a, box[1] - b
     return (x * u + y * v) / length, np.abs(x * v - y * u) / length, length
 

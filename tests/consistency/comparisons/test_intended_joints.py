@@ -1,0 +1,49 @@
+"""A disc on a plate that lies against a post: whether it rolls there, or only ends its way, contact does not tell."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from support.assemblies import assembly, intended
+from support.diagonal import diagonal
+from support.solids import box, part, random_pose, rod
+
+from kinform import contacts, kinematics, surfaces
+from kinform.consistency.comparisons.answers import answer_of
+from kinform.consistency.comparisons.intended_joints import compare_joints
+
+PLATE = box(-50, 50, -50, 50, -5, 0)
+BASES = {
+    "post": (PLATE + rod(5, -1, 6, 64), 13.0),
+    "pocket": (box(-50, 50, -50, 50, -5, 8) - rod(20, 0, 9, 96), 12.0),
+}
+
+
+def answered(kind, base, away, *, complete, names=("base", "disc"), scale=1e-3):
+    X = random_pose(np.random.default_rng(1), 100 * scale)
+    disc = rod(8, 0, 5, 64).translate((away, 0, 0))
+    parts = [part(name, solid, X, scale) for name, solid in zip(names, (base, disc), strict=True)]
+    joint = replace(intended("slide", *names, kind, X[:3, 2]), point=None if kind == "planar" else X[:3, 3])
+    made = assembly(*parts, ground=names[0], joints=(joint,))
+    if complete:
+        made = replace(made, function=replace(made.function, complete=("",)))
+    found = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
+    touching = contacts.find(made, found)
+    (one,) = compare_joints(made, touching, kinematics.derive(made, found, touching), [joint])
+    return answer_of(made, one).answer
+
+
+@diagonal(kind=list(BASES), scale=[1e-4, 1e-3, 1.0], complete=[False, True])
+def test_a_disc_that_slides_on_a_plate_up_to_a_round_wall_is_not_denied(kind, scale, complete):
+    for names in (("base", "disc"), ("z", "disc")):
+        assert answered("planar", *BASES[kind], complete=complete, names=names, scale=scale) == "undecided"
+
+
+@pytest.mark.parametrize("kind", BASES)
+def test_away_from_it_it_slides_and_what_it_does_not_do_is_denied(kind):
+    base, away = BASES[kind]
+    beside = away + (2.0 if kind == "post" else -2.0)
+    assert answered("planar", base, beside, complete=False) == "agrees"
+    assert answered("cylindrical", base, away, complete=False) == "contradicts"
