@@ -11,7 +11,7 @@ from support.solids import box, part, random_pose, rod
 from kinform import contacts, kinematics, surfaces
 from kinform.consistency import check
 from kinform.design import Design
-from kinform.kinematics import adrift, query
+from kinform.kinematics import disconnected_bodies, query
 
 BASE, ARM = rod(10, 0, 10), box(-3, 30, -4, 4, 3, 7)
 """The arm is drawn into the base."""
@@ -37,7 +37,7 @@ def outcome(design):
 def test_what_overlaps_and_is_held_by_nothing_known_is_told(seed, scale):
     X = None if seed is None else random_pose(np.random.default_rng(seed), scale)
     design = design_of(X=X, scale=scale, base=BASE, arm=ARM, cup=CUP)
-    (one,) = adrift(design.kinematics, design.contacts)
+    (one,) = disconnected_bodies(design.kinematics, design.contacts)
     assert one.bodies == ("arm", "cup")
     assert one.overlap.parts == ("arm", "base")
 
@@ -59,10 +59,10 @@ def test_whoever_asks_is_told_too():
 
 def test_what_only_lies_apart_or_is_joined_is_not_doubted():
     apart = design_of(6, base=BASE, arm=ARM.translate((40, 0, 0)))
-    assert adrift(apart.kinematics, apart.contacts) == ()
+    assert disconnected_bodies(apart.kinematics, apart.contacts) == ()
     assert outcome(apart).outcome == "passed"
     both = {"arm": box(0, 20, -4, 4, 0, 6), "cup": box(15, 30, -3, 5, 0, 9)}
     joined = design_of(6, base=TABLE, **both)
     assert joined.contacts.interferences
-    assert adrift(joined.kinematics, joined.contacts) == ()
+    assert disconnected_bodies(joined.kinematics, joined.contacts) == ()
     assert outcome(joined).outcome == "passed"

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kinform.foundation.algebra.screws import Frame, rotation, scaled, span, translation
-from kinform.kinematics.joints.pair.canonical_basis import canonical_twists
-from kinform.kinematics.wording import motions_in_words
+from kinform.kinematics.screws.canonical_basis import canonical_twists
+from kinform.kinematics.screws.wording import motions_in_words
 
 X, Y, Z = np.eye(3)
 FRAME = Frame(np.array([0.02, -0.01, 0.3]), 0.05)

@@ -7,8 +7,9 @@ import pytest
 from support.assemblies import assembly, assume, between, contacts, intended, part
 from support.patches import Z, cylinder, plane, ring, sphere
 
+from kinform.consistency.questions.subassembly_mobility import mobility_within
 from kinform.design import Design
-from kinform.kinematics import derive, functional, mobility_within, query
+from kinform.kinematics import derive, functional, query
 
 
 def hinge(a, b, point, axis=Z, radius=0.004):

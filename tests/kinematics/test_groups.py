@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from support.solids import ball, box, derived
 
 from kinform.foundation.algebra.screws import Frame, rotation, span, translation
-from kinform.kinematics.wording import group_of, motions_in_words
+from kinform.kinematics.screws.wording import group_of, motions_in_words
 
 X, Y, Z = np.eye(3)
 P = np.array([0.1, -0.02, 0.03])

@@ -10,9 +10,9 @@ from hypothesis import event, given, settings
 from hypothesis import strategies as st
 
 from kinform.foundation.graphs.graph import UnionFind
-from kinform.kinematics.partition.joining import LOOK_AHEAD, MOST_CUTS, Joining
 from kinform.kinematics.partition.labelling import JAMMED, Edge, label_all
 from kinform.kinematics.partition.loops import Loops
+from kinform.kinematics.partition.merge_search import LOOK_AHEAD, MOST_CUTS, MergeSearch
 
 PRICES = (1.0, 30.0, 40.0, 300.0, 5030.0)
 TURN = np.array([[0.0, 0.0, 1.0]])
@@ -151,7 +151,7 @@ def relabelled(edge, now):
 def test_what_is_joined_and_what_it_costs_is_what_cutting_the_whole_graph_tells(graph):
     labels, count, edges, joints, start, loops = graph
     whole = Whole(labels, count, edges, joints, loops)
-    search = Joining(whole.seeds, edges, joints, loops)
+    search = MergeSearch(whole.seeds, edges, joints, loops)
     cut = search.cuts.cut(start)
     wanted = whole.joined(start)
     found = search.joined(cut)
@@ -167,7 +167,7 @@ def test_what_is_joined_and_what_it_costs_is_what_cutting_the_whole_graph_tells(
 @given(graphs(), st.data())
 def test_a_cut_that_is_changed_step_by_step_is_the_cut_from_the_start(graph, data):
     labels, _, edges, joints, start, _ = graph
-    cuts = Joining({k: k for k in range(labels)}, edges, joints, None).cuts
+    cuts = MergeSearch({k: k for k in range(labels)}, edges, joints, None).cuts
     cut = cuts.cut(start)
     for _ in range(5):
         many = [label for label, body in enumerate(cut.now) if len(cut.bodies[body]) > 1]
@@ -185,7 +185,7 @@ def test_a_cut_that_is_changed_step_by_step_is_the_cut_from_the_start(graph, dat
 @given(graphs(), st.data())
 def test_what_joining_two_bodies_costs_stays_until_a_body_is_joined_that_it_depends_on(graph, data):
     labels, _, edges, joints, start, _ = graph
-    cuts = Joining({k: k for k in range(labels)}, edges, joints, None).cuts
+    cuts = MergeSearch({k: k for k in range(labels)}, edges, joints, None).cuts
     cut = cuts.cut(start)
     known = {pair: cuts.joining(cut, *pair) for pair in combinations(sorted(cut.bodies), 2)}
     for pair in data.draw(st.permutations(sorted(known)))[:8]:
@@ -207,7 +207,7 @@ def test_what_joining_costs_hangs_on_the_bodies_that_a_joint_connects_with_eithe
         Edge((e, other), {}, 1000.0, 0.0, jams),
         Edge((one, other), {}, 500.0),
     ]
-    cuts = Joining({k: k for k in range(5)}, edges, joints, None).cuts
+    cuts = MergeSearch({k: k for k in range(5)}, edges, joints, None).cuts
     cut = cuts.cut(range(5))
     known = cuts.joining(cut, a, x)
     assert not known.cost

@@ -18,9 +18,9 @@ from kinform import contacts, kinematics, surfaces
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics import propose, proposed_joints
 from kinform.kinematics.partition.contact import Contact
+from kinform.kinematics.partition.label_merging import merge_by_cost, merge_labels
 from kinform.kinematics.partition.labelling import Edge
-from kinform.kinematics.partition.one_body import joined_by_cost, one_body
-from kinform.kinematics.partition.parting import joint_twists, prices
+from kinform.kinematics.partition.split_prices import joint_twists, prices
 from kinform.kinematics.partition.standard_parts import standard_parts
 
 SEEDS = [3, 4, 9, 11]
@@ -118,20 +118,20 @@ def test_names_that_firm_contact_joins_are_one_body_unless_joints_hang_them_toge
     """Nodes 0–1–2–3 in a row; joints between labels (0, 1) and (2, 3)."""
     seeds = {0: 0, 1: 1, 2: 2, 3: 3}
     holds = [(20000.0, (1, 2)), (300.0, (0, 3)), (20000.0, (0, 1))]
-    assert one_body(UnionFind(4), seeds, holds, [(0, 1), (2, 3)]) == [0, 1, 1, 3]
-    assert one_body(UnionFind(4), seeds, [(40.0, (1, 2))], [(0, 1), (2, 3)]) == [0, 1, 2, 3]
+    assert merge_labels(UnionFind(4), seeds, holds, [(0, 1), (2, 3)]) == [0, 1, 1, 3]
+    assert merge_labels(UnionFind(4), seeds, [(40.0, (1, 2))], [(0, 1), (2, 3)]) == [0, 1, 2, 3]
 
 
 def test_names_that_were_joined_wrongly_are_moved_to_where_less_is_parted():
     """Nodes 0 to 3, joints between labels (0, 1) and (2, 3); 1 and 2 are firm, 0 and 3 lie flush."""
     edges = [Edge((1, 2), {}, 20000.0), Edge((0, 3), {}, 150.0)]
     for start in ([0, 1, 2, 0], [0, 1, 2, 3], [0, 1, 1, 3]):
-        found, close = joined_by_cost({k: k for k in range(4)}, edges, [(0, 1), (2, 3)], start)
+        found, close = merge_by_cost({k: k for k in range(4)}, edges, [(0, 1), (2, 3)], start)
         assert [label == found[1] for label in found] == [False, True, True, False]
         assert not close
     # as firm on either side: both are named as open
     even = [Edge((1, 2), {}, 200.0), Edge((0, 3), {}, 200.0)]
-    _, close = joined_by_cost({k: k for k in range(4)}, even, [(0, 1), (2, 3)], [0, 1, 2, 0])
+    _, close = merge_by_cost({k: k for k in range(4)}, even, [(0, 1), (2, 3)], [0, 1, 2, 0])
     assert close == {0, 1, 2, 3}
 
 

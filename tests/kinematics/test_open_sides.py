@@ -17,7 +17,7 @@ from support.solids import box, part, rod
 
 from kinform import contacts, kinematics, surfaces
 from kinform.errors import InputError
-from kinform.kinematics.partition import partition, with_sides
+from kinform.kinematics.partition import find_missing_sides, partition
 from kinform.model.function import Function
 
 
@@ -60,7 +60,7 @@ def shaped(**solids):
 
 
 def bodies(whole, touching):
-    whole, _ = with_sides(whole, touching)
+    whole, _ = find_missing_sides(whole, touching)
     return partition(whole, touching, whole.function.joints).parts
 
 
@@ -74,13 +74,13 @@ def test_one_side_or_none_gives_the_bodies_of_both(one):
 
 def test_the_named_side_is_the_first_and_of_none_the_ground():
     whole, found, touching = arm()
-    named, sides = with_sides(stated(whole, opened(replace(ARM, between=("high", "base")), 1)), touching)
+    named, sides = find_missing_sides(stated(whole, opened(replace(ARM, between=("high", "base")), 1)), touching)
     assert sides[0].parts[0] == "high"
     assert sides[0].parts[1] in {"base", "cover"}
     assert named.function.joints[0].between == sides[0].parts
     assert named.function.as_named.joints[0].between == ("high", "")
     for ground, first in (("base", {"base", "cover"}), ("high", {"low", "high", "bolt_1", "bolt_2"})):
-        _, sides = with_sides(replace(stated(whole, opened(ARM)), ground=ground), touching)
+        _, sides = find_missing_sides(replace(stated(whole, opened(ARM)), ground=ground), touching)
         assert sides[0].parts[0] in first
     K = kinematics.derive(stated(whole, opened(ARM)), found, touching)
     assert [(one.joint, "no other way" in one.evidence) for one in K.sides] == [("turn", True)]
@@ -91,7 +91,7 @@ def test_two_journals_on_one_axis_are_listed():
     whole, _, touching = two_arms()
     one = joint("up", ("base", "up"), point=(0, 0, 0.015))
     with pytest.raises(InputError) as error:
-        with_sides(stated(whole, opened(one)), touching)
+        find_missing_sides(stated(whole, opened(one)), touching)
     (problem,) = error.value.problems
     assert "2 ways of parting" in problem.message
     assert "'base' from 'up'" in problem.message
@@ -102,14 +102,14 @@ def test_two_journals_on_one_axis_are_listed():
     assert bodies(stated(whole, opened(one), other), touching) == expected
     assert bodies(stated(whole, opened(replace(one, between=("up", "base")), 1), other), touching) == expected
     with pytest.raises(InputError):
-        with_sides(stated(whole, opened(one), opened(other)), touching)
+        find_missing_sides(stated(whole, opened(one), opened(other)), touching)
 
 
 def test_an_axis_beside_the_journal_parts_nothing_and_the_nearest_is_told():
     whole, _, touching = two_arms()
     off = joint("up", ("base", "up"), point=(0.0, 0.02, 0.0))
     with pytest.raises(InputError, match="the nearest journal of that direction is 20 mm away"):
-        with_sides(stated(whole, opened(off)), touching)
+        find_missing_sides(stated(whole, opened(off)), touching)
 
 
 def test_contact_far_along_the_axis_is_not_taken_unseen():
@@ -117,7 +117,7 @@ def test_contact_far_along_the_axis_is_not_taken_unseen():
     whole, _, touching = arm()
     far = replace(ARM, point=np.array([0.0, 0.0, 0.2]))
     with pytest.raises(InputError, match=r"the only way of parting is: 'base' from 'low', 194 mm along the axis"):
-        with_sides(stated(whole, opened(far)), touching)
+        find_missing_sides(stated(whole, opened(far)), touching)
     assert bodies(stated(whole, far), touching) == bodies(stated(whole, ARM), touching)
 
 
@@ -130,7 +130,7 @@ def test_a_bracket_between_two_legs_may_be_of_the_frame():
     legs = [joint(name, ("frame", name), axis=(1, 0, 0), point=(0, 0, 0.012)) for name in ("left", "right")]
     knee = joint("knee", ("left", "foot"), axis=(1, 0, 0), point=(0.03, 0, -0.03))
     with pytest.raises(InputError) as error:
-        with_sides(stated(whole, opened(legs[0]), legs[1], knee), touching)
+        find_missing_sides(stated(whole, opened(legs[0]), legs[1], knee), touching)
     assert "'frame' from 'left'" in error.value.problems[0].message
 
 
@@ -154,7 +154,7 @@ def test_a_planar_joint_needs_no_point():
 def test_a_group_is_one_side():
     whole, _, touching = arm()
     whole = replace(whole, groups=assembly(groups=(("frame", ("base", "cover")),)).groups)
-    _, sides = with_sides(stated(whole, opened(replace(ARM, between=("frame", "low")), 1)), touching)
+    _, sides = find_missing_sides(stated(whole, opened(replace(ARM, between=("frame", "low")), 1)), touching)
     assert sides[0].parts == ("frame", "low")
 
 
@@ -170,11 +170,11 @@ def test_machines_without_names(seed):
     for k in range(len(joints)):
         some = tuple(opened(one) if i == k else one for i, one in enumerate(joints))
         try:
-            named, sides = with_sides(stated(whole, *some), touching)
+            named, sides = find_missing_sides(stated(whole, *some), touching)
         except InputError:
             continue
         told += 1
-        assert with_sides(stated(whole, *some[::-1]), touching)[1] == sides
+        assert find_missing_sides(stated(whole, *some[::-1]), touching)[1] == sides
         assert judge(drawn, kinematics.derive(named, found, touching)).exact
     assert told
 
@@ -186,6 +186,6 @@ def test_a_ring_of_bodies_without_any_name(seed):
     whole = assembly_of(drawn, seed, sides=0)
     found = {p.mesh.digest: surfaces.recover(p.mesh, whole.tolerances) for p in whole.parts}
     touching = contacts.find(whole, found)
-    named, sides = with_sides(whole, touching)
-    assert with_sides(stated(whole, *whole.function.joints[::-1]), touching)[1] == sides
+    named, sides = find_missing_sides(whole, touching)
+    assert find_missing_sides(stated(whole, *whole.function.joints[::-1]), touching)[1] == sides
     assert judge(drawn, kinematics.derive(named, found, touching)).exact

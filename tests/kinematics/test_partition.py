@@ -17,7 +17,7 @@ from kinform import contacts, kinematics, surfaces
 from kinform.kinematics.partition import partition
 from kinform.kinematics.partition.contact import Asked, Contact
 from kinform.kinematics.partition.labelling import Edge, label_all, margins
-from kinform.kinematics.partition.parting import joint_twists, prices
+from kinform.kinematics.partition.split_prices import joint_twists, prices
 from kinform.model.function import Function, IntendedJoint
 
 PRICES = st.sampled_from([1.0, 30.0, 300.0])

@@ -11,7 +11,7 @@ from support.solids import box, part, rod
 from kinform import contacts, surfaces
 from kinform.kinematics.partition import partition
 from kinform.kinematics.partition.loops import Loops
-from kinform.kinematics.partition.parting import joint_twists
+from kinform.kinematics.partition.split_prices import joint_twists
 from kinform.model.function import Function
 
 

@@ -10,16 +10,16 @@ from kinform.consistency.comparisons.comparison import FROM_GEOMETRY, Comparison
 from kinform.consistency.comparisons.known import Known
 from kinform.consistency.comparisons.with_play import with_play
 from kinform.consistency.questions.rolling_elements import Rolling
-from kinform.consistency.questions.through_intermediates import HelperMotion, motion_through_helpers
+from kinform.consistency.questions.through_intermediates import IntermediateMotion, motion_through_intermediates
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.words import counted, quoted
-from kinform.kinematics.joints.bodies.as_stated import leaves_free, may_end
-from kinform.kinematics.partition.parting import joint_twists
+from kinform.kinematics.joints.bodies.joints_in_force import leaves_free, may_end
+from kinform.kinematics.partition.split_prices import joint_twists
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.function import IntendedJoint
-from kinform.model.kinematics import FREEDOMS, Body, Joint, Kinematics, LeftOut
+from kinform.model.kinematics import FREEDOMS, Body, Joint, Kinematics, UndeclaredJoint
 
 SHARED_MOTION = 0.02
 """Share of a motion within which what contact leaves is a motion that a loop's closure leaves, too; as `ADMITTED`."""
@@ -55,7 +55,7 @@ def _compared(
         return Comparison(intended, bodies, "stated", "the joint is taken from the function", joint=direct)
     size = known.smaller(bodies)
     every = contacts.patches if contacts is not None else ()
-    motion = motion_through_helpers(kinematics, every, first.name, second.name, known.named, size)
+    motion = motion_through_intermediates(kinematics, every, first.name, second.name, known.named, size)
     used: tuple[Joint, ...] = (direct,) if direct is not None else ()
     if motion is not None:
         used = motion.joints
@@ -89,7 +89,7 @@ def _compared(
         freedoms=direct.freedoms if motion is None and direct is not None else motion.freedoms if motion else 0,
         joint=direct,
         twists=found,
-        through=motion.helpers if motion is not None else (),
+        through=motion.intermediates if motion is not None else (),
         angle_slack=angle_slack,
         position_slack=position_slack,
         size=size,
@@ -97,7 +97,7 @@ def _compared(
     )
 
 
-def loose_joint(assembly: Assembly, kinematics: Kinematics, intended: IntendedJoint) -> LeftOut | None:
+def loose_joint(assembly: Assembly, kinematics: Kinematics, intended: IntendedJoint) -> UndeclaredJoint | None:
     """What contact alone would make of a joint that is stated as fixed, where it would part its sides."""
     if intended.type != "fixed":
         return None
@@ -105,7 +105,9 @@ def loose_joint(assembly: Assembly, kinematics: Kinematics, intended: IntendedJo
     return next((one for one in kinematics.left_out or () if one.parts(first, second)), None)
 
 
-def _rolling_certainty(intended: IntendedJoint, motion: HelperMotion, through: Rolling, size: float) -> tuple[str, str]:
+def _rolling_certainty(
+    intended: IntendedJoint, motion: IntermediateMotion, through: Rolling, size: float
+) -> tuple[str, str]:
     """Whether what rolling elements leave is known: what they leave beside the intended joint for this instant alone
     may be held by them all the same."""
     if through.doubt:
@@ -116,8 +118,8 @@ def _rolling_certainty(intended: IntendedJoint, motion: HelperMotion, through: R
     if not leaves_free(motion.twists, wanted, middle, size) or not leaves_free(wanted, through.sure, middle, size):
         return "found", ""
     return "undecided", (
-        f"points and lines of contact with {quoted(motion.helpers)} leave {counted(motion.freedoms, 'freedom')} at "
-        "this instant; over a distance that may be the intended one alone"
+        f"points and lines of contact with {quoted(motion.intermediates)} leave "
+        f"{counted(motion.freedoms, 'freedom')} at this instant; over a distance that may be the intended one alone"
     )
 
 

@@ -14,17 +14,17 @@ The method is a multiway cut as an integer program (Boykov, Veksler, Zabih 2001 
 """
 
 from kinform.kinematics.partition.bodies import Partition, partition
-from kinform.kinematics.partition.left_out import left_out
-from kinform.kinematics.partition.open_sides import with_sides
+from kinform.kinematics.partition.missing_sides import find_missing_sides
 from kinform.kinematics.partition.proposals import Proposal, propose, proposed_joints, stated_proposals
+from kinform.kinematics.partition.undeclared_joints import undeclared_joints
 
 __all__ = [
     "Partition",
     "Proposal",
-    "left_out",
+    "find_missing_sides",
     "partition",
     "propose",
     "proposed_joints",
     "stated_proposals",
-    "with_sides",
+    "undeclared_joints",
 ]

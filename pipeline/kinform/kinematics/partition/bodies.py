@@ -23,6 +23,7 @@ from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.function import IntendedJoint
+from kinform.model.kinematics import MembershipCause
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces
 
@@ -48,8 +49,7 @@ class Placed:
 
     part: PartName
     body: int
-    how: str
-    """held, cut, nearest (as `Membership`)."""
+    how: MembershipCause
     margin: float
     """By how much another body would be dearer; infinite where no other comes into question."""
     other: int | None

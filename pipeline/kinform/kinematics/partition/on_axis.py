@@ -13,7 +13,7 @@ from kinform.kinematics.joints.bodies.merging import Merger
 from kinform.kinematics.partition.contact import ROLLING, SERRATED, PartPair, contact_of_pairs
 from kinform.kinematics.partition.graph import Graph, graph_of
 from kinform.kinematics.partition.labelling import Labelling, label_all
-from kinform.kinematics.partition.parting import Prices, hints_of
+from kinform.kinematics.partition.split_prices import Prices, hints_of
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.function import IntendedJoint

@@ -17,18 +17,19 @@ import numpy as np
 from kinform.foundation.algebra.vectors import canonical_sign, norm
 from kinform.foundation.words import counted, quoted
 from kinform.frozen import dataclass
-from kinform.kinematics.part_volumes import volumes
+from kinform.kinematics.joints.bodies.extents import part_volumes
 from kinform.kinematics.partition.bodies import partition
 from kinform.kinematics.partition.constants import FASTENED, SAME_AXIS
 from kinform.kinematics.partition.contact import ROUND, Asked, Contact, PartPair, contact_of_pairs, near_each
 from kinform.kinematics.partition.known_axes import KnownAxes
-from kinform.kinematics.partition.parting import hints_of, joint_twists
 from kinform.kinematics.partition.sides import Sides, TouchingParts
+from kinform.kinematics.partition.split_prices import hints_of, joint_twists
 from kinform.kinematics.partition.standard_parts import HOLDERS, standard_parts
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.function import IntendedJoint
+from kinform.model.kinematics import JointType
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces
 
@@ -48,7 +49,7 @@ SAME_CENTRE = 1e-6
 class Proposal:
     """A joint that may be meant."""
 
-    type: str
+    type: JointType
     """revolute or spherical."""
     axis: Array | None
     """(3,) unit; None of spherical ones."""
@@ -83,7 +84,7 @@ def propose(
     together: Sequence[Sequence[PartName]] = (),
 ) -> list[Proposal]:
     """Joints that may be meant, the largest smaller side first. `together`: parts that are one anyway."""
-    volume = volumes(assembly)
+    volume = part_volumes(assembly)
     parts = sorted(volume)
     pairs = contact_of_pairs(contacts.patches)
     hints = hints_of(contacts.suggestions)
@@ -158,7 +159,7 @@ def stated_proposals(
 
     Their sides are named by the largest part of the body that all of them together make of what touches about the axis.
     """
-    volume = volumes(assembly)
+    volume = part_volumes(assembly)
     ways = propose(assembly, surfaces, contacts)
     joints = [
         IntendedJoint(f"joint_{number}", one.between(volume), one.type, one.axis, None, one.point, None, None, "", None)
@@ -235,7 +236,7 @@ def _candidates(patches: Sequence[Patch]) -> list[IntendedJoint]:
     return out
 
 
-def _joint(type_: str, axis: Array | None, point: Array) -> IntendedJoint:
+def _joint(type_: JointType, axis: Array | None, point: Array) -> IntendedJoint:
     return IntendedJoint("", ("", ""), type_, axis, None, point, None, None, "", None)
 
 

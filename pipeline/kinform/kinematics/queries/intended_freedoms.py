@@ -9,7 +9,7 @@ import numpy as np
 from kinform.frozen import dataclass
 from kinform.kinematics.constants import AT_REST
 from kinform.kinematics.joints.pair.joint import twists_of
-from kinform.kinematics.queries.derived import Derived
+from kinform.kinematics.queries.design_view import DesignView
 from kinform.kinematics.queries.motion_query import QueryAnswer, query_twist
 from kinform.model.arrays import Array
 from kinform.model.function import IntendedJoint
@@ -34,12 +34,12 @@ class IntendedAnswer:
     text: str
 
 
-def intended_answers(design: Derived) -> tuple[IntendedAnswer, ...]:
+def intended_answers(design: DesignView) -> tuple[IntendedAnswer, ...]:
     """The answer for each joint of [function], in the order of the manifest."""
     return tuple(_answer(design, joint) for joint in design.assembly.function.joints)
 
 
-def _answer(design: Derived, joint: IntendedJoint) -> IntendedAnswer:
+def _answer(design: DesignView, joint: IntendedJoint) -> IntendedAnswer:
     assert design.kinematics is not None
     bodies = [design.kinematics.body_of(design.assembly.parts_of(name)[0]).name for name in joint.between]
     if joint.type == "fixed":
@@ -60,7 +60,7 @@ def _answer(design: Derived, joint: IntendedJoint) -> IntendedAnswer:
     return IntendedAnswer(joint, False, asked, f"of {len(asked)} freedoms {len(missing)} not there, or one way only")
 
 
-def _answer_fixed(design: Derived, joint: IntendedJoint, bodies: Sequence[str]) -> IntendedAnswer:
+def _answer_fixed(design: DesignView, joint: IntendedJoint, bodies: Sequence[str]) -> IntendedAnswer:
     assert design.kinematics is not None
     if bodies[0] == bodies[1]:
         return IntendedAnswer(joint, True, (), "both sides are one body")

@@ -18,10 +18,10 @@ from kinform.kinematics.joints.pair.decision import decide
 from kinform.kinematics.joints.pair.evidence import Evidence, Member
 from kinform.kinematics.joints.pair.hypotheses import candidate_motions, motion_words
 from kinform.kinematics.joints.pair.preserved import preserved_motions
-from kinform.kinematics.queries.derived import Derived
+from kinform.kinematics.queries.design_view import DesignView
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
-from kinform.model.kinematics import Joint
+from kinform.model.kinematics import Joint, body_of_part
 
 MOST_PATCHES = 40
 """Joints with more patches are not decided again without each."""
@@ -84,7 +84,7 @@ class Insight:
     """What was not looked at, and why; empty where all was."""
 
 
-def insight(design: Derived, name: str) -> Insight:
+def insight(design: DesignView, name: str) -> Insight:
     """The evidence of the joint of this name. Raises KeyError for another name, listing those that there are."""
     kinematics = design.kinematics
     assert kinematics is not None
@@ -114,16 +114,16 @@ def insight(design: Derived, name: str) -> Insight:
     )
 
 
-def patches_between(design: Derived, first: str, second: str) -> list[Member]:
+def patches_between(design: DesignView, first: str, second: str) -> list[Member]:
     """The patches between two bodies."""
     assert design.kinematics is not None
-    of_part = {part: body.name for body in design.kinematics.bodies for part in body.parts}
+    of_part = body_of_part(design.kinematics.bodies)
     patches = () if design.contacts is None else design.contacts.patches
     sides = [tuple(of_part[part] for part in patch.parts) for patch in patches]
     return [(k, p, sides[k][0] != first) for k, p in enumerate(patches) if set(sides[k]) == {first, second}]
 
 
-def _evidence(design: Derived, joint: Joint, without: frozenset[int] = frozenset()) -> Evidence | None:
+def _evidence(design: DesignView, joint: Joint, without: frozenset[int] = frozenset()) -> Evidence | None:
     assert design.kinematics is not None
     members = [member for member in patches_between(design, *joint.bodies) if member[0] not in without]
     if not members or design.contacts is None:
@@ -132,7 +132,7 @@ def _evidence(design: Derived, joint: Joint, without: frozenset[int] = frozenset
     return evidence_between(members, bodies, design.assembly, design.contacts, Extents(design.assembly))
 
 
-def _roles(design: Derived, joint: Joint, evidence: Evidence | None) -> tuple[PatchRole, ...]:
+def _roles(design: DesignView, joint: Joint, evidence: Evidence | None) -> tuple[PatchRole, ...]:
     assert design.kinematics is not None
     rows = np.bincount(design.kinematics.matrix.patch, minlength=1)
     blocking = {blocker.patch for blocker in joint.blockers}
@@ -145,7 +145,9 @@ def _roles(design: Derived, joint: Joint, evidence: Evidence | None) -> tuple[Pa
     return tuple(out)
 
 
-def _alternatives(design: Derived, joint: Joint, evidence: Evidence | None) -> tuple[tuple[Alternative, ...], int, str]:
+def _alternatives(
+    design: DesignView, joint: Joint, evidence: Evidence | None
+) -> tuple[tuple[Alternative, ...], int, str]:
     """The joint decided again without each patch, and without what each candidate motion breaks."""
     if evidence is None:
         return (), 0, "no contact patch decides this joint"

@@ -11,10 +11,10 @@ from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.records import altered
 from kinform.frozen import dataclass
 from kinform.kinematics.constants import SAME_DIRECTION
+from kinform.kinematics.screws.wording import direction_words
 from kinform.kinematics.separation.cone import CONE_FREE, extreme_rays, held_for_certain, opening, unit_rows
 from kinform.kinematics.separation.constants import CONE_HELD
 from kinform.kinematics.separation.contact_rows import Cone
-from kinform.kinematics.wording import direction_words
 from kinform.model.arrays import Array, Flags
 from kinform.model.kinematics import Joint, Release
 

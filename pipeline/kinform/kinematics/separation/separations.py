@@ -23,13 +23,13 @@ from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.graphs.graph import UnionFind, blocks
 from kinform.foundation.in_step import in_step
 from kinform.frozen import dataclass
-from kinform.kinematics.answers import Answers, ask
 from kinform.kinematics.constants import MOST_IN_STEP
 from kinform.kinematics.separation.cone import nothing_opens_in_each, rows_beside, split_directions, unit_rows
 from kinform.kinematics.separation.constants import CONE_HELD
 from kinform.kinematics.separation.contact_rows import Cone, ContactRows, is_stated
 from kinform.kinematics.separation.lifting import LARGEST_TWIST, lifts_apart
 from kinform.kinematics.separation.releases import certainly_held, leaving_of_each, release_of
+from kinform.kinematics.step_cache import StepCache, cached_each
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, Joint, Release, Separation
@@ -107,7 +107,7 @@ def links_between(
 
 
 def separations(
-    names: Sequence[BodyName], ground: int, links: Sequence[Link], answers: Answers | None = None
+    names: Sequence[BodyName], ground: int, links: Sequence[Link], cache: StepCache | None = None
 ) -> tuple[tuple[Separation, ...], str]:
     """What can leave, and why it is not known of the rest ("" where it is)."""
     opened: set[int] = set()
@@ -119,7 +119,7 @@ def separations(
             opened.update(loose)
         elif loose:
             joined.append(block)
-    of_each = _opened([[links[k] for k in block] for block in joined], answers)
+    of_each = _opened([[links[k] for k in block] for block in joined], cache)
     for members, solved in zip(joined, of_each, strict=True):
         if solved is None:
             reason = "whether parts can leave is not known of all: some loops of contacts are too large to decide"
@@ -132,7 +132,7 @@ def separations(
     return sets, reason
 
 
-def _opened(of_each: Sequence[Sequence[Link]], answers: Answers | None) -> Sequence[Opened]:
+def _opened(of_each: Sequence[Sequence[Link]], cache: StepCache | None) -> Sequence[Opened]:
     """Which links of each block can open together: of the block, so far as it is not known."""
     questions = [[(link.ends, link.cone, link.twists) for link in of_block] for of_block in of_each]
     links = {id(question): of_block for question, of_block in zip(questions, of_each, strict=True)}
@@ -144,7 +144,7 @@ def _opened(of_each: Sequence[Sequence[Link]], answers: Answers | None) -> Seque
             out += in_step(ways, nothing_opens_in_each)
         return out
 
-    return ask(answers, "opened", questions, solved)
+    return cached_each(cache, "opened", questions, solved)
 
 
 def _links_that_open(links: Sequence[Link]) -> Generator[tuple[Array, Array], bool, Opened]:

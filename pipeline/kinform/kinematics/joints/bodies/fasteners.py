@@ -14,7 +14,7 @@ from kinform.kinematics.joints.pair.joint import stated_joint
 from kinform.kinematics.joints.pair.lower_pairs import JointForm
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Suggestion
-from kinform.model.kinematics import Body, Joint
+from kinform.model.kinematics import Body, Joint, body_of_part
 from kinform.model.names import BodyName, PartName
 
 SUGGESTED_AXIS = 1e-3
@@ -67,7 +67,7 @@ def turn_about_suggested_axes(
     where nothing else is stated of the two bodies."""
     if not assembly.infer_fasteners:
         return joints
-    of_part: dict[PartName, BodyName] = {part: body.name for body in bodies for part in body.parts}
+    of_part: dict[PartName, BodyName] = body_of_part(bodies)
     hints: dict[tuple[BodyName, BodyName], list[Suggestion]] = {}
     for hint in contacts.suggestions:
         first, second = sorted(of_part[part] for part in hint.parts)
@@ -80,7 +80,7 @@ def turn_about_suggested_axes(
 def _stated_otherwise(assembly: Assembly, of_part: Mapping[PartName, BodyName]) -> Callable[[Joint], bool]:
     """Whether something else than a turn is stated between the bodies of a joint: another joint, or that they are one
     body, if need be by way of others."""
-    stated = [(joint.between, joint.type) for joint in assembly.function.joints]
+    stated: list[tuple[tuple[str, str], str]] = [(joint.between, joint.type) for joint in assembly.function.joints]
     stated += [(assumption.between, assumption.type or "") for assumption in assembly.assumptions]
     names = sorted(set(of_part.values()))
     index = {name: number for number, name in enumerate(names)}

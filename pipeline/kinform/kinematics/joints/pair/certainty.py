@@ -41,6 +41,7 @@ from kinform.kinematics.joints.pair.touches import TOUCHING, apart_doubt, beside
 from kinform.kinematics.joints.pair.uncertainty import uncertainty_doubt
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
+from kinform.model.kinematics import JointStatus, ReadingCause
 from kinform.model.tolerances import Tolerances
 
 MISSED_AXES = 0.5
@@ -80,7 +81,7 @@ HIGHER = (*TOUCHING, "freeform", "other")
 class Certainty:
     """How sure an answer is, why, and what else it may be."""
 
-    status: str
+    status: JointStatus
     reason: str
     other: OtherReading | None = None
 
@@ -252,7 +253,7 @@ def _scrap_reading(
     if not slight.any():
         return None
     slight |= [item.patch.kind in HIGHER for item in evidence.items]
-    role = "sliver"
+    role: ReadingCause = "sliver"
     out = tuple(int(k) for k in np.flatnonzero(slight))
     if slight.all():
         return OtherReading(JointForm("general"), np.eye(6), out, role)

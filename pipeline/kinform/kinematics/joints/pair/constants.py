@@ -6,7 +6,5 @@ import math
 
 SAME_PITCH = 5e-3
 """Relative difference of pitches that are one."""
-PURE_SLIDE = 1e-9
-"""Unit twists that turn by less are slides."""
 VAGUE_AXIS = math.radians(0.5)
 """rad: standard uncertainty of its direction above which an axis is too badly known for a joint."""

@@ -37,6 +37,7 @@ from kinform.kinematics.joints.pair.stops import (
 from kinform.kinematics.joints.pair.touches import TOUCHING, beside_flange
 from kinform.kinematics.joints.pair.uncertainty import uncertainty_doubt
 from kinform.model.arrays import Array, Flags
+from kinform.model.kinematics import JointStatus, ReadingCause
 from kinform.model.tolerances import Tolerances
 
 DEEP_OVERLAP = 0.2
@@ -61,7 +62,7 @@ class Decision:
     """(6, k) orthonormal."""
     strict: Array
     """(6, k') freedoms when every patch counts; differs from `basis` when blocked."""
-    status: str
+    status: JointStatus
     reason: str
     kept: tuple[int, ...]
     """Items that carry the joint."""
@@ -71,7 +72,7 @@ class Decision:
     """(6,) ascending."""
     other: Decision | None = None
     """What else the contact may mean, of an ambiguous answer."""
-    role: str = ""
+    role: ReadingCause = ""
     """Of such another reading: what the patches are that it leaves out (`stops.ROLES`)."""
 
 

@@ -19,7 +19,7 @@ from kinform.kinematics.constants import ACROSS_LINE
 from kinform.kinematics.joints.pair.constants import SAME_PITCH, VAGUE_AXIS
 from kinform.kinematics.joints.pair.evidence import COAXIAL, Evidence, Item, Line
 from kinform.kinematics.joints.pair.least_held import slides_across, turns_about
-from kinform.kinematics.wording import components
+from kinform.kinematics.screws.wording import components
 from kinform.mechanism.constants import SIGMAS
 from kinform.model.arrays import Array
 

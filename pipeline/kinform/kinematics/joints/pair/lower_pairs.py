@@ -15,6 +15,7 @@ from kinform.foundation.algebra.vectors import canonical, cross, cross_matrix, n
 from kinform.frozen import dataclass
 from kinform.kinematics.constants import EXACT_PAIR
 from kinform.model.arrays import Array
+from kinform.model.kinematics import JointType
 
 NEAR_PAIR = 0.02
 """Spaces pieced together from patches that agree within their tolerances are off a lower pair by this much."""
@@ -24,7 +25,7 @@ NEAR_PAIR = 0.02
 class JointForm:
     """Type of a joint with its geometry in the world; None where the type has none."""
 
-    type: str
+    type: JointType
     axis: Array | None = None
     point: Array | None = None
     pitch: float | None = None

@@ -15,7 +15,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, cross_matrix, foot
-from kinform.kinematics.joints.pair.constants import PURE_SLIDE, SAME_PITCH
+from kinform.foundation.rounding import SOLVED
+from kinform.kinematics.joints.pair.constants import SAME_PITCH
 from kinform.kinematics.joints.pair.evidence import Evidence
 from kinform.mechanism.constants import SIGMAS
 from kinform.model.arrays import Array, Flags
@@ -105,7 +106,7 @@ def preserved_motions(evidence: Evidence, twists: Array, slack: float = 1.0) -> 
         if item.patch.kind == "cone":
             # the slope of a cone is a fact, not a misalignment: slides along it have no slack
             samples = slice(evidence.start[k], evidence.start[k + 1])
-            slides = turning < PURE_SLIDE
+            slides = turning < SOLVED
             allowed[samples, slides] = (SIGMAS * item.patch.uncertainty[0] + CONE_SLACK) * speed[samples, slides]
     weight = evidence.share[:, None]
     first = evidence.start[:-1]

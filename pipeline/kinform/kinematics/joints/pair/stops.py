@@ -30,6 +30,7 @@ from kinform.kinematics.joints.pair.freedoms import freedoms_beyond
 from kinform.kinematics.joints.pair.in_step import Steps
 from kinform.kinematics.joints.pair.lower_pairs import JointForm
 from kinform.model.arrays import Array, Flags
+from kinform.model.kinematics import ReadingCause
 from kinform.model.tolerances import Tolerances
 
 ALONG_AXIS = 0.01
@@ -72,7 +73,7 @@ class OtherReading:
     """(6, k) scaled freedoms."""
     out: tuple[int, ...]
     """Items that are left out."""
-    role: str
+    role: ReadingCause
     """What those are then: stop, sliver, flank or pin. prism: nothing is left out; flats do not let the bodies
     turn. bend: nor here; a roller turns less in its ring than its line says."""
 

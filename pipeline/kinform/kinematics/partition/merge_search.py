@@ -28,7 +28,7 @@ LOOK_AHEAD = 4
 """Up to so many sets of joints that hang together all ways of joining their names are looked at."""
 
 
-class Joining:
+class MergeSearch:
     """Which labels to join, by what is left to be parted."""
 
     def __init__(

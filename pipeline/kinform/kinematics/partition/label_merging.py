@@ -2,7 +2,7 @@
 
 Two joints that share no named part leave it open whether they share a body. So contact is followed from what no joint
 may part down to what is dearer than a journal, as in Kruskal's spanning tree, and named parts that it joins are one
-body; what is left, a bearing's ring that was named, goes where the least is parted (`joined_by_cost`). Names that
+body; what is left, a bearing's ring that was named, goes where the least is parted (`merge_by_cost`). Names that
 joints hang together already, directly or by way of others, close a loop if they are one: only where every joint can
 then still move (`loops`). Where names alone connect all joints, legs that cross may just be drawn touching: there a
 joint must also lack what goes round its axis unless they are one.
@@ -14,15 +14,15 @@ from collections.abc import Mapping, Sequence
 
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics.partition.constants import PARTED
-from kinform.kinematics.partition.joining import Joining
 from kinform.kinematics.partition.labelling import Edge, Labels
 from kinform.kinematics.partition.loops import Loops
+from kinform.kinematics.partition.merge_search import MergeSearch
 
 Hold = tuple[float, tuple[int, int]]
 """What parting two nodes that touch costs at least, by whichever joint."""
 
 
-def one_body(
+def merge_labels(
     one: UnionFind,
     seeds: Mapping[int, int],
     holds: Sequence[Hold],
@@ -62,7 +62,7 @@ def one_body(
     return _least(same, count)
 
 
-def joined_by_cost(
+def merge_by_cost(
     seeds: Mapping[int, int],
     edges: Sequence[Edge],
     joints: Sequence[Labels],
@@ -74,7 +74,7 @@ def joined_by_cost(
     them saves as much as screw holes cost elsewhere is moved there. With the labels that could be joined otherwise at
     less or nearly the same cost.
     """
-    return Joining(seeds, edges, joints, loops).settled(together)
+    return MergeSearch(seeds, edges, joints, loops).settled(together)
 
 
 def _least(same: UnionFind, count: int) -> list[int]:

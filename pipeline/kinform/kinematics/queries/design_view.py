@@ -9,7 +9,7 @@ from kinform.model.contacts import Contacts
 from kinform.model.kinematics import Kinematics
 
 
-class Derived(Protocol):
+class DesignView(Protocol):
     """A design, as far as questions look at it; None: not computed yet."""
 
     @property

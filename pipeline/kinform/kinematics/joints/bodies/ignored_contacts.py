@@ -12,15 +12,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.foundation.algebra.vectors import norm
-from kinform.kinematics.joints.bodies.as_stated import leaves_free
+from kinform.kinematics.joints.bodies.joints_in_force import leaves_free
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
-from kinform.model.kinematics import Aside, Body, Joint, Mobility
+from kinform.model.kinematics import Body, IgnoredContact, Joint, Mobility
 
 
-def asides(
+def ignored_contacts(
     beside: Sequence[Joint], patches: Sequence[Patch], bodies: Sequence[Body], mobility: Mobility
-) -> tuple[Aside, ...]:
+) -> tuple[IgnoredContact, ...]:
     """What is worth telling of the joints `beside` that contact would give, sorted by their bodies.
 
     `mobility` is that of the bodies under the joints in force. Where it has too many freedoms to keep them, no contact
@@ -46,7 +46,7 @@ def _goes_along(joint: Joint, motions: Array, patches: Sequence[Patch]) -> bool:
     return leaves_free(joint.twists, motions, corners.mean(axis=0), reach)
 
 
-def _aside(joint: Joint, patches: Sequence[Patch], along: bool) -> Aside:
+def _aside(joint: Joint, patches: Sequence[Patch], along: bool) -> IgnoredContact:
     area = float(sum(patches[k].area for k in joint.patches))
     words = f"the function, which states all joints, moves them {'along this contact' if along else 'otherwise'}"
-    return Aside(joint.name, joint.bodies, joint.type, joint.freedoms, joint.status, area, joint.axis, words)
+    return IgnoredContact(joint.name, joint.bodies, joint.type, joint.freedoms, joint.status, area, joint.axis, words)

@@ -21,7 +21,7 @@ from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.words import counted
 from kinform.frozen import dataclass
 from kinform.kinematics.constants import EXACT_MOTION
-from kinform.kinematics.joints.bodies.complete import complete_joints, without_effect
+from kinform.kinematics.joints.bodies.complete_function import complete_joints, without_effect
 from kinform.kinematics.joints.bodies.merging import Merger
 from kinform.kinematics.joints.bodies.stated_joints import Pair, joint_form, pair_between
 from kinform.kinematics.joints.pair.joint import reading_of, stated_joint
@@ -30,7 +30,7 @@ from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Patch
 from kinform.model.function import IntendedJoint
-from kinform.model.kinematics import Joint
+from kinform.model.kinematics import Joint, ReadingCause, body_of_part
 from kinform.model.names import PartName
 
 ADMITTED = 0.02
@@ -42,14 +42,14 @@ seem small beside what a metre would."""
 
 
 @dataclass(frozen=True, eq=False)
-class AsStated:
+class JointsInForce:
     """The joints in force, and what contact would hold that constrains nothing."""
 
     joints: tuple[Joint, ...]
-    beside: tuple[Joint, ...]
+    ignored: tuple[Joint, ...]
 
 
-def as_stated(
+def joints_in_force(
     assembly: Assembly,
     merger: Merger,
     joints: Sequence[Joint],
@@ -57,13 +57,13 @@ def as_stated(
     patches: Sequence[Patch],
     *,
     whole: bool,
-) -> AsStated:
+) -> JointsInForce:
     """Joints by contact, sorted by their bodies, in the light of a function that states all joints.
 
     `beside`: of bodies that it moves by other joints. `whole`: it states those of all parts; else contact of bodies
     that none of its joints reaches stays.
     """
-    of_part = {part: body.name for body in merger.bodies() for part in body.parts}
+    of_part = body_of_part(merger.bodies())
     meshed = {of_part[part.name] for part in assembly.parts if part.mesh is not None}
     wanted: dict[Pair, list[IntendedJoint]] = {}
     for intended in sorted(complete_joints(assembly), key=lambda joint: joint.name):
@@ -90,7 +90,7 @@ def as_stated(
             out.append(joint)
         elif joint is not None:
             aside.append(joint)
-    return AsStated(tuple(out), tuple(joint for joint in aside if not _unknown(joint, patches)))
+    return JointsInForce(tuple(out), tuple(joint for joint in aside if not _unknown(joint, patches)))
 
 
 def leaves_free(twists: Array, motions: Array, place: Array, length: float, missing: float = ADMITTED) -> bool:
@@ -165,6 +165,7 @@ def _in_force(
     reach = _reach(corners, place)
     if _is_just(joint, taken, place, reach):
         return _held_otherwise(taken, joint, name)
+    cause: ReadingCause
     if joint.status in ("ambiguous", "blocked"):
         cause, why = "doubt", "contact leaves it undecided"
     elif joint.type != "general" and joint.freedoms == len(taken.twists):

@@ -1,8 +1,8 @@
-"""Ways in which a joint may part the assembly, where it does not say what it joins.
+"""Candidate splits: how a joint that does not name its two sides may separate the assembly.
 
-A way is named by two parts that touch about the joint's axis: they are given to the cut as its two sides, beside
-the joints whose sides are known. What is parted in all tells how likely a way is. Ways that differ by rings, horns or
-screws only are one, the cheapest.
+A split is named by two parts that touch about the joint's axis. They are given to the cut as the sides of the joint,
+with the joints whose sides are known; the cost of all contact that is then separated says how likely the split is.
+Splits that differ only by rings, horns or screws count as one, the cheapest.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ import numpy as np
 from kinform.foundation.algebra.vectors import norm, perpendicular
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.frozen import dataclass
+from kinform.kinematics.joints.bodies.extents import Extents, part_volumes
 from kinform.kinematics.joints.bodies.merging import Merger
-from kinform.kinematics.part_volumes import volumes
 from kinform.kinematics.partition.constants import PARTED
 from kinform.kinematics.partition.contact import PartPair, contact_of_pairs
 from kinform.kinematics.partition.graph import graph_of, stated_merger
 from kinform.kinematics.partition.labelling import Labels, label_all
-from kinform.kinematics.partition.parting import Prices, hints_of, joint_twists, prices
 from kinform.kinematics.partition.sides import substantial
+from kinform.kinematics.partition.split_prices import Prices, hints_of, joint_twists, prices
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.function import IntendedJoint
@@ -32,27 +32,28 @@ from kinform.model.names import PartName
 SUBSTANTIAL = 0.002
 """Share of the assembly's volume that either side of a joint has at least where it does not name its sides."""
 ALIKE = 0.3
-"""Share of the smallest side by which two ways of parting differ at most that are one: by a ring, a horn, screws."""
-ONLY_WAY = 1000.0
-"""Price by which every other way of parting is dearer than the one that is taken where a joint does not name its sides:
-that of a pocket. Beyond it something would be parted that is fastened. Holes round a journal (400) are no such, as the
-horns of servos have them: by 340 and 400 wrong ways were cheaper on a public robot, where batteries lie on the axis."""
+"""Share of the smallest side by which two splits may differ and count as one: a ring, a horn, screws. Chosen, not
+measured."""
+ONLY_SPLIT = 1000.0
+"""Price by which every other split must cost more than the one that is accepted: that of a pocket. Beyond it something
+would be separated that is fastened. Holes round a journal (400) are no such, as the horns of servos have them: at 340
+and 400 wrong splits were cheaper on a public robot, where batteries lie on the axis."""
 ROUND_OFF = 0.1
 """A part goes round an axis where the middle of its surface lies beside it by less than this share of its spread, and
 its spread differs by less than this share from one direction to another."""
 
 
 Names = tuple[PartName, PartName]
-Bodies = tuple[frozenset[PartName], frozenset[PartName]]
+SideParts = tuple[frozenset[PartName], frozenset[PartName]]
 
 
 @dataclass(frozen=True, eq=False)
-class Way:
-    """One way of parting."""
+class Split:
+    """One candidate split of the assembly by a joint."""
 
     names: Names
     """A part of each side."""
-    bodies: Bodies
+    bodies: SideParts
     """All parts of each side."""
     cost: float
     """Of everything that is parted."""
@@ -61,7 +62,7 @@ class Way:
 
 
 @dataclass(frozen=True, eq=False)
-class Parted:
+class BodiesFound:
     """The bodies of all parts."""
 
     body: Mapping[PartName, int | None]
@@ -72,18 +73,18 @@ class Parted:
     """How many bodies there are."""
 
 
-class Ways:
+class Splits:
     """The moving joints of an assembly, and what each may part. Numbers of joints are those of `joints`."""
 
     def __init__(self, assembly: Assembly, contacts: Contacts, joints: Sequence[IntendedJoint]):
         self.assembly, self.contacts, self.joints = assembly, contacts, joints
-        self.volume = volumes(assembly)
+        self.volume = part_volumes(assembly)
         self.contact = contact_of_pairs(contacts.patches)
         self.hints = hints_of(contacts.suggestions)
         motions = [joint_twists(joint) for joint in joints]
         self.prices: Prices = prices(joints, motions, contacts.patches, contacts.suggestions)
-        self._parted: dict[tuple[tuple[int, Names], ...], Parted] = {}
-        self._drawn: dict[tuple[int, bool], list[Way]] = {}
+        self._parted: dict[tuple[tuple[int, Names], ...], BodiesFound] = {}
+        self._drawn: dict[tuple[int, bool], list[Split]] = {}
 
     @cached_property
     def merger(self) -> Merger:
@@ -93,9 +94,7 @@ class Ways:
     @cached_property
     def size(self) -> float:
         """m: the diagonal of the assembly's box."""
-        boxes = [part.mesh.placed_box(part.X_WP) for part in self.assembly.parts if part.mesh is not None]
-        low, high = (np.array([box[k] for box in boxes]) for k in (0, 1))
-        return norm(high.max(axis=0) - low.min(axis=0)) if boxes else 0.0
+        return Extents(self.assembly).assembly
 
     @cached_property
     def piece(self) -> dict[PartName, PartName]:
@@ -114,7 +113,7 @@ class Ways:
             largest[root] = max(largest.get(root, name), name, key=lambda one: (self.volume[one], one))
         return {name: largest[sets.find(k)] for name, k in number.items()}
 
-    def parted(self, known: Mapping[int, Names]) -> Parted:
+    def bodies_for(self, known: Mapping[int, Names]) -> BodiesFound:
         """The bodies that the joints with known sides ask for."""
         key = tuple(sorted(known.items()))
         if key not in self._parted:
@@ -129,28 +128,28 @@ class Ways:
                 if first is not None and second is not None:
                     cost += edge.price(first, second)
             body = {name: labels[piece] for name, piece in graph.piece_of.items()}
-            self._parted[key] = Parted(body, dict(zip(numbers, graph.sides, strict=True)), cost, len(graph.names))
+            self._parted[key] = BodiesFound(body, dict(zip(numbers, graph.sides, strict=True)), cost, len(graph.names))
         return self._parted[key]
 
-    def ways(self, number: int, known: Mapping[int, Names]) -> list[Way]:
-        """Ways of parting by a joint beside those whose sides are known, the cheapest first; none that parts the same
+    def candidates(self, number: int, known: Mapping[int, Names]) -> list[Split]:
+        """Splits of parting by a joint beside those whose sides are known, the cheapest first; none that parts the same
         two bodies as another joint. Flats beside the axis count where nothing goes round it."""
         for flats in (False, True):
-            out: list[Way] = []
+            out: list[Split] = []
             for drawn in self._alone(number, flats):
-                parted = self.parted(dict(known) | {number: drawn.names})
+                parted = self.bodies_for(dict(known) | {number: drawn.names})
                 sides = parted.sides[number]
                 if not any(set(parted.sides[other]) == set(sides) for other in known if other != number):
-                    out.append(self._way(drawn.names, parted, sides, drawn.beyond))
+                    out.append(self._split(drawn.names, parted, sides, drawn.beyond))
             found = self._different(number, out)
             if found:
                 return found
         return []
 
-    def elsewhere(self, number: int, known: Mapping[int, Names], way: Way) -> list[Way]:
-        """Ways that part what touches in a way as well, at a price about the same, but leave it to other bodies: those
+    def elsewhere(self, number: int, known: Mapping[int, Names], split: Split) -> list[Split]:
+        """Splits that separate the contact of `split` at about the same price, but assign it to other bodies: those
         that the other joints name, and that touch one of its sides or have a joint with it."""
-        parted = self.parted(dict(known) | {number: way.names})
+        parted = self.bodies_for(dict(known) | {number: split.names})
         names: dict[int | None, PartName] = {}
         for name in sorted(name for both in known.values() for name in both):
             names.setdefault(parted.body[name], name)
@@ -158,23 +157,23 @@ class Ways:
         touching = {frozenset(parted.body[name] for name in pair) for pair in self.contact}
         touching |= {frozenset(labels) for labels in parted.sides.values()}
         out = []
-        for k, own in enumerate(way.names):
+        for k, own in enumerate(split.names):
             near = {body for pair in touching if parted.body[own] in pair for body in pair}
             for body in sorted((near & names.keys()) - sides - {None}, key=str):
-                other = (names[body], way.names[1]) if k == 0 else (way.names[0], names[body])
-                found = self.parted(dict(known) | {number: other})
-                ends = {found.body[name] for name in way.names}
-                if ends == set(found.sides[number]) and found.cost - parted.cost < ONLY_WAY:
-                    out.append(self._way(other, found, found.sides[number], way.beyond))
-        return [one for one in out if not self.alike(one, way)]
+                other = (names[body], split.names[1]) if k == 0 else (split.names[0], names[body])
+                found = self.bodies_for(dict(known) | {number: other})
+                ends = {found.body[name] for name in split.names}
+                if ends == set(found.sides[number]) and found.cost - parted.cost < ONLY_SPLIT:
+                    out.append(self._split(other, found, found.sides[number], split.beyond))
+        return [one for one in out if not self.alike(one, split)]
 
-    def _alone(self, number: int, flats: bool) -> list[Way]:
-        """Ways of parting by a joint without any other, those that are alike once."""
+    def _alone(self, number: int, flats: bool) -> list[Split]:
+        """Splits of parting by a joint without any other, those that are alike once."""
         if (number, flats) not in self._drawn:
             found = []
             for names, beyond in sorted(self._touching(number, flats).items()):
-                parted = self.parted({number: names})
-                found.append(self._way(names, parted, parted.sides[number], beyond))
+                parted = self.bodies_for({number: names})
+                found.append(self._split(names, parted, parted.sides[number], beyond))
             self._drawn[number, flats] = self._different(number, found)
         return self._drawn[number, flats]
 
@@ -213,33 +212,33 @@ class Ways:
     def _own(self, number: int, pair: PartPair) -> float:
         return self.prices.by_joint[pair][number] - self.hints.get(pair, 0.0)
 
-    def _way(self, names: Names, parted: Parted, sides: Labels, beyond: float) -> Way:
+    def _split(self, names: Names, parted: BodiesFound, sides: Labels, beyond: float) -> Split:
         first, second = (frozenset(n for n, body in parted.body.items() if body == side) for side in sides)
-        return Way(names, (first, second), parted.cost, beyond)
+        return Split(names, (first, second), parted.cost, beyond)
 
-    def _different(self, number: int, ways: Sequence[Way]) -> list[Way]:
-        """Of ways that are alike the cheapest, of those whose sides are more than rings, balls and screws, and with the
-        named part on a side."""
+    def _different(self, number: int, splits: Sequence[Split]) -> list[Split]:
+        """The cheapest of splits that are alike, if its sides are more than rings, balls and screws, and one of them
+        has the named part."""
         joint = self.joints[number]
         named = self.assembly.parts_of(joint.between[0])[0] if joint.between[0] else None
         least = substantial(np.array(list(self.volume.values())), SUBSTANTIAL)
-        out: list[Way] = []
-        for way in sorted(ways, key=lambda one: (one.cost, one.names)):
-            if named is not None and not any(named in side for side in way.bodies):
+        out: list[Split] = []
+        for split in sorted(splits, key=lambda one: (one.cost, one.names)):
+            if named is not None and not any(named in side for side in split.bodies):
                 continue
-            free = [side for side in way.bodies if named not in side]
-            if min(self._size(side) for side in free) >= least and not any(self.alike(way, other) for other in out):
-                out.append(way)
+            free = [side for side in split.bodies if named not in side]
+            if min(self._size(side) for side in free) >= least and not any(self.alike(split, other) for other in out):
+                out.append(split)
         return out
 
-    def alike(self, one: Way, other: Way) -> bool:
-        """Whether two ways differ by little, by what the smallest of their sides has."""
+    def alike(self, one: Split, other: Split) -> bool:
+        """Whether two splits differ by little, relative to the smallest of their sides."""
         smallest = min(self._size(side) for side in (*one.bodies, *other.bodies))
         (a, b), (c, d) = one.bodies, other.bodies
         odd = min(self._size((a ^ c) | (b ^ d)), self._size((a ^ d) | (b ^ c)))
         return odd < ALIKE * smallest
 
-    def divides(self, before: Parted, after: Parted) -> bool:
+    def divides(self, before: BodiesFound, after: BodiesFound) -> bool:
         """Whether each body with a joint is next to all of one body without it, and there is one more at most: else it
         was not found of which body the parts are that it names."""
         if after.count > max(before.count, 1) + 1:
@@ -251,9 +250,9 @@ class Ways:
                 of[before.body[name]] = of.get(before.body[name], 0.0) + self.volume.get(name, 0.0)
         return all(max(of.values()) >= (1.0 - ALIKE) * sum(of.values()) for of in shares.values())
 
-    def held_about(self, number: int, way: Way) -> bool:
-        """Whether others touch about the axis as well that a way does not part: the joint might be there."""
-        first, second = way.bodies
+    def held_about(self, number: int, split: Split) -> bool:
+        """Whether other contact about the axis stays whole: the joint might be there."""
+        first, second = split.bodies
         return any((set(pair) & first == set()) or (set(pair) & second == set()) for pair in self.about(number, False))
 
     def round(self, number: int, name: PartName) -> bool:

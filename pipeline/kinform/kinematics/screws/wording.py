@@ -18,7 +18,7 @@ from kinform.foundation.algebra.screws import Frame, span
 from kinform.foundation.algebra.vectors import canonical, cross, cross_matrix, norm, perpendicular
 from kinform.foundation.words import counted, listed
 from kinform.kinematics.constants import EXACT_MOTION, RCOND, SAME_DIRECTION
-from kinform.kinematics.joints.pair.canonical_basis import directions as canonical_directions
+from kinform.kinematics.screws.canonical_basis import directions as canonical_directions
 from kinform.model.arrays import Array
 
 EXACT_WRENCH = 1e-6

@@ -11,8 +11,8 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, twist_at_origin
 from kinform.foundation.algebra.vectors import canonical, cross, norm
+from kinform.foundation.rounding import SOLVED
 from kinform.kinematics.constants import EXACT_MOTION, SAME_DIRECTION
-from kinform.kinematics.joints.pair.constants import PURE_SLIDE
 from kinform.model.arrays import Array
 
 NO_COMPONENT = 1e-13
@@ -26,7 +26,7 @@ def canonical_twists(basis: Array, frame: Frame) -> Array:
         return np.zeros((0, 6))
     _, values, right = np.linalg.svd(basis[:3], full_matrices=True)
     turning = int(np.count_nonzero(values > EXACT_MOTION))
-    if np.any(values[turning:] > PURE_SLIDE):
+    if np.any(values[turning:] > SOLVED):
         return twist_at_origin(basis, frame).T
     mixed = basis @ right.T
     turns, slides = mixed[:, :turning], directions(mixed[3:, turning:])

@@ -22,7 +22,7 @@ from kinform.kinematics.partition.proposals import Proposal, propose
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.function import IntendedJoint
-from kinform.model.kinematics import Body, LeftOut
+from kinform.model.kinematics import Body, UndeclaredJoint
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces
 
@@ -30,9 +30,9 @@ ALONG_STATED = np.cos(SAME_AXIS)
 """Cosine of the angle between such an axis and that of a joint that is stated from which they are one."""
 
 
-def left_out(
+def undeclared_joints(
     assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: Contacts, bodies: Sequence[Body]
-) -> tuple[LeftOut, ...]:
+) -> tuple[UndeclaredJoint, ...]:
     """The joints that contact proposes inside the bodies, which follow from the function; the largest smaller side
     first."""
     body_of = {part: body for body in bodies for part in body.parts}
@@ -51,7 +51,7 @@ def left_out(
         stated = (j for j in moving if body in {body_of[assembly.parts_of(name)[0]] for name in j.between})
         if not any(_same(one, joint, near) for joint in stated):
             sides = tuple(tuple(sorted(side)) for side in one.sides)
-            out.append(LeftOut(body.name, one.type, one.axis, one.point, sides[0], sides[1], one.words))
+            out.append(UndeclaredJoint(body.name, one.type, one.axis, one.point, sides[0], sides[1], one.words))
     return tuple(out)
 
 
