@@ -13,7 +13,7 @@ from kinform.kinematics.joints.axes.higher_pairs import align_higher_pairs
 from kinform.kinematics.joints.axes.misfit import misfit_of, moves_between
 from kinform.kinematics.joints.axes.proportions import fit_proportions
 from kinform.kinematics.joints.axes.snapping import snap_axes
-from kinform.kinematics.joints.bodies.classification import Pairs, decide_beside
+from kinform.kinematics.joints.bodies.classification import Pairs, decide_ignored
 from kinform.kinematics.joints.bodies.complete_function import complete_joints, rests
 from kinform.kinematics.joints.bodies.fasteners import label_inferred, turn_about_suggested_axes
 from kinform.kinematics.joints.bodies.fusing import Fused, fuse_as_given, fuse_by_contact
@@ -117,7 +117,7 @@ def _decide_joints(
     if not complete_joints(assembly):
         return _DecidedJoints(tuple(joints), answers)
     by_contact = JointGraph(bodies, tuple(joints)).close(pairs.size).mobility
-    beside = decide_beside(pairs, fused.merger)
+    beside = decide_ignored(pairs, fused.merger)
     taken = joints_in_force(assembly, fused.merger, joints, beside, pairs.patches, whole=whole)
     kept = {joint.name for joint in taken.joints if joint.status != "stated"}
     answers = {name: answer for name, answer in answers.items() if name in kept}

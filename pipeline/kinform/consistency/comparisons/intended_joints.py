@@ -14,7 +14,7 @@ from kinform.consistency.questions.through_intermediates import IntermediateMoti
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.words import counted, quoted
 from kinform.kinematics.joints.bodies.joints_in_force import leaves_free, may_end
-from kinform.kinematics.partition.split_prices import joint_twists
+from kinform.kinematics.joints.bodies.stated_joints import joint_twists
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch

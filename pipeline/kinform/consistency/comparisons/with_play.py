@@ -8,7 +8,7 @@ from kinform.consistency.comparisons.comparison import Comparison, leaves_more
 from kinform.consistency.comparisons.known import Known
 from kinform.consistency.questions.captive_parts import CaptivePart, may_carry, may_hold
 from kinform.foundation.algebra.screws import Frame, scaled, span
-from kinform.kinematics.partition.split_prices import joint_twists
+from kinform.kinematics.joints.bodies.stated_joints import joint_twists
 from kinform.model.arrays import Array
 
 

@@ -1,17 +1,16 @@
-"""Parts with play between two others, that are in no contact with one of these or with either: rolling elements, above
-all.
+"""Captive parts with clearance: parts between two others that touch only one of them or neither, above all rolling
+elements.
 
-Faces that fit each other touch within the contact tolerance, points and lines within a small share of it: a ball above
-a table is clearly in no contact. A ball between two races with play on either side is in none either, by that count;
-but it can go nowhere, and the play that is drawn is less than what parts that fit have. So what is carried by such a
-part is not known, and neither is that it is not.
+Faces that fit touch within the contact tolerance, points and lines within a small share of it: a ball above a table has
+no contact. Nor has a ball between two races with clearance on either side, by that count; but it cannot leave, and its
+clearance is less than that of parts that fit. Whether such a part carries a load is not known.
 
-A part is between two sides where facets of it face facets of either, on opposite sides of it, no farther off than the
+A part is captive between two sides where facets of it face facets of either, on opposite sides of it, within the
 contact tolerance of the pair, and it or the other part is round there. Flat faces that fit are in contact, and edges
-and corners that come near are not meant to carry: a loose plate that hovers askew is told to be loose. What a part
-touches may keep it from going towards the other side, or hold it in a bore, as a pin: then it belongs to that, and
-comes near the other from one side only, as the ball above the table. Parts of one group are one; pairs that an
-assumption keeps apart are no candidates.
+and corners that come near are not meant to carry: a loose plate that hovers askew is reported as loose. What a part
+touches may keep it from the other side, or hold it in a bore as a pin: then it belongs to that, and is near the other
+from one side only, as the ball above the table. Parts of one group are one; pairs that an assumption keeps apart are no
+candidates.
 """
 
 from __future__ import annotations
@@ -47,9 +46,9 @@ CAPTIVE_REACH = 1.02
 """Times the contact tolerance that such a part may keep from its sides, as for faces that fit: clearances of exactly
 that are common, and rounding must not decide."""
 CAPTIVE_BENDS = math.radians(1.0)
-"""rad: facets that differ by more bend."""
+"""rad: a face whose facets differ by more is round there; less is rounding of flat ones. Chosen, not measured."""
 CAPTIVE_DIGITS = 2
-"""Of the coordinates of directions that are told apart, for the next."""
+"""Decimals of the coordinates of directions that are distinct: half a degree."""
 CAPTIVE_OPPOSED = -0.5
 """Greatest cosine between the directions in which a part has its two sides for it to be between them. A wedge wider
 than 60° pushes out what is in it; tapered rollers have 4° to 30°."""
@@ -60,7 +59,8 @@ CAPTIVE_OPPOSES = 0.35
 """Speed, of that of a unit motion of two bodies, at which a part between them is pressed and may hold it: 21°, by which
 the facets of a roller that face its race may lean, while the race slides past."""
 CAPTIVE_BORE = -0.5
-"""Least cosine of the normals of one round contact down to which it does not go round a part: 120°."""
+"""Least cosine of the normals of one round contact down to which it does not go round a part: 120°, as half a bore and
+less lets the part out. Chosen, not measured."""
 
 
 _BORES = ("cylinder", "cone", "helicoid")

@@ -1,11 +1,11 @@
-"""What two bodies may do relative to each other when loose parts between them take part.
+"""The relative motion of two bodies when loose parts between them take part.
 
-A pin, a bearing or a screw that the function does not name carries a joint between two bodies that
-it does name. The relative motion is then decided by all of them: the closure of the two bodies, their
-direct contact and the bodies that connect them, everything else left out.
+A pin, a bearing or a screw that the function does not name carries a joint between two bodies that it does name. The
+relative motion then follows from all of them: the closure of the two bodies, their direct contact and the bodies that
+connect them, everything else left out.
 
-Rolling elements touch by points and lines, whose normals turn as they move, so that what the closure leaves is known
-for this instant alone. `rolling` says which of it is there over a distance, and where it is in doubt.
+Rolling elements touch by points and lines, whose normals turn as they move, so that the closure is valid at this
+instant only. `rolling_elements` says which of the motion is there over a distance, and where it is in doubt.
 """
 
 from __future__ import annotations

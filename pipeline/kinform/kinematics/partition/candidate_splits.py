@@ -18,19 +18,21 @@ from kinform.foundation.graphs.graph import UnionFind
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.bodies.extents import Extents, part_volumes
 from kinform.kinematics.joints.bodies.merging import Merger
-from kinform.kinematics.partition.constants import PARTED
+from kinform.kinematics.joints.bodies.stated_joints import joint_twists
+from kinform.kinematics.partition.constants import COAXIAL_OFF, PARTED
 from kinform.kinematics.partition.contact import PartPair, contact_of_pairs
 from kinform.kinematics.partition.graph import graph_of, stated_merger
 from kinform.kinematics.partition.labelling import Labels, label_all
 from kinform.kinematics.partition.sides import substantial
-from kinform.kinematics.partition.split_prices import Prices, hints_of, joint_twists, prices
+from kinform.kinematics.partition.split_prices import Prices, hints_of, prices
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.function import IntendedJoint
 from kinform.model.names import PartName
 
 SUBSTANTIAL = 0.002
-"""Share of the assembly's volume that either side of a joint has at least where it does not name its sides."""
+"""Share of the assembly's volume that either side of a joint has at least where it does not name its sides. Twice
+that of proposals (`sides.PROPOSED_SHARE`). Chosen, not measured."""
 ALIKE = 0.3
 """Share of the smallest side by which two splits may differ and count as one: a ring, a horn, screws. Chosen, not
 measured."""
@@ -38,9 +40,6 @@ ONLY_SPLIT = 1000.0
 """Price by which every other split must cost more than the one that is accepted: that of a pocket. Beyond it something
 would be separated that is fastened. Holes round a journal (400) are no such, as the horns of servos have them: at 340
 and 400 wrong splits were cheaper on a public robot, where batteries lie on the axis."""
-ROUND_OFF = 0.1
-"""A part goes round an axis where the middle of its surface lies beside it by less than this share of its spread, and
-its spread differs by less than this share from one direction to another."""
 
 
 Names = tuple[PartName, PartName]
@@ -267,8 +266,8 @@ class Splits:
         middle = areas @ across / areas.sum()
         spread = np.linalg.eigvalsh((across - middle).T @ ((across - middle) * areas[:, None]) / areas.sum())
         off = norm(middle)
-        even = float(spread[0]) > (1.0 - ROUND_OFF) * float(spread[1])
-        return even and off < ROUND_OFF * float(spread[1]) ** 0.5
+        even = float(spread[0]) > (1.0 - COAXIAL_OFF) * float(spread[1])
+        return even and off < COAXIAL_OFF * float(spread[1]) ** 0.5
 
     def _size(self, names: frozenset[PartName]) -> float:
         return sum(self.volume.get(name, 0.0) for name in sorted(names))

@@ -1,11 +1,11 @@
 """Names that stand for one body: joints may name different parts of it.
 
-Two joints that share no named part leave it open whether they share a body. So contact is followed from what no joint
-may part down to what is dearer than a journal, as in Kruskal's spanning tree, and named parts that it joins are one
-body; what is left, a bearing's ring that was named, goes where the least is parted (`merge_by_cost`). Names that
-joints hang together already, directly or by way of others, close a loop if they are one: only where every joint can
-then still move (`loops`). Where names alone connect all joints, legs that cross may just be drawn touching: there a
-joint must also lack what goes round its axis unless they are one.
+Two joints that share no named part leave open whether they share a body. Contact is followed from what no joint may
+separate down to what costs more than a journal, as in Kruskal's spanning tree, and named parts that it joins are one
+body. What is left, such as a named bearing ring, goes where the least is separated (`merge_by_cost`). Names that joints
+connect already, directly or through others, close a loop if they are one body; they are merged only where every joint
+can still move then (`loops`). Where names alone connect all joints, legs that cross may just be drawn touching: there a
+joint must also lack contact about its axis unless they are merged.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from kinform.kinematics.partition.loops import Loops
 from kinform.kinematics.partition.merge_search import MergeSearch
 
 Hold = tuple[float, tuple[int, int]]
-"""What parting two nodes that touch costs at least, by whichever joint."""
+"""The least price of separating two nodes that touch, by any joint, and the nodes."""
 
 
 def merge_labels(

@@ -1,8 +1,7 @@
-"""The search for the labels that are one body: those joined and moved that leave the least to be parted.
+"""Search for the labels to merge: the merges and moves that leave the least cost of separated contact.
 
-Of all that may be joined the best is taken again and again; where few sets of joints are left that hang together, all
-ways that may follow are looked at. What ways cost is asked region by region (`cuts`), and asked again only where what
-was joined since concerns it.
+The best merge is taken again and again; where few sets of connected joints are left, all sequences of merges are tried.
+Costs are computed region by region (`cuts`), and again only where a later merge concerns them.
 """
 
 from __future__ import annotations
@@ -21,15 +20,17 @@ from kinform.kinematics.partition.loops import Loops
 from kinform.model.arrays import Array
 
 MOVES_TRIED = 6
-"""Of the bodies that a name may be moved to, so many are tried: those that contact joins most firmly."""
+"""Of the bodies that a name may be moved to, so many are tried: those that contact joins most firmly. Chosen, not
+measured."""
 MOST_CUTS = 600
-"""So many ways of joining names are cut at most; then the best so far is taken."""
+"""So many ways of joining names are cut at most; then the best so far is taken. Chosen, not measured."""
 LOOK_AHEAD = 4
-"""Up to so many sets of joints that hang together all ways of joining their names are looked at."""
+"""Up to so many sets of joints that hang together all ways of joining their names are looked at. Chosen, not
+measured."""
 
 
 class MergeSearch:
-    """Which labels to join, by what is left to be parted."""
+    """Which labels to merge, by the cost of what is separated then."""
 
     def __init__(
         self, seeds: Mapping[int, int], edges: Sequence[Edge], joints: Sequence[Labels], loops: Loops | None

@@ -27,7 +27,7 @@ from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import forest
 from kinform.foundation.words import counted, length, number, quoted
 from kinform.kinematics.partition.candidate_splits import ONLY_SPLIT, Names, Split, Splits
-from kinform.kinematics.partition.constants import BROKEN, COAXIAL
+from kinform.kinematics.partition.constants import BROKEN, SAME_AXIS
 from kinform.kinematics.partition.contact import ROUND
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
@@ -191,7 +191,7 @@ def _nearest(splits: Splits, joint: IntendedJoint) -> str:
         if joint.axis is None:
             if patch.kind != "sphere":
                 continue
-        elif patch.kind == "sphere" or abs(float(patch.axis @ joint.axis)) < np.cos(COAXIAL):
+        elif patch.kind == "sphere" or abs(float(patch.axis @ joint.axis)) < np.cos(SAME_AXIS):
             continue
         else:
             arm = arm - (arm @ joint.axis) * joint.axis

@@ -1,8 +1,8 @@
-"""What it costs to part two parts that touch along the motion of a joint.
+"""The price of separating two parts that touch along the motion of a joint.
 
-A joint's motions are a few twists. Two parts may be parted by it where next to none of the area between them opposes
-any of them. How readily: a journal or a collar that goes round the joint's axis is what joints are made of; an annular
-face without a journal may be a flange; a flat beside the axis that a turn leaves free is chance.
+A joint's motions are a few twists. It may separate two parts where nearly none of the area between them opposes any of
+them. The price is low for a journal or a collar about the joint's axis, which joints are made of; higher for an annular
+face without a journal, which may be a flange; and high for a flat beside the axis, which a turn frees by chance.
 """
 
 from __future__ import annotations
@@ -10,55 +10,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import field, replace
 
-import numpy as np
-
-from kinform.foundation.algebra.vectors import cross, norm, perpendicular
 from kinform.frozen import dataclass
 from kinform.kinematics.partition.constants import BROKEN, FASTENED
-from kinform.kinematics.partition.contact import JOURNAL, LOOSE_JOURNAL, Asked, PartPair, contact_of_pairs
+from kinform.kinematics.partition.contact import FLAT_BESIDE, JOURNAL, LOOSE_JOURNAL, Asked, PartPair, contact_of_pairs
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch, Suggestion
 from kinform.model.function import IntendedJoint
 from kinform.model.names import PartName
-
-GRAZED = 300.0
-"""The same of one at points or along lines: it holds no more than a flat beside the axis does. With 100 as many joints
-of rings of bodies are found without any name as with 20000, but one that is asked."""
-
-
-def joint_twists(joint: IntendedJoint) -> Array | None:
-    """(k, 6) motions of an intended joint (ω; v at the world's origin); None where it does not say where they are."""
-    z = np.zeros(3)
-    point = joint.point
-    if joint.type == "fixed":
-        return np.zeros((0, 6))
-    if joint.type == "spherical":
-        return None if point is None else np.array([_turn(direction, point) for direction in np.eye(3)])
-    if joint.axis is None:
-        return None
-    axis = joint.axis / norm(joint.axis)
-    slide = np.concatenate([z, axis])
-    if joint.type == "prismatic":
-        return slide[None]
-    if joint.type == "planar":
-        u, v = perpendicular(axis)
-        place = z if point is None else point
-        return np.array([_turn(axis, place), np.concatenate([z, u]), np.concatenate([z, v])])
-    if point is None:
-        return None
-    if joint.type == "revolute":
-        return _turn(axis, point)[None]
-    if joint.type == "cylindrical":
-        return np.array([_turn(axis, point), slide])
-    if joint.type == "screw" and joint.pitch is not None:
-        return (_turn(axis, point) + joint.pitch / (2.0 * np.pi) * slide)[None]
-    if joint.type == "universal" and joint.axis2 is not None:
-        return np.array([_turn(axis, point), _turn(joint.axis2 / norm(joint.axis2), point)])
-    return None
-
-
-def _turn(axis: Array, point: Array) -> Array:
-    return np.concatenate([axis, cross(point, axis)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +77,7 @@ def prices(
     for pair, contact in contact_of_pairs(patches).items():
         hint = hints.get(pair, 0.0)
         by_joint[pair] = {number: cost + hint for number, cost in contact.costs(asked).items()}
-        held[pair] = (GRAZED if contact.slight else BROKEN) + hint
+        held[pair] = (FLAT_BESIDE if contact.slight else BROKEN) + hint
         slight |= {pair} if contact.slight else set()
     return Prices(by_joint, held, hints, frozenset(slight))
 

@@ -1,10 +1,9 @@
-"""Joints that a function which states all of them leaves out: contact that alone would part a body.
+"""Joints that a function which states all of them leaves out: contact that alone would separate a body.
 
-Where the function states all joints, contact that none of them moves holds, and so does what it states as fixed. That
-also holds a joint that was forgotten, or stated as fixed by mistake. So the contact inside each body is asked for
-joints as where no function is (`proposals`): what the designer joins by groups or assumptions stays one, and what
-lies on the axis of a joint that is stated is the question which side it goes with, which is said elsewhere
-(`Placed.unclear`).
+Where the function states all joints, contact that none of them moves is rigid, and so is what it states as fixed. That
+also locks a joint that was forgotten, or stated as fixed by mistake. So the contact inside each body is searched for
+joints as if there were no function (`proposals`). Parts of one group or assumption stay one. Contact on the axis of a
+stated joint is another question, which side it belongs to, and is reported elsewhere (`Placed.unclear`).
 """
 
 from __future__ import annotations
@@ -25,9 +24,6 @@ from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Body, UndeclaredJoint
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces
-
-ALONG_STATED = np.cos(SAME_AXIS)
-"""Cosine of the angle between such an axis and that of a joint that is stated from which they are one."""
 
 
 def undeclared_joints(
@@ -60,7 +56,7 @@ def _same(one: Proposal, joint: IntendedJoint, near: float) -> bool:
     which has no place, along it."""
     if one.axis is None or joint.axis is None:
         return joint.point is None or _off(one, joint) <= near
-    if abs(float(one.axis @ joint.axis)) < ALONG_STATED * norm(joint.axis):
+    if abs(float(one.axis @ joint.axis)) < np.cos(SAME_AXIS) * norm(joint.axis):
         return False
     return joint.point is None or _off(one, joint) <= near
 

@@ -1,4 +1,4 @@
-"""What questions are asked about: an assembly, and as much of its kinematics as has been derived."""
+"""What the queries take: an assembly, and as much of its contacts and kinematics as has been derived."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from kinform.model.kinematics import Kinematics
 
 
 class DesignView(Protocol):
-    """A design, as far as questions look at it; None: not computed yet."""
+    """The fields of a design that queries read; None: not computed yet."""
 
     @property
     def assembly(self) -> Assembly: ...

@@ -1,5 +1,7 @@
-"""Bodies that no joint connects with ground, though parts of them overlap with the rest: they count as free, and what
-is drawn there may hold them."""
+"""Bodies that no joint connects with ground although they interpenetrate others.
+
+They count as free, but what interpenetrates may hold them: the mobility is doubtful.
+"""
 
 from __future__ import annotations
 
@@ -46,7 +48,7 @@ def disconnected_bodies(kinematics: Kinematics, contacts: Contacts) -> tuple[Dis
 
 
 def disconnected_in_words(found: Sequence[Disconnected]) -> str:
-    """What is not known of them, as a sentence without its end; of several, of the one whose overlap is deepest."""
+    """The doubt about them, as a sentence without its full stop; of several, about the one with the deepest overlap."""
     worst = max(found, key=lambda one: one.overlap.depth)
     more = f" (and {len(found) - 1} more such)" if len(found) > 1 else ""
     return (

@@ -7,6 +7,7 @@ the candidate motions say: a motion becomes free once every patch that it would 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Literal
 
 import numpy as np
 
@@ -21,12 +22,15 @@ from kinform.kinematics.joints.pair.preserved import preserved_motions
 from kinform.kinematics.queries.design_view import DesignView
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
-from kinform.model.kinematics import Joint, body_of_part
+from kinform.model.kinematics import Joint, JointStatus, JointType, body_of_part
 
 MOST_PATCHES = 40
-"""Joints with more patches are not decided again without each."""
+"""Joints with more patches are not decided again without each. Chosen, not measured."""
 MOST_PATCH_SETS = 24
-"""Sets of several patches that are tried, the smallest area first."""
+"""Sets of several patches that are tried, the smallest area first. Chosen, not measured."""
+
+
+PatchUse = Literal["carries", "blocks", "ignored"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,8 +40,8 @@ class PatchRole:
     index: int
     """Into Contacts.patches."""
     patch: Patch
-    role: str
-    """carries, blocks, or ignored (a stray touch, or not what decides a joint that somebody stated)."""
+    role: PatchUse
+    """ignored: a stray touch, or not what decides a joint that somebody stated."""
     share: float
     """Of the area that decides, with wide gaps counting less; 0 where ignored."""
     rows: int
@@ -52,9 +56,9 @@ class Alternative:
     """Indices into Contacts.patches."""
     frees: str
     """The motion that these patches forbid, in words; empty for one tried by itself."""
-    type: str
+    type: JointType
     freedoms: int
-    status: str
+    status: JointStatus
     axis: Array | None
 
 
@@ -140,7 +144,7 @@ def _roles(design: DesignView, joint: Joint, evidence: Evidence | None) -> tuple
     shares = {item.index: item.area / total for item in evidence.items} if evidence is not None else {}
     out = []
     for k, patch, _ in patches_between(design, *joint.bodies):
-        role = "blocks" if k in blocking else "carries" if k in joint.patches else "ignored"
+        role: PatchUse = "blocks" if k in blocking else "carries" if k in joint.patches else "ignored"
         out.append(PatchRole(k, patch, role, shares.get(k, 0.0), int(rows[k]) if k < len(rows) else 0))
     return tuple(out)
 

@@ -9,9 +9,9 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, rows, scaled, span
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.meant import did_you_mean
+from kinform.foundation.rounding import ARITHMETIC, SOLVED
 from kinform.foundation.words import counted
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import AT_REST
 from kinform.kinematics.mobility.named_freedoms import Motions
 from kinform.kinematics.queries.design_view import DesignView
 from kinform.kinematics.queries.disconnected import disconnected_bodies, disconnected_in_words
@@ -23,7 +23,7 @@ from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint, body_of_part
 
 BLOCKING_SPEED = 0.02
-"""Share of a patch's speed along its normals from which on it is named as blocking."""
+"""Share of a patch's speed along its normals from which on it is named as blocking. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,7 +161,7 @@ def _in_assembly(design: DesignView, first: str, second: str, twist: Array, fram
         node = {str(body.name): k for k, body in enumerate(design.kinematics.bodies)}
         relative = freedoms[:, node[second]] - freedoms[:, node[first]]
     size = np.linalg.norm(relative, axis=1) if len(relative) else np.zeros(0)
-    return _outside(twist, relative[size > AT_REST], frame)
+    return _outside(twist, relative[size > SOLVED], frame)
 
 
 def _blockers(patches: list[tuple[int, Patch]], twist: Array, frame: Frame) -> tuple[QueryBlocker, ...]:
@@ -170,7 +170,7 @@ def _blockers(patches: list[tuple[int, Patch]], twist: Array, frame: Frame) -> t
         speed = rows(patch.points, patch.normals, frame) @ twist
         arms = (patch.points - frame.centre) / frame.length
         motion = np.linalg.norm(twist[3:] + cross(twist[:3], arms), axis=1)
-        if np.sqrt((speed**2).mean()) > BLOCKING_SPEED * max(np.sqrt((motion**2).mean()), 1e-12):
+        if np.sqrt((speed**2).mean()) > BLOCKING_SPEED * max(np.sqrt((motion**2).mean()), ARITHMETIC):
             out.append(_blocker(k, patch))
     return tuple(sorted(out, key=lambda q: (-q.area, q.patch)))
 

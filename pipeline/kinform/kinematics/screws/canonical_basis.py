@@ -11,12 +11,9 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, twist_at_origin
 from kinform.foundation.algebra.vectors import canonical, cross, norm
-from kinform.foundation.rounding import SOLVED
-from kinform.kinematics.constants import EXACT_MOTION, SAME_DIRECTION
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED
+from kinform.kinematics.constants import SAME_DIRECTION
 from kinform.model.arrays import Array
-
-NO_COMPONENT = 1e-13
-"""Share of the size of a vector below which a component is rounding."""
 
 
 def canonical_twists(basis: Array, frame: Frame) -> Array:
@@ -25,7 +22,7 @@ def canonical_twists(basis: Array, frame: Frame) -> Array:
     if not basis.shape[1]:
         return np.zeros((0, 6))
     _, values, right = np.linalg.svd(basis[:3], full_matrices=True)
-    turning = int(np.count_nonzero(values > EXACT_MOTION))
+    turning = int(np.count_nonzero(values > SINGLE))
     if np.any(values[turning:] > SOLVED):
         return twist_at_origin(basis, frame).T
     mixed = basis @ right.T
@@ -57,4 +54,4 @@ def directions(space: Array) -> Array:
 
 def without_noise(numbers: Array, size: float) -> Array:
     """The numbers, with 0 in place of those that are the rounding of `size`."""
-    return np.where(np.abs(numbers) < NO_COMPONENT * size, 0.0, numbers)
+    return np.where(np.abs(numbers) < ARITHMETIC * size, 0.0, numbers)

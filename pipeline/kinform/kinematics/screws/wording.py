@@ -16,26 +16,22 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, span
 from kinform.foundation.algebra.vectors import canonical, cross, cross_matrix, norm, perpendicular
+from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.foundation.words import counted, listed
-from kinform.kinematics.constants import EXACT_MOTION, RCOND, SAME_DIRECTION
+from kinform.kinematics.constants import SAME_DIRECTION
 from kinform.kinematics.screws.canonical_basis import directions as canonical_directions
 from kinform.model.arrays import Array
 
-EXACT_WRENCH = 1e-6
-"""The same of wrenches, whose joints are snapped already."""
-NO_LEAD = 1e-6
-"""Advance a turn, over the length of the frame, that is none."""
+EXACT_WRENCH = SINGLE
+"""Of wrenches, whose joints are snapped: below this they are zero but for rounding."""
 NAMED_AXIS = 5e-4
-"""Directions this near (sine) to an axis of the world have its name: their components read 1, 0 and 0 then."""
-SHOWN_COMPONENT = 5e-4
-"""Components below this are shown as 0: they would not be seen in three digits beside 1."""
-SHOWN_COORDINATE = 1e-6
-"""The same of coordinates of a point, over the largest, and over the length of the frame."""
+"""Half of the third digit. Directions this near (sine) to an axis of the world have its name, and components below it
+are shown as 0."""
 
 
 def components(direction: Array) -> str:
     """ "(0, 0.6, 0.8)"."""
-    return _in_brackets(direction, SHOWN_COMPONENT, "{:.3g}")
+    return _in_brackets(direction, NAMED_AXIS, "{:.3g}")
 
 
 def _in_brackets(numbers: Array, least: float, form: str) -> str:
@@ -72,14 +68,14 @@ def _group(turns: Array, slides: Array) -> str:
     if kind in _NAMES:
         return _NAMES[kind]
     if kind == (1, 0):
-        return "revolute" if abs(_lead(turns[:, 0])) < EXACT_MOTION else "screw"
+        return "revolute" if abs(_lead(turns[:, 0])) < SINGLE else "screw"
     if kind[0] == 1:
         axis = turns[:3, 0] / norm(turns[:3, 0])
         along = norm(axis @ slides[3:])
-        if kind == (1, 1) and along > 1.0 - EXACT_MOTION:
+        if kind == (1, 1) and along > 1.0 - SINGLE:
             return "cylindrical"
-        if kind == (1, 2) and along < EXACT_MOTION:
-            return "planar" if abs(_lead(turns[:, 0])) < EXACT_MOTION else "planar screw"
+        if kind == (1, 2) and along < SINGLE:
+            return "planar" if abs(_lead(turns[:, 0])) < SINGLE else "planar screw"
         return ""
     centre = _centre(turns) if kind[0] > 1 and kind[1] == 0 else None
     return "spherical" if kind == (3, 0) and centre is not None else ""
@@ -113,10 +109,10 @@ def _split(basis: Array) -> tuple[Array, Array]:
     if not basis.shape[1]:
         return basis, basis
     if basis.shape[1] == 1:
-        count, mixed = int(norm(basis[:3]) > EXACT_MOTION), basis
+        count, mixed = int(norm(basis[:3]) > SINGLE), basis
     else:
         _, values, right = np.linalg.svd(basis[:3], full_matrices=True)
-        count = int(np.count_nonzero(values > EXACT_MOTION))
+        count = int(np.count_nonzero(values > SINGLE))
         mixed = basis @ right.T
     turns, slides = mixed[:, :count].copy(), mixed[:, count:].copy()
     if slides.shape[1]:
@@ -142,7 +138,7 @@ def _turning(turns: Array, slides: Array, frame: Frame) -> list[str]:
         # along a slide it may be anywhere
         place = frame.centre + frame.length * cross(twist[:3], twist[3:]) / (twist[:3] @ twist[:3])
         through = "" if slides.shape[1] > 1 else f" through {_point(place, frame)}"
-        if abs(lead) > NO_LEAD * frame.length and norm(slides[3:].T @ canonical(twist[:3])) < 1.0 - EXACT_MOTION:
+        if abs(lead) > SINGLE * frame.length and norm(slides[3:].T @ canonical(twist[:3])) < 1.0 - SINGLE:
             return [f"screws about {_axis_components(twist[:3])}{through}, {1e3 * lead:.4g} mm a turn"]
         return [f"turns about {_axis_components(twist[:3])}{through}"]
     centre = _centre(turns) if not slides.shape[1] else None
@@ -158,7 +154,7 @@ def _centre(turns: Array) -> Array | None:
     """The point, in lengths from the centre of the frame, that rests under all turns; None where there is none."""
     matrix, right = cross_matrix(turns[:3].T).reshape(-1, 3), -turns[3:].T.ravel()
     centre, *_ = np.linalg.lstsq(matrix, right, rcond=None)
-    return None if float(np.abs(matrix @ centre - right).max()) > 10.0 * EXACT_MOTION else np.asarray(centre)
+    return None if float(np.abs(matrix @ centre - right).max()) > 10.0 * SINGLE else np.asarray(centre)
 
 
 def _tidy(directions: Array) -> Array:
@@ -171,7 +167,7 @@ def _tidy(directions: Array) -> Array:
 
 def _point(place: Array, frame: Frame) -> str:
     size = max(*(abs(x) for x in place.tolist()), frame.length)
-    return _in_brackets(1e3 * place, SHOWN_COORDINATE * 1e3 * size, "{:.4g}") + " mm"
+    return _in_brackets(1e3 * place, SINGLE * 1e3 * size, "{:.4g}") + " mm"
 
 
 def _axis_components(direction: Array) -> str:
@@ -195,14 +191,14 @@ def locked_wrenches(wrenches: Array, near: float = NAMED_AXIS) -> list[Locked]:
     """
     basis = span(wrenches.T)
     left, values, right = np.linalg.svd(basis[3:], full_matrices=True)
-    rank = int(np.count_nonzero(values > EXACT_WRENCH))
+    rank = int(np.count_nonzero(values > SINGLE))
     moments = basis[:3] @ right[rank:].T
     moments = span(moments) if moments.shape[1] else moments
     out: list[Locked] = []
     for direction in _directions(left[:, :rank]):
-        wrench = basis @ np.linalg.lstsq(basis[3:], direction, rcond=RCOND)[0]
+        wrench = basis @ np.linalg.lstsq(basis[3:], direction, rcond=SOLVED)[0]
         wrench[:3] -= moments @ (moments.T @ wrench[:3])
-        twisted = abs(float(wrench[:3] @ direction)) > 10.0 * EXACT_WRENCH
+        twisted = abs(float(wrench[:3] @ direction)) > 10.0 * SINGLE
         out.append(
             (f"force along {axis_word(direction, near)}" + (" with a moment about it" if twisted else ""), wrench)
         )
@@ -221,7 +217,7 @@ def _directions(space: Array) -> list[Array]:
     if count == 1:
         return [canonical(space[:, 0])]
     normal = canonical(cross(space[:, 0], space[:, 1]))
-    inside = [e for e in np.eye(3) if abs(float(e @ normal)) < EXACT_WRENCH]
+    inside = [e for e in np.eye(3) if abs(float(e @ normal)) < SINGLE]
     if len(inside) == 2:
         return inside
     if len(inside) == 1:

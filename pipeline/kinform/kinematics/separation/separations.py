@@ -25,7 +25,7 @@ from kinform.foundation.in_step import in_step
 from kinform.frozen import dataclass
 from kinform.kinematics.constants import MOST_IN_STEP
 from kinform.kinematics.separation.cone import nothing_opens_in_each, rows_beside, split_directions, unit_rows
-from kinform.kinematics.separation.constants import CONE_HELD
+from kinform.kinematics.separation.constants import CONE_HELD, HIGHS_FEASIBLE
 from kinform.kinematics.separation.contact_rows import Cone, ContactRows, is_stated
 from kinform.kinematics.separation.lifting import LARGEST_TWIST, lifts_apart
 from kinform.kinematics.separation.releases import certainly_held, leaving_of_each, release_of
@@ -43,11 +43,8 @@ MOST_CERTIFIED = 120
 millisecond, where importing and calling a linear program takes hundreds."""
 MOST_OPENING_ROWS = 12_000
 """Rows of one block's program beyond which it would take minutes: 400 bricks in a wall, 5,000 rows, take 3 s."""
-ROUNDED_ROW = 1e-7
-"""Entries of unit rows below this are rounding to HiGHS, which with them may not end: a hand of 146 parts did not in
-ten minutes."""
 MOST_TOGETHER = 8
-"""Bodies up to which those are told that leave together."""
+"""Bodies up to which those are told that leave together. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,7 +219,7 @@ def _stack(items: list[tuple[Array, int, int, int]], columns: int) -> csr_matrix
         numbers = np.arange(count, count + len(rows))
         for sign, column in ((-1.0, a), (1.0, b)):
             if column >= 0:
-                data.append(np.where(np.abs(rows) > ROUNDED_ROW, sign * rows, 0.0).ravel())
+                data.append(np.where(np.abs(rows) > HIGHS_FEASIBLE, sign * rows, 0.0).ravel())
                 i.append(np.repeat(numbers, 6))
                 j.append(np.tile(np.arange(column, column + 6), len(rows)))
         if slack >= 0:

@@ -82,7 +82,7 @@ def decide_all(pairs: Pairs, merger: Merger, *, fusing: bool = True) -> dict[Pai
             return out
 
 
-def decide_beside(pairs: Pairs, merger: Merger) -> list[Joint]:
+def decide_ignored(pairs: Pairs, merger: Merger) -> list[Joint]:
     """What contact would hold between bodies that a function which states all joints moves by others, sorted by their
     bodies: it constrains nothing."""
     decided = _decided(pairs, merger, _touching(pairs, merger, beside=True), {})

@@ -5,8 +5,8 @@ says that it is complete
 - a stated fixed joint makes its two sides one body;
 - contact between bodies that stated joints move relative to each other, and that no stated joint joins, constrains
   nothing: crossing legs, link 0 on link 2 (it is reported: KF406, KF407);
-- a stated joint that contact does not hold, or that has no contact, is taken as stated (`as_stated`); what contact
-  certainly forbids stays as contact has it.
+- a stated joint that contact does not hold, or that has no contact, is taken as stated (`joints_in_force`); what
+  contact certainly forbids stays as contact has it.
 
 It covers the parts of its own file. Where the top manifest is complete, all bodies follow from the joints
 (`kinematics/partition`); else parts that no stated joint reaches are decided by contact as ever.

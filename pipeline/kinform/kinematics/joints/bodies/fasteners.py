@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.graphs.graph import UnionFind
+from kinform.kinematics.constants import SAME_DIRECTION
 from kinform.kinematics.joints.bodies.kept_apart import contradicted, kept_apart
 from kinform.kinematics.joints.bodies.merging import Merger
 from kinform.kinematics.joints.pair.joint import stated_joint
@@ -16,10 +17,6 @@ from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Suggestion
 from kinform.model.kinematics import Body, Joint, body_of_part
 from kinform.model.names import BodyName, PartName
-
-SUGGESTED_AXIS = 1e-3
-"""rad by which a suggested axis may differ from the normal of a planar joint."""
-
 
 INFERRED = "inferred: "
 """How the reason begins for which a suggestion made parts one body."""
@@ -103,7 +100,7 @@ def _revolute(joint: Joint, hints: list[Suggestion]) -> Joint:
     if joint.type != "planar" or joint.status != "determined" or joint.axis is None or len(hints) != 1:
         return joint
     hint = hints[0]
-    if abs(float(hint.axis @ joint.axis)) < np.cos(SUGGESTED_AXIS):
+    if abs(float(hint.axis @ joint.axis)) < np.cos(SAME_DIRECTION):
         return joint
     reason = f"planar by contact; {hint.evidence} suggest the axis, with {hint.confidence} confidence"
     revolute = stated_joint(joint.bodies, JointForm("revolute", joint.axis, hint.point), hint.kind, reason)

@@ -1,8 +1,8 @@
-"""Contact that constrains nothing, of bodies that a function which states all joints moves by others.
+"""Contact that constrains nothing: the function states all joints, and moves the two bodies by others.
 
-A leg crosses a leg, the first link lies on the third, a duct on one link goes round another. What the stated joints let
-move there may go along the contact, or against it. Joints that lie where the motion is, as those of a third bar on the
-pin of two, say the same thing twice and are not worth a word. Flat and irregular contact rubs, wherever it goes.
+A leg crosses a leg, the first link lies on the third, a duct on one link goes round another. The stated joints may move
+the bodies along that contact or against it. Joints that coincide with the motion, as those of a third bar on the pin of
+two, are repetitions and are not reported. Flat and irregular contact is reported in any case, as it rubs.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from kinform.model.kinematics import Body, IgnoredContact, Joint, Mobility
 def ignored_contacts(
     beside: Sequence[Joint], patches: Sequence[Patch], bodies: Sequence[Body], mobility: Mobility
 ) -> tuple[IgnoredContact, ...]:
-    """What is worth telling of the joints `beside` that contact would give, sorted by their bodies.
+    """The ignored contacts to report, of the joints `beside` that contact would give; sorted by their bodies.
 
     `mobility` is that of the bodies under the joints in force. Where it has too many freedoms to keep them, no contact
     is known to lie where the motion is.

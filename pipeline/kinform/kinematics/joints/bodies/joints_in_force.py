@@ -1,13 +1,18 @@
-"""`[function] complete = true`: joints as the function states them, where contact leaves them free.
+"""`[function] complete = true`: whether contact or the function decides each joint.
 
 The pins and bearings of most assemblies are in no mesh: parts end at a flush plane, or with a gap. Where the function
-states all joints, one that contact leaves free, with more beside, is taken as stated (`stated`), and so is one whose
-bodies do not touch; what contact says stays beside it as a reading. One that points and lines hold, as the balls of a
-bearing do, is inferred. One that contact determines as it is stated stays as it was derived, and so does one that
-contact certainly forbids, in both senses: the function never overrides what holds, and a face that the motion only
-leaves (a lid that is drawn closed, a cylinder drawn in) holds nothing. Where contact is ambiguous or blocked the joint
-is taken as stated, too, and the doubt is kept. Contact between bodies that stated joints move relative to each other,
-without one of their own, constrains nothing and is set aside.
+states all joints:
+
+- A joint that contact determines as stated is kept as derived.
+- One that contact leaves free, with more freedoms beside, is taken as stated (`stated`), and so is one whose bodies do
+  not touch; what contact says is kept as a reading.
+- One that points and lines hold, as the balls of a bearing do, is `inferred`.
+- One that contact certainly forbids, in both senses, is kept as derived: the function never overrides contact. A face
+  that the motion only leaves (a closed lid, a retracted cylinder) forbids nothing.
+- Where contact is ambiguous or blocked the joint is taken as stated, and the doubt is kept.
+
+Contact between bodies that stated joints move relative to each other, without a joint of their own, constrains nothing
+(`ignored_contacts`).
 """
 
 from __future__ import annotations
@@ -18,9 +23,10 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, norm
+from kinform.foundation.rounding import SINGLE
 from kinform.foundation.words import counted
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import EXACT_MOTION
+from kinform.kinematics.constants import INTENDED_AXIS
 from kinform.kinematics.joints.bodies.complete_function import complete_joints, without_effect
 from kinform.kinematics.joints.bodies.merging import Merger
 from kinform.kinematics.joints.bodies.stated_joints import Pair, joint_form, pair_between
@@ -33,12 +39,9 @@ from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint, ReadingCause, body_of_part
 from kinform.model.names import PartName
 
-ADMITTED = 0.02
-"""Share of an intended motion that the freedoms of a contact may miss and still admit it: a degree, or a fiftieth of
-the contact's size; axes are compared more finely where the types agree (KF403, KF404)."""
 POINT_REACH = 1e-3
 """Of its distance from a stated joint, a contact at a point has at least this size: what blocks a turn there must not
-seem small beside what a metre would."""
+seem small beside what a metre would. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +96,7 @@ def joints_in_force(
     return JointsInForce(tuple(out), tuple(joint for joint in aside if not _unknown(joint, patches)))
 
 
-def leaves_free(twists: Array, motions: Array, place: Array, length: float, missing: float = ADMITTED) -> bool:
+def leaves_free(twists: Array, motions: Array, place: Array, length: float, missing: float = INTENDED_AXIS) -> bool:
     """Whether a joint that allows `twists` (n, 6) lets a body do all of these motions (k, 6), but for a share `missing`
     of each; twists as (ω; v at the world's origin).
 
@@ -125,7 +128,7 @@ def opens(patches: Sequence[Patch], motions: Array, first: Collection[PartName])
         speeds = motions[:, None, 3:] + cross(motions[:, None, :3], patch.points[None])
         across = side * np.einsum("kni,ni->nk", speeds, patch.normals)
         pace = np.linalg.norm(speeds, axis=2).max(axis=1, initial=0.0)
-        rows.append(across[np.any(np.abs(across) > ADMITTED * pace, axis=1)])
+        rows.append(across[np.any(np.abs(across) > INTENDED_AXIS * pace, axis=1)])
     found = np.concatenate(rows)
     return len(found) == 0 or len(set(np.sign(found @ found[0]))) == 1
 
@@ -200,7 +203,7 @@ def _in_force(
 def _is_just(joint: Joint, taken: Joint, place: Array, reach: float) -> bool:
     """Whether contact is no lower pair, as of the balls of a bearing, and surely leaves what is stated and no more."""
     known = (joint.type, joint.status, joint.freedoms) == ("general", "determined", len(taken.twists))
-    return known and leaves_free(joint.twists, taken.twists, place, reach, EXACT_MOTION)
+    return known and leaves_free(joint.twists, taken.twists, place, reach, SINGLE)
 
 
 def _held_otherwise(taken: Joint, joint: Joint, name: str) -> Joint:

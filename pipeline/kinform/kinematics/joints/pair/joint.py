@@ -21,7 +21,8 @@ from kinform.model.kinematics import FREEDOMS, Blocker, Joint, Reading, ReadingC
 from kinform.model.names import BodyName, JointName
 
 LEAST_MISALIGNMENT = 1e-4
-"""rad, and share of the contact's size, of misalignment that is told."""
+"""rad, and share of the contact's size, of misalignment that is told. A hundredth of a degree, or 10 µm on 100 mm: less
+is not worth a word."""
 
 
 def twists_of(
