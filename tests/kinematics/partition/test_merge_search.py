@@ -146,7 +146,7 @@ def relabelled(edge, now):
     return Edge(edge.ends, table, edge.broken, edge.hint, frozenset(jointed))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(graphs())
 def test_what_is_joined_and_what_it_costs_is_what_cutting_the_whole_graph_tells(graph):
     labels, count, edges, joints, start, loops = graph
@@ -163,7 +163,7 @@ def test_what_is_joined_and_what_it_costs_is_what_cutting_the_whole_graph_tells(
     assert len(search._looked_at) == min(len(whole.looked_at), MOST_CUTS + 1)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(graphs(), st.data())
 def test_a_cut_that_is_changed_step_by_step_is_the_cut_from_the_start(graph, data):
     labels, _, edges, joints, start, _ = graph
