@@ -47,7 +47,7 @@ def derived(groove, type_, X=None, scale=1e-3):
     return K, answer, codes & {"KF401", "KF402", "KF414"}
 
 
-@diagonal(groove=[BALL, BALL + 0.05], seed=[None, 0])
+@diagonal(groove=[BALL + 0.05, BALL], seed=[None, 0])
 def test_balls_hold_the_rings_of_a_bearing(groove, seed):
     X = None if seed is None else random_pose(np.random.default_rng(seed))
     K, answer, codes = derived(groove, "revolute", X)

@@ -77,7 +77,7 @@ ACROSS = (
 """A node that touches two bodies, and is in neither: it is across the joint of one."""
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(graphs())
 @example(ACROSS)
 def test_no_labels_cost_less(graph):

@@ -146,7 +146,7 @@ def relabelled(edge, now):
     return Edge(edge.ends, table, edge.broken, edge.hint, frozenset(jointed))
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=7, deadline=None)
 @given(graphs())
 def test_what_is_joined_and_what_it_costs_is_what_cutting_the_whole_graph_tells(graph):
     labels, count, edges, joints, start, loops = graph
