@@ -20,7 +20,7 @@ def diagonal(**axes: Sequence[Any]) -> pytest.MarkDecorator:
     return pytest.mark.parametrize(tuple(axes), params)
 
 
-def first_of(count: int, values: Sequence[Any]) -> list[Any]:
+def first(count: int, values: Sequence[Any]) -> list[Any]:
     """The values, all after the first `count` marked `sweep`."""
     return [pytest.param(value, marks=_marks(k < count)) for k, value in enumerate(values)]
 

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from support.assemblies import HERE
-from support.diagonal import diagonal, first_of
+from support.diagonal import diagonal
+from support.diagonal import first as first_of
 from support.grooved import KINDS, Grooved, Pin, apart, in_world
 from support.solids import assembly, derived, part, random_pose
 from support.touching import touching as touching_of

@@ -12,7 +12,8 @@ from manifold3d import Manifold
 from random_assemblies import case
 from random_assemblies.verdict import judge
 from support.assemblies import assembly
-from support.diagonal import diagonal, first_of
+from support.diagonal import diagonal
+from support.diagonal import first as first_of
 from support.solids import box, derived, part, random_pose, rod
 from support.touching import touching as touching_of
 

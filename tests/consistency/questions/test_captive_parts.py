@@ -10,7 +10,8 @@ import pytest
 from manifold3d import Manifold
 from support.assemblies import assembly, assume, intended
 from support.bearings import KINDS, Size
-from support.diagonal import diagonal, first_of
+from support.diagonal import diagonal
+from support.diagonal import first as first_of
 from support.solids import ball, block, box, part, random_pose, rod
 from support.touching import touching as touching_of
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from generators.involute import Gear, mesh_angle
 from support.assemblies import HERE, assembly
-from support.diagonal import diagonal, first_of
+from support.diagonal import diagonal
+from support.diagonal import first as first_of
 from support.solids import ball, block, box, extrusion, part, random_pose, rod
 from support.touching import touching as touching_of
 

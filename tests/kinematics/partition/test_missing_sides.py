@@ -13,7 +13,7 @@ from random_assemblies.machine_verdict import assembly_of, judge
 from random_assemblies.machines import machine
 from random_assemblies.rings import ring
 from support.assemblies import assembly
-from support.diagonal import first_of
+from support.diagonal import first as first_of
 from support.solids import box, part, rod
 from support.touching import touching as touching_of
 

@@ -70,13 +70,6 @@ def test_rows_of_a_cylinder_are_combinations_of_those_that_are_kept():
     assert max(nnls(rows[kept].T, row)[1] for row in rows) < 1e-9
 
 
-@pytest.mark.parametrize("count", [1, 2, 7, 96, 1000])
-def test_weighted_mean_has_the_bits_of_numpy(count):
-    rng = np.random.default_rng(count)
-    points, weights = rng.normal(size=(count, 3)), rng.random(count) + 0.1
-    assert weighted_mean(points, weights).tobytes() == np.average(points, axis=0, weights=weights).tobytes()
-
-
 def test_the_samples_that_bound_a_plane_are_the_corners_of_its_hull():
     rng = np.random.default_rng(0)
     corners = np.array([[0, 0, 0], [4, 0, 0], [5, 2, 0], [1, 3, 0]], float)
@@ -91,3 +84,10 @@ def test_what_the_chosen_samples_allow_all_samples_allow(found):
     rows = np.hstack([np.cross(found.points / 0.01, found.normals), found.normals])
     missing = max(nnls(rows[chosen].T, row)[1] for row in rows)
     assert missing < (1e-6 if found.kind == "cylinder" else 0.02)
+
+
+@pytest.mark.parametrize("count", [1, 2, 7, 96, 1000])
+def test_weighted_mean_has_the_bits_of_numpy(count):
+    rng = np.random.default_rng(count)
+    points, weights = rng.normal(size=(count, 3)), rng.random(count) + 0.1
+    assert weighted_mean(points, weights).tobytes() == np.average(points, axis=0, weights=weights).tobytes()
