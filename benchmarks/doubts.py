@@ -31,13 +31,11 @@ from random_assemblies.verdict import tally
 
 from kinform import contacts, form, surfaces
 from kinform.kinematics.joints.bodies.classification import Pairs, decide_all
-from kinform.kinematics.joints.bodies.extents import Extents
 from kinform.kinematics.joints.bodies.merging import Merger
 from kinform.kinematics.joints.bodies.readings import choose_readings
-from kinform.kinematics.joints.pair.question import bare_patches
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
-from kinform.model.kinematics import only_bodies
+from kinform.model.kinematics import body_of_part, only_bodies
 
 GRID: dict[str, tuple[float, ...]] = {
     "VAGUE_AXIS": tuple(math.radians(v) for v in (0.05, 0.2, 0.5, 1.0, 3.0)),
@@ -127,12 +125,10 @@ def sample(group: str, truth: Case, manifest: Path) -> Sample:
 
 def judged(one: Sample) -> Counter[str]:
     """What its joints are worth with the constants as they are now."""
-    merger, extents = Merger(one.assembly), Extents(one.assembly)
-    patches = bare_patches(one.contacts.patches)
-    decided = decide_all(Pairs(one.assembly, one.contacts, patches, extents, None), merger)
+    merger, pairs = Merger(one.assembly), Pairs(one.assembly, one.contacts)
+    decided = decide_all(pairs, merger)
     bodies = merger.bodies()
-    of_part = {part: body.name for body in bodies for part in body.parts}
-    chosen = choose_readings(one.assembly, of_part, decided, patches, extents.assembly)
+    chosen = choose_readings(one.assembly, body_of_part(bodies), decided, pairs.patches, pairs.size)
     kinematics = replace(only_bodies(bodies), joints=tuple(joint for _, joint in chosen.values()))
     return tally(one.truth, kinematics, ("planar", "general") if one.group.startswith("robot") else ())
 

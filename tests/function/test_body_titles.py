@@ -7,7 +7,7 @@ from dataclasses import replace
 from support.places import FIXTURES
 
 from kinform.function.body_titles import body_titles
-from kinform.kinematics.part_volumes import volumes
+from kinform.kinematics.joints.bodies.extents import part_volumes
 from kinform.model.names import BodyName
 
 
@@ -15,7 +15,7 @@ def test_a_body_is_called_by_the_part_that_the_function_names_else_by_its_larges
     design = derive_design(FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml")
     bare = replace(design.assembly, groups=())
     kinematics = design.kinematics
-    volume = volumes(bare)
+    volume = part_volumes(bare)
     outer = next(body for body in kinematics.bodies if body.name == "outer")
     largest = max(outer.parts, key=lambda name: volume[name])
     smallest = min(outer.parts, key=lambda name: volume[name])

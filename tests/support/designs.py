@@ -84,6 +84,8 @@ def by_type(hint: Any) -> st.SearchStrategy[Any]:
         return lists(by_type(arguments[0]))
     if origin is tuple:
         return st.tuples(*map(by_type, arguments))
+    if origin is typing.Literal:
+        return st.sampled_from(arguments)
     if origin is dict:
         values = json_values if arguments[1] is Any else by_type(arguments[1]).filter(lambda value: value == value)
         return st.dictionaries(texts, values, max_size=3)

@@ -10,7 +10,7 @@ from kinform.kinematics.joints.pair.joint import twists_of
 from kinform.model.checks import Ignore
 from kinform.model.contacts import Interference
 from kinform.model.function import Coupling, Drive, Law, Load, Requirement
-from kinform.model.kinematics import Blocker, LeftOut, Membership
+from kinform.model.kinematics import Blocker, Membership, UndeclaredJoint
 
 
 def with_function(design, function):
@@ -100,7 +100,9 @@ WRONG = {
         kinematics=replace(
             d.kinematics,
             membership=(Membership("shaft", "block", "held", 1.0, "", False),),
-            left_out=(LeftOut("block", "revolute", np.array([0.0, 0, 1]), np.zeros(3), ("block",), ("shaft",), ""),),
+            left_out=(
+                UndeclaredJoint("block", "revolute", np.array([0.0, 0, 1]), np.zeros(3), ("block",), ("shaft",), ""),
+            ),
         ),
     ),
     "KF409": lambda d: changed_function(d, drives=(drive("wing"),)),

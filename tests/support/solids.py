@@ -10,9 +10,10 @@ from manifold3d import CrossSection, Manifold
 from random_assemblies import shapes
 from scipy.spatial.transform import Rotation
 
-from kinform import contacts, kinematics, surfaces
+from kinform import kinematics
 from kinform.model.assembly import Mesh, MeshHealth, Part
 from support.assemblies import HERE, assembly
+from support.touching import touching as touching_of
 
 
 def box(x0, x1, y0, y1, z0, z1):
@@ -74,6 +75,5 @@ def derived(X=None, scale=1e-3, groups=(), **solids):
     """Kinematics and contacts of the named solids, all under one pose."""
     X = np.eye(4) if X is None else X
     made = assembly(*(part(name, solid, X, scale) for name, solid in solids.items()), groups=groups)
-    found = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
-    touching = contacts.find(made, found)
+    found, touching = touching_of(made)
     return kinematics.derive(made, found, touching), touching

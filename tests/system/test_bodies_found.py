@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
-from kinematics.test_partition import stack
+from kinematics.partition.test_bodies import stack
 from support.solids import save
 
 from kinform_cli.main import main

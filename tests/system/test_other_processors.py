@@ -16,6 +16,11 @@ from support.places import FIXTURES, ROOT
 SENSITIVE = (
     "tests/simulation",
     "tests/kinematics",
+    "tests/consistency/questions",
+    "tests/system/test_blocked_joints.py",
+    "tests/system/test_far_from_origin.py",
+    "tests/system/test_pins_in_slots.py",
+    "tests/system/test_screw_joints.py",
     "tests/surfaces",
     *(
         f"tests/system/test_{name}.py"

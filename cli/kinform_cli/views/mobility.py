@@ -12,7 +12,7 @@ from kinform.design import Design
 from kinform.foundation.rounding import ARITHMETIC, SINGLE
 from kinform.foundation.words import counted, length, rate
 from kinform.function.body_titles import body_titles
-from kinform.kinematics import Motions, adrift, adrift_in_words
+from kinform.kinematics import Motions, disconnected_bodies, disconnected_in_words
 from kinform.model.kinematics import Coupling, Mobility
 from kinform.reports.freedom_phrases import follower_rates, freedom_text
 from kinform.reports.values.kinematics import mobility_counts
@@ -64,8 +64,8 @@ def render(design: Design, *, short: bool = False) -> RenderableType:
         items.append(f"idle: {named(mobility.idle_bodies)}")
     if mobility.uncertain:
         items.append(f"the counts depend on joints that are not certain: {named(mobility.uncertain)}")
-    if design.contacts is not None and (loose := adrift(design.kinematics, design.contacts)):
-        items.append(f"the counts take for free what may not be: {adrift_in_words(loose)}")
+    if design.contacts is not None and (loose := disconnected_bodies(design.kinematics, design.contacts)):
+        items.append(f"the counts take for free what may not be: {disconnected_in_words(loose)}")
     items += [_coupling(coupling, design) for coupling in design.kinematics.couplings]
     items += _misfit(design)
     if mobility.named:

@@ -21,7 +21,7 @@ from kinform.consistency.comparisons.known import bodies_of
 from kinform.consistency.comparisons.links import Weighed, weighed
 from kinform.consistency.comparisons.plausibility import Doubt, doubts
 from kinform.consistency.outcome import Outcome, inconclusive, skipped
-from kinform.consistency.questions.captive_parts import Afloat, AfloatParts
+from kinform.consistency.questions.captive_parts import CaptivePart, CaptiveParts
 from kinform.design import Design
 from kinform.foundation.meshes.shell_faults import ShellFaults, shell_faults
 from kinform.frozen import dataclass
@@ -266,11 +266,11 @@ class Context:
         return self._result("kinematics", self.design.kinematics)
 
     @cached_property
-    def afloat(self) -> AfloatParts:
+    def afloat(self) -> CaptiveParts:
         """Parts with play between two others that they do not both touch."""
-        return AfloatParts(self.assembly, self.contacts)
+        return CaptiveParts(self.assembly, self.contacts)
 
-    def with_play(self, parts: Iterable[str] | None = None) -> Afloat | None:
+    def with_play(self, parts: Iterable[str] | None = None) -> CaptivePart | None:
         """The first part with play between two bodies, of some parts or of all, that it does not both touch: what these
         leave free may be held by it. None where the function states all joints, which decide then."""
         if self.kinematics.membership:

@@ -6,7 +6,7 @@ results, fingerprints, locks and JSON stay what the contract says.
 
 from __future__ import annotations
 
-from kinform.kinematics.part_volumes import volumes
+from kinform.kinematics.joints.bodies.extents import part_volumes
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Kinematics
 
@@ -15,7 +15,7 @@ def body_titles(assembly: Assembly, kinematics: Kinematics) -> dict[str, str]:
     """As in {"horn": "body of base"}: of bodies that are called otherwise than by their best known part."""
     groups = {str(group.name) for group in assembly.groups}
     named = [side for joint in assembly.function.joints for side in joint.between]
-    volume = volumes(assembly)
+    volume = part_volumes(assembly)
     out = {}
     for body in kinematics.bodies:
         if body.name in groups or len(body.parts) < 2:

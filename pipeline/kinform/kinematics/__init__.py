@@ -1,17 +1,20 @@
 """Joints and mobility from contacts: screw algebra, constraint rows, decisions, loop closure.
 
-`derivation` is the method of the stage, from contacts to `model.kinematics.Kinematics`. The rooms, in the order in
-which one reads them; each knows those before it and none after it (separation needs `joints/pair` and `answers` only):
+`derivation` is the method of the stage, from contacts to `model.kinematics.Kinematics`; `mechanism_results` is its
+second half, from decided joints to mobility and separation; `ball_and_stick` does the same for joints that the function
+states, without contact. The sub-packages, in the order in which one reads them; each imports only those above it:
 
-- `joints`: joints of pairs of bodies, which parts are one body, and axes consistent across the assembly.
+- `screws`: one basis for each space of screws, and words for motions and wrenches
+- `joints`: joints of pairs of bodies, which parts are one body, and axes that agree across the assembly
 - `partition`: which parts are one body where the function states all joints, and which joints may be meant where it
-  states none.
-- `mobility`: freedoms of the whole, their finite counterparts, redundancy, couplings.
-- `separation`: J, and what comes apart.
-- `queries`: what users ask of all that.
+  states none
+- `mobility`: degrees of freedom of the assembly, whether they are finite motions, redundancy, couplings
+- `separation`: the constraint matrix J, and what comes apart
+- `queries`: what users ask about the result
 
-Beside them `constants` has every number that decides, with its reason; `wording` puts spaces of motions and of forces
-in words; `answers` is how steps are found that an earlier run has taken."""
+`step_cache` is the interface by which results of an earlier run are reused. What only rules ask is in
+`consistency.questions`.
+"""
 
 from __future__ import annotations
 
@@ -20,12 +23,13 @@ from typing import TYPE_CHECKING
 from kinform.foundation.lazily import first_used
 
 if TYPE_CHECKING:
-    from kinform.kinematics.derivation import derive, functional, idle_within, mobility_within
+    from kinform.kinematics.ball_and_stick import functional
+    from kinform.kinematics.derivation import derive
     from kinform.kinematics.joints.axes.higher_pairs import is_higher
     from kinform.kinematics.mobility.couplings import coupling_aside
     from kinform.kinematics.mobility.named_freedoms import Motions
     from kinform.kinematics.partition import propose, proposed_joints, stated_proposals
-    from kinform.kinematics.queries.disconnected import adrift, adrift_in_words
+    from kinform.kinematics.queries.disconnected import disconnected_bodies, disconnected_in_words
     from kinform.kinematics.queries.intended_freedoms import IntendedAnswer, IntendedMotion, intended_answers
     from kinform.kinematics.queries.joint_insight import Insight, insight
     from kinform.kinematics.queries.motion_query import QueryAnswer, QueryBlocker, query
@@ -38,16 +42,14 @@ __all__ = [
     "Motions",
     "QueryAnswer",
     "QueryBlocker",
-    "adrift",
-    "adrift_in_words",
     "coupling_aside",
     "derive",
+    "disconnected_bodies",
+    "disconnected_in_words",
     "functional",
-    "idle_within",
     "insight",
     "intended_answers",
     "is_higher",
-    "mobility_within",
     "propose",
     "proposed_joints",
     "query",
@@ -61,17 +63,15 @@ __getattr__ = first_used(
     __name__,
     {
         "derive": "derivation",
-        "functional": "derivation",
-        "idle_within": "derivation",
-        "mobility_within": "derivation",
+        "functional": "ball_and_stick",
         "coupling_aside": "mobility.couplings",
         "is_higher": "joints.axes.higher_pairs",
         "Motions": "mobility.named_freedoms",
         "propose": "partition",
         "proposed_joints": "partition",
         "stated_proposals": "partition",
-        "adrift": "queries.disconnected",
-        "adrift_in_words": "queries.disconnected",
+        "disconnected_bodies": "queries.disconnected",
+        "disconnected_in_words": "queries.disconnected",
         "IntendedAnswer": "queries.intended_freedoms",
         "IntendedMotion": "queries.intended_freedoms",
         "intended_answers": "queries.intended_freedoms",

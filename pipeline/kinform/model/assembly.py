@@ -16,6 +16,7 @@ from kinform.model.arrays import Array, Ints
 from kinform.model.checks import CheckSettings
 from kinform.model.descriptions import Description
 from kinform.model.function import Function, SimulationRequest
+from kinform.model.kinematics import JointType
 from kinform.model.names import PartName
 from kinform.model.quantities import XYZ, Direction, Inertia, Metres, Place, columns
 from kinform.model.tolerances import PartSize, Tolerances
@@ -227,7 +228,7 @@ class Assumption:
     """The user overrides what geometry says of two parts (or groups). World frame, SI."""
 
     between: Annotated[tuple[str, str], columns("between_a", "between_b")]
-    type: str | None
+    type: JointType | None
     """Joint type, or None when `ignore`."""
     ignore: bool
     axis: Direction | None

@@ -12,6 +12,7 @@ import numpy as np
 
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
+from kinform.model.kinematics import JointType
 from kinform.model.quantities import XYZ, Direction, Metres, Place, Ratio, columns
 from kinform.model.sensors import Sensor
 from kinform.model.springs import StatedSpring
@@ -39,7 +40,7 @@ class IntendedJoint:
 
     name: str
     between: Annotated[tuple[str, str], columns("between_a", "between_b")]
-    type: str
+    type: JointType
     axis: Direction | None
     """(3,) unit, as the designer's sign has it."""
     axis2: Direction | None

@@ -5,9 +5,10 @@ Twists are (ω; v), v the velocity of the point at the world's origin.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from collections.abc import Set as AbstractSet
 from functools import cached_property
-from typing import Annotated
+from typing import Annotated, Literal, get_args
 
 import numpy as np
 
@@ -27,11 +28,31 @@ from kinform.model.quantities import (
     columns,
 )
 
-JOINT_TYPES = (
-    "fixed", "revolute", "prismatic", "cylindrical", "spherical", "planar", "screw", "universal",
-    "general",
-)  # fmt: skip
-STATUSES = ("determined", "inferred", "stated", "ambiguous", "blocked")
+JointType = Literal[
+    "fixed", "revolute", "prismatic", "cylindrical", "spherical", "planar", "screw", "universal", "general"
+]
+"""The lower pairs, a universal joint, and `general` for any other space of motions."""
+JOINT_TYPES: tuple[JointType, ...] = get_args(JointType)
+JointStatus = Literal["determined", "inferred", "stated", "ambiguous", "blocked"]
+"""determined: by contact. inferred: contact admits it, and something else chose it. stated: taken from the function.
+ambiguous: contact does not decide. blocked: contact decides when a few patches are left out."""
+STATUSES: tuple[JointStatus, ...] = get_args(JointStatus)
+MotionKind = Literal["turn", "slide", "screw"]
+ReadingCause = Literal["", "stop", "sliver", "flank", "prism", "pin", "bend", "contact", "end", "doubt"]
+"""What the faces are that a reading leaves out: stop, sliver, flank; prism where flats are those of one; pin where it
+has clearance in its slot; bend where a roller in its ring turns less over a distance than at the first instant. Of a
+joint that is taken as stated, how contact leaves it: contact (free), end (free in one sense) or doubt. Else empty."""
+CurvatureVerdict = Literal["", "extends", "partly", "obstructed"]
+"""Freedoms that the curvature of the closure allows: extends (all), partly (some directions), obstructed (none); empty
+where it was not tested."""
+RedundancyKind = Literal["pair", "loop", "loops", "block"]
+"""pair (contacts of one joint), loop, loops (several together), or block (spread, not told apart)."""
+CouplingKind = Literal["gear", "rack", "screw", "cam"]
+"""Of a cam the ratio is that of this pose."""
+CouplingStatus = Literal["determined", "ambiguous"]
+MembershipCause = Literal["held", "cut", "nearest"]
+"""held: one with a part that a joint names, as no joint may separate them. cut: of all bodies, this one breaks least
+contact. nearest: it touches nothing, and that body is nearest."""
 
 TWIST = "rad/s, m/s (ω; v)"
 FLANKS = columns(*(f"{side}_{axis}" for side in ("flank", "back") for axis in "xyz"), shape=(2, 3))
@@ -39,7 +60,7 @@ ValueRatio = Annotated[float, "rad or m over rad or m"]
 RateRatio = Annotated[float, "rad/s or m/s, or their ratio"]
 
 
-FREEDOMS = {
+FREEDOMS: dict[str, int] = {
     "fixed": 0, "revolute": 1, "prismatic": 1, "screw": 1, "cylindrical": 2, "universal": 2,
     "spherical": 3, "planar": 3,
 }  # fmt: skip
@@ -79,8 +100,7 @@ class Blocker:
 class Release:
     """One way in which the second body can leave the first, breaking contact; the opposite way is blocked."""
 
-    kind: str
-    """slide, turn or screw."""
+    kind: MotionKind
     twist: Annotated[Array, TWIST, columns("*_wx", "*_wy", "*_wz", "*_vx", "*_vy", "*_vz")]
     """(6,) of the second relative to the first: unit direction of a slide, unit ω of a turn or screw."""
     direction: Direction
@@ -97,17 +117,14 @@ class Release:
 class Reading:
     """Another joint that the contact of two bodies admits: what stands against a motion may end it or guide it."""
 
-    type: str
+    type: JointType
     axis: Direction | None
     """(3,) unit, canonical sign."""
     point: Place | None
     """(3,) m."""
     pitch: Lead | None
     freedoms: int
-    cause: str
-    """What the faces are that it leaves out: stop, sliver, flank; prism where flats are those of one; bend where a
-    roller in its ring turns less over a distance than at the first instant. Of a joint that
-    is taken as stated, how contact leaves it: contact (free), end (free in one sense) or doubt. Else empty."""
+    cause: ReadingCause
     words: str
     """When it holds: "cylindrical, if 314 mm² between base and rod are an end stop"."""
 
@@ -120,7 +137,7 @@ class Joint:
     name: JointName
     bodies: Annotated[tuple[BodyName, BodyName], columns("body_a", "body_b")]
     """Sorted by name."""
-    type: str
+    type: JointType
     axis: Direction | None
     """(3,) unit, canonical sign."""
     point: Place | None
@@ -132,7 +149,7 @@ class Joint:
     """(freedoms, 6) basis of the relative motions."""
     evidence: tuple[str, ...]
     """Sorted names of surface kinds, or "rim", "bolt circle", "assumption", "function"."""
-    status: str
+    status: JointStatus
     reason: str
     """One sentence: why this type and status."""
     patches: tuple[int, ...]
@@ -244,9 +261,7 @@ class FiniteCertificate:
     """Bound, a power of ten, of the closure errors of the stepped poses (rad, and share of the size)."""
     stepped: int | None = None
     """Freedoms of first order at the stepped poses, the most; None where no step was kept."""
-    second_order: str = ""
-    """Freedoms that the curvature of the closure allows: "extends" (all), "partly" (some directions),
-    "obstructed" (none), "" (not tested)."""
+    second_order: CurvatureVerdict = ""
     moves: tuple[JointName, ...] = ()
     """Joints that move in the freedoms that are only infinitesimal."""
     statement: str = ""
@@ -261,8 +276,8 @@ class Freedom:
     """None: a body that no joint connects to ground."""
     body: BodyName
     """What the driver moves: its body further from ground; of an idle freedom the body that spins."""
-    kind: str
-    """turn, slide or screw: of the driving joint's second body relative to its first."""
+    kind: MotionKind
+    """Of the driving joint's second body relative to its first."""
     axis: Direction
     """(3,) unit, canonical sign."""
     point: Place
@@ -282,8 +297,7 @@ class Freedom:
 class Redundancy:
     """Constraints that hold nothing more, in a set of joints none of which could be left out of it."""
 
-    kind: str
-    """pair (contacts of one joint), loop, loops (several together), or block (spread, not told apart)."""
+    kind: RedundancyKind
     text: str
     """One sentence: where, why, how many, and which."""
     rows: int
@@ -384,12 +398,10 @@ class Coupling:
     joints: Annotated[tuple[JointName, JointName], columns("joint_a", "joint_b")]
     ratio: ValueRatio
     """Of the values as kinform counts them (of the second body about the listed axis relative to the first), SI."""
-    kind: str
-    """gear, rack, screw, or cam: then the ratio is that of this pose."""
+    kind: CouplingKind
     through: JointName
     """The joint that ties them: a higher pair or a screw."""
-    status: str
-    """determined or ambiguous."""
+    status: CouplingStatus
     uncertainty: ValueRatio
     """Of the ratio; nan where it is not known."""
     reason: str = ""
@@ -399,15 +411,15 @@ class Coupling:
 
 
 @dataclass(frozen=True, eq=False)
-class Aside:
+class IgnoredContact:
     """Contact between two bodies that the function moves relative to each other by other joints: it holds nothing."""
 
     name: JointName
     bodies: Annotated[tuple[BodyName, BodyName], columns("body_a", "body_b")]
-    type: str
+    type: JointType
     """Which joint the contact would be, taken alone."""
     freedoms: int
-    status: str
+    status: JointStatus
     area: SquareMetres
     axis: Direction | None
     words: str
@@ -425,9 +437,7 @@ class Membership:
 
     part: PartName
     body: BodyName
-    how: str
-    """held: it is one with a part that a joint names, as no joint may part them. cut: of all bodies, this one breaks
-    least contact. nearest: it touches nothing, and that body is nearest."""
+    how: MembershipCause
     margin: Ratio
     """By how much the next best body would be dearer (prices of `kinematics/partition`); inf: none is in question."""
     other: BodyName
@@ -440,7 +450,7 @@ class Membership:
 
 
 @dataclass(frozen=True)
-class Unparted:
+class Unseparated:
     """An intended joint whose two sides contact holds together, where the bodies follow from the function."""
 
     joint: str
@@ -450,11 +460,11 @@ class Unparted:
 
 
 @dataclass(frozen=True, eq=False)
-class LeftOut:
+class UndeclaredJoint:
     """A joint that contact alone would make inside one body, where the bodies follow from the function."""
 
     body: BodyName
-    type: str
+    type: JointType
     """revolute or spherical."""
     axis: Direction | None
     point: Place
@@ -498,13 +508,13 @@ class Kinematics:
     couplings: tuple[Coupling, ...] = ()
     moves: tuple[Move, ...] = ()
     """What snapping did to each joint that it moved, in the order of the joints; `misfit` has the greatest."""
-    asides: tuple[Aside, ...] = ()
+    asides: tuple[IgnoredContact, ...] = ()
     """With `[function] complete = true`: contact that constrains nothing, sorted by bodies."""
     membership: tuple[Membership, ...] = ()
     """With `[function] complete = true`: every part of an assembly with meshes, sorted by name."""
-    unparted: tuple[Unparted, ...] = ()
+    unparted: tuple[Unseparated, ...] = ()
     """With `[function] complete = true`: joints whose sides contact holds together, sorted by name."""
-    left_out: tuple[LeftOut, ...] | None = ()
+    left_out: tuple[UndeclaredJoint, ...] | None = ()
     """With `[function] complete = true`: joints that contact alone would make inside bodies. None: nobody looked."""
     sides: tuple[FoundSides, ...] = ()
     """Of joints that name one part or none, sorted by name."""
@@ -560,6 +570,11 @@ class Kinematics:
     @cached_property
     def _body_of(self) -> dict[str, Body]:
         return {str(part): body for body in self.bodies for part in body.parts}
+
+
+def body_of_part(bodies: Iterable[Body]) -> dict[PartName, BodyName]:
+    """The body of every part."""
+    return {part: body.name for body in bodies for part in body.parts}
 
 
 def only_bodies(bodies: tuple[Body, ...]) -> Kinematics:

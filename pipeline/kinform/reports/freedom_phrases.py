@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from kinform.foundation.rounding import SOLVED
-from kinform.kinematics.wording import axis_word
+from kinform.kinematics.screws.wording import axis_word
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Freedom, Joint
 

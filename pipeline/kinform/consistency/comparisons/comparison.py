@@ -9,8 +9,8 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross
 from kinform.frozen import dataclass
-from kinform.kinematics.joints.bodies.as_stated import leaves_free
-from kinform.kinematics.partition.parting import joint_twists
+from kinform.kinematics.joints.bodies.joints_in_force import leaves_free
+from kinform.kinematics.joints.bodies.stated_joints import joint_twists
 from kinform.model.arrays import Array
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Body, Joint

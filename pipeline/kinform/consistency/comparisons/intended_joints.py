@@ -10,17 +10,17 @@ from kinform.consistency.comparisons.comparison import FROM_GEOMETRY, Comparison
 from kinform.consistency.comparisons.known import Known
 from kinform.consistency.comparisons.with_play import with_play
 from kinform.consistency.questions.rolling_elements import Rolling
-from kinform.consistency.questions.through_intermediates import HelperMotion, motion_through_helpers
+from kinform.consistency.questions.through_intermediates import IntermediateMotion, motion_through_intermediates
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.rounding import TINY
 from kinform.foundation.words import counted, quoted
-from kinform.kinematics.joints.bodies.as_stated import leaves_free, may_end
-from kinform.kinematics.partition.parting import joint_twists
+from kinform.kinematics.joints.bodies.joints_in_force import leaves_free, may_end
+from kinform.kinematics.joints.bodies.stated_joints import joint_twists
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.function import IntendedJoint
-from kinform.model.kinematics import FREEDOMS, Body, Joint, Kinematics, LeftOut
+from kinform.model.kinematics import FREEDOMS, Body, Joint, Kinematics, UndeclaredJoint
 
 SHARED_MOTION = 0.02
 """Share of a motion within which what contact leaves is a motion that a loop's closure leaves, too; as `ADMITTED`."""
@@ -56,7 +56,7 @@ def _compared(
         return Comparison(intended, bodies, "stated", "the joint is taken from the function", joint=direct)
     size = known.smaller(bodies)
     every = contacts.patches if contacts is not None else ()
-    motion = motion_through_helpers(kinematics, every, first.name, second.name, known.named, size)
+    motion = motion_through_intermediates(kinematics, every, first.name, second.name, known.named, size)
     used: tuple[Joint, ...] = (direct,) if direct is not None else ()
     if motion is not None:
         used = motion.joints
@@ -90,7 +90,7 @@ def _compared(
         freedoms=direct.freedoms if motion is None and direct is not None else motion.freedoms if motion else 0,
         joint=direct,
         twists=found,
-        through=motion.helpers if motion is not None else (),
+        through=motion.intermediates if motion is not None else (),
         angle_slack=angle_slack,
         position_slack=position_slack,
         size=size,
@@ -98,7 +98,7 @@ def _compared(
     )
 
 
-def loose_joint(assembly: Assembly, kinematics: Kinematics, intended: IntendedJoint) -> LeftOut | None:
+def loose_joint(assembly: Assembly, kinematics: Kinematics, intended: IntendedJoint) -> UndeclaredJoint | None:
     """What contact alone would make of a joint that is stated as fixed, where it would part its sides."""
     if intended.type != "fixed":
         return None
@@ -107,7 +107,7 @@ def loose_joint(assembly: Assembly, kinematics: Kinematics, intended: IntendedJo
 
 
 def _rolling_certainty(
-    intended: IntendedJoint, motion: HelperMotion, through: Rolling, size: float
+    intended: IntendedJoint, motion: IntermediateMotion, through: Rolling, size: float
 ) -> tuple[ComparisonState, str]:
     """Whether what rolling elements leave is known: what they leave beside the intended joint for this instant alone
     may be held by them all the same."""
@@ -119,8 +119,8 @@ def _rolling_certainty(
     if not leaves_free(motion.twists, wanted, middle, size) or not leaves_free(wanted, through.sure, middle, size):
         return "found", ""
     return "undecided", (
-        f"points and lines of contact with {quoted(motion.helpers)} leave {counted(motion.freedoms, 'freedom')} at "
-        "this instant; over a distance that may be the intended one alone"
+        f"points and lines of contact with {quoted(motion.intermediates)} leave "
+        f"{counted(motion.freedoms, 'freedom')} at this instant; over a distance that may be the intended one alone"
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from kinform.consistency.questions.captive_parts import AfloatParts
+from kinform.consistency.questions.captive_parts import CaptiveParts
 from kinform.kinematics.joints.bodies.extents import Extents
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
@@ -35,9 +35,9 @@ class Known:
         return Extents(self.assembly)
 
     @cached_property
-    def afloat(self) -> AfloatParts | None:
+    def afloat(self) -> CaptiveParts | None:
         """Parts with play; None without contacts."""
-        return AfloatParts(self.assembly, self.contacts) if self.contacts is not None else None
+        return CaptiveParts(self.assembly, self.contacts) if self.contacts is not None else None
 
     def smaller(self, bodies: tuple[Body, Body]) -> float:
         """Diagonal (m) of the smaller of the bodies that have one; of the assembly where none has."""

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 from kinform.consistency.comparisons.comparison import Comparison, leaves_more
 from kinform.consistency.comparisons.known import Known
-from kinform.consistency.questions.captive_parts import Afloat, may_carry, may_hold
+from kinform.consistency.questions.captive_parts import CaptivePart, may_carry, may_hold
 from kinform.foundation.algebra.screws import Frame, scaled, span
-from kinform.kinematics.partition.parting import joint_twists
+from kinform.kinematics.joints.bodies.stated_joints import joint_twists
 from kinform.model.arrays import Array
 
 
@@ -22,7 +22,7 @@ def with_play(c: Comparison, known: Known) -> Comparison:
     return replace(c, state="taken" if c.state == "taken" else "undecided", reason=one.words(), afloat=one.words())
 
 
-def _afloat(c: Comparison, known: Known) -> Afloat | None:
+def _afloat(c: Comparison, known: Known) -> CaptivePart | None:
     """A part that may carry the joint of two bodies that do not touch, or hold more of that of two that do, also
     through loose bodies; None where it is sure that none does."""
     if known.afloat is None:

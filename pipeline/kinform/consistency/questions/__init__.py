@@ -1,1 +1,2 @@
-"""Questions that rules ask and nobody else: rolling elements, captive parts, motions through intermediate bodies."""
+"""Questions about the kinematics that only rules ask: rolling elements, captive parts, motion through intermediate
+bodies, near motions, mobility of sub-assemblies."""

@@ -1,17 +1,16 @@
-"""Parts with play between two others, that are in no contact with one of these or with either: rolling elements, above
-all.
+"""Captive parts with clearance: parts between two others that touch only one of them or neither, above all rolling
+elements.
 
-Faces that fit each other touch within the contact tolerance, points and lines within a small share of it: a ball above
-a table is clearly in no contact. A ball between two races with play on either side is in none either, by that count;
-but it can go nowhere, and the play that is drawn is less than what parts that fit have. So what is carried by such a
-part is not known, and neither is that it is not.
+Faces that fit touch within the contact tolerance, points and lines within a small share of it: a ball above a table has
+no contact. Nor has a ball between two races with clearance on either side, by that count; but it cannot leave, and its
+clearance is less than that of parts that fit. Whether such a part carries a load is not known.
 
-A part is between two sides where facets of it face facets of either, on opposite sides of it, no farther off than the
+A part is captive between two sides where facets of it face facets of either, on opposite sides of it, within the
 contact tolerance of the pair, and it or the other part is round there. Flat faces that fit are in contact, and edges
-and corners that come near are not meant to carry: a loose plate that hovers askew is told to be loose. What a part
-touches may keep it from going towards the other side, or hold it in a bore, as a pin: then it belongs to that, and
-comes near the other from one side only, as the ball above the table. Parts of one group are one; pairs that an
-assumption keeps apart are no candidates.
+and corners that come near are not meant to carry: a loose plate that hovers askew is reported as loose. What a part
+touches may keep it from the other side, or hold it in a bore as a pin: then it belongs to that, and is near the other
+from one side only, as the ball above the table. Parts of one group are one; pairs that an assumption keeps apart are no
+candidates.
 """
 
 from __future__ import annotations
@@ -37,30 +36,31 @@ from kinform.model.contacts import Contacts
 from kinform.model.kinematics import Kinematics
 from kinform.model.names import PartName
 
-AFLOAT_FACES = -0.93
+CAPTIVE_FACES = -0.93
 """Greatest cosine between the normals of two facets that face each other, 21°, as of freeform faces that rest on each
 other: rounds in coarse meshes have no facets that oppose each other better."""
-AFLOAT_BESIDE = -0.7
+CAPTIVE_BESIDE = -0.7
 """The same of facets that tell whether one of the two bends there, 45°: the neighbours of a facet of a coarse roller. A
 face that stands askew, with an edge near, has one direction within that."""
-AFLOAT_REACH = 1.02
+CAPTIVE_REACH = 1.02
 """Times the contact tolerance that such a part may keep from its sides, as for faces that fit: clearances of exactly
 that are common, and rounding must not decide."""
-AFLOAT_BENDS = math.radians(1.0)
-"""rad: facets that differ by more bend."""
-AFLOAT_DIGITS = 2
-"""Of the coordinates of directions that are told apart, for the next."""
-AFLOAT_OPPOSED = -0.5
+CAPTIVE_BENDS = math.radians(1.0)
+"""rad: a face whose facets differ by more is round there; less is rounding of flat ones. Chosen, not measured."""
+CAPTIVE_DIGITS = 2
+"""Decimals of the coordinates of directions that are distinct: half a degree."""
+CAPTIVE_OPPOSED = -0.5
 """Greatest cosine between the directions in which a part has its two sides for it to be between them. A wedge wider
 than 60° pushes out what is in it; tapered rollers have 4° to 30°."""
-AFLOAT_HELD = 0.5
+CAPTIVE_HELD = 0.5
 """Cosine from which on a contact keeps a part from going towards the other side: it hangs on what it touches then. The
 pockets of cages hold rollers by up to 0.2."""
-AFLOAT_OPPOSES = 0.35
+CAPTIVE_OPPOSES = 0.35
 """Speed, of that of a unit motion of two bodies, at which a part between them is pressed and may hold it: 21°, by which
 the facets of a roller that face its race may lean, while the race slides past."""
-AFLOAT_BORE = -0.5
-"""Least cosine of the normals of one round contact down to which it does not go round a part: 120°."""
+CAPTIVE_BORE = -0.5
+"""Least cosine of the normals of one round contact down to which it does not go round a part: 120°, as half a bore and
+less lets the part out. Chosen, not measured."""
 
 
 _BORES = ("cylinder", "cone", "helicoid")
@@ -68,7 +68,7 @@ _BORES = ("cylinder", "cone", "helicoid")
 
 
 @dataclass(frozen=True, eq=False)
-class Afloat:
+class CaptivePart:
     """A part, or a group of them by its name, between two others with play."""
 
     name: str
@@ -115,7 +115,7 @@ class _Faced:
     """m: the least."""
 
 
-class AfloatParts:
+class CaptiveParts:
     """Those of an assembly; what is asked once is known."""
 
     def __init__(self, assembly: Assembly, contacts: Contacts):
@@ -163,7 +163,7 @@ class AfloatParts:
             first, second = (self.units[part] for part in patch.parts)
             out[first][second].append(patch.normals)
             out[second][first].append(-patch.normals)
-            if patch.kind in _BORES and float((patch.normals @ patch.normals.T).min(initial=1.0)) <= AFLOAT_BORE:
+            if patch.kind in _BORES and float((patch.normals @ patch.normals.T).min(initial=1.0)) <= CAPTIVE_BORE:
                 self._in_bores |= {(first, second), (second, first)}
         for overlap in (*self._contacts.interferences, *self._contacts.possible_overlaps):
             first, second = (self.units[part] for part in overlap.parts)
@@ -171,7 +171,7 @@ class AfloatParts:
             out[second][first].extend([])
         return out
 
-    def between(self, of: Mapping[str, int], known: Mapping[str, int] | None = None) -> Iterator[Afloat]:
+    def between(self, of: Mapping[str, int], known: Mapping[str, int] | None = None) -> Iterator[CaptivePart]:
         """All that are between two units that are not of one kind, in the order of their names; `of`: the kind of each
         unit, and none of those that do not count. What touches one that does not count is held by that. Of units that
         are `known` to belong together by one number nothing is asked."""
@@ -193,7 +193,7 @@ class AfloatParts:
             if len({of[unit] for unit in around}) > 1 and all(unit in of for unit in self._touched[name]):
                 yield name, around
 
-    def _between(self, name: str, sides: tuple[str, str], of: Mapping[str, int]) -> Iterator[Afloat]:
+    def _between(self, name: str, sides: tuple[str, str], of: Mapping[str, int]) -> Iterator[CaptivePart]:
         (first, second), touched = sides, self._touched[name]
         if of[first] == of[second] or (first in touched and second in touched):
             return
@@ -203,11 +203,11 @@ class AfloatParts:
         if not all(len(self._faced(name, side).facets) for side in sorted(sides, key=touched.__contains__)):
             return
         one, other = self._faced(name, first), self._faced(name, second)
-        opposed = one.normals @ other.normals.T <= AFLOAT_OPPOSED
+        opposed = one.normals @ other.normals.T <= CAPTIVE_OPPOSED
         opposed &= ~self._held(name, one.normals, second, of)[:, None] & ~self._held(name, other.normals, first, of)
         if opposed.any():
             there = opposed.any(axis=1).take(one.number)
-            yield Afloat(
+            yield CaptivePart(
                 name, sides, (None if first in touched else one.gap, None if second in touched else other.gap),
                 one.normals.take(one.number[there], axis=0).repeat(3, axis=0), one.facets[there].reshape(-1, 3),
             )  # fmt: skip
@@ -218,7 +218,7 @@ class AfloatParts:
         normals = [some for unit, every in self._touched[name].items() if of[unit] == of[by] for some in every]
         if not normals:
             return np.zeros(len(towards), bool)
-        return np.asarray((towards @ np.concatenate(normals).T >= AFLOAT_HELD).any(axis=1))
+        return np.asarray((towards @ np.concatenate(normals).T >= CAPTIVE_HELD).any(axis=1))
 
     def _faced(self, name: str, other: str) -> _Faced:
         """Where a unit faces another one within the contact tolerance, and either is round."""
@@ -229,18 +229,18 @@ class AfloatParts:
             mine, others = (
                 np.concatenate(rows) for rows in zip(*((one.normals, one.others) for one in found), strict=True)
             )
-            faces = (dot(mine, others) <= AFLOAT_FACES) & (_bend(mine) or _bend(others))
+            faces = (dot(mine, others) <= CAPTIVE_FACES) & (_bend(mine) or _bend(others))
             gap = np.concatenate([one.gaps for one in found])[faces].min(initial=math.inf)
             corners = np.concatenate(
                 [self._corners(part)[one.facets] for (part, _), one in zip(pairs, found, strict=True)]
             )
-            normals, number = np.unique(mine[faces].round(AFLOAT_DIGITS), axis=0, return_inverse=True)
+            normals, number = np.unique(mine[faces].round(CAPTIVE_DIGITS), axis=0, return_inverse=True)
             self._facing[key] = _Faced(normals, corners[faces], number.ravel(), float(gap))
         return self._facing[key]
 
     def _facets(self, part: PartName, other: PartName) -> Facing:
         tolerance = self._contacts.tolerance[min(part, other), max(part, other)]
-        return facing(self._corners(part), self._corners(other), AFLOAT_REACH * tolerance, AFLOAT_BESIDE)
+        return facing(self._corners(part), self._corners(other), CAPTIVE_REACH * tolerance, CAPTIVE_BESIDE)
 
     def _corners(self, name: PartName) -> Array:
         """(F, 3, 3) m: the facets of a part as it is placed."""
@@ -252,12 +252,12 @@ class AfloatParts:
 
 def _bend(normals: Array) -> bool:
     """Whether facets with these normals (k, 3) are not all of one plane."""
-    return len(normals) > 0 and float((normals @ normals[0]).min()) < math.cos(AFLOAT_BENDS)
+    return len(normals) > 0 and float((normals @ normals[0]).min()) < math.cos(CAPTIVE_BENDS)
 
 
 def may_carry(
-    parts: AfloatParts, kinematics: Kinematics, first: str, second: str, named: AbstractSet[str]
-) -> Afloat | None:
+    parts: CaptiveParts, kinematics: Kinematics, first: str, second: str, named: AbstractSet[str]
+) -> CaptivePart | None:
     """A part with play by which two bodies may be connected that are not by contact: directly, or by way of bodies that
     are neither named nor ground and of others with play. None where it is sure that they are not."""
     of = _of_bodies(parts, kinematics, (first, second), named)
@@ -285,12 +285,12 @@ def may_carry(
 
 
 def may_hold(
-    parts: AfloatParts,
+    parts: CaptiveParts,
     kinematics: Kinematics,
     bodies: Sequence[str],
     named: AbstractSet[str],
     motions: tuple[Array, Frame] | None,
-) -> Afloat | None:
+) -> CaptivePart | None:
     """A part with play between two of these bodies that are connected by contact, the first two and loose ones beside
     them: it may hold some of the motions of the second relative to the first, scaled columns (6, k), orthonormal; None:
     any. None where it is sure that there is no such part."""
@@ -303,14 +303,14 @@ def may_hold(
     return None
 
 
-def _opposes(one: Afloat, motions: Array, frame: Frame) -> bool:
+def _opposes(one: CaptivePart, motions: Array, frame: Frame) -> bool:
     """Whether some of these motions (6, k) bring the two sides of a part nearer to each other where it is."""
     speeds = rows(one.places, one.normals, frame) @ motions
-    return bool((np.linalg.norm(speeds, axis=1) >= AFLOAT_OPPOSES).any())
+    return bool((np.linalg.norm(speeds, axis=1) >= CAPTIVE_OPPOSES).any())
 
 
 def _of_bodies(
-    parts: AfloatParts, kinematics: Kinematics, bodies: Sequence[str], named: AbstractSet[str]
+    parts: CaptiveParts, kinematics: Kinematics, bodies: Sequence[str], named: AbstractSet[str]
 ) -> dict[str, str]:
     """The body of each unit of these bodies, and of those that are neither named nor ground."""
     asked = [one for one in kinematics.bodies if one.name in bodies or not (one.ground or one.name in named)]

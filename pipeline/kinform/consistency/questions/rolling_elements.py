@@ -24,9 +24,10 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, scaled, span, twist_at_origin
 from kinform.foundation.algebra.vectors import cross, sine
 from kinform.foundation.graphs.components import components
+from kinform.foundation.rounding import SINGLE
 from kinform.foundation.words import quoted
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import ACROSS_LINE, EXACT_PAIR
+from kinform.kinematics.constants import SAME_DIRECTION
 from kinform.kinematics.joints.pair.touches import TOUCHING, held_by_bends
 from kinform.mechanism.first_order import body_twists, close
 from kinform.model.arrays import Array, Flags
@@ -89,7 +90,7 @@ def second_moves(motions: Array, frame: Frame) -> Array:
     others and only rounding moves it."""
     twists = scaled(motions.reshape(-1, 6).T, frame)
     sizes = np.linalg.norm(twists, axis=0).reshape(motions.shape[:2])
-    still = sizes[:, 1] <= EXACT_PAIR * sizes.max(axis=1)
+    still = sizes[:, 1] <= SINGLE * sizes.max(axis=1)
     own = twists.reshape(6, *motions.shape[:2])[:, :, 1]
     return np.asarray(np.where(still, 0.0, own))
 
@@ -106,12 +107,12 @@ def _certain(joint: Joint, touching: Sequence[Patch], frame: Frame) -> Array:
     if not touching or all(patch.flat and not patch.one_sided for patch in touching):
         return joint.twists
     lines = [patch.axis for patch in touching if patch.kind == "line" and not patch.one_sided]
-    if len(lines) < len(touching) or any(sine(lines[0], other) > ACROSS_LINE for other in lines):
+    if len(lines) < len(touching) or any(sine(lines[0], other) > SAME_DIRECTION for other in lines):
         return joint.twists[:0]
     slide = np.concatenate([np.zeros(3), lines[0]])
     space = span(scaled(joint.twists.T, frame))
     missed = slide - space @ (space.T @ slide)
-    if float(np.linalg.norm(missed)) > ACROSS_LINE:
+    if float(np.linalg.norm(missed)) > SAME_DIRECTION:
         return joint.twists[:0]
     return np.asarray(twist_at_origin((space @ (space.T @ slide))[:, None], frame).T)
 
@@ -149,13 +150,13 @@ def _wedged(
     moved = motions[:, of, 3:] + cross(motions[:, of, :3], at)
     own = second_moves(motions, frame).T
     left, values, _ = np.linalg.svd(own, full_matrices=True)
-    rank = int(np.count_nonzero(values > EXACT_PAIR * values.max(initial=0.0)))
+    rank = int(np.count_nonzero(values > SINGLE * values.max(initial=0.0)))
     if not rank:
         return None
     flat = moved.reshape(len(motions), -1)
     idle, driven = left[:, rank:].T @ flat, (left[:, :rank] / values[:rank]).T @ flat
     _, sizes, ways = np.linalg.svd(idle, full_matrices=False)
-    ways = ways[sizes > EXACT_PAIR * sizes.max(initial=0.0)]
+    ways = ways[sizes > SINGLE * sizes.max(initial=0.0)]
     driven = driven - (driven @ ways.T) @ ways
     each = np.linalg.norm(driven.reshape(rank, len(of), 3).transpose(1, 0, 2), ord=2, axis=(1, 2))
     fastest = int(np.argmax(each))

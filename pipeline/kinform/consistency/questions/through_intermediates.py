@@ -1,11 +1,11 @@
-"""What two bodies may do relative to each other when loose parts between them take part.
+"""The relative motion of two bodies when loose parts between them take part.
 
-A pin, a bearing or a screw that the function does not name carries a joint between two bodies that
-it does name. The relative motion is then decided by all of them: the closure of the two bodies, their
-direct contact and the helpers that connect them, everything else left out.
+A pin, a bearing or a screw that the function does not name carries a joint between two bodies that it does name. The
+relative motion then follows from all of them: the closure of the two bodies, their direct contact and the bodies that
+connect them, everything else left out.
 
-Rolling elements touch by points and lines, whose normals turn as they move, so that what the closure leaves is known
-for this instant alone. `rolling` says which of it is there over a distance, and where it is in doubt.
+Rolling elements touch by points and lines, whose normals turn as they move, so that the closure is valid at this
+instant only. `rolling_elements` says which of the motion is there over a distance, and where it is in doubt.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from kinform.model.kinematics import Joint, Kinematics
 
 
 @dataclass(frozen=True, eq=False)
-class HelperMotion:
-    """Relative motion of two bodies through helpers."""
+class IntermediateMotion:
+    """Relative motion of two bodies through intermediate bodies."""
 
     form: JointForm
     freedoms: int
-    helpers: tuple[str, ...]
+    intermediates: tuple[str, ...]
     joints: tuple[Joint, ...]
     """All that take part, in the order of the kinematics."""
     twists: Array
@@ -41,20 +41,20 @@ class HelperMotion:
     """What is known of it where bodies touch by points and lines; None where none do."""
 
 
-def motion_through_helpers(
+def motion_through_intermediates(
     kinematics: Kinematics,
     patches: Sequence[Patch],
     first: str,
     second: str,
     named: AbstractSet[str],
     size: float,
-) -> HelperMotion | None:
+) -> IntermediateMotion | None:
     """The motion of `second` relative to `first` through bodies outside `named` and ground; None when
     no such body connects the two. `patches` are all those of the joints, `size` (m): of the smaller of the two."""
-    helpers = _connecting(kinematics, first, second, named)
-    if not helpers:
+    between = _connecting(kinematics, first, second, named)
+    if not between:
         return None
-    nodes = [first, second, *(name for name in kinematics.named_bodies if name in helpers)]
+    nodes = [first, second, *(name for name in kinematics.named_bodies if name in between)]
     index = {name: k for k, name in enumerate(nodes)}
     joints = kinematics.joints_among(index.keys())
     edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in joints]
@@ -65,9 +65,9 @@ def motion_through_helpers(
         points = np.array([patches[k].point for j in joints for k in j.patches if k < len(patches)]).reshape(-1, 3)
     frame = _frame(points, size)
     basis = span(second_moves(motions, frame))
-    names = tuple(sorted(helpers))
+    names = tuple(sorted(between))
     known = rolling(joints, edges, nodes, patches, motions, frame)
-    return HelperMotion(
+    return IntermediateMotion(
         name_space(basis, frame), basis.shape[1], names, tuple(joints), twist_at_origin(basis, frame).T, known
     )
 

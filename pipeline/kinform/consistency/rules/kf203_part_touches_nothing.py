@@ -22,7 +22,7 @@ import numpy as np
 
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled
-from kinform.consistency.questions.captive_parts import Afloat
+from kinform.consistency.questions.captive_parts import CaptivePart
 from kinform.consistency.rule import Rule
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.words import quoted
@@ -35,7 +35,7 @@ from kinform.model.findings import Finding
 def check(context: Context) -> Outcome:
     """Clusters of parts that are not connected with the ground."""
     touching = _clusters(context.assembly, context.contacts, unknown=True)
-    apart, afloat = _apart(context, touching), list[Afloat]()
+    apart, afloat = _apart(context, touching), list[CaptivePart]()
     if apart:
         near, afloat = _with_play(context, touching)
         apart = _apart(context, near)
@@ -46,7 +46,7 @@ def check(context: Context) -> Outcome:
     return settled(found, _doubt(context, doubtful, afloat))
 
 
-def _doubt(context: Context, clusters: list[tuple[str, ...]], afloat: list[Afloat]) -> str:
+def _doubt(context: Context, clusters: list[tuple[str, ...]], afloat: list[CaptivePart]) -> str:
     """What is not known about some clusters, whether by parts with play or by contact of no known kind."""
     names, units = {name for cluster in clusters for name in cluster}, context.afloat.units if afloat else {}
     play = [one for one in afloat if any(units[name] in (one.name, *one.sides) for name in names)]
@@ -57,7 +57,7 @@ def _doubt(context: Context, clusters: list[tuple[str, ...]], afloat: list[Afloa
     return "; ".join(words + [f"{one.words()}{more}" for one in play[:1]])
 
 
-def _with_play(context: Context, clusters: list[tuple[str, ...]]) -> tuple[list[tuple[str, ...]], list[Afloat]]:
+def _with_play(context: Context, clusters: list[tuple[str, ...]]) -> tuple[list[tuple[str, ...]], list[CaptivePart]]:
     """The clusters, with those as one that parts with play are between, or may hold; and these parts."""
     units = context.afloat.units
     known = {units[name]: k for k, cluster in enumerate(clusters) for name in cluster}

@@ -25,7 +25,7 @@ from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, quoted
-from kinform.kinematics import adrift, adrift_in_words
+from kinform.kinematics import disconnected_bodies, disconnected_in_words
 from kinform.model.assembly import Source
 from kinform.model.kinematics import Kinematics
 
@@ -37,8 +37,8 @@ def check(context: Context) -> Outcome:
     if ambiguous:
         return inconclusive(f"the mobility depends on joints that are ambiguous: {quoted(ambiguous)}")
     contacts = context.design.contacts  # sticks have none
-    if contacts is not None and (loose := adrift(kinematics, contacts)):
-        return inconclusive(adrift_in_words(loose))
+    if contacts is not None and (loose := disconnected_bodies(kinematics, contacts)):
+        return inconclusive(disconnected_in_words(loose))
     mobility = kinematics.mobility
     if mobility.on_edge:
         return inconclusive(mobility.finite_reason)

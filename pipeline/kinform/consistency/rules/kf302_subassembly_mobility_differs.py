@@ -13,9 +13,9 @@ from __future__ import annotations
 
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled
+from kinform.consistency.questions.subassembly_mobility import idle_within, mobility_within
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, quoted
-from kinform.kinematics import idle_within, mobility_within
 
 
 def check(context: Context) -> Outcome:

@@ -20,7 +20,7 @@ from kinform.consistency.outcome import Outcome, settled
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import area, direction, quoted
 from kinform.model.findings import Finding
-from kinform.model.kinematics import Aside, Joint
+from kinform.model.kinematics import IgnoredContact, Joint
 
 
 def check(context: Context) -> Outcome:
@@ -44,7 +44,7 @@ def _finding(context: Context, joint: Joint) -> Finding:
     )
 
 
-def _beside(context: Context, aside: Aside) -> Finding:
+def _beside(context: Context, aside: IgnoredContact) -> Finding:
     return RULE.finding(
         [aside.name],
         f"{quoted(aside.bodies)} touch like a {aside.type} joint over {area(aside.area, context.units)}, and "

@@ -17,7 +17,7 @@ from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import area, counted, quoted
 from kinform.model.findings import Finding
-from kinform.model.kinematics import Aside, Joint
+from kinform.model.kinematics import IgnoredContact, Joint
 
 
 def check(context: Context) -> Findings:
@@ -41,7 +41,7 @@ def _finding(context: Context, joint: Joint) -> Finding:
     )
 
 
-def _beside(context: Context, aside: Aside) -> Finding:
+def _beside(context: Context, aside: IgnoredContact) -> Finding:
     over = f" over {area(aside.area, context.units)}" if aside.area > 0.0 else ""
     return RULE.finding(
         [aside.name],

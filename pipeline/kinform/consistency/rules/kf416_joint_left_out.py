@@ -21,7 +21,7 @@ from kinform.consistency.outcome import Outcome, decided, skipped
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import direction, quoted
 from kinform.model.findings import Finding
-from kinform.model.kinematics import LeftOut
+from kinform.model.kinematics import UndeclaredJoint
 
 
 def check(context: Context) -> Outcome:
@@ -36,7 +36,7 @@ def check(context: Context) -> Outcome:
     return decided(_finding(context, one) for one in kinematics.left_out if not any(one is other for other in fixed))
 
 
-def _finding(context: Context, one: LeftOut) -> Finding:
+def _finding(context: Context, one: UndeclaredJoint) -> Finding:
     about = "" if one.axis is None else f" about {direction(one.axis)}"
     return RULE.finding(
         [one.body],

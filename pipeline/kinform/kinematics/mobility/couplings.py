@@ -21,7 +21,7 @@ from kinform.mechanism.joint_graph import JointGraph
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Mesh
 from kinform.model.contacts import Patch
-from kinform.model.kinematics import Body, Coupling, Joint, Meshing
+from kinform.model.kinematics import Body, Coupling, CouplingKind, Joint, Meshing
 from kinform.model.names import BodyName, JointName, PartName
 
 FIXED_RATIO = 1e-6
@@ -201,7 +201,7 @@ class _Tie:
             best = np.nanmin([best, abs(self.ratio) * total])
         return float(best)
 
-    def _kind(self) -> str:
+    def _kind(self) -> CouplingKind:
         """gear, rack, screw or cam: what the designer would call it."""
         if self.through.type == "screw":
             return "screw"

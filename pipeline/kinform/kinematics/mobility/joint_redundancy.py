@@ -15,10 +15,10 @@ from kinform.foundation.algebra.screws import Frame, rows, scaled, span
 from kinform.foundation.algebra.vectors import cross, dot, norm
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics.joints.pair.evidence import COAXIAL
-from kinform.kinematics.wording import Locked, locked_text, locked_wrenches, rows_too_many
+from kinform.kinematics.screws.wording import Locked, locked_text, locked_wrenches, rows_too_many
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
-from kinform.model.kinematics import Joint, Redundancy
+from kinform.model.kinematics import Joint, Redundancy, RedundancyKind
 from kinform.model.tolerances import Tolerances
 
 NAMED_CONTACT_AXIS = 0.02
@@ -32,7 +32,7 @@ HELD_TWICE = 1e-9
 
 
 def redundancy(
-    kind: str, text: str, rows: int, joints: Sequence[Joint], locked: Sequence[Locked], frame: Frame
+    kind: RedundancyKind, text: str, rows: int, joints: Sequence[Joint], locked: Sequence[Locked], frame: Frame
 ) -> Redundancy:
     """A redundancy of these joints, with `locked` wrenches that are scaled in `frame`."""
     wrenches = np.array([wrench for _, wrench in locked]).reshape(-1, 6)

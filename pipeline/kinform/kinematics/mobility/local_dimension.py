@@ -37,6 +37,7 @@ from kinform.kinematics.mobility.second_order import (
 from kinform.mechanism.constants import CLOSED
 from kinform.mechanism.loop_system import LoopSystem
 from kinform.model.arrays import Array
+from kinform.model.kinematics import CurvatureVerdict
 
 UNBALANCED = 1e-4
 """Curvature that is none."""
@@ -100,7 +101,7 @@ class LocalMotions:
     """Greatest closure error of the stepped poses that count (rad, and shares of the size)."""
     stepped: int | None = None
     """Freedoms of first order at stepped poses: the most; None where no step was kept."""
-    order: str = ""
+    order: CurvatureVerdict = ""
     """Second order: "extends" (all freedoms), "partly" (some directions), "obstructed" (none), "" not tested."""
     reason: str = ""
     """Why `dimension` is not known; else empty."""

@@ -19,7 +19,7 @@ from kinform.mechanism.block_rates import RATE_ROUNDING, Solution
 from kinform.mechanism.first_order import Closure
 from kinform.mechanism.joint_graph import JointGraph
 from kinform.model.arrays import Array
-from kinform.model.kinematics import Freedom, Kinematics
+from kinform.model.kinematics import Freedom, Kinematics, MotionKind
 from kinform.model.names import BodyName, JointName
 
 SAME_RATES = 1e-2
@@ -55,7 +55,7 @@ def named_freedoms(
             number = solution.driver - closure.offset[-1]
             root = closure.loose[number // 6]
             axis = np.eye(3)[number % 3]
-            kind = "turn" if number % 6 < 3 else "slide"
+            kind: MotionKind = "turn" if number % 6 < 3 else "slide"
             out.append(Freedom(None, bodies[root].name, kind, axis, places[root], 0.0, False, False, ()))
             continue
         body, replaced = spinning.get(n, (None, solution))
@@ -86,7 +86,7 @@ def named_freedoms(
     return tuple(out)
 
 
-def _read(twist: Array, near: Array | None, place: Array, size: float) -> tuple[str, Array, Array, float]:
+def _read(twist: Array, near: Array | None, place: Array, size: float) -> tuple[MotionKind, Array, Array, float]:
     """Kind, axis, point (m, beside `near`) and pitch (m a turn) of one twist (ω; v at the world's origin) of a body at
     `place` (m) in an assembly of this size (m)."""
     omega, velocity = twist[:3], twist[3:]

@@ -17,6 +17,7 @@ from kinform.kinematics.constants import RCOND
 from kinform.mechanism.constants import CLOSED
 from kinform.mechanism.loop_system import Form, LoopSystem, stacked
 from kinform.model.arrays import Array
+from kinform.model.kinematics import CurvatureVerdict
 
 BALANCED = 1e-6
 """Curvature (of unit freedoms) that is rounding."""
@@ -94,7 +95,7 @@ def first_order(system: LoopSystem) -> int:
     return Pose.at(system, np.zeros(system.coordinates)).freedoms
 
 
-def second_order(pose: Pose, rng: np.random.Generator) -> tuple[str, Array]:
+def second_order(pose: Pose, rng: np.random.Generator) -> tuple[CurvatureVerdict, Array]:
     """What the second-order test says, and first-order freedoms (D, n) that pass it.
 
     The forms wᵀ F''(u, u) are looked for common zeros on the unit sphere by Gauss–Newton from random starts.

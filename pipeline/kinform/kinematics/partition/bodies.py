@@ -23,6 +23,7 @@ from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.function import IntendedJoint
+from kinform.model.kinematics import MembershipCause
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces
 
@@ -35,11 +36,12 @@ line up either way. On 17 robots the greatest of a part whose author put it else
 120 and 200: with 300 as many are listed for nothing as for a reason."""
 HELD_ACROSS = 250.0
 """Price beyond which contact that was parted, a flat beside the axis or more, says that bodies guessed from different
-names are not sure."""
+names are not sure. Less than `FLAT_BESIDE`."""
 NEAREST_TRIED = 6
-"""Of so many parts whose boxes are nearest to one that touches nothing, the nearest surface is looked for."""
+"""Of so many parts whose boxes are nearest to one that touches nothing, the nearest surface is looked for. Chosen, not
+measured."""
 NAMED_HOLDS = 3
-"""Of the parts that hold another in its body, or that it was parted from, so many are named."""
+"""Of the parts that hold another in its body, or that it was parted from, so many are named. Chosen, not measured."""
 
 
 @dataclass(frozen=True)
@@ -48,8 +50,7 @@ class Placed:
 
     part: PartName
     body: int
-    how: str
-    """held, cut, nearest (as `Membership`)."""
+    how: MembershipCause
     margin: float
     """By how much another body would be dearer; infinite where no other comes into question."""
     other: int | None

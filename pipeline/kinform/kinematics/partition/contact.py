@@ -12,23 +12,25 @@ from functools import cached_property
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot, lengths, norm, widest_gap
+from kinform.foundation.rounding import SINGLE, SOLVED, TINY
 from kinform.frozen import dataclass
-from kinform.kinematics.partition.constants import COAXIAL, COAXIAL_OFF
+from kinform.kinematics.partition.constants import COAXIAL_OFF, PARTED, SAME_AXIS
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.function import IntendedJoint
 from kinform.model.names import PartName
 
 OPPOSED = 0.03
-"""Share of the local speed that a normal may oppose, and still slide on itself."""
+"""Share of the local speed that a normal may oppose, and still slide on itself. Chosen, not measured."""
 SLOW = 1e-4
-"""The same as a share of the greatest speed in the contact: near the axis nothing moves."""
+"""The same as a share of the greatest speed in the contact: near the axis nothing moves. Chosen, not measured."""
 OPPOSED_AREA = 0.05
-"""Share of the area between two parts that may oppose a joint that parts them: scraps decide nothing."""
+"""Share of the area between two parts that may oppose a joint that parts them: scraps decide nothing. Chosen, not
+measured."""
 OPPOSED_SOME = 5
 """One of so many points of a contact is asked about all joints before all are: a fifth has several times that share."""
 JOURNAL = 40.0
-"""Price of parting a journal, a collar or a guide."""
+"""Price of parting a journal, a collar or a guide. Prices have no unit: only their order counts (`constants`)."""
 LOOSE_JOURNAL = 35.0
 """The same of one with play: a pin turns where it is loose and stays where it is tight. Less than `EITHER` below a
 journal, so that it is listed: which side a pin goes with is for its maker to say."""
@@ -39,18 +41,18 @@ FACE_ROUND = 30.0
 """Price of parting a face that goes round the axis, without a journal. Less than a journal: most models end at a flush
 face, and what is inside of a servo is its own. With 1 for the journal 155 of 204 bodies of 17 robots came out whole,
 with 40 168, on no robot fewer; whichever robot is left out, the others choose 40."""
-SERRATED = 100.0
-"""Price of parting serrations about the axis: those of a servo's output turn with what they drive."""
 FLAT_BESIDE = 300.0
-"""Price of parting a flat beside the axis."""
+"""Price of separating a flat beside the axis, and of breaking contact at points or along lines that no joint may
+separate: that holds no more than a flat. With 100 as many joints of rings of bodies are found without any name as with
+20000, but one that is asked."""
 FLAT_APART = 50.0
-"""The same of one that does not touch: the tip of a screw over the face of a motor."""
+"""The same of one that does not touch: the tip of a screw over the face of a motor. Chosen, not measured."""
 APART = 0.05
-"""Gap of a flat from which it does not touch, as a share of the root of its area."""
+"""Gap of a flat from which it does not touch, as a share of the root of its area. Chosen, not measured."""
 JOURNAL_OFF = 0.7
 """Share of its reach by which the middle of a round patch may lie beside the axis that it goes round: half of one."""
 FACE_OFF = 0.5
-"""The same of other faces."""
+"""The same of other faces. Chosen, not measured."""
 GUIDED_ROUND = np.radians(181.0)
 """rad: normals of a guide leave no wider gap round it than this."""
 ROLLING = 1.0
@@ -248,9 +250,9 @@ class Contact:
         middle, radius = self.ball
         way = motions[:, 3:] + cross(motions[:, :3], np.broadcast_to(middle, (len(motions), 3)))
         # no point of the ball is faster
-        fastest = (1.0 + 1e-9) * (lengths(way) + lengths(motions[:, :3]) * radius)
+        fastest = (1.0 + SOLVED) * (lengths(way) + lengths(motions[:, :3]) * radius)
         area = self._pressed(motions, self.points[some], self.normals[some], fastest) @ self.weights[some]
-        return np.asarray(area > (1.0 + 1e-6) * OPPOSED_AREA * float(self.weights.sum()))
+        return np.asarray(area > (1.0 + SINGLE) * OPPOSED_AREA * float(self.weights.sum()))
 
     def _opposed(self, motions: Array) -> Flags:
         """(k, n) whether each of k motions (k, 6) presses on each point or leaves it."""
@@ -275,7 +277,7 @@ class Contact:
         """(k,) whether the points of each of k rows of flags (k, n) have next to none of the area."""
         area, total = flags @ self.weights, float(self.weights.sum())
         limit = OPPOSED_AREA * total
-        for k in np.flatnonzero(np.abs(area - limit) <= 1e-9 * total):
+        for k in np.flatnonzero(np.abs(area - limit) <= SOLVED * total):
             area[k] = self.weights[flags[k]].sum()  # shares that are meant to be equal hang on no order
         return np.asarray(area <= limit)
 
@@ -300,7 +302,7 @@ class Contact:
             arms = [x - along * p, y - along * q, z - along * r]
             reach = np.sqrt(np.maximum.reduceat(_squares(arms), self._first, axis=1))
             middle = [np.add.reduceat(arm * self.weights, self._first, axis=1) for arm in arms]
-            out[some] = np.sqrt(_squares(middle)) / np.maximum(self._areas, 1e-300) / np.maximum(reach, 1e-300)
+            out[some] = np.sqrt(_squares(middle)) / np.maximum(self._areas, TINY) / np.maximum(reach, TINY)
         return out
 
     def _journals(self, axes: Axes, off: Array) -> Flags:
@@ -318,7 +320,7 @@ class Contact:
         size = np.array([max(patch.radii, default=0.0) for patch in patches])
         u, v, w = np.array([patch.axis for patch in patches]).T[:, None]
         sphere = np.array([patch.kind == "sphere" for patch in patches], dtype=bool)
-        lies = np.where(axes.ball[:, None], sphere, np.abs(u * p + v * q + w * r) > np.cos(COAXIAL))
+        lies = np.where(axes.ball[:, None], sphere, np.abs(u * p + v * q + w * r) > np.cos(SAME_AXIS))
         return np.asarray(turning & ((off < JOURNAL_OFF) | (lies & (far < COAXIAL_OFF * size))))
 
     def _round(self, axes: Axes, opposed: Flags, serrated: Flags) -> list[float]:
@@ -338,7 +340,7 @@ class Contact:
         price = np.where(journal | round_it, FACE_ROUND, flat)
         price = np.where(journal & round_it, np.where(firm, JOURNAL, LOOSE_JOURNAL), price)
         held = (opposed & serrated).any(axis=1)
-        return [float(one) for one in np.where(held, np.maximum(price, SERRATED), price)]
+        return [float(one) for one in np.where(held, np.maximum(price, PARTED), price)]
 
     def _guided(self, joint: IntendedJoint, opposed: Flags) -> float:
         """The price along a slide: do faces that run along it stand round it?"""

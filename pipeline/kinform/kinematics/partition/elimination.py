@@ -19,7 +19,7 @@ CLEARLY_LESS = 1e-4
 what the integer program may miss. Sums of prices are known to 1e-10."""
 MOST_IN_TABLE = 50_000
 """Numbers in a table of costs, of all labels of a few nodes together, up to which nodes are eliminated: beyond, the
-integer program is as quick."""
+integer program is as quick. Chosen, not measured."""
 
 
 _Table = tuple[tuple[int, ...], Array, Array]

@@ -11,12 +11,13 @@ from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.bodies.merging import Merger
+from kinform.kinematics.joints.bodies.stated_joints import joint_twists
 from kinform.kinematics.partition.constants import TOUCH_WORTH
 from kinform.kinematics.partition.contact import PartPair
+from kinform.kinematics.partition.label_merging import Hold, merge_by_cost, merge_labels
 from kinform.kinematics.partition.labelling import Edge, Labels
 from kinform.kinematics.partition.loops import Loops
-from kinform.kinematics.partition.one_body import Hold, joined_by_cost, one_body
-from kinform.kinematics.partition.parting import Prices, joint_twists, prices
+from kinform.kinematics.partition.split_prices import Prices, prices
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.function import IntendedJoint
@@ -100,8 +101,10 @@ def graph_of(
         sets.union(number[by_root.setdefault(merger.root(name), name)], number[name])
     at = {number[by_root[root]]: label for root, label in label_of.items()}
     loops = _loops(assembly, joints, sides)
-    least = one_body(sets, at, _holds(number, costs, contacts.patches), sides, loops)
-    final, close = _searched(sets, number, at, sides, costs, contacts.patches, least, loops)
+    least = merge_labels(sets, at, _holds(number, costs, contacts.patches), sides, loops)
+    pieces = _pieces(sets, number, costs, at)  # of one label at most
+    seeds = {pieces[parts[node]]: label for node, label in at.items()}
+    final, close = merge_by_cost(seeds, _edges(pieces, sides, costs, contacts.patches), sides, least, loops)
     kept = {label: k for k, label in enumerate(sorted(set(final)))}
     new = [kept[label] for label in final]
     sides = [(new[a], new[b]) for a, b in sides]
@@ -116,29 +119,6 @@ def graph_of(
         costs,
         guessed=frozenset(label for label in new if new.count(label) > 1),
         open=frozenset(new[label] for label in close),
-    )
-
-
-def _searched(
-    sets: UnionFind,
-    number: Mapping[PartName, int],
-    at: Mapping[int, int],
-    sides: Sequence[Labels],
-    costs: Prices,
-    patches: Sequence[Patch],
-    least: Sequence[int],
-    loops: Loops,
-) -> tuple[list[int], set[int]]:
-    """Which labels are one body, beginning with those that are by contact (`least`), and which could be joined
-    otherwise; pieces have one label at most."""
-    pieces = _pieces(sets, number, costs, at)
-    names = sorted(number)
-    return joined_by_cost(
-        {pieces[names[node]]: label for node, label in at.items()},
-        _edges(pieces, sides, costs, patches),
-        sides,
-        least,
-        loops,
     )
 
 

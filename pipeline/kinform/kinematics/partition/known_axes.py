@@ -5,11 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.rounding import SOLVED
 from kinform.kinematics.partition.constants import SAME_AXIS
 from kinform.model.arrays import Array, Ints
-
-_ROUNDING = 1e-9
-"""Share of lengths by which what is measured here and one by one may differ."""
 
 
 class KnownAxes:
@@ -31,8 +29,8 @@ class KnownAxes:
         and pass the point at no more than `off` (m), or centres no further than this from it."""
         axes, apart = self._axes[: self._count], point - self._points[: self._count]
         beside = apart - dot(apart, axes)[:, None] * axes
-        limit = off + _ROUNDING * (off + np.sqrt(dot(apart, apart)))
+        limit = off + SOLVED * (off + np.sqrt(dot(apart, apart)))
         near: Ints = (dot(beside, beside) <= limit * limit).nonzero()[0]
         axes = axes.take(near, axis=0)
-        parallel = ~axes.any(axis=1) if axis is None else np.abs(axes @ axis) >= np.cos(SAME_AXIS) - _ROUNDING
+        parallel = ~axes.any(axis=1) if axis is None else np.abs(axes @ axis) >= np.cos(SAME_AXIS) - SOLVED
         return [int(k) for k in near[parallel]]

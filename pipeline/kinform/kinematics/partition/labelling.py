@@ -23,7 +23,8 @@ JAMMED = 25.0
 that of others is not. Less than any face, so that it only decides between a face and a journal; what it decides is
 listed."""
 MOST_SECONDS = 60.0
-"""s: what the integer program may take before the best answer so far is taken and said to be unproven."""
+"""s: what the integer program may take before the best answer so far is taken and said to be unproven. Chosen, not
+measured."""
 
 
 Labels = tuple[int, int]

@@ -10,10 +10,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from kinform.kinematics.joints.bodies.merging import Merger
-from kinform.kinematics.partition.contact import ROLLING, SERRATED, PartPair, contact_of_pairs
+from kinform.kinematics.partition.constants import PARTED
+from kinform.kinematics.partition.contact import ROLLING, PartPair, contact_of_pairs
 from kinform.kinematics.partition.graph import Graph, graph_of
 from kinform.kinematics.partition.labelling import Labelling, label_all
-from kinform.kinematics.partition.parting import Prices, hints_of
+from kinform.kinematics.partition.split_prices import Prices, hints_of
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.function import IntendedJoint
@@ -67,7 +68,7 @@ def _beside(joints: Sequence[IntendedJoint], cut: Cut, hints: dict[PartPair, flo
         number: tuple(pairs)
         for number, pairs in sorted(_across(cut).items())
         if joints[number].type not in ("prismatic", "planar")
-        and all(_plain(cut, number, pair, hints) > SERRATED for pair in pairs)
+        and all(_plain(cut, number, pair, hints) > PARTED for pair in pairs)
     }
 
 
@@ -82,7 +83,7 @@ def _round(joint: IntendedJoint, number: int, cut: Cut, hints: dict[PartPair, fl
         pair
         for pair, parted in cut[0].prices.by_joint.items()
         if number in parted
-        and ROLLING < _plain(cut, number, pair, hints) <= SERRATED
+        and ROLLING < _plain(cut, number, pair, hints) <= PARTED
         and len(set(_bodies(cut, pair))) == 1
         and set(_bodies(cut, pair)) <= ends
     ]

@@ -1,10 +1,10 @@
 """Joints that may be meant, where no function is stated: axes of journals that part the assembly.
 
 Every axis on which journals lie is a candidate. Along it, pairs may part whose contact its turn leaves free and that
-go round it (`parting`), and no others: flats beside it, holes that line up and everything that it does not move hold.
-An axis is proposed where that leaves two substantial bodies on either side of it, by itself or, in loops, together
-with all other candidates. Two axes between the same two bodies hold each other: neither is proposed, nor is one that
-only screws, pins or balls turn about. Sliders are not looked for.
+go round it (`split_prices`), and no others: flats beside it, holes that line up and everything that it does not move
+hold. An axis is proposed where that leaves two substantial bodies on either side of it, by itself or, in loops,
+together with all other candidates. Two axes between the same two bodies hold each other: neither is proposed, nor is
+one that only screws, pins or balls turn about. Sliders are not looked for.
 """
 
 from __future__ import annotations
@@ -17,18 +17,20 @@ import numpy as np
 from kinform.foundation.algebra.vectors import canonical_sign, norm
 from kinform.foundation.words import counted, quoted
 from kinform.frozen import dataclass
-from kinform.kinematics.part_volumes import volumes
+from kinform.kinematics.joints.bodies.extents import part_volumes
+from kinform.kinematics.joints.bodies.stated_joints import joint_twists
 from kinform.kinematics.partition.bodies import partition
 from kinform.kinematics.partition.constants import FASTENED, SAME_AXIS
 from kinform.kinematics.partition.contact import ROUND, Asked, Contact, PartPair, contact_of_pairs, near_each
 from kinform.kinematics.partition.known_axes import KnownAxes
-from kinform.kinematics.partition.parting import hints_of, joint_twists
 from kinform.kinematics.partition.sides import Sides, TouchingParts
+from kinform.kinematics.partition.split_prices import hints_of
 from kinform.kinematics.partition.standard_parts import HOLDERS, standard_parts
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.function import IntendedJoint
+from kinform.model.kinematics import JointType
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces
 
@@ -37,18 +39,18 @@ PROPOSED = (100.0, 310.0, np.inf)
 and serrations; where that parts nothing, flats beside it, too; then all that the turn leaves free."""
 BESIDE = 0.1
 """Of several pairs of bodies on one axis, those are proposed whose smaller side is at least this share of the largest
-such: legs on one hip axis, and not the rings of their bearings."""
+such: legs on one hip axis, and not the rings of their bearings. Chosen, not measured."""
 SAME_AXIS_OFF = 0.02
-"""The same of their distance, as a share of the smaller journal's reach."""
+"""The same of their distance, as a share of the smaller journal's reach. Chosen, not measured."""
 SAME_CENTRE = 1e-6
-"""m: balls on one pin that differ by less are one, seen from two contacts."""
+"""m: balls on one pin that differ by less are one, seen from two contacts. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
 class Proposal:
     """A joint that may be meant."""
 
-    type: str
+    type: JointType
     """revolute or spherical."""
     axis: Array | None
     """(3,) unit; None of spherical ones."""
@@ -83,7 +85,7 @@ def propose(
     together: Sequence[Sequence[PartName]] = (),
 ) -> list[Proposal]:
     """Joints that may be meant, the largest smaller side first. `together`: parts that are one anyway."""
-    volume = volumes(assembly)
+    volume = part_volumes(assembly)
     parts = sorted(volume)
     pairs = contact_of_pairs(contacts.patches)
     hints = hints_of(contacts.suggestions)
@@ -158,7 +160,7 @@ def stated_proposals(
 
     Their sides are named by the largest part of the body that all of them together make of what touches about the axis.
     """
-    volume = volumes(assembly)
+    volume = part_volumes(assembly)
     ways = propose(assembly, surfaces, contacts)
     joints = [
         IntendedJoint(f"joint_{number}", one.between(volume), one.type, one.axis, None, one.point, None, None, "", None)
@@ -235,7 +237,7 @@ def _candidates(patches: Sequence[Patch]) -> list[IntendedJoint]:
     return out
 
 
-def _joint(type_: str, axis: Array | None, point: Array) -> IntendedJoint:
+def _joint(type_: JointType, axis: Array | None, point: Array) -> IntendedJoint:
     return IntendedJoint("", ("", ""), type_, axis, None, point, None, None, "", None)
 
 

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from kinform.foundation.graphs.components import roots
+from kinform.foundation.rounding import SINGLE, TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.partition.contact import PartPair
 from kinform.model.arrays import Array, Flags, Ints
@@ -26,10 +27,10 @@ Sides = tuple[tuple[PartName, ...], tuple[PartName, ...]]
 
 def substantial(volumes: Array, share: float) -> float:
     """m³ that a body has at least, of parts of these volumes (n,), that is no ring, ball or screw: a share of all, but
-    no more than `constants.OF_A_PART` of the part in which an m³ of the assembly lies on average. Without that, none of
+    no more than `OF_A_PART` of the part in which an m³ of the assembly lies on average. Without that, none of
     a thousand equal links would be one."""
     whole = float(volumes.sum())
-    return min(share * whole, OF_A_PART * float((volumes * volumes).sum()) / max(whole, 1e-300))
+    return min(share * whole, OF_A_PART * float((volumes * volumes).sum()) / max(whole, TINY))
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +116,7 @@ class TouchingParts:
         out = []
         for one, two, size in zip(firsts, seconds, sizes, strict=True):
             # what differs by more in size needs no look at its parts
-            like = np.flatnonzero((np.abs(sizes - size) < (1.0 + 1e-6) * least).all(axis=1))
+            like = np.flatnonzero((np.abs(sizes - size) < (1.0 + SINGLE) * least).all(axis=1))
             for sides, side in ((firsts, one), (seconds, two)):
                 odd = sides.take(like, axis=0) ^ side
                 like = like[(odd * self._volumes).sum(axis=1) < least]

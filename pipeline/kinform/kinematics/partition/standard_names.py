@@ -11,10 +11,13 @@ from __future__ import annotations
 import re
 import unicodedata
 from itertools import pairwise
+from typing import Literal
 
 __all__ = ["STANDARDS", "WORDS", "kind_by_name"]
 
-WORDS = {
+StandardKind = Literal["screw", "nut", "washer", "pin", "circlip", "rivet", "bearing", "ball"]
+
+WORDS: dict[StandardKind, str] = {
     "screw": "screw screws bolt bolts capscrew setscrew grubscrew machinescrew shcs bhcs fhcs schraube "
     "schrauben gewindestift gewindestifte vis vite viti tornillo tornillos perno pernos parafuso parafusos "
     "skruv skruvar skrue skruer schroef schroeven ruuvi sroub śruba sruba wkręt wkret vint винт винты болт "
@@ -32,13 +35,13 @@ WORDS = {
     "rodamiento rodamientos rolamento rolamentos łożysko lozysko подшипник подшипники",
 }
 """Words of names, by kind; pairs of words are written as one."""
-ENDINGS = {
+ENDINGS: dict[str, StandardKind] = {
     "schraube": "screw", "schrauben": "screw", "mutter": "nut", "muttern": "nut", "unterlegscheibe": "washer",
     "federscheibe": "washer", "zahnscheibe": "washer", "fächerscheibe": "washer", "zylinderstift": "pin",
     "kerbstift": "pin", "kugellager": "bearing", "nadellager": "bearing", "rollenlager": "bearing",
 }  # fmt: skip
 """How compounds end that are such parts."""
-WRITTEN_TOGETHER = {
+WRITTEN_TOGETHER: dict[str, StandardKind] = {
     "螺钉": "screw", "螺丝": "screw", "螺栓": "screw", "螺絲": "screw", "螺釘": "screw", "ネジ": "screw",
     "ねじ": "screw", "ボルト": "screw", "나사": "screw", "볼트": "screw", "螺母": "nut", "螺帽": "nut",
     "ナット": "nut", "너트": "nut", "垫圈": "washer", "垫片": "washer", "墊圈": "washer", "ワッシャ": "washer",
@@ -70,7 +73,7 @@ BESIDE = frozenset(
     "countersunk button flat hexagon torx phillips shielded sealed c3 left right top bottom front rear".split()
 )
 """Words beside a size or a designation that say nothing of what else a part may be."""
-STANDARDS = {
+STANDARDS: dict[StandardKind, str] = {
     "screw": "din84 din85 din912 din913 din914 din915 din916 din931 din933 din963 din965 din6912 din7380 "
     "din7500 din7984 din7985 din7991 din603 din653 din464 iso1207 iso1580 iso2009 iso4014 iso4017 iso4026 "
     "iso4027 iso4028 iso4029 iso4762 iso7045 iso7046 iso7047 iso7380 iso10642 iso14579 iso14580 iso14583 "
@@ -108,7 +111,7 @@ _GB_T = re.compile(r"\bgb/t(?![^\W\d_])", re.IGNORECASE)
 _VIS_A_VIS = re.compile(r"vis[\W_]*[aà][\W_]*vis")
 
 
-def kind_by_name(name: str) -> tuple[str, str] | None:
+def kind_by_name(name: str) -> tuple[StandardKind, str] | None:
     """What a part is by its name (the last of a path), and the words that say so; None where it says nothing."""
     leaf = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", _GB_T.sub("gb ", unicodedata.normalize("NFKC", name)).rsplit("/", 1)[-1])
     low = _VIS_A_VIS.sub(" ", leaf.lower())
@@ -145,10 +148,11 @@ def _standard(body: str, between: str, number: str) -> str:
     return f"{'iso' if iso else 'gost' if body == 'гост' else body}{main}"
 
 
-def _by_size(low: str) -> tuple[str, str] | None:
+def _by_size(low: str) -> tuple[StandardKind, str] | None:
     """A size of a screw, or a bearing's designation, beside words only that say nothing else."""
     joined = re.sub(r"(?<=\d)\s*[x×*]\s*(?=\d)", "x", low)
-    for pattern, kind in ((_SIZE, "screw"), (_BEARING, "bearing")):
+    sized: tuple[tuple[re.Pattern[str], StandardKind], ...] = ((_SIZE, "screw"), (_BEARING, "bearing"))
+    for pattern, kind in sized:
         compact = re.sub(r"(?<=\d)[-_ ](?=2?(?:rs[1h]?|z|zz|vv|dd|uu)\b)", "", joined)
         words = [word for word in re.split(r"[^\w.,×*]+|_", compact) if word]
         sizes = [word for word in words if pattern.fullmatch(word)]

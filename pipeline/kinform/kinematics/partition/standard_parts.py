@@ -15,31 +15,32 @@ import numpy as np
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.words import counted
 from kinform.frozen import dataclass
-from kinform.kinematics.partition.constants import COAXIAL, COAXIAL_OFF
-from kinform.kinematics.partition.standard_names import kind_by_name
+from kinform.kinematics.partition.constants import COAXIAL_OFF, SAME_AXIS
+from kinform.kinematics.partition.standard_names import StandardKind, kind_by_name
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Part
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces, Surface
 
 BALL_AREA = 0.9
-"""Share of its area that is one sphere, of a ball."""
+"""Share of its area that is one sphere, of a ball. Chosen, not measured."""
 ALL_ROUND = np.radians(300.0)
-"""rad: what of a cylinder is there at least where it tells what a part is."""
+"""rad: what of a cylinder is there at least where it tells what a part is. Chosen, not measured."""
 TURNED = 0.9
-"""Share of its area that lies about one axis, across it or flat along it, of screws, nuts, washers and pins."""
+"""Share of its area that lies about one axis, across it or flat along it, of screws, nuts, washers and pins. Chosen,
+not measured."""
 WASHER_HEIGHT = 0.3
-"""Height of a washer at most, as a share of its outer radius."""
+"""Height of a washer at most, as a share of its outer radius. Chosen, not measured."""
 NUT_HEIGHT = 1.3
-"""Height of a nut at most, by its width across flats: beyond, it is a spacer."""
+"""Height of a nut at most, by its width across flats: beyond, it is a spacer. Standard nuts have 0.4 to 0.9."""
 HEAD = (1.25, 2.6)
 """Radius of a screw's head by that of its shank: 1.5 to 2.2 in the standards."""
 SHANK = 1.0
-"""Length of a screw's shank at least, by its radius."""
+"""Length of a screw's shank at least, by its radius. Chosen, not measured."""
 PIN_LENGTH = 2.0
-"""Length of a pin at least, by its radius."""
+"""Length of a pin at least, by its radius. Chosen, not measured."""
 HEXAGON = 0.02
-"""By how much the cosine between faces of a hexagon may be off."""
+"""By how much the cosine between faces of a hexagon may be off. 1.3° on the angle of 60°."""
 
 
 HOLDERS = ("screw", "nut", "washer", "rivet", "circlip")
@@ -50,7 +51,7 @@ HOLDERS = ("screw", "nut", "washer", "rivet", "circlip")
 class StandardPart:
     """What a part is, and how that was told."""
 
-    kind: str
+    kind: StandardKind
     evidence: str
 
 
@@ -148,12 +149,12 @@ def _turned(surfaces: Sequence[Surface], main: Surface) -> float:
 def _coaxial(one: Surface, other: Surface) -> bool:
     gap = one.point - other.point
     off = norm(gap - (gap @ other.axis) * other.axis)
-    return abs(float(one.axis @ other.axis)) > np.cos(COAXIAL) and off < COAXIAL_OFF * one.radius
+    return abs(float(one.axis @ other.axis)) > np.cos(SAME_AXIS) and off < COAXIAL_OFF * one.radius
 
 
 def _hexagon(surfaces: Sequence[Surface], axis: Array) -> bool:
     """Whether six planes stand round the axis, at equal distances, 60° from each other."""
-    beside = [s for s in surfaces if s.kind == "plane" and abs(float(s.axis @ axis)) < np.sin(COAXIAL)]
+    beside = [s for s in surfaces if s.kind == "plane" and abs(float(s.axis @ axis)) < np.sin(SAME_AXIS)]
     if len(beside) < 6:
         return False
     for first in beside:

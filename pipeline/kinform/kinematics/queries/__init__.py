@@ -1,6 +1,7 @@
-"""Questions of users about freedoms and joints, answered from what was derived.
+"""What users ask about freedoms and joints, answered from the derived kinematics.
 
-`motion_query` whether one motion is there, by `motion_senses` also one way only; `intended_freedoms` the same of all
-that the function states; `joint_insight` why a joint is what it is; `through_helpers` how two bodies move by way of
-loose parts; `adrift` which bodies count as free though they overlap with the rest; `afloat` which parts have play
-between two others, and may carry them."""
+`motion_query`: is one motion there, between two bodies and in the whole assembly; `motion_senses` decides it for each
+sense. `intended_freedoms`: the same for every joint that the function states. `joint_insight`: why a joint is what it
+is. `disconnected`: bodies that count as free although they interpenetrate others. `design_view` is what all of these
+take. Questions that only rules ask are in `consistency.questions`.
+"""

@@ -1,5 +1,7 @@
-"""Bodies that no joint connects with ground, though parts of them overlap with the rest: they count as free, and what
-is drawn there may hold them."""
+"""Bodies that no joint connects with ground although they interpenetrate others.
+
+They count as free, but what interpenetrates may hold them: the mobility is doubtful.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,7 @@ from kinform.model.names import BodyName
 
 
 @dataclass(frozen=True)
-class Adrift:
+class Disconnected:
     """Bodies that joints connect with each other, but not with ground."""
 
     bodies: tuple[BodyName, ...]
@@ -23,7 +25,7 @@ class Adrift:
     """The deepest with any other body."""
 
 
-def adrift(kinematics: Kinematics, contacts: Contacts) -> tuple[Adrift, ...]:
+def disconnected_bodies(kinematics: Kinematics, contacts: Contacts) -> tuple[Disconnected, ...]:
     """All such bodies, by the names of the first."""
     names = [body.name for body in kinematics.bodies]
     node = {name: k for k, name in enumerate(names)}
@@ -39,14 +41,14 @@ def adrift(kinematics: Kinematics, contacts: Contacts) -> tuple[Adrift, ...]:
             if root not in deepest or overlap.depth > deepest[root].depth:
                 deepest[root] = overlap
     found = [
-        Adrift(tuple(sorted(name for name in names if sets.find(node[name]) == root)), overlap)
+        Disconnected(tuple(sorted(name for name in names if sets.find(node[name]) == root)), overlap)
         for root, overlap in deepest.items()
     ]
     return tuple(sorted(found, key=lambda one: one.bodies))
 
 
-def adrift_in_words(found: Sequence[Adrift]) -> str:
-    """What is not known of them, as a sentence without its end; of several, of the one whose overlap is deepest."""
+def disconnected_in_words(found: Sequence[Disconnected]) -> str:
+    """The doubt about them, as a sentence without its full stop; of several, about the one with the deepest overlap."""
     worst = max(found, key=lambda one: one.overlap.depth)
     more = f" (and {len(found) - 1} more such)" if len(found) > 1 else ""
     return (

@@ -7,6 +7,7 @@ the candidate motions say: a motion becomes free once every patch that it would 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Literal
 
 import numpy as np
 
@@ -18,15 +19,18 @@ from kinform.kinematics.joints.pair.decision import decide
 from kinform.kinematics.joints.pair.evidence import Evidence, Member
 from kinform.kinematics.joints.pair.hypotheses import candidate_motions, motion_words
 from kinform.kinematics.joints.pair.preserved import preserved_motions
-from kinform.kinematics.queries.derived import Derived
+from kinform.kinematics.queries.design_view import DesignView
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
-from kinform.model.kinematics import Joint
+from kinform.model.kinematics import Joint, JointStatus, JointType, body_of_part
 
 MOST_PATCHES = 40
-"""Joints with more patches are not decided again without each."""
+"""Joints with more patches are not decided again without each. Chosen, not measured."""
 MOST_PATCH_SETS = 24
-"""Sets of several patches that are tried, the smallest area first."""
+"""Sets of several patches that are tried, the smallest area first. Chosen, not measured."""
+
+
+PatchUse = Literal["carries", "blocks", "ignored"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,8 +40,8 @@ class PatchRole:
     index: int
     """Into Contacts.patches."""
     patch: Patch
-    role: str
-    """carries, blocks, or ignored (a stray touch, or not what decides a joint that somebody stated)."""
+    role: PatchUse
+    """ignored: a stray touch, or not what decides a joint that somebody stated."""
     share: float
     """Of the area that decides, with wide gaps counting less; 0 where ignored."""
     rows: int
@@ -52,9 +56,9 @@ class Alternative:
     """Indices into Contacts.patches."""
     frees: str
     """The motion that these patches forbid, in words; empty for one tried by itself."""
-    type: str
+    type: JointType
     freedoms: int
-    status: str
+    status: JointStatus
     axis: Array | None
 
 
@@ -84,7 +88,7 @@ class Insight:
     """What was not looked at, and why; empty where all was."""
 
 
-def insight(design: Derived, name: str) -> Insight:
+def insight(design: DesignView, name: str) -> Insight:
     """The evidence of the joint of this name. Raises KeyError for another name, listing those that there are."""
     kinematics = design.kinematics
     assert kinematics is not None
@@ -114,16 +118,16 @@ def insight(design: Derived, name: str) -> Insight:
     )
 
 
-def patches_between(design: Derived, first: str, second: str) -> list[Member]:
+def patches_between(design: DesignView, first: str, second: str) -> list[Member]:
     """The patches between two bodies."""
     assert design.kinematics is not None
-    of_part = {part: body.name for body in design.kinematics.bodies for part in body.parts}
+    of_part = body_of_part(design.kinematics.bodies)
     patches = () if design.contacts is None else design.contacts.patches
     sides = [tuple(of_part[part] for part in patch.parts) for patch in patches]
     return [(k, p, sides[k][0] != first) for k, p in enumerate(patches) if set(sides[k]) == {first, second}]
 
 
-def _evidence(design: Derived, joint: Joint, without: frozenset[int] = frozenset()) -> Evidence | None:
+def _evidence(design: DesignView, joint: Joint, without: frozenset[int] = frozenset()) -> Evidence | None:
     assert design.kinematics is not None
     members = [member for member in patches_between(design, *joint.bodies) if member[0] not in without]
     if not members or design.contacts is None:
@@ -132,7 +136,7 @@ def _evidence(design: Derived, joint: Joint, without: frozenset[int] = frozenset
     return evidence_between(members, bodies, design.assembly, design.contacts, Extents(design.assembly))
 
 
-def _roles(design: Derived, joint: Joint, evidence: Evidence | None) -> tuple[PatchRole, ...]:
+def _roles(design: DesignView, joint: Joint, evidence: Evidence | None) -> tuple[PatchRole, ...]:
     assert design.kinematics is not None
     rows = np.bincount(design.kinematics.matrix.patch, minlength=1)
     blocking = {blocker.patch for blocker in joint.blockers}
@@ -140,12 +144,14 @@ def _roles(design: Derived, joint: Joint, evidence: Evidence | None) -> tuple[Pa
     shares = {item.index: item.area / total for item in evidence.items} if evidence is not None else {}
     out = []
     for k, patch, _ in patches_between(design, *joint.bodies):
-        role = "blocks" if k in blocking else "carries" if k in joint.patches else "ignored"
+        role: PatchUse = "blocks" if k in blocking else "carries" if k in joint.patches else "ignored"
         out.append(PatchRole(k, patch, role, shares.get(k, 0.0), int(rows[k]) if k < len(rows) else 0))
     return tuple(out)
 
 
-def _alternatives(design: Derived, joint: Joint, evidence: Evidence | None) -> tuple[tuple[Alternative, ...], int, str]:
+def _alternatives(
+    design: DesignView, joint: Joint, evidence: Evidence | None
+) -> tuple[tuple[Alternative, ...], int, str]:
     """The joint decided again without each patch, and without what each candidate motion breaks."""
     if evidence is None:
         return (), 0, "no contact patch decides this joint"

@@ -9,21 +9,21 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, rows, scaled, span
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.meant import did_you_mean
+from kinform.foundation.rounding import ARITHMETIC, SOLVED
 from kinform.foundation.words import counted
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import AT_REST
 from kinform.kinematics.mobility.named_freedoms import Motions
-from kinform.kinematics.queries.derived import Derived
-from kinform.kinematics.queries.disconnected import adrift, adrift_in_words
+from kinform.kinematics.queries.design_view import DesignView
+from kinform.kinematics.queries.disconnected import disconnected_bodies, disconnected_in_words
 from kinform.kinematics.queries.joint_insight import patches_between
 from kinform.kinematics.queries.motion_senses import MOTION_THERE, Attempt, attempt, pair_ways
-from kinform.kinematics.wording import direction_words
+from kinform.kinematics.screws.wording import direction_words
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
-from kinform.model.kinematics import Joint
+from kinform.model.kinematics import Joint, body_of_part
 
 BLOCKING_SPEED = 0.02
-"""Share of a patch's speed along its normals from which on it is named as blocking."""
+"""Share of a patch's speed along its normals from which on it is named as blocking. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +61,7 @@ class QueryAnswer:
 
 
 def query(
-    design: Derived, a: str, b: str, *, turn: tuple[Array, Array] | None = None, slide: Array | None = None
+    design: DesignView, a: str, b: str, *, turn: tuple[Array, Array] | None = None, slide: Array | None = None
 ) -> QueryAnswer:
     """Whether b can turn about (axis, point m) or slide along a direction, relative to a.
 
@@ -81,7 +81,7 @@ def query(
     return query_twist(design, a, b, np.concatenate([direction, cross(point, direction)]), "turn")
 
 
-def query_twist(design: Derived, a: str, b: str, motion: Array, what: str) -> QueryAnswer:
+def query_twist(design: DesignView, a: str, b: str, motion: Array, what: str) -> QueryAnswer:
     """Whether b can move by the twist `motion` (ω; v at the world's origin) relative to a; `what` names it.
 
     Asked are the freedoms of the pair's joint, those of the whole assembly, what blocks the joint, and, where all this
@@ -132,7 +132,7 @@ def query_twist(design: Derived, a: str, b: str, motion: Array, what: str) -> Qu
     return replace(answer, text=text + _doubt(design, joint, (first, second)))
 
 
-def _body(design: Derived, name: str) -> str:
+def _body(design: DesignView, name: str) -> str:
     assert design.kinematics is not None
     if any(body.name == name for body in design.kinematics.bodies):
         return name
@@ -152,7 +152,7 @@ def _outside(twist: Array, space: Array, frame: Frame) -> float:
     return norm(twist - basis @ (basis.T @ twist))
 
 
-def _in_assembly(design: Derived, first: str, second: str, twist: Array, frame: Frame) -> float:
+def _in_assembly(design: DesignView, first: str, second: str, twist: Array, frame: Frame) -> float:
     assert design.kinematics is not None
     freedoms = design.kinematics.mobility.freedoms
     if len(freedoms) < design.kinematics.mobility.instantaneous:
@@ -161,7 +161,7 @@ def _in_assembly(design: Derived, first: str, second: str, twist: Array, frame: 
         node = {str(body.name): k for k, body in enumerate(design.kinematics.bodies)}
         relative = freedoms[:, node[second]] - freedoms[:, node[first]]
     size = np.linalg.norm(relative, axis=1) if len(relative) else np.zeros(0)
-    return _outside(twist, relative[size > AT_REST], frame)
+    return _outside(twist, relative[size > SOLVED], frame)
 
 
 def _blockers(patches: list[tuple[int, Patch]], twist: Array, frame: Frame) -> tuple[QueryBlocker, ...]:
@@ -170,7 +170,7 @@ def _blockers(patches: list[tuple[int, Patch]], twist: Array, frame: Frame) -> t
         speed = rows(patch.points, patch.normals, frame) @ twist
         arms = (patch.points - frame.centre) / frame.length
         motion = np.linalg.norm(twist[3:] + cross(twist[:3], arms), axis=1)
-        if np.sqrt((speed**2).mean()) > BLOCKING_SPEED * max(np.sqrt((motion**2).mean()), 1e-12):
+        if np.sqrt((speed**2).mean()) > BLOCKING_SPEED * max(np.sqrt((motion**2).mean()), ARITHMETIC):
             out.append(_blocker(k, patch))
     return tuple(sorted(out, key=lambda q: (-q.area, q.patch)))
 
@@ -179,10 +179,10 @@ def _blocker(k: int, patch: Patch) -> QueryBlocker:
     return QueryBlocker(patch.parts, k, patch.points.mean(axis=0), patch.area, patch.kind)
 
 
-def _apart(design: Derived, first: str, second: str) -> str:
+def _apart(design: DesignView, first: str, second: str) -> str:
     """What two bodies without contact do."""
     assert design.kinematics is not None
-    of_part = {part: body.name for body in design.kinematics.bodies for part in body.parts}
+    of_part = body_of_part(design.kinematics.bodies)
     overlaps = design.contacts.interferences if design.contacts is not None else ()
     depth = max((one.depth for one in overlaps if {of_part[part] for part in one.parts} == {first, second}), default=0)
     return f"overlap by {1e3 * depth:.2g} mm where nothing mates" if depth > 0.0 else "do not touch"
@@ -227,13 +227,13 @@ def _sense(what: str, motion: Array, *, forward: bool) -> str:
     return words if what == "slide" else f"the sense of {words}"
 
 
-def _doubt(design: Derived, joint: Joint | None, bodies: tuple[str, str]) -> str:
+def _doubt(design: DesignView, joint: Joint | None, bodies: tuple[str, str]) -> str:
     """What the answer about these bodies counts on and is not certain, as an addition to the sentence."""
     assert design.kinematics is not None
     uncertain = design.kinematics.mobility.uncertain
     if joint is not None:
         return f"; their joint is ambiguous: {joint.reason}" if joint.status == "ambiguous" else ""
     out = f"; this counts on joints that are not certain: {', '.join(uncertain)}" if uncertain else ""
-    loose = adrift(design.kinematics, design.contacts) if design.contacts is not None else ()
+    loose = disconnected_bodies(design.kinematics, design.contacts) if design.contacts is not None else ()
     asked = [one for one in loose if len({*bodies} & {*one.bodies}) == 1]
-    return out + (f"; but {adrift_in_words(asked)}" if asked else "")
+    return out + (f"; but {disconnected_in_words(asked)}" if asked else "")

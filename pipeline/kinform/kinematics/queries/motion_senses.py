@@ -16,6 +16,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, scaled
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import blocks
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.separation.contact_rows import ContactRows, is_stated
 from kinform.mechanism.joint_graph import JointGraph
@@ -27,13 +28,14 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
 
 MOTION_THERE = 1e-3
-"""A unit twist is there when less than this of it lies outside the freedoms (scaled by the size)."""
+"""A unit twist is there when less than this of it lies outside the freedoms (scaled by the size). Chosen, not
+measured."""
 MOST_PROGRAM_ROWS = 20_000
-"""Rows of contact beyond which the linear program would take minutes."""
+"""Rows of contact beyond which the linear program would take minutes. Chosen, not measured."""
 MOST_CONTACTS_TRIED = 40
-"""Violated contacts up to which each is tried again, so that none is named without need."""
+"""Violated contacts up to which each is tried again, so that none is named without need. Chosen, not measured."""
 MOST_ROWS_TRIED = 2_000
-"""Rows of contact up to which that is done."""
+"""Rows of contact up to which that is done. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,5 +197,5 @@ def _rows(source: ContactRows, joint: Joint, frame: Frame) -> list[tuple[Array, 
     out: list[tuple[Array, int | str]] = []
     for k, turned in source.members(joint):
         rows = source.rows(k, frame, turned=turned)
-        out.append((rows / np.maximum(np.linalg.norm(rows, axis=1), 1e-300)[:, None], k))
+        out.append((rows / np.maximum(np.linalg.norm(rows, axis=1), TINY)[:, None], k))
     return out

@@ -14,30 +14,24 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from kinform.foundation.rounding import SINGLE, TINY
 from kinform.frozen import dataclass
-from kinform.kinematics.separation.constants import CONE_HELD
+from kinform.kinematics.separation.constants import CONE_FREE, CONE_HELD, HIGHS_FEASIBLE
 from kinform.model.arrays import Array, Flags, Ints
 
-CONE_FREE = 1e-4
-"""Speeds over the size of a unit twist below which rows do not move: rounding of meshes and of HiGHS."""
 LEAST_ROW = 1e-3
-"""Length below which what is left of a unit row says nothing."""
-EQUAL_ROWS = 1e-6
-"""A row counts as tight below this, and two rows as one."""
+"""Length below which what is left of a unit row says nothing. Chosen, not measured."""
 SURELY_HELD = 1e-5
 """Singular value of what is held in a block from which on HiGHS, whose rows are good to 1e-7, moves nothing so."""
-SURELY_STILL = 1e-7
-"""Share of a row that what is held leaves below which it opens by less than counts: LARGEST_TWIST times it is 5e-5."""
-CERTIFICATE_SHARE = 1e-6
-"""Least λ over the greatest of a certificate."""
 NEWTON_STEPS = 25
-"""Newton steps; certificates are found within a few."""
+"""Newton steps; certificates are found within a few. Chosen, not measured."""
 LONGEST_STEP = 2.0
-"""Change of an exponent that one Newton step may make at most."""
+"""Change of an exponent that one Newton step may make at most. Rows weigh e² less or more after one, so that the
+quadratic model still holds roughly."""
 FAR_EXPONENT = 40.0
-"""Exponent at which the sum has evidently no minimum."""
+"""Exponent at which the sum has evidently no minimum. exp(-40) is below the rounding of 1."""
 MOST_RAYS = 48
-"""Rays at an intermediate step beyond which there are too many to list."""
+"""Rays at an intermediate step beyond which there are too many to list. Chosen, not measured."""
 
 
 _MIX = np.array([0x2C1B3C6D, 0x9E3779B1, 0x85EBCA77, 0xC2B2AE3D, 0x27D4EB2F, 0x165667B1, 0x5BD1E995], dtype=np.int64)
@@ -70,7 +64,7 @@ def unit_rows_of(rows: Array, group: Ints) -> tuple[Array, Ints]:
     if len(rows) < 2:
         return rows, group
     keys = np.empty((len(rows), rows.shape[1] + 1), dtype=np.int64)
-    keys[:, 0], keys[:, 1:] = group, np.rint(rows / EQUAL_ROWS)
+    keys[:, 0], keys[:, 1:] = group, np.rint(rows / SINGLE)
     order = (keys @ _MIX[: keys.shape[1]]).argsort(kind="stable")
     ordered = keys[order]
     again = (ordered[1:] == ordered[:-1]).all(axis=1)
@@ -124,10 +118,10 @@ def held_for_certain(pairs: Sequence[Array]) -> Flags:
         change = np.einsum("ij,ij->i", rows, np.repeat(step, counts, axis=0))
         certificate = weight * (1.0 - change)
         # where all rows agree on a side the certificate cancels to rounding: it must keep some of its weight
-        proven = np.minimum.reduceat(certificate, start) > CERTIFICATE_SHARE * np.maximum.reduceat(weight, start)
+        proven = np.minimum.reduceat(certificate, start) > SINGLE * np.maximum.reduceat(weight, start)
         held[active[proven]] = True
         longest = np.maximum.reduceat(np.abs(change), start)
-        at = at + step * np.minimum(1.0, LONGEST_STEP / np.maximum(longest, 1e-300))[:, None]
+        at = at + step * np.minimum(1.0, LONGEST_STEP / np.maximum(longest, TINY))[:, None]
         keep = ~proven & (np.maximum.reduceat(np.abs(exponent), start) < FAR_EXPONENT)
         if not keep.any():
             break
@@ -153,7 +147,7 @@ def nothing_opens_in_each(programs: Sequence[tuple[Array, Array]]) -> list[bool]
     for size in {of.shape[1] for of in inner if len(of)}:
         members = [k for k, of in enumerate(inner) if len(of) and of.shape[1] == size]
         values = np.linalg.eigvalsh([inner[k].T @ inner[k] for k in members]) / [[len(inner[k])] for k in members]
-        unsure = np.any((values > SURELY_STILL**2) & (values < CONE_FREE**2), axis=1)
+        unsure = np.any((values > HIGHS_FEASIBLE**2) & (values < CONE_FREE**2), axis=1)
         clear = [k for k, doubt in zip(members, unsure, strict=True) if not doubt]
         for k, held in zip(clear, held_for_certain([inner[k] for k in clear]), strict=True):
             out[k] = bool(held)
@@ -176,7 +170,7 @@ def _free(programs: Sequence[tuple[Array, Array]]) -> list[Array]:
 def _scaled(rows: Array) -> Array:
     """The rows (n, d) that move for certain, at length one."""
     size = np.linalg.norm(rows, axis=1)
-    moves = size > SURELY_STILL
+    moves = size > HIGHS_FEASIBLE
     return np.asarray(rows[moves] / size[moves, None])
 
 
@@ -234,7 +228,7 @@ def extreme_rays(rows: Array, opposed: Array | None = None) -> Array | None:
     while rest:
         # the row that most rays violate cuts most away
         speeds = rays @ inner[rest].T
-        broken = (speeds < -EQUAL_ROWS).sum(axis=0)
+        broken = (speeds < -SINGLE).sum(axis=0)
         done += [k for k, n in zip(rest, broken, strict=True) if n == 0]
         rest = [k for k, n in zip(rest, broken, strict=True) if n > 0]
         if not rest:
@@ -266,11 +260,11 @@ def _independent(inner: Array) -> list[int]:
 def _cut(rays: Array, inner: Array, done: Sequence[int], row: Array) -> Array | None:
     """The rays after one more row: those inside, and where edges of the cone cross it."""
     speed = rays @ row
-    inside, outside = np.flatnonzero(speed > EQUAL_ROWS), np.flatnonzero(speed < -EQUAL_ROWS)
-    kept = rays[speed >= -EQUAL_ROWS]
+    inside, outside = np.flatnonzero(speed > SINGLE), np.flatnonzero(speed < -SINGLE)
+    kept = rays[speed >= -SINGLE]
     if not len(inside):
         return kept
-    tight = np.abs(rays @ inner[list(done)].T) <= EQUAL_ROWS
+    tight = np.abs(rays @ inner[list(done)].T) <= SINGLE
     common = (tight[inside][:, None] & tight[outside][None]).reshape(-1, tight.shape[1])
     a, b = (x.ravel() for x in np.meshgrid(inside, outside, indexing="ij"))
     enough = common.sum(axis=1) >= rays.shape[1] - 2
@@ -280,7 +274,7 @@ def _cut(rays: Array, inner: Array, done: Sequence[int], row: Array) -> Array | 
     neighbours = shared.sum(axis=1) == 2
     a, b = a[neighbours], b[neighbours]
     new = rays[b] * speed[a][:, None] - rays[a] * speed[b][:, None]
-    new /= np.maximum(np.linalg.norm(new, axis=1), 1e-300)[:, None]
+    new /= np.maximum(np.linalg.norm(new, axis=1), TINY)[:, None]
     if len(kept) + len(new) > MOST_RAYS:
         return None
     return np.vstack([kept, new])

@@ -15,7 +15,8 @@ from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import cross
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.pair.extremes import extreme_samples
-from kinform.kinematics.separation.cone import CONE_FREE, grams, held_for_certain, split_directions, unit_rows_of
+from kinform.kinematics.separation.cone import grams, held_for_certain, split_directions, unit_rows_of
+from kinform.kinematics.separation.constants import CONE_FREE
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, ConstraintMatrix, Joint

@@ -14,14 +14,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.foundation.graphs.graph import UnionFind
-from kinform.kinematics.separation.constants import CONE_HELD
+from kinform.kinematics.separation.constants import CONE_HELD, HIGHS_FEASIBLE
 from kinform.kinematics.separation.contact_rows import Cone
 from kinform.model.arrays import Array, Ints
 
 LARGEST_TWIST = 1.0 / CONE_HELD
 """Bound of twist components where a pair opens by 1: what opens slower does not open for certain."""
-STILL_LIFTED = 1e-10
-"""Speed of a row, of a slide of 1, that is none: LARGEST_TWIST times it is less than HiGHS admits."""
+
+_AT_REST = HIGHS_FEASIBLE / LARGEST_TWIST
+"""Speed of a row, of a slide of 1, that is none: moved as far as allowed, the row misses by what HiGHS admits."""
 
 
 _Ends = tuple[int, int]
@@ -41,7 +42,7 @@ def lifts_apart(
         together.union(*ends)
     apart = [(together.find(a), together.find(b)) for (a, b), _ in loose]
     for direction in directions:
-        if np.abs(fixed @ direction).max(initial=0.0) > STILL_LIFTED:
+        if np.abs(fixed @ direction).max(initial=0.0) > _AT_REST:
             continue
         speeds = _opening(normals @ direction, counts)
         if speeds is not None and _reach(nodes, apart, speeds) <= LARGEST_TWIST:
@@ -54,7 +55,7 @@ def _opening(speeds: Array, counts: Ints) -> list[float] | None:
     start = np.cumsum(counts) - counts
     least, most = np.minimum.reduceat(speeds, start), np.maximum.reduceat(speeds, start)
     mean = np.add.reduceat(speeds, start) / counts
-    opens = (least > -STILL_LIFTED) & (mean > CONE_HELD) | (most < STILL_LIFTED) & (mean < -CONE_HELD)
+    opens = (least > -_AT_REST) & (mean > CONE_HELD) | (most < _AT_REST) & (mean < -CONE_HELD)
     return mean.tolist() if opens.all() else None
 
 

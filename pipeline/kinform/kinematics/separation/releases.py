@@ -11,19 +11,19 @@ from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.records import altered
 from kinform.frozen import dataclass
 from kinform.kinematics.constants import SAME_DIRECTION
-from kinform.kinematics.separation.cone import CONE_FREE, extreme_rays, held_for_certain, opening, unit_rows
-from kinform.kinematics.separation.constants import CONE_HELD
+from kinform.kinematics.screws.wording import direction_words
+from kinform.kinematics.separation.cone import extreme_rays, held_for_certain, opening, unit_rows
+from kinform.kinematics.separation.constants import CONE_FREE, CONE_HELD
 from kinform.kinematics.separation.contact_rows import Cone
-from kinform.kinematics.wording import direction_words
 from kinform.model.arrays import Array, Flags
 from kinform.model.kinematics import Joint, Release
 
 MOST_RELEASES = 12
-"""Extreme directions up to which each is told."""
+"""Extreme directions up to which each is told. Chosen, not measured."""
 MIDDLE_STEPS = 200
-"""Steps in which a direction inside a cone of very many extreme directions is looked for."""
+"""Steps in which a direction inside a cone of very many extreme directions is looked for. Chosen, not measured."""
 MIDDLE_STRIDE = 0.1
-"""Speed that such a step gives to the worst row."""
+"""Speed that such a step gives to the worst row. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)

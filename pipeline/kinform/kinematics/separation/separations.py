@@ -23,13 +23,13 @@ from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.graphs.graph import UnionFind, blocks
 from kinform.foundation.in_step import in_step
 from kinform.frozen import dataclass
-from kinform.kinematics.answers import Answers, ask
 from kinform.kinematics.constants import MOST_IN_STEP
 from kinform.kinematics.separation.cone import nothing_opens_in_each, rows_beside, split_directions, unit_rows
-from kinform.kinematics.separation.constants import CONE_HELD
+from kinform.kinematics.separation.constants import CONE_HELD, HIGHS_FEASIBLE
 from kinform.kinematics.separation.contact_rows import Cone, ContactRows, is_stated
 from kinform.kinematics.separation.lifting import LARGEST_TWIST, lifts_apart
 from kinform.kinematics.separation.releases import certainly_held, leaving_of_each, release_of
+from kinform.kinematics.step_cache import StepCache, cached_each
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, Joint, Release, Separation
@@ -43,11 +43,8 @@ MOST_CERTIFIED = 120
 millisecond, where importing and calling a linear program takes hundreds."""
 MOST_OPENING_ROWS = 12_000
 """Rows of one block's program beyond which it would take minutes: 400 bricks in a wall, 5,000 rows, take 3 s."""
-ROUNDED_ROW = 1e-7
-"""Entries of unit rows below this are rounding to HiGHS, which with them may not end: a hand of 146 parts did not in
-ten minutes."""
 MOST_TOGETHER = 8
-"""Bodies up to which those are told that leave together."""
+"""Bodies up to which those are told that leave together. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +104,7 @@ def links_between(
 
 
 def separations(
-    names: Sequence[BodyName], ground: int, links: Sequence[Link], answers: Answers | None = None
+    names: Sequence[BodyName], ground: int, links: Sequence[Link], cache: StepCache | None = None
 ) -> tuple[tuple[Separation, ...], str]:
     """What can leave, and why it is not known of the rest ("" where it is)."""
     opened: set[int] = set()
@@ -119,7 +116,7 @@ def separations(
             opened.update(loose)
         elif loose:
             joined.append(block)
-    of_each = _opened([[links[k] for k in block] for block in joined], answers)
+    of_each = _opened([[links[k] for k in block] for block in joined], cache)
     for members, solved in zip(joined, of_each, strict=True):
         if solved is None:
             reason = "whether parts can leave is not known of all: some loops of contacts are too large to decide"
@@ -132,7 +129,7 @@ def separations(
     return sets, reason
 
 
-def _opened(of_each: Sequence[Sequence[Link]], answers: Answers | None) -> Sequence[Opened]:
+def _opened(of_each: Sequence[Sequence[Link]], cache: StepCache | None) -> Sequence[Opened]:
     """Which links of each block can open together: of the block, so far as it is not known."""
     questions = [[(link.ends, link.cone, link.twists) for link in of_block] for of_block in of_each]
     links = {id(question): of_block for question, of_block in zip(questions, of_each, strict=True)}
@@ -144,7 +141,7 @@ def _opened(of_each: Sequence[Sequence[Link]], answers: Answers | None) -> Seque
             out += in_step(ways, nothing_opens_in_each)
         return out
 
-    return ask(answers, "opened", questions, solved)
+    return cached_each(cache, "opened", questions, solved)
 
 
 def _links_that_open(links: Sequence[Link]) -> Generator[tuple[Array, Array], bool, Opened]:
@@ -222,7 +219,7 @@ def _stack(items: list[tuple[Array, int, int, int]], columns: int) -> csr_matrix
         numbers = np.arange(count, count + len(rows))
         for sign, column in ((-1.0, a), (1.0, b)):
             if column >= 0:
-                data.append(np.where(np.abs(rows) > ROUNDED_ROW, sign * rows, 0.0).ravel())
+                data.append(np.where(np.abs(rows) > HIGHS_FEASIBLE, sign * rows, 0.0).ravel())
                 i.append(np.repeat(numbers, 6))
                 j.append(np.tile(np.arange(column, column + 6), len(rows)))
         if slack >= 0:

@@ -18,7 +18,7 @@ def joint_sentence(joint: Joint, units: str) -> str:
     """ "revolute about z through (0, 0, 21) mm"."""
     if joint.type == "general":
         return f"general, {words.counted(joint.freedoms, 'freedom')}"
-    text = joint.type
+    text: str = joint.type
     if joint.type != "fixed":
         text += axis_words(joint.type, joint.axis, joint.axis2)
     if joint.pitch is not None:

@@ -18,9 +18,9 @@ from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.frozen import dataclass
 from kinform.kinematics.constants import AT_REST
-from kinform.kinematics.joints.pair.canonical_basis import canonical_twists
 from kinform.kinematics.joints.pair.certainty import meets
 from kinform.kinematics.joints.pair.touches import TOUCHING
+from kinform.kinematics.screws.canonical_basis import canonical_twists
 from kinform.mechanism.constants import SIGMAS
 from kinform.mechanism.first_order import body_twists
 from kinform.mechanism.joint_graph import JointGraph

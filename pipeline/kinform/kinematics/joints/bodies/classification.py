@@ -7,18 +7,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from kinform.foundation.words import quoted
-from kinform.kinematics.answers import Answers, ask
-from kinform.kinematics.joints.bodies.complete import without_effect
+from kinform.kinematics.joints.bodies.complete_function import without_effect
 from kinform.kinematics.joints.bodies.extents import Extents
 from kinform.kinematics.joints.bodies.merging import Merger
 from kinform.kinematics.joints.bodies.overlaps import deepest_overlaps, with_overlap
 from kinform.kinematics.joints.bodies.stated_joints import Pair, stated_roots
 from kinform.kinematics.joints.pair.evidence import Evidence, Member, gather
-from kinform.kinematics.joints.pair.question import Answer, Question, answer_each, joint_between
+from kinform.kinematics.joints.pair.question import Answer, Question, answer_each, bare_patches, joint_between
+from kinform.kinematics.step_cache import StepCache, cached_each
 from kinform.model.arrays import Ints
 from kinform.model.assembly import Assembly
-from kinform.model.contacts import Contacts, Patch
-from kinform.model.kinematics import Body, Joint
+from kinform.model.contacts import Contacts
+from kinform.model.kinematics import Body, Joint, body_of_part
 from kinform.model.names import PartName
 from kinform.model.tolerances import Tolerances
 
@@ -26,16 +26,12 @@ from kinform.model.tolerances import Tolerances
 class Pairs:
     """Decides pairs of bodies by the patches between them."""
 
-    def __init__(
-        self,
-        assembly: Assembly,
-        contacts: Contacts,
-        patches: Sequence[Patch],
-        extents: Extents,
-        answers: Answers | None,
-    ):
-        self.assembly, self.patches = assembly, patches
-        self._tolerance, self._extents, self._answers = contacts.tolerance, extents, answers
+    def __init__(self, assembly: Assembly, contacts: Contacts, cache: StepCache | None = None):
+        self.assembly = assembly
+        self.patches = bare_patches(contacts.patches)
+        self._tolerance, self._extents, self._cache = contacts.tolerance, Extents(assembly), cache
+        self.size = self._extents.assembly
+        """m: diagonal of the assembly."""
         self.interferences = contacts.interferences
         self.extremes: dict[int, Ints] = {}
         """Samples that bound the patches that were looked at."""
@@ -43,7 +39,7 @@ class Pairs:
     def decide(self, pairs: Sequence[tuple[Sequence[Member], Sequence[Body]]]) -> list[Answer]:
         """What the patches between two bodies say, of several pairs of bodies."""
         questions = [self._question(members, bodies) for members, bodies in pairs]
-        answers = ask(self._answers, "pair", questions, answer_each)
+        answers = cached_each(self._cache, "pair", questions, answer_each)
         for (members, _), answer in zip(pairs, answers, strict=True):
             self.extremes |= {index: samples for (index, _, _), samples in zip(members, answer.extremes, strict=True)}
         return [self._without_lost(answer, members) for answer, (members, _) in zip(answers, pairs, strict=True)]
@@ -86,7 +82,7 @@ def decide_all(pairs: Pairs, merger: Merger, *, fusing: bool = True) -> dict[Pai
             return out
 
 
-def decide_beside(pairs: Pairs, merger: Merger) -> list[Joint]:
+def decide_ignored(pairs: Pairs, merger: Merger) -> list[Joint]:
     """What contact would hold between bodies that a function which states all joints moves by others, sorted by their
     bodies: it constrains nothing."""
     decided = _decided(pairs, merger, _touching(pairs, merger, beside=True), {})
@@ -95,7 +91,7 @@ def decide_beside(pairs: Pairs, merger: Merger) -> list[Joint]:
 
 def _touching(pairs: Pairs, merger: Merger, *, beside: bool) -> dict[Pair, list[Member]]:
     """Patches by pairs of bodies; `beside`: of those that constrain nothing, else of all others."""
-    of_part = {part: body.name for body in merger.bodies() for part in body.parts}
+    of_part = body_of_part(merger.bodies())
     touching: dict[Pair, list[Member]] = defaultdict(list)
     nothing = without_effect(pairs.assembly, merger)
     for index, patch in enumerate(pairs.patches):
@@ -118,7 +114,7 @@ def _decided(
     new = {key: pair for pair, key in keys.items() if key not in known}
     decided = pairs.decide([(touching[pair], [of_name[n] for n in pair]) for pair in new.values()])
     known |= zip(new, decided, strict=True)
-    overlaps = deepest_overlaps(pairs.interferences, {part: body.name for body in bodies for part in body.parts})
+    overlaps = deepest_overlaps(pairs.interferences, body_of_part(bodies))
     out: dict[Pair, tuple[Answer, Joint]] = {}
     for pair, key in keys.items():
         answer = known[key]

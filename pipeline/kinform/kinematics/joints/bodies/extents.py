@@ -1,4 +1,4 @@
-"""How large the assembly, a body, or any set of its parts is."""
+"""Sizes: boxes of the assembly and of any set of its parts, and volumes of parts."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.foundation.algebra.vectors import norm
+from kinform.foundation.levelled import levelled
 from kinform.model.assembly import Assembly
 from kinform.model.names import PartName
 
@@ -35,3 +36,14 @@ class Extents:
     def assembly(self) -> float:
         """Diagonal of the assembly's box (m); 1 without meshes."""
         return self.diagonal(self._boxes) or 1.0
+
+
+def part_volumes(assembly: Assembly) -> dict[PartName, float]:
+    """m³ of every part with a mesh; that of its box where the mesh is open. Volumes that differ only by the rounding of
+    files are equal, and so are their sums in any order."""
+    out = {}
+    for part in assembly.parts:
+        if part.mesh is not None:
+            own = part.mesh.health.volume
+            out[part.name] = abs(own) if own else float(np.prod(np.subtract(*part.mesh.placed_box(part.X_WP)[::-1])))
+    return levelled(out)

@@ -8,18 +8,15 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.graphs.graph import UnionFind
+from kinform.kinematics.constants import SAME_DIRECTION
 from kinform.kinematics.joints.bodies.kept_apart import contradicted, kept_apart
 from kinform.kinematics.joints.bodies.merging import Merger
 from kinform.kinematics.joints.pair.joint import stated_joint
 from kinform.kinematics.joints.pair.lower_pairs import JointForm
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Suggestion
-from kinform.model.kinematics import Body, Joint
+from kinform.model.kinematics import Body, Joint, body_of_part
 from kinform.model.names import BodyName, PartName
-
-SUGGESTED_AXIS = 1e-3
-"""rad by which a suggested axis may differ from the normal of a planar joint."""
-
 
 INFERRED = "inferred: "
 """How the reason begins for which a suggestion made parts one body."""
@@ -67,7 +64,7 @@ def turn_about_suggested_axes(
     where nothing else is stated of the two bodies."""
     if not assembly.infer_fasteners:
         return joints
-    of_part: dict[PartName, BodyName] = {part: body.name for body in bodies for part in body.parts}
+    of_part: dict[PartName, BodyName] = body_of_part(bodies)
     hints: dict[tuple[BodyName, BodyName], list[Suggestion]] = {}
     for hint in contacts.suggestions:
         first, second = sorted(of_part[part] for part in hint.parts)
@@ -80,7 +77,7 @@ def turn_about_suggested_axes(
 def _stated_otherwise(assembly: Assembly, of_part: Mapping[PartName, BodyName]) -> Callable[[Joint], bool]:
     """Whether something else than a turn is stated between the bodies of a joint: another joint, or that they are one
     body, if need be by way of others."""
-    stated = [(joint.between, joint.type) for joint in assembly.function.joints]
+    stated: list[tuple[tuple[str, str], str]] = [(joint.between, joint.type) for joint in assembly.function.joints]
     stated += [(assumption.between, assumption.type or "") for assumption in assembly.assumptions]
     names = sorted(set(of_part.values()))
     index = {name: number for number, name in enumerate(names)}
@@ -103,7 +100,7 @@ def _revolute(joint: Joint, hints: list[Suggestion]) -> Joint:
     if joint.type != "planar" or joint.status != "determined" or joint.axis is None or len(hints) != 1:
         return joint
     hint = hints[0]
-    if abs(float(hint.axis @ joint.axis)) < np.cos(SUGGESTED_AXIS):
+    if abs(float(hint.axis @ joint.axis)) < np.cos(SAME_DIRECTION):
         return joint
     reason = f"planar by contact; {hint.evidence} suggest the axis, with {hint.confidence} confidence"
     revolute = stated_joint(joint.bodies, JointForm("revolute", joint.axis, hint.point), hint.kind, reason)

@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.algebra.vectors import box, cross, foot, norm
-from kinform.kinematics.constants import INTENDED_AXIS
+from kinform.kinematics.constants import INTENDED_AXIS, SAME_DIRECTION
 from kinform.kinematics.joints.bodies.stated_joints import Pair, pair_between
 from kinform.kinematics.joints.pair.joint import reading_of
 from kinform.kinematics.joints.pair.question import Answer
@@ -24,11 +24,9 @@ from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
 from kinform.model.names import BodyName, PartName
 
-ON_ONE_LINE = 1e-3
-"""Sine between axes, and share of the assembly's size between lines, of contacts of a pin that are about one line."""
 READING_PLACE = 0.1
 """Share of the size of a contact by which the place of an intended joint may be off that of the reading that it
-chooses."""
+chooses. Chosen, not measured."""
 
 
 Decided = Mapping[Pair, tuple[Answer, Joint]]
@@ -112,10 +110,10 @@ def _about_one_line(joints: Sequence[Joint], size: float) -> bool:
     for joint in joints:
         if joint.type not in ("revolute", "cylindrical", "planar", "screw") or joint.axis is None:
             return False
-        if norm(cross(joint.axis, lead.axis)) > ON_ONE_LINE:
+        if norm(cross(joint.axis, lead.axis)) > SAME_DIRECTION:
             return False
         if joint.type != "planar" and joint.point is not None:
             apart = joint.point - foot(lead.point, lead.axis, joint.point)
-            if norm(apart) > ON_ONE_LINE * size:
+            if norm(apart) > SAME_DIRECTION * size:
                 return False
     return True

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 
+import numpy as np
+
+from kinform.foundation.algebra.vectors import norm
 from kinform.kinematics.joints.bodies.merging import Merger
-from kinform.kinematics.joints.pair.joint import stated_joint
+from kinform.kinematics.joints.pair.joint import stated_joint, twists_of
 from kinform.kinematics.joints.pair.lower_pairs import JointForm
+from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
@@ -32,6 +36,24 @@ def joint_form(assembly: Assembly, of_part: Mapping[PartName, BodyName], joint: 
     if joint.type == "universal" and of_part[assembly.parts_of(joint.between[0])[0]] != pair[0]:
         axis, axis2 = axis2, axis
     return JointForm(joint.type, axis, joint.point, joint.pitch, axis2)
+
+
+def joint_twists(joint: IntendedJoint) -> Array | None:
+    """(k, 6) motions of an intended joint (ω; v at the world's origin); None where it does not say where they are.
+
+    A slide needs no point, nor does a planar joint: its turn is then about the world's origin.
+    """
+    axis, axis2, point = joint.axis, joint.axis2, joint.point
+    if joint.type in ("prismatic", "planar") and point is None:
+        point = np.zeros(3)
+    if joint.type == "fixed":
+        return twists_of("fixed", None, None)
+    if point is None or (axis is None and joint.type != "spherical"):
+        return None
+    if (joint.type == "screw" and joint.pitch is None) or (joint.type == "universal" and axis2 is None):
+        return None
+    unit, unit2 = (None if one is None else one / norm(one) for one in (axis, axis2))
+    return twists_of(joint.type, unit, point, joint.pitch, unit2)
 
 
 def intended_joints(

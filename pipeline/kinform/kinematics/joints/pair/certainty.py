@@ -9,7 +9,6 @@ end stops (`stops`).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from math import sqrt
@@ -17,9 +16,10 @@ from math import sqrt
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, perpendicular, sine
+from kinform.foundation.rounding import SINGLE, TINY
 from kinform.foundation.words import counted, quoted
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import EXACT_PAIR
+from kinform.kinematics.joints.pair.constants import VAGUE_AXIS
 from kinform.kinematics.joints.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.joints.pair.freedoms import freedoms, freedoms_beyond
 from kinform.kinematics.joints.pair.hollows import hollow_reading
@@ -41,32 +41,29 @@ from kinform.kinematics.joints.pair.touches import TOUCHING, apart_doubt, beside
 from kinform.kinematics.joints.pair.uncertainty import uncertainty_doubt
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
+from kinform.model.kinematics import JointStatus, ReadingCause
 from kinform.model.tolerances import Tolerances
 
 MISSED_AXES = 0.5
-"""Axes that miss each other by less than this share of the contact tolerance are meant to be one."""
+"""Axes that miss each other by less than this share of the contact tolerance are meant to be one. Chosen, not
+measured."""
 TILTED_AXES = 4.0
-"""So are axes within this many times the alignment."""
+"""So are axes within this many times the alignment. Chosen, not measured."""
 ON_RADIUS = 0.02
-"""Relative: points this near to the radius of a surface from an axis are on a surface about that axis."""
+"""Relative: points this near to the radius of a surface from an axis are on a surface about that axis. A facet of a
+cylinder of 16 sides is 2 % inside its radius (1 - cos(π/16))."""
 THREAD_AXES = 4
-"""Axes about which threads are suspected."""
+"""Axes about which threads are suspected. Chosen, not measured."""
 THREAD_SECTORS = 8
-"""Parts of a turn of which all but one must have contact where a thread is suspected."""
+"""Parts of a turn of which all but one must have contact where a thread is suspected. Chosen, not measured."""
 FILLED_SECTOR = 0.02
-"""Share of the weight from which on such a part has contact."""
+"""Share of the weight from which on such a part has contact. Chosen, not measured."""
 THREAD_SLOPE = 0.01
-"""Mean square of the normals along the axis below which nothing leans."""
+"""Mean square of the normals along the axis below which nothing leans. Chosen, not measured."""
 THREAD_LEAN = 5e-3
-"""Advance a radian, in radii, of what leans like a thread."""
+"""Advance a radian, in radii, of what leans like a thread. Chosen, not measured."""
 THREAD_FIT = 0.75
-"""Share of the squared speeds that a screw may leave where facets lean like a thread."""
-VAGUE_DIRECTION = math.radians(0.5)
-"""rad: a surface whose direction is known no better than this does not decide alone, as an axis would not.
-
-With 0.05 rad, two of 1,000 random assemblies were wrong, both of coarse circles whose vertices scatter; of 150 random
-shafts in bores whose vertices scatter by 1 to 100 µm, none of which chose it, 0 were wrong, 17 in doubt, 1 blocked
-(without this doubt and that of `contacts.constants.ENCLOSING_*`: 3, 6 and 4)."""
+"""Share of the squared speeds that a screw may leave where facets lean like a thread. Chosen, not measured."""
 WEYL_SIGMAS = 3.0
 """A constraint whose singular value is less than so many standard uncertainties of the directions of all rows may be
 none: one of 2,000 random assemblies was wrong without this (two hexagons of 6 mm whose vertices scatter by 3 µm)."""
@@ -80,7 +77,7 @@ HIGHER = (*TOUCHING, "freeform", "other")
 class Certainty:
     """How sure an answer is, why, and what else it may be."""
 
-    status: str
+    status: JointStatus
     reason: str
     other: OtherReading | None = None
 
@@ -118,7 +115,7 @@ def certainty(
         doubt = apart_doubt(evidence)
     else:
         firm, vague = _known(evidence, count), _vagueness(evidence, count)
-        sure = firm & (vague <= VAGUE_DIRECTION)
+        sure = firm & (vague <= VAGUE_AXIS)
         seat = yield from seat_reading(evidence, twists, preserved, basis, sure, tolerances)
         if seat is None:
             pin = yield from pin_reading(evidence, twists, preserved, basis, sure, tolerances)
@@ -166,8 +163,8 @@ def _spread(evidence: Evidence) -> float:
     """
     shares = np.add.reduceat(evidence.share, evidence.start[:-1]).tolist()
     turns = [item.patch.mismatch[0] for item in evidence.items]
-    known = [(share, turn) for share, turn in zip(shares, turns, strict=True) if turn <= VAGUE_DIRECTION]
-    return sqrt(sum(share * turn**2 for share, turn in known) / max(sum(share for share, _ in known), 1e-300))
+    known = [(share, turn) for share, turn in zip(shares, turns, strict=True) if turn <= VAGUE_AXIS]
+    return sqrt(sum(share * turn**2 for share, turn in known) / max(sum(share for share, _ in known), TINY))
 
 
 def meets(patches: Sequence[Patch]) -> bool:
@@ -230,7 +227,7 @@ def _loose_doubt(
 ) -> Steps[str]:
     """What the patches of known surfaces (`firm`, whose directions are known to `vague` rad) do not hold, the others do
     not hold for sure; bodies become one only by surfaces that are known on both sides."""
-    clear = vague <= VAGUE_DIRECTION
+    clear = vague <= VAGUE_AXIS
     sure = firm & clear
     if sure.all() or (sure.any() and (yield from _count(evidence, twists, sure, tolerances)) <= count):
         return ""
@@ -252,7 +249,7 @@ def _scrap_reading(
     if not slight.any():
         return None
     slight |= [item.patch.kind in HIGHER for item in evidence.items]
-    role = "sliver"
+    role: ReadingCause = "sliver"
     out = tuple(int(k) for k in np.flatnonzero(slight))
     if slight.all():
         return OtherReading(JointForm("general"), np.eye(6), out, role)
@@ -399,7 +396,7 @@ def _prism_reading(evidence: Evidence, basis: Array) -> OtherReading | None:
     if not any(item.patch.sides and item.patch.kind == "cylinder" for item in evidence.items):
         return None
     _, turns, mixed = np.linalg.svd(basis[:3], full_matrices=True)
-    turning = int(np.count_nonzero(turns > EXACT_PAIR))
+    turning = int(np.count_nonzero(turns > SINGLE))
     if not turning:
         return None
     left = basis @ mixed[turning:].T

@@ -4,8 +4,8 @@ The freedoms are the motions that every patch preserves. Where that leaves nothi
 only if they interfere, or oppose the motion in one direction only, and only when they are a small part of the contact;
 the answer is then `blocked`, and in doubt where what is kept may be a stop as well (`stops`), or could have been left
 out instead: in a corner two walls oppose two motions, and which of them is meant is not known. What opposes a motion
-both ways holds it, as two sides of a slot hold a pin, be it of known surfaces or of facets. The room's docstring has an
-example.
+both ways holds it, as two sides of a slot hold a pin, be it of known surfaces or of facets. The package's docstring
+has an example.
 """
 
 from __future__ import annotations
@@ -37,19 +37,20 @@ from kinform.kinematics.joints.pair.stops import (
 from kinform.kinematics.joints.pair.touches import TOUCHING, beside_flange
 from kinform.kinematics.joints.pair.uncertainty import uncertainty_doubt
 from kinform.model.arrays import Array, Flags
+from kinform.model.kinematics import JointStatus, ReadingCause
 from kinform.model.tolerances import Tolerances
 
 DEEP_OVERLAP = 0.2
-"""Overlaps below this share of the contact tolerance are presses: they never excuse a patch."""
+"""Overlaps below this share of the contact tolerance are presses: they never excuse a patch. Chosen, not measured."""
 PRESS_RATIO = 2.0
-"""Nor do overlaps within this many times those of the patches that carry the joint."""
+"""Nor do overlaps within this many times those of the patches that carry the joint. Chosen, not measured."""
 MOST_LEFT_OUT = 0.25
-"""Largest share of the contact area that consensus may leave out."""
+"""Largest share of the contact area that consensus may leave out. Chosen, not measured."""
 MOST_STOPPED = 0.6
 """Largest share that end stops of a turn may have: a closed gripper's jaws touch over more than its hinge."""
 RIVAL = 2.0
 """Times as much area that others may have which could be left out instead of what is: of a block in a corner nobody
-knows along which of two walls it slides, unless one is much longer."""
+knows along which of two walls it slides, unless one is much longer. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +62,7 @@ class Decision:
     """(6, k) orthonormal."""
     strict: Array
     """(6, k') freedoms when every patch counts; differs from `basis` when blocked."""
-    status: str
+    status: JointStatus
     reason: str
     kept: tuple[int, ...]
     """Items that carry the joint."""
@@ -71,7 +72,7 @@ class Decision:
     """(6,) ascending."""
     other: Decision | None = None
     """What else the contact may mean, of an ambiguous answer."""
-    role: str = ""
+    role: ReadingCause = ""
     """Of such another reading: what the patches are that it leaves out (`stops.ROLES`)."""
 
 

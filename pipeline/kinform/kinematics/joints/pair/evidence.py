@@ -17,6 +17,7 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.pair.lower_pairs import JointForm, name_space
 from kinform.mechanism.constants import SIGMAS
@@ -29,14 +30,14 @@ GAP_BANDS = ((0.12, 1.0), (0.42, 0.5), (float("inf"), 0.25))
 TOUCHING_GAP = GAP_BANDS[0][0]
 """Gaps up to this share of the contact tolerance have full weight: the surfaces touch."""
 STRAY_SHARE = 0.02
-"""Share of the contact area below which a one-sided patch counts only where it touches."""
+"""Share of the contact area below which a one-sided patch counts only where it touches. Chosen, not measured."""
 BOTH_SIDES = -0.9
-"""Least cosine between facets of such a patch that is on one side only."""
+"""Least cosine between facets of such a patch that is on one side only. Chosen, not measured."""
 UNKNOWN_DIRECTION = math.radians(2.0)
 """rad: standard uncertainty between two axes from which on it is not known that the surfaces mate. Of a knee of public
 robots it was 3° or 90° by the pose, and with it the mate was found or not; of all others that decide it is below 1°."""
 LOOSE_ANGLE = 0.2
-"""rad by which the direction of facets of no known surface may be off."""
+"""rad by which the direction of facets of no known surface may be off. Chosen, not measured."""
 
 
 COAXIAL = ("cylinder", "cone", "torus", "revolution", "helicoid")
@@ -199,7 +200,7 @@ def _face(item: Item, other: Item) -> bool:
 def _item(index: int, patch: Patch, turned: bool, tolerances: Tolerances, contact: float) -> Item:
     """A patch with its weights, and with how far off it may be: by its fit, and by the clearance of what runs in it."""
     apart, touching = np.abs(patch.gaps), max(patch.tolerance, contact)
-    weights = np.maximum(patch.weights, 1e-30)
+    weights = np.maximum(patch.weights, TINY)
     if apart.max() / touching > TOUCHING_GAP:
         relative = apart / touching
         band = np.empty(len(patch.points))

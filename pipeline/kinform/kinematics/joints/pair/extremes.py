@@ -12,25 +12,25 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from kinform.foundation.algebra.vectors import norm, perpendicular
+from kinform.foundation.rounding import SINGLE, TINY
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 
 NORMAL_SECTORS = 16
-"""Sectors of normals about the axis of a curved patch with many samples; of each its ends are kept."""
+"""Sectors of normals about the axis of a curved patch with many samples; of each its ends are kept. Chosen, not
+measured."""
 FEW_SAMPLES = 12
-"""Patches with no more samples than this keep them all."""
-SAME_PLACE = 1e-6
-"""rad, and share of the height, by which samples of one line or ring differ: coordinates of mesh files are rounded."""
-STRAIGHT_EDGE = 1e-6
-"""Corners of a hull that stand out less than this share of its size are on an edge."""
+"""Patches with no more samples than this keep them all. Chosen, not measured."""
 HULL_DIRECTIONS = 16
-"""Directions whose ends are corners of a hull: what lies inside of these corners is left out at once."""
+"""Directions whose ends are corners of a hull: what lies inside of these corners is left out at once. Chosen, not
+measured."""
 MOST_STACKED_SAMPLES = 8_000
 """Samples of patches that are looked at together: a few MB at a time, and no further gain from more."""
 CAP = 1e-3
-"""Cosine with the mean above which all normals of a ball are those of a cap, whose rim spans them."""
+"""Cosine with the mean above which all normals of a ball are those of a cap, whose rim spans them. Chosen, not
+measured."""
 BALL_DIRECTIONS = 96
-"""Directions in which the ends of a ball's normals are looked for."""
+"""Directions in which the ends of a ball's normals are looked for. Chosen, not measured."""
 
 
 _TURN = 2.0 * np.pi * np.arange(HULL_DIRECTIONS) / HULL_DIRECTIONS
@@ -73,9 +73,9 @@ def _ends_of_sectors(patches: Sequence[Patch]) -> list[Ints]:
         np.arctan2(patch.normals @ v, patch.normals @ u, out=row)
         np.matmul(patch.points, patch.axis, out=along)
     sector = np.floor(angle / (2.0 * np.pi / NORMAL_SECTORS)).astype(int)
-    turn = np.round(angle / SAME_PLACE)
+    turn = np.round(angle / SINGLE)
     tall = np.ptp(height, axis=1, keepdims=True)
-    level = np.round(height / np.where(tall > 1e-300, SAME_PLACE * tall, 1.0))
+    level = np.round(height / np.where(tall > TINY, SINGLE * tall, 1.0))
     ends = [np.lexsort((p * level, q * turn, sector)) for p in (1.0, -1.0) for q in (1.0, -1.0)]
     ends += [np.lexsort((p * level, sector)) for p in (1.0, -1.0)]
     ordered = np.take_along_axis(sector, ends[0], axis=1)
@@ -124,7 +124,7 @@ def _wide(flat: Array, size: Array) -> Flags:
     x, y = flat[..., 0], flat[..., 1]
     xx, yy, xy = (x * x).mean(axis=1), (y * y).mean(axis=1), (x * y).mean(axis=1)
     least = 0.5 * (xx + yy - np.sqrt((xx - yy) ** 2 + 4.0 * xy**2))
-    return np.asarray(least > (2.0 * STRAIGHT_EDGE * size) ** 2)
+    return np.asarray(least > (2.0 * SINGLE * size) ** 2)
 
 
 def _hull(flat: Array, size: float, wide: bool, inside: Flags) -> Ints:
@@ -134,7 +134,7 @@ def _hull(flat: Array, size: float, wide: bool, inside: Flags) -> Ints:
         return np.zeros(1, dtype=np.int64)
     if not wide:
         _, _, right = np.linalg.svd(flat, full_matrices=False)
-        if float(np.abs(flat @ right[1]).max()) < STRAIGHT_EDGE * size:
+        if float(np.abs(flat @ right[1]).max()) < SINGLE * size:
             along = flat @ right[0]
             return np.array(sorted((int(along.argmin()), int(along.argmax()))), dtype=np.int64)
     corners = _around(flat, np.flatnonzero(~inside))
@@ -144,7 +144,7 @@ def _hull(flat: Array, size: float, wide: bool, inside: Flags) -> Ints:
         edge, arm = after - before, here - before
         out = np.abs(edge[:, 0] * arm[:, 1] - edge[:, 1] * arm[:, 0])
         k = int(np.argmin(out))
-        if out[k] > STRAIGHT_EDGE * size * max(float(np.hypot(*edge[k])), STRAIGHT_EDGE * size):
+        if out[k] > SINGLE * size * max(float(np.hypot(*edge[k])), SINGLE * size):
             break
         corners = np.delete(corners, k)
     return np.sort(corners)
@@ -173,7 +173,7 @@ def _convex(flat: Array, size: Array, inside: Flags) -> Flags:
         before, after = here[:, _before(count)], here[:, _after(count)]
         edge, arm = after - before, here - before
         out = arm[..., 0] * edge[..., 1] - arm[..., 1] * edge[..., 0]
-        straight = STRAIGHT_EDGE * size[members, None]
+        straight = SINGLE * size[members, None]
         far = out > 2.0 * straight * np.maximum(np.hypot(edge[..., 0], edge[..., 1]), straight)
         sure[members] = far.all(axis=1)
     return sure
@@ -217,7 +217,7 @@ def _after(count: int) -> Ints:
 def _rim(normals: Array) -> Ints:
     """Normals (n, 3) of a ball that span the same cone: the rim of a cap, or ends in directions all round."""
     mean = normals.mean(axis=0)
-    along = normals @ mean / max(norm(mean), 1e-300)
+    along = normals @ mean / max(norm(mean), TINY)
     if along.min() > CAP:
         return hull(normals / along[:, None], mean / norm(mean))
     ends = _SPREAD @ normals.T

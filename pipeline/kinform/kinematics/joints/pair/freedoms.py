@@ -18,9 +18,10 @@ from kinform.model.arrays import Array, Flags
 from kinform.model.tolerances import Tolerances
 
 CLEARLY_NEW = 0.5
-"""Above this share a further motion is not a variant of those already found."""
+"""Above this share a further motion is not a variant of those already found. Chosen, not measured."""
 DIFFERENCE_SLACK = 2.0
-"""What is left of a further motion may be off by this many times the tolerances: it is a difference."""
+"""What is left of a further motion may be off by this many times the tolerances: it is a difference. Chosen, not
+measured."""
 
 
 def freedoms(

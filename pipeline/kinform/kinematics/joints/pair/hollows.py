@@ -16,7 +16,7 @@ import math
 import numpy as np
 
 from kinform.foundation.algebra.vectors import norm
-from kinform.kinematics.constants import RCOND
+from kinform.foundation.rounding import SOLVED
 from kinform.kinematics.joints.pair.evidence import Evidence
 from kinform.kinematics.joints.pair.freedoms import freedoms_beyond
 from kinform.kinematics.joints.pair.in_step import NEW_FREEDOM, Steps
@@ -76,7 +76,7 @@ def _leaving(speeds: Array, candidates: Array, coarse: bool) -> Array:
     few facets (`coarse`) candidates have to be near it."""
     if not speeds.shape[1]:
         return np.zeros((0, 0))
-    even = np.asarray(np.linalg.lstsq(speeds, np.ones(len(speeds)), RCOND)[0], dtype=np.float64)
+    even = np.asarray(np.linalg.lstsq(speeds, np.ones(len(speeds)), SOLVED)[0], dtype=np.float64)
     found = [m for m in candidates.T if _leaves(speeds, m) and not (coarse and _differ(speeds @ m, speeds @ even))]
     if not found and norm(even) > 0.0 and _leaves(speeds, even):
         found = [even / norm(even)]

@@ -14,35 +14,38 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import rotation, translation
 from kinform.foundation.algebra.vectors import canonical, cross, foot, norm, perpendicular, sine, weighted_mean
+from kinform.foundation.rounding import ARITHMETIC, SOLVED
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import ACROSS_LINE
+from kinform.kinematics.constants import SAME_DIRECTION
 from kinform.kinematics.joints.pair.constants import SAME_PITCH, VAGUE_AXIS
 from kinform.kinematics.joints.pair.evidence import COAXIAL, Evidence, Item, Line
 from kinform.kinematics.joints.pair.least_held import slides_across, turns_about
-from kinform.kinematics.wording import components
+from kinform.kinematics.screws.wording import components
 from kinform.mechanism.constants import SIGMAS
 from kinform.model.arrays import Array
 
 MOST_DIRECTIONS = 24
-"""Directions tried, the best supported first: parts of real robots have hundreds of tiny planes."""
+"""Directions tried, the best supported first: parts of real robots have hundreds of tiny planes. Chosen, not
+measured."""
 MOST_NORMALS = 12
-"""Normals of planes, the heaviest first, of which each two suggest the line in which their planes meet."""
+"""Normals of planes, the heaviest first, of which each two suggest the line in which their planes meet. Chosen, not
+measured."""
 MOST_FACES = 6
-"""Of these, how many suggest slides across themselves."""
+"""Of these, how many suggest slides across themselves. Chosen, not measured."""
 MOST_SLIDES = 72
-"""Slides that are tried in all."""
+"""Slides that are tried in all. Chosen, not measured."""
 SEPARATE_CENTRES = 1e-3
-"""Share of the contact's size from which on two centres of balls suggest the line through them."""
-CENTRE_SLACK = 1e-9
-"""Share of the contact's size by which centres that are known exactly may be apart and be one."""
+"""Share of the contact's size from which on two centres of balls suggest the line through them. Chosen, not
+measured."""
 DISTINCT_SLIDE = 0.25
-"""Directions that differ by less than this share of the alignment are tried once."""
+"""Directions that differ by less than this share of the alignment are tried once. Chosen, not measured."""
 LEAST_MEETING = 0.1
-"""Planes at a smaller angle (sine) have no line in common that could be told."""
+"""Planes at a smaller angle (sine) have no line in common that could be told. Chosen, not measured."""
 ONE_NORMAL = 1e-3
-"""Relative spread of normals below which they say one direction only."""
+"""Relative spread of normals below which they say one direction only. Chosen, not measured."""
 LEAST_POSITION = 1e-7
-"""Share of a patch's length below which its place counts as no better known: keeps the weights of fits comparable."""
+"""Share of a patch's length below which its place counts as no better known: keeps the weights of fits comparable.
+Chosen, not measured."""
 
 
 Value = TypeVar("Value")
@@ -170,9 +173,9 @@ def _fit_line(items: list[Item], indices: list[int]) -> Line:
         along = item.patch.axis if item.patch.axis @ axis > 0.0 else -item.patch.axis
         z = float(axis @ (item.middle - origin))
         crossing = item.patch.point + along * ((z - float(axis @ (item.patch.point - origin))) / float(along @ axis))
-        length = float(np.ptp((item.points - origin) @ axis)) + 1e-12
+        length = float(np.ptp((item.points - origin) @ axis)) + ARITHMETIC
         # what a patch does not know better than its fit and its clearance, it says less loudly
-        position = max(item.position, LEAST_POSITION * length, 1e-12)
+        position = max(item.position, LEAST_POSITION * length, ARITHMETIC)
         direction = max(item.patch.uncertainty[0], position / length)
         for k, unit in enumerate((u, v)):
             row = np.zeros(4)
@@ -189,7 +192,7 @@ def _fit_line(items: list[Item], indices: list[int]) -> Line:
 
 def _centres(evidence: Evidence) -> list[Array]:
     """Centres of spherical patches, the largest first, those that agree merged."""
-    slack = CENTRE_SLACK * evidence.frame.length
+    slack = SOLVED * evidence.frame.length
     items = sorted((i for i in evidence.items if i.patch.kind == "sphere"), key=lambda i: -i.area)
     centres = _merge(
         [(item.patch.point, item.area, item.position) for item in items],
@@ -267,7 +270,7 @@ def _middle(evidence: Evidence, normal: Array, alignment: float) -> Array:
     members = [i for i in evidence.items if i.patch.kind == "plane" and sine(i.patch.axis, normal) <= near]
     points = np.concatenate([i.points for i in members])
     middle = weighted_mean(points, np.concatenate([i.weights for i in members]))
-    lines = [i for i in evidence.items if i.patch.kind == "line" and sine(i.patch.axis, normal) < ACROSS_LINE]
+    lines = [i for i in evidence.items if i.patch.kind == "line" and sine(i.patch.axis, normal) < SAME_DIRECTION]
     if not lines:
         return middle
     line = max(lines, key=lambda i: (i.area, -i.index))

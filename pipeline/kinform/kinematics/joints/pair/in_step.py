@@ -18,7 +18,7 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 NEW_FREEDOM = 0.03
-"""A motion adds a freedom when this much of its unit twist lies outside those already found."""
+"""A motion adds a freedom when this much of its unit twist lies outside those already found. Chosen, not measured."""
 
 
 Result = TypeVar("Result")

@@ -7,21 +7,22 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical, cross, foot, norm, perpendicular, weighted_mean, widest_gap
-from kinform.kinematics.joints.pair.canonical_basis import canonical_twists
 from kinform.kinematics.joints.pair.decision import Decision
 from kinform.kinematics.joints.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.joints.pair.hypotheses import motion_words
 from kinform.kinematics.joints.pair.lower_pairs import JointForm
 from kinform.kinematics.joints.pair.stops import BESIDE_AXIS, ROLES
 from kinform.kinematics.joints.pair.uncertainty import disagreement, joint_uncertainty
-from kinform.kinematics.wording import motions_in_words
+from kinform.kinematics.screws.canonical_basis import canonical_twists
+from kinform.kinematics.screws.wording import motions_in_words
 from kinform.mechanism.constants import SIGMAS
 from kinform.model.arrays import Array
-from kinform.model.kinematics import FREEDOMS, Blocker, Joint, Reading
+from kinform.model.kinematics import FREEDOMS, Blocker, Joint, Reading, ReadingCause
 from kinform.model.names import BodyName, JointName
 
 LEAST_MISALIGNMENT = 1e-4
-"""rad, and share of the contact's size, of misalignment that is told."""
+"""rad, and share of the contact's size, of misalignment that is told. A hundredth of a degree, or 10 µm on 100 mm: less
+is not worth a word."""
 
 
 def twists_of(
@@ -108,7 +109,7 @@ def joint_from_decision(bodies: tuple[BodyName, BodyName], evidence: Evidence, d
     )
 
 
-def reading_of(joint: Joint, cause: str) -> Reading:
+def reading_of(joint: Joint, cause: ReadingCause) -> Reading:
     """What a joint says, as one reading of the contact; `cause` names what its blockers are then."""
     area = 1e6 * sum(blocker.area for blocker in joint.blockers)
     parts = " and ".join(max(joint.blockers, key=lambda b: (b.area, b.parts)).parts) if joint.blockers else ""

@@ -19,7 +19,8 @@ from kinform.kinematics.joints.pair.evidence import Evidence
 from kinform.model.arrays import Array
 
 MOST_LOOSE = 4
-"""Patches of facets of no known surface, the largest first, each of which suggests directions in a plane."""
+"""Patches of facets of no known surface, the largest first, each of which suggests directions in a plane. Chosen, not
+measured."""
 
 
 def slides_across(evidence: Evidence, normal: Array) -> list[Array]:

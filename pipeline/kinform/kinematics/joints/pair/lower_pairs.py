@@ -12,19 +12,21 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, rotation, translation
 from kinform.foundation.algebra.vectors import canonical, cross, cross_matrix, norm, perpendicular
+from kinform.foundation.rounding import SINGLE
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import EXACT_PAIR
 from kinform.model.arrays import Array
+from kinform.model.kinematics import JointType
 
 NEAR_PAIR = 0.02
-"""Spaces pieced together from patches that agree within their tolerances are off a lower pair by this much."""
+"""Spaces pieced together from patches that agree within their tolerances are off a lower pair by this much. Chosen, not
+measured."""
 
 
 @dataclass(frozen=True, eq=False)
 class JointForm:
     """Type of a joint with its geometry in the world; None where the type has none."""
 
-    type: str
+    type: JointType
     axis: Array | None = None
     point: Array | None = None
     pitch: float | None = None
@@ -42,11 +44,11 @@ def name_space(basis: Array, frame: Frame, turns_of_basis: tuple[Array, Array] |
     if freedoms == 1:
         return _one_freedom(basis[:, 0], frame)
     values, right = turns_of_basis or np.linalg.svd(basis[:3], full_matrices=True)[1:]
-    turns = int(np.count_nonzero(values > EXACT_PAIR))
+    turns = int(np.count_nonzero(values > SINGLE))
     mixed = basis @ right.T
     if turns == 1:
         return _one_turn(mixed[:, 0], mixed[3:, turns:], frame)
-    centre = _centre(basis, frame, 10.0 * EXACT_PAIR) if turns == 3 and freedoms == 3 else None
+    centre = _centre(basis, frame, 10.0 * SINGLE) if turns == 3 and freedoms == 3 else None
     return JointForm("general") if centre is None else JointForm("spherical", None, centre)
 
 
@@ -95,10 +97,10 @@ def _axis_of(twist: Array, frame: Frame) -> tuple[Array, Array, float]:
 
 
 def _one_freedom(twist: Array, frame: Frame) -> JointForm:
-    if norm(twist[:3]) <= EXACT_PAIR:
+    if norm(twist[:3]) <= SINGLE:
         return JointForm("prismatic", canonical(twist[3:]), frame.centre)
     axis, point, lead = _axis_of(twist, frame)
-    if abs(lead) < EXACT_PAIR * frame.length:
+    if abs(lead) < SINGLE * frame.length:
         return JointForm("revolute", canonical(axis), point)
     return JointForm("screw", canonical(axis), point, 2.0 * math.pi * lead)
 
@@ -106,10 +108,10 @@ def _one_freedom(twist: Array, frame: Frame) -> JointForm:
 def _one_turn(turn: Array, slides: Array, frame: Frame) -> JointForm:
     axis = turn[:3] / norm(turn[:3])
     along = norm(axis @ slides)
-    if slides.shape[1] == 1 and along > 1.0 - EXACT_PAIR:
+    if slides.shape[1] == 1 and along > 1.0 - SINGLE:
         _, point, _ = _axis_of(turn, frame)
         return JointForm("cylindrical", canonical(axis), point)
-    if slides.shape[1] == 2 and along < EXACT_PAIR:
+    if slides.shape[1] == 2 and along < SINGLE:
         return JointForm("planar", canonical(axis), frame.centre)
     return JointForm("general")
 

@@ -15,17 +15,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, cross_matrix, foot
-from kinform.kinematics.joints.pair.constants import PURE_SLIDE, SAME_PITCH
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED
+from kinform.kinematics.joints.pair.constants import SAME_PITCH
 from kinform.kinematics.joints.pair.evidence import Evidence
 from kinform.mechanism.constants import SIGMAS
 from kinform.model.arrays import Array, Flags
 
-CONE_SLACK = 1e-6
-"""rad beyond the fit by which a slide along a cone may be off: rounding, for its slope is a fact."""
 THREAD_TURNING = 1e-3
-"""Unit twists that turn by less are not tried on a thread."""
-MOMENT_ROUNDING = 1e-13
-"""Share of its moments by which a sum of squares that follows from them may be off: hundreds of roundings."""
+"""Unit twists that turn by less are not tried on a thread. Chosen, not measured."""
 
 
 BY_SLOPE = ("cone", "helicoid")
@@ -58,7 +55,7 @@ def _by_moments(asked: Sequence[tuple[Evidence, Array]]) -> tuple[Flags, Flags]:
     share = whole[..., 3, 3, None]
     apart = angle**2 * squares + shift**2 * share
     mixed = 2.0 * angle * shift * np.sqrt(share * np.maximum(squares, 0.0))
-    rounding = MOMENT_ROUNDING * (np.trace(normal, axis1=2, axis2=3) + np.trace(whole, axis1=2, axis2=3))
+    rounding = ARITHMETIC * (np.trace(normal, axis1=2, axis2=3) + np.trace(whole, axis1=2, axis2=3))
     preserved = missed + rounding[..., None] <= apart
     broken = missed - rounding[..., None] > apart + mixed
     return preserved, (preserved | broken).all(axis=(1, 2))
@@ -105,8 +102,8 @@ def preserved_motions(evidence: Evidence, twists: Array, slack: float = 1.0) -> 
         if item.patch.kind == "cone":
             # the slope of a cone is a fact, not a misalignment: slides along it have no slack
             samples = slice(evidence.start[k], evidence.start[k + 1])
-            slides = turning < PURE_SLIDE
-            allowed[samples, slides] = (SIGMAS * item.patch.uncertainty[0] + CONE_SLACK) * speed[samples, slides]
+            slides = turning < SOLVED
+            allowed[samples, slides] = (SIGMAS * item.patch.uncertainty[0] + SINGLE) * speed[samples, slides]
     weight = evidence.share[:, None]
     first = evidence.start[:-1]
     missed = np.add.reduceat(weight * (evidence.rows @ twists) ** 2, first, axis=0)

@@ -1,7 +1,7 @@
 """What contact decides of one pair of bodies, from all that it depends on.
 
 A `Question` does not hold which surfaces of a mesh touch, nor the names of the bodies: a change of those changes no
-`Answer`, so that one of an earlier run may stand for it (`kinematics.answers`).
+`Answer`, so that one of an earlier run may stand for it (`kinematics.step_cache`).
 """
 
 from __future__ import annotations

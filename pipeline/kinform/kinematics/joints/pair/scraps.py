@@ -4,7 +4,7 @@ A tooth's flank that happens to lie near another, a facet or two of a fillet, a 
 a rod that meets the mouth of its bore and is drawn a little into it: each has normals and an area, and would hold
 something if it were believed. They may confirm a joint that the rest of the contact
 gives; where the answer hangs on them it is ambiguous (`certainty`). How much arc and area a surface needs is in
-`kinematics.constants`, with the robots that chose it.
+this module, with the robots that chose it.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from itertools import combinations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import widest_gap
+from kinform.foundation.rounding import TINY
 from kinform.kinematics.joints.pair.evidence import Evidence, Item, Line
 from kinform.kinematics.joints.pair.hypotheses import coaxial_lines
 from kinform.model.arrays import Flags
@@ -26,18 +27,19 @@ SLIVER_SHARE = 0.01
 """... with less than this share of the contact area, decide nothing. So do planes that only facets rest on."""
 SLIVER_ARC_ONE_SIDED = math.radians(90.0)
 """rad: the same, whatever the share, where only facets of no known surface run on the round: flanks of teeth. Below the
-share, whatever the arc."""
+share, whatever the arc. Chosen, not measured."""
 DIP = 0.1
-"""Share of the contact tolerance from which on a flat that overlaps dips into the other part, ..."""
+"""Share of the contact tolerance from which on a flat that overlaps dips into the other part, ... Chosen, not
+measured."""
 DIP_SHARE = 0.05
 """... and share of the area below which it then decides nothing, ..."""
 FACED = -0.99
-"""... unless another such flat faces it: cosine of their normals."""
+"""... unless another such flat faces it: cosine of their normals. Chosen, not measured."""
 STEP_WIDTH = 5.0
 """Width of each of the two faces of a step that two edges make (`scraps._width`: of rings π times their width), over
 the overlap at the other, up to which the step is there by the overlap alone. It is π to the rounding of the mesh."""
 STEP_CORNER = 0.5
-"""Largest cosine between the normals of the two faces of a step."""
+"""Largest cosine between the normals of the two faces of a step. Chosen, not measured."""
 
 
 def scraps(evidence: Evidence, alignment: float) -> Flags:
@@ -100,7 +102,7 @@ def _width(item: Item) -> float:
 
     That is the width of a long strip, π times that of a ring, 0.7 of a square's.
     """
-    return item.patch.area / max(2.0 * float(np.sqrt(((item.points - item.middle) ** 2).sum(axis=1).max())), 1e-300)
+    return item.patch.area / max(2.0 * float(np.sqrt(((item.points - item.middle) ** 2).sum(axis=1).max())), TINY)
 
 
 def _are_across(first: Item, second: Item) -> bool:

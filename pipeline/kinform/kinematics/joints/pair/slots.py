@@ -17,7 +17,7 @@ import math
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross
-from kinform.kinematics.constants import EXACT_MOTION, EXACT_PAIR
+from kinform.foundation.rounding import SINGLE, TINY
 from kinform.kinematics.joints.pair.evidence import LOOSE_ANGLE, Evidence
 from kinform.kinematics.joints.pair.freedoms import freedoms_beyond
 from kinform.kinematics.joints.pair.in_step import Steps
@@ -29,7 +29,7 @@ SLOT_PLAY = math.radians(5.0)
 """rad by which what a pin holds may turn until it touches either side of its slot: as with axes that mate, no play
 excuses a greater angle."""
 SLOT_OPPOSED = -0.999
-"""Greatest cosine between what two sides of a slot hold: as in `contacts`."""
+"""Greatest cosine between what two sides of a slot hold: as in `contacts`. Their faces are parallel to 2.6°."""
 
 
 def pin_reading(
@@ -59,7 +59,7 @@ def _stay(evidence: Evidence, basis: Array, out: tuple[int, ...]) -> bool:
     size = np.linalg.norm(turns, axis=1)
     for k in out:
         tilt = np.linalg.norm(cross(turns, evidence.items[k].normals[0]), axis=1)
-        if (tilt > math.sin(evidence.items[k].angle) * size + EXACT_MOTION).any():
+        if (tilt > math.sin(evidence.items[k].angle) * size + SINGLE).any():
             return False
     return True
 
@@ -71,14 +71,14 @@ def _hold(evidence: Evidence, freed: Array, out: tuple[int, ...]) -> bool:
     gaps = np.concatenate([evidence.items[k].patch.gaps for k in out])
     speeds = rows @ freed
     size = np.linalg.norm(speeds, axis=1)
-    unit = speeds / np.maximum(size, 1e-300)[:, None]
+    unit = speeds / np.maximum(size, TINY)[:, None]
     holds = size > OPPOSING_SPEED * float(size.max())
     opposed = (unit[holds] @ unit[holds].T < SLOT_OPPOSED).any(axis=1)
     if not opposed.all():
         return False
     _, turns, mixed = np.linalg.svd(freed[:3], full_matrices=True)
     for turn, motion in zip(turns, mixed, strict=False):
-        if turn <= EXACT_PAIR:
+        if turn <= SINGLE:
             continue
         levers = speeds @ motion * evidence.frame.length / turn
         for sense in (1.0, -1.0):

@@ -30,26 +30,28 @@ from kinform.kinematics.joints.pair.freedoms import freedoms_beyond
 from kinform.kinematics.joints.pair.in_step import Steps
 from kinform.kinematics.joints.pair.lower_pairs import JointForm
 from kinform.model.arrays import Array, Flags
+from kinform.model.kinematics import ReadingCause
 from kinform.model.tolerances import Tolerances
 
 ALONG_AXIS = 0.01
-"""Normals and axes this near (sine) to an axis are along it."""
+"""Normals and axes this near (sine) to an axis are along it. Chosen, not measured."""
 OPPOSING_SPEED = 0.05
-"""Share of a patch's greatest normal speed that is opposition, and no rounding beside it."""
+"""Share of a patch's greatest normal speed that is opposition, and no rounding beside it. Chosen, not measured."""
 FACING_ONE_WAY = 1e-4
-"""1 − cosine of normals of faces that face one way."""
+"""1 − cosine of normals of faces that face one way. Chosen, not measured."""
 SLIDES_FROM = 0.5
-"""Length of a guide over its width from which on it slides and does not jam."""
+"""Length of a guide over its width from which on it slides and does not jam. Chosen, not measured."""
 ONE_SECTION = 0.05
-"""Relative difference of radii that are one cross-section."""
+"""Relative difference of radii that are one cross-section. Chosen, not measured."""
 INSIDE_GUIDE = 1.05
-"""Faces that reach no further than this, in half widths of the guide, are inside of its cross-section."""
+"""Faces that reach no further than this, in half widths of the guide, are inside of its cross-section. Chosen, not
+measured."""
 ROUND_FROM = 0.3
-"""Points of a face beyond this share of its reach show whether it goes round the axis."""
+"""Points of a face beyond this share of its reach show whether it goes round the axis. Chosen, not measured."""
 BESIDE_AXIS = math.radians(200.0)
-"""rad without any of a face about the axis, beyond which it lies beside it."""
+"""rad without any of a face about the axis, beyond which it lies beside it. Half a turn, and 20° for facets."""
 SHORT_FLANK = 0.5
-"""Length of a flank over that of the faces beside it below which it guides nothing."""
+"""Length of a flank over that of the faces beside it below which it guides nothing. Chosen, not measured."""
 
 
 ROLES = {
@@ -72,7 +74,7 @@ class OtherReading:
     """(6, k) scaled freedoms."""
     out: tuple[int, ...]
     """Items that are left out."""
-    role: str
+    role: ReadingCause
     """What those are then: stop, sliver, flank or pin. prism: nothing is left out; flats do not let the bodies
     turn. bend: nor here; a roller turns less in its ring than its line says."""
 

@@ -13,7 +13,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, norm, sine
-from kinform.kinematics.constants import ACROSS_LINE, EXACT_PAIR
+from kinform.foundation.rounding import SINGLE
+from kinform.kinematics.constants import SAME_DIRECTION
 from kinform.kinematics.joints.pair.evidence import GAP_BANDS, Evidence
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
@@ -21,13 +22,15 @@ from kinform.model.contacts import Patch
 WIDE_GAP = GAP_BANDS[1][0]
 """Gaps beyond this share have the least weight."""
 PASSING_GAP = 2e-3
-"""Gaps below this share of the size of the smaller body are as good as none."""
+"""Gaps below this share of the size of the smaller body are as good as none. Chosen, not measured."""
 STRAY_AREA = 5e-4
-"""Share of the squared size of the smaller body below which a one-directional contact that touches may be a stray."""
+"""Share of the squared size of the smaller body below which a one-directional contact that touches may be a stray.
+Chosen, not measured."""
 STRAY_AREA_APART = 2e-2
-"""The same where it does not touch."""
+"""The same where it does not touch. Chosen, not measured."""
 WIDE_CONTACT = 0.15
-"""Contact whose box is larger than this share of the smaller body is not one stray touch: feet, rims."""
+"""Contact whose box is larger than this share of the smaller body is not one stray touch: feet, rims. Chosen, not
+measured."""
 
 
 TOUCHING = ("point", "line")
@@ -77,10 +80,10 @@ def beside_flange(line: Patch, other: Patch) -> bool:
     """Whether a patch beside a line of contact is of a flange, which leaves the line what it is: a plane across it, or
     a ball about a place on it, as at the ends of rollers."""
     if other.kind == "plane":
-        return sine(other.axis, line.axis) < ACROSS_LINE
+        return sine(other.axis, line.axis) < SAME_DIRECTION
     arm = other.point - line.point
     aside = norm(cross(arm, line.axis))
-    return other.kind == "sphere" and not other.one_sided and aside < ACROSS_LINE * norm(arm)
+    return other.kind == "sphere" and not other.one_sided and aside < SAME_DIRECTION * norm(arm)
 
 
 def ends_at_line(patches: Sequence[Patch]) -> bool:
@@ -100,5 +103,5 @@ def held_by_bends(patches: Sequence[Patch], basis: Array) -> Array:
     if not lines or not basis.shape[1]:
         return basis
     _, values, right = np.linalg.svd(np.array([patch.normals[0] for patch in lines]) @ basis[:3])
-    rank = int(np.count_nonzero(values > EXACT_PAIR))
+    rank = int(np.count_nonzero(values > SINGLE))
     return np.asarray(basis @ right[rank:].T) if rank else basis

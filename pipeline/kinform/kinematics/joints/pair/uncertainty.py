@@ -18,9 +18,10 @@ from kinform.kinematics.joints.pair.lower_pairs import JointForm
 from kinform.model.arrays import Array
 
 SAYS_DIRECTION = 0.1
-"""Sine within which an axis is along, or a plane across, the joint's axis, and has a say about its direction."""
+"""Sine within which an axis is along, or a plane across, the joint's axis, and has a say about its direction. Chosen,
+not measured."""
 VAGUE_PLACE = 0.03
-"""The same of its place, as a share of its radius: what a clearance may be."""
+"""The same of its place, as a share of its radius: what a clearance may be. Chosen, not measured."""
 
 
 PLACED = ("revolute", "cylindrical", "screw", "spherical", "universal")
