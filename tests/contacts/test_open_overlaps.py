@@ -9,7 +9,7 @@ from generators.solids import bore, box, cut, join, rod
 from support.manifests import manifest
 
 from kinform import stages
-from kinform.foundation.meshes.parity import once, winding
+from kinform.foundation.meshes.ray_parity import once, winding
 
 BLOCK = cut(box(-20, 20, -20, 20, 0, 30), bore(5.05, 0, 30, 24))
 SHAFT = join(rod(5.0, -0.05, 30.05, 16), rod(8.0, -5, -0.05, 16), rod(8.0, 30.05, 35, 16))

@@ -10,7 +10,7 @@ import pytest
 from support.analytic_solids import MM, box_loop, extrusion, revolution, round_loop
 
 from kinform.foundation.meshes import box_pairs, probes
-from kinform.foundation.meshes.index import MeshIndex
+from kinform.foundation.meshes.mesh_index import MeshIndex
 from kinform.foundation.meshes.slivers import crossing
 
 

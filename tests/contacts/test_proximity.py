@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kinform.foundation.meshes.boxes import BOXES_AT_ONCE, FlatBoxes, boxes_within
-from kinform.foundation.meshes.proximity import near_boxes
+from kinform.foundation.meshes.near_facets import near_boxes
 
 
 def boxes(rng, count, spread, size):

@@ -9,7 +9,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull, cKDTree
 
 from kinform.foundation.graphs.components import components
-from kinform.foundation.meshes.near import Near
+from kinform.foundation.meshes.near_points import Near
 from kinform.kinematics.joints.pair.extremes import hull
 
 

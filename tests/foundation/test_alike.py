@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-from kinform.foundation import alike
-from kinform.foundation.alike import first_alike, numbered_alike
+from kinform.foundation import equal_rows
+from kinform.foundation.equal_rows import first_equal_rows, number_equal_rows
 from kinform.foundation.meshes.edges import edge_table, unsorted_edge_table
 
 
@@ -30,12 +30,12 @@ def test_each_row_is_led_by_the_first_that_equals_it(word: type, width: int, cou
     rows = rng.integers(0, np.iinfo(word).max, (count // 3 + 1, width), dtype=word)[
         rng.integers(0, count // 3 + 1, count)
     ]
-    assert first_alike(_words(rows)).tolist() == _by_comparison(rows)
+    assert first_equal_rows(_words(rows)).tolist() == _by_comparison(rows)
 
 
 @given(arrays.arrays(np.uint32, st.tuples(st.integers(0, 60), st.just(2)), elements=st.integers(0, 4)))
 def test_kinds_are_numbered_as_they_first_occur(rows: np.ndarray) -> None:
-    first, kind = numbered_alike(_words(rows))
+    first, kind = number_equal_rows(_words(rows))
     expected = _by_comparison(rows)
     assert first.tolist() == sorted(set(expected))
     assert first[kind].tolist() == expected
@@ -45,8 +45,8 @@ def test_kinds_are_numbered_as_they_first_occur(rows: np.ndarray) -> None:
 def test_rows_of_one_slot_are_told_apart(slots: int, monkeypatch: pytest.MonkeyPatch) -> None:
     rng = np.random.default_rng(slots)
     rows = rng.integers(0, 12, (600, 3), dtype=np.uint32)
-    monkeypatch.setattr(alike, "_slots", lambda words, turn: (words[0] % slots).astype(np.int64))
-    assert first_alike(_words(rows)).tolist() == _by_comparison(rows)
+    monkeypatch.setattr(equal_rows, "_slots", lambda words, turn: (words[0] % slots).astype(np.int64))
+    assert first_equal_rows(_words(rows)).tolist() == _by_comparison(rows)
 
 
 @pytest.mark.parametrize("dense", [False, True])

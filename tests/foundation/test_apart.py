@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from kinform.foundation.algebra.splines import through
-from kinform.foundation.meshes import apart
-from kinform.foundation.meshes.apart import keep_apart
-from kinform.foundation.meshes.bulges import BULGE
-from kinform.foundation.meshes.closest import distances_from
+from kinform.foundation.meshes import separated_sets
+from kinform.foundation.meshes.closest_facets import distances_from
+from kinform.foundation.meshes.outline_bulges import BULGE
+from kinform.foundation.meshes.separated_sets import surely_separated
 
 
 def soup(rng, count, size, middle):
@@ -45,7 +45,7 @@ def sampled(first, second):
 def test_what_keeps_a_distance_has_no_point_nearer_and_does_not_hang_on_the_other_sets(monkeypatch):
     rng = np.random.default_rng(7)
     asked = list(sets(rng))
-    told = keep_apart(asked)
+    told = surely_separated(asked)
     assert 5 < sum(told) < len(told) - 5
     for (first, second, distance), far in zip(asked, told, strict=True):
         assert not far or sampled(first, second) > distance
@@ -54,11 +54,11 @@ def test_what_keeps_a_distance_has_no_point_nearer_and_does_not_hang_on_the_othe
     assert told[-1]
     assert not told[-2]
     order = rng.permutation(len(asked))
-    assert keep_apart([asked[k] for k in order]) == [told[k] for k in order]
-    assert [keep_apart([one])[0] for one in asked] == told
-    monkeypatch.setattr(apart, "APART_AT_ONCE", 7)
-    monkeypatch.setattr(apart, "APART_SOME", 3)
-    assert keep_apart(asked) == told
+    assert surely_separated([asked[k] for k in order]) == [told[k] for k in order]
+    assert [surely_separated([one])[0] for one in asked] == told
+    monkeypatch.setattr(separated_sets, "APART_AT_ONCE", 7)
+    monkeypatch.setattr(separated_sets, "APART_SOME", 3)
+    assert surely_separated(asked) == told
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -6,8 +6,9 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kinform.foundation.meshes import box_pairs, closest
-from kinform.foundation.meshes.closest import closest_facets
+from kinform.foundation.meshes import box_pairs
+from kinform.foundation.meshes import closest_facets as closest
+from kinform.foundation.meshes.closest_facets import closest_facets
 
 
 def measured(points, corners):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from kinform.foundation.meshes.facing import facing, triangles_apart
+from kinform.foundation.meshes.facing_facets import facing, triangles_apart
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_model
 
 

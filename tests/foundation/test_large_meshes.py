@@ -8,9 +8,9 @@ from support.analytic_solids import MM
 from support.meshes import of_manifold
 from support.solids import block, centred_rod
 
-from kinform.foundation.meshes import index as indices
+from kinform.foundation.meshes import mesh_index as indices
 from kinform.foundation.meshes.boxes import facet_boxes
-from kinform.foundation.meshes.index import MeshIndex
+from kinform.foundation.meshes.mesh_index import MeshIndex
 
 
 def plate():

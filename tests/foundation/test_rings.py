@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from support.analytic_solids import MM, extrusion, flat_loop
 
 from kinform.foundation.meshes import rings
-from kinform.foundation.meshes.index import MeshIndex
+from kinform.foundation.meshes.mesh_index import MeshIndex
 
 
 def prism(sides, radius=10.0, squeeze=1.0, phase=0.1, centre=(0.0, 0.0)):

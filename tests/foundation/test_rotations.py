@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from kinform.foundation.algebra import rotations
-from kinform.foundation.meshes import near
+from kinform.foundation.meshes import near_points
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +44,7 @@ def test_nearest_is_the_same_measured_and_by_a_tree(monkeypatch):
     random = np.random.default_rng(7)
     points, places = random.normal(size=(300, 3)), random.normal(size=(900, 3))
     expected = cKDTree(points).query(places)[0]
-    assert np.array_equal(near.Nearest(points).away(places), expected)
-    monkeypatch.setattr(near, "MEASURED", 0)
-    assert np.array_equal(near.Nearest(points).away(places), expected)
-    assert near.Nearest(points).away(places[:0]).shape == (0,)
+    assert np.array_equal(near_points.Nearest(points).away(places), expected)
+    monkeypatch.setattr(near_points, "MEASURED", 0)
+    assert np.array_equal(near_points.Nearest(points).away(places), expected)
+    assert near_points.Nearest(points).away(places[:0]).shape == (0,)

@@ -10,7 +10,7 @@ from manifold3d import CrossSection, Manifold
 from scipy.spatial.transform import Rotation
 from support.solids import box
 
-from kinform.foundation.meshes.standoffs import standoffs
+from kinform.foundation.meshes.chordal_deviation import standoffs
 
 SMOOTH, COPLANAR, ROUNDING = math.radians(32.0), 5e-4, 1e-6
 INSIDE = np.array([(i, j, 12 - i - j) for i in range(13) for j in range(13 - i)]) / 12.0

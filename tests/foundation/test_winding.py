@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from support.solids import ball, box, part
 
-from kinform.foundation.meshes.parity import SEEN_AT_ONCE, winding
+from kinform.foundation.meshes.ray_parity import SEEN_AT_ONCE, winding
 
 FINE = part("ball", ball(10, 128), np.eye(4)).mesh
 """Of 10 mm radius, and of more facets than are had at once."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.displacements import inverse, twist_of
-from kinform.foundation.meshes.closest import closest_facets
+from kinform.foundation.meshes.closest_facets import closest_facets
 from kinform.foundation.words import angle, direction, length, listed
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh, Part

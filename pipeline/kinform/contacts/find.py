@@ -13,8 +13,8 @@ from kinform.contacts.overlap.solids import SolidStore
 from kinform.contacts.pair import PairContacts, mated_pairs, pair_contacts, touching
 from kinform.contacts.search.candidates import Pair, candidate_pairs
 from kinform.contacts.search.pair_view import PairView
-from kinform.foundation.at_work import at_work_on
-from kinform.foundation.meshes.index import LARGE_MESH, MeshStore
+from kinform.foundation.current_work import working_on
+from kinform.foundation.meshes.mesh_index import LARGE_MESH, MeshStore
 from kinform.foundation.processes import Crash, map_in_processes
 from kinform.foundation.progress import Progress
 from kinform.model.assembly import Assembly
@@ -63,11 +63,11 @@ class _Work:
         out, begun = [PairContacts((), None, None)] * len(pairs), []
         for k, (pair, mates) in enumerate(zip(pairs, mated, strict=True)):
             if mates is not None:
-                with at_work_on(_name_of((pair,))):
+                with working_on(_name_of((pair,))):
                     begun.append((k, mates, touching(mates)))
         told = _crossing([(mates.pair, patches) for _, mates, patches in begun])
         for (k, mates, patches), crosses in zip(begun, told, strict=True):
-            with at_work_on(_name_of((pairs[k],))):
+            with working_on(_name_of((pairs[k],))):
                 out[k] = pair_contacts(mates, patches, crosses, self.solids)
         return out
 

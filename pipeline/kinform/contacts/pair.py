@@ -28,7 +28,7 @@ from kinform.contacts.overlap.solids import SolidStore
 from kinform.contacts.search.apart import far_apart
 from kinform.contacts.search.pair_view import PairView, pair_view
 from kinform.foundation.algebra.vectors import cross
-from kinform.foundation.meshes.index import MeshStore
+from kinform.foundation.meshes.mesh_index import MeshStore
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, freeze
 from kinform.model.assembly import Part

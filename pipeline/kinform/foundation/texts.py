@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 from typing import Any
 
-from kinform.foundation.regular import not_a_file
+from kinform.foundation.regular_files import not_a_file
 
 JSON_DEPTH = 32
 """Brackets in each other in a JSON file: those that kinform writes go five deep."""

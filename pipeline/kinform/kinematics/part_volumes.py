@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.levelled import levelled
+from kinform.foundation.tied_sizes import tied_sizes
 from kinform.model.assembly import Assembly
 from kinform.model.names import PartName
 
@@ -17,4 +17,4 @@ def volumes(assembly: Assembly) -> dict[PartName, float]:
         if part.mesh is not None:
             own = part.mesh.health.volume
             out[part.name] = abs(own) if own else float(np.prod(np.subtract(*part.mesh.placed_box(part.X_WP)[::-1])))
-    return levelled(out)
+    return tied_sizes(out)

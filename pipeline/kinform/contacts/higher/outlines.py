@@ -21,7 +21,7 @@ from kinform.foundation.algebra.splines import Cubics
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.graphs.components import components, roots
 from kinform.foundation.meshes.edges import shared_edges
-from kinform.foundation.meshes.near import Near
+from kinform.foundation.meshes.near_points import Near
 from kinform.foundation.sorting import ascending, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints

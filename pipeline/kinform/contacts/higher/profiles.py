@@ -23,7 +23,7 @@ from kinform.contacts.search.apart import bulge_of
 from kinform.contacts.search.pair_view import NearSurfaces, PairView, PartView, near_facets
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.meshes.boxes import meeting_box
-from kinform.foundation.meshes.proximity import near_boxes
+from kinform.foundation.meshes.near_facets import near_boxes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch

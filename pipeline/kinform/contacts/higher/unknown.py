@@ -16,9 +16,9 @@ from kinform.contacts.constants import TOUCH
 from kinform.contacts.higher.constants import ZONE
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.pair_view import PairView, PartView, boxes_of
-from kinform.foundation.meshes.closest import distances_from
+from kinform.foundation.meshes.closest_facets import distances_from
 from kinform.foundation.meshes.fcl_adapter import UNIT, partial_model
-from kinform.foundation.meshes.proximity import near_boxes
+from kinform.foundation.meshes.near_facets import near_boxes
 from kinform.model.arrays import Array, Ints
 from kinform.model.contacts import Patch
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.foundation.algebra.vectors import lengths
-from kinform.foundation.joined import joined
+from kinform.foundation.concatenation import concatenated
 from kinform.foundation.meshes.boxes import middles
 from kinform.foundation.sorting import heads, numbered
 from kinform.frozen import dataclass
@@ -89,7 +89,7 @@ def gathered(cuts: Sequence[Cut]) -> list[Cells]:
         return []
     owner = np.repeat(np.arange(len(cuts)), [len(cut.corners) for cut in cuts])
     size = np.array([cut.size for cut in cuts]).T
-    corners, owner = _split(np.ascontiguousarray(joined([cut.corners for cut in cuts]).T), size, owner)
+    corners, owner = _split(np.ascontiguousarray(concatenated([cut.corners for cut in cuts]).T), size, owner)
     held = signed_areas(corners.T) != 0.0
     if not held.all():
         corners, owner = corners[:, :, held], owner[held]
@@ -161,8 +161,8 @@ _NEXT = np.array([1, 2, 0])
 
 def probed(every: Sequence[Cells]) -> list[Array]:
     """(bins, 2) m, of each of some cells: for each bin the centroid, of its triangles, that is nearest to its mean."""
-    centroids, (bins, ends) = joined([cells.centroids for cells in every]), _together(every)
-    mean, _ = _means(centroids, joined([cells.areas for cells in every]), bins, ends[-1])
+    centroids, (bins, ends) = concatenated([cells.centroids for cells in every]), _together(every)
+    mean, _ = _means(centroids, concatenated([cells.areas for cells in every]), bins, ends[-1])
     off = lengths(centroids - mean.take(bins, axis=0))
     order = np.lexsort((off, bins))
     chosen = centroids.take(order[heads(bins.take(order))], axis=0)
@@ -171,9 +171,9 @@ def probed(every: Sequence[Cells]) -> list[Array]:
 
 def quadratures(every: Sequence[Cells]) -> list[tuple[Array, Array]]:
     """Points (n, 2) m and the area (n,) m² each stands for, of each of some cells: bins in order, then the rim."""
-    centroids, (bins, ends) = joined([cells.centroids for cells in every]), _together(every)
-    areas = joined([cells.areas for cells in every])
-    corners = joined([cells.corners for cells in every]).reshape(-1, 2)
+    centroids, (bins, ends) = concatenated([cells.centroids for cells in every]), _together(every)
+    areas = concatenated([cells.areas for cells in every])
+    corners = concatenated([cells.corners for cells in every]).reshape(-1, 2)
     shares = np.repeat(areas / 12.0, 3)
     inside, rims, start = np.ones(len(corners), bool), [], 0
     for cells in every:

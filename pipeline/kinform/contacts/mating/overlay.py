@@ -17,7 +17,7 @@ from kinform.contacts.mating.cells import Cells, Cut, gathered, signed_areas
 from kinform.contacts.mating.charts import Chart
 from kinform.contacts.mating.regions import regions
 from kinform.foundation.algebra.vectors import lengths
-from kinform.foundation.joined import joined
+from kinform.foundation.concatenation import concatenated
 from kinform.foundation.meshes.boxes import triangle_boxes
 from kinform.model.arrays import Array
 
@@ -60,7 +60,7 @@ def _overlaps(asked: Sequence[tuple[Chart, Array, Array, float, float]]) -> list
         return out
     sets = [flat for k in some for flat in flats[k]]
     counts = [len(flat) for flat in sets]
-    flat, starts = joined(sets), np.cumsum([0, *counts[:-1]])
+    flat, starts = concatenated(sets), np.cumsum([0, *counts[:-1]])
     low, high = triangle_boxes(flat)
     least, most = np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)
     least, most = np.maximum(least[0::2], least[1::2]), np.minimum(most[0::2], most[1::2])

@@ -13,8 +13,8 @@ import numpy as np
 from manifold3d import CrossSection, FillRule
 
 from kinform.contacts.mating.cells import POINT_SAME, signed_areas
-from kinform.foundation.alike import numbered_alike
-from kinform.foundation.joined import joined
+from kinform.foundation.concatenation import concatenated
+from kinform.foundation.equal_rows import number_equal_rows
 from kinform.foundation.sorting import numbered
 from kinform.model.arrays import Array, Ints
 
@@ -26,7 +26,7 @@ def regions(flats: Sequence[Array], units: Sequence[float]) -> list[CrossSection
     """The union of each of some sets of triangles (n, 3, 2) m, in units of its unit (m)."""
     if not flats:
         return []
-    flat, owner, unit = joined(flats), np.repeat(np.arange(len(flats)), [len(f) for f in flats]), np.array(units)
+    flat, owner, unit = concatenated(flats), np.repeat(np.arange(len(flats)), [len(f) for f in flats]), np.array(units)
     signed, own = signed_areas(flat), unit.take(owner)
     turned = signed < 0.0
     flat = (np.where(turned[:, None, None], flat[:, ::-1], flat) if turned.any() else flat) / own[:, None, None]
@@ -50,7 +50,7 @@ def _simple_outlines(flat: Array, owner: Ints, count: int) -> list[list[Array] |
     points, of_point = flat.reshape(-1, 2), np.repeat(owner, 3)
     cells = np.round(points / POINT_SAME)
     cells += 0.0  # one zero
-    first, corner = numbered_alike([*np.ascontiguousarray(cells.T).view(np.uint64), of_point.view(np.uint64)])
+    first, corner = number_equal_rows([*np.ascontiguousarray(cells.T).view(np.uint64), of_point.view(np.uint64)])
     leaving, reaching, times = _one_way(corner)
     of_corner = of_point.take(first)
     out: list[list[Array] | None] = [[] for _ in range(count)]
@@ -87,7 +87,7 @@ def _one_way(corner: Ints) -> tuple[Ints, Ints, Ints]:
     that they leave and reach, and how many more."""
     total, end = int(corner.max(initial=0)) + 1, corner.reshape(-1, 3).take(_NEXT, axis=1).ravel()
     low, high = np.minimum(corner, end), np.maximum(corner, end)
-    leads, edge = numbered_alike([(low * total + high).view(np.uint64)])
+    leads, edge = number_equal_rows([(low * total + high).view(np.uint64)])
     net = np.bincount(edge, np.where(corner < end, 1.0, -1.0), len(leads)).astype(np.int64)
     left = net.nonzero()[0]
     forward, one, two = net.take(left) > 0, low.take(leads.take(left)), high.take(leads.take(left))

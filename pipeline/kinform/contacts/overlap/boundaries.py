@@ -10,8 +10,8 @@ from kinform.contacts.constants import TOUCHING
 from kinform.contacts.overlap.constants import EXACT_OVERLAP
 from kinform.contacts.search.pair_view import PairView, PartView
 from kinform.foundation.algebra.vectors import norm
-from kinform.foundation.meshes.apart import keep_apart
 from kinform.foundation.meshes.probes import Region, crossings_of
+from kinform.foundation.meshes.separated_sets import surely_separated
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
@@ -81,7 +81,7 @@ def _clear(pairs: dict[int, PairView]) -> set[int]:
     for pair in pairs.values():
         first, second = (part.corners(part.probed) for part in pair.parts)
         asked.append((first, second, EXACT_OVERLAP * norm(_SHIFT) * pair.tolerance))
-    return {k for k, far in zip(pairs, keep_apart(asked), strict=True) if far}
+    return {k for k, far in zip(pairs, surely_separated(asked), strict=True) if far}
 
 
 def _parted(pair: PairView, move: Array) -> bool:

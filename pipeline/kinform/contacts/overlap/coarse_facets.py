@@ -19,7 +19,7 @@ from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.constants import STANDOFF_EDGES
 from kinform.foundation.meshes.box_pairs import Boxes, meeting_boxes
 from kinform.foundation.meshes.boxes import meeting_box
-from kinform.foundation.meshes.closest import distances_between
+from kinform.foundation.meshes.closest_facets import distances_between
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances

@@ -19,7 +19,7 @@ from kinform.contacts.overlap.slight import DEPTH_SAMPLES, counts_of, is_slight
 from kinform.contacts.overlap.solids import Piece, SolidStore, bounds_volume
 from kinform.contacts.search.pair_view import PairView, PartView, near_facets
 from kinform.foundation.meshes.boxes import middles
-from kinform.foundation.meshes.parity import winding
+from kinform.foundation.meshes.ray_parity import winding
 from kinform.model.arrays import Array, Flags, Ints, freeze
 from kinform.model.contacts import Interference, Patch
 

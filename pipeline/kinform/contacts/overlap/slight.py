@@ -12,7 +12,7 @@ from kinform.contacts.overlap.samples import SHELL_INSET, Allowance, measured_on
 from kinform.contacts.overlap.solids import Overlap
 from kinform.contacts.search.pair_view import PartView
 from kinform.foundation.meshes.boxes import middles, triangle_boxes
-from kinform.foundation.meshes.closest import distances_between
+from kinform.foundation.meshes.closest_facets import distances_between
 from kinform.foundation.sorting import distinct, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints

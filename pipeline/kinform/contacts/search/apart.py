@@ -16,7 +16,7 @@ import numpy as np
 
 from kinform.contacts.constants import CYLINDER_EXACT, MATING_REACH
 from kinform.contacts.search.pair_view import PairView, PartView, near_facets
-from kinform.foundation.meshes.apart import keep_apart
+from kinform.foundation.meshes.separated_sets import surely_separated
 from kinform.model.arrays import Array, Flags
 from kinform.model.surfaces import KINDS
 
@@ -35,7 +35,7 @@ def far_apart(pairs: Sequence[PairView]) -> list[bool]:
     """Whether it is sure of each pair that no facets are so near each other that anything touches but surfaces that
     mate, or rings that stand for them: of all at once, and of one whatever the others are."""
     asked = {k: (*_facets(pair, far), far) for k, pair in enumerate(pairs) if (far := _distance(pair)) is not None}
-    told = dict(zip(asked, keep_apart(list(asked.values())), strict=True))
+    told = dict(zip(asked, surely_separated(list(asked.values())), strict=True))
     return [told.get(k, False) for k in range(len(pairs))]
 
 

@@ -16,9 +16,9 @@ import numpy as np
 from kinform.contacts.constants import MATING_REACH
 from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.meshes.boxes import boxes_within, facet_boxes, meeting_box
-from kinform.foundation.meshes.index import MeshIndex, MeshStore
+from kinform.foundation.meshes.mesh_index import MeshIndex, MeshStore
+from kinform.foundation.meshes.near_facets import near_boxes
 from kinform.foundation.meshes.probes import Region
-from kinform.foundation.meshes.proximity import near_boxes
 from kinform.foundation.meshes.surface_table import SurfaceTable
 from kinform.foundation.sorting import heads
 from kinform.frozen import dataclass

@@ -17,7 +17,7 @@ from kinform.form.manifest import requirements as tables
 from kinform.form.manifest.common import Quantity
 from kinform.form.readers.csv_tables import path_rows
 from kinform.form.readers.function import FunctionReader
-from kinform.foundation.meant import in_quotes
+from kinform.foundation.name_hints import in_quotes
 from kinform.model.function import Requirement
 
 

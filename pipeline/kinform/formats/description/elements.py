@@ -17,7 +17,7 @@ from kinform.form.constants import LARGEST_NUMBER, VALUE_LENGTH
 from kinform.form.problems import Problems
 from kinform.formats.description.robot import At
 from kinform.foundation.colours import told
-from kinform.foundation.meant import in_quotes
+from kinform.foundation.name_hints import in_quotes
 
 XML_BYTES = 64 * 1024 * 1024
 """Largest XML text that is read: descriptions of robots with a thousand links have a tenth of it."""

@@ -22,8 +22,8 @@ from kinform.formats.description.registry import FORMATS, reader_of
 from kinform.formats.description.robot import At, Inertial, Link, Robot, RobotJoint, Shape, Solid
 from kinform.formats.description.tree import distinct
 from kinform.foundation.algebra.spatial import quaternions
-from kinform.foundation.meant import first_names, in_quotes
-from kinform.foundation.regular import not_a_file
+from kinform.foundation.name_hints import first_names, in_quotes
+from kinform.foundation.regular_files import not_a_file
 from kinform.foundation.units import METRES_PER_UNIT, metres_per
 from kinform.model.arrays import Array
 

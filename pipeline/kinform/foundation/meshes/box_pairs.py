@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.joined import joined
+from kinform.foundation.concatenation import concatenated
 from kinform.foundation.meshes.boxes import FlatBoxes, meeting_box
 from kinform.model.arrays import Array, Ints
 
@@ -86,7 +86,7 @@ def meeting_in_slabs(first: Boxes, second: Boxes) -> tuple[Ints, Ints] | None:
         if met is None:
             return None
         found.append(asked[own[met[0]]] * np.int64(len(second[0])) + near[beside[met[1]]])
-    return _split(np.sort(joined(found)), len(second[0]))
+    return _split(np.sort(concatenated(found)), len(second[0]))
 
 
 def _unless_more(most: float, met: tuple[Ints, Ints]) -> tuple[Ints, Ints] | None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.meshes.boxes import along_curve, facet_boxes
-from kinform.foundation.meshes.closest import distances_between
+from kinform.foundation.meshes.closest_facets import distances_between
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, partial_model, point_model
 from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints

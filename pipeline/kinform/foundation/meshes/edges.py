@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
-from kinform.foundation.alike import numbered_alike
+from kinform.foundation.equal_rows import number_equal_rows
 from kinform.foundation.sorting import ascending, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
@@ -157,7 +157,7 @@ def edge_table(faces: Ints, vertices: int, by_corner: bool = False) -> EdgeTable
 
 def unsorted_edge_table(faces: Ints, vertices: int) -> EdgeTable:
     """As `edge_table`, but edges as they first occur, which takes no sort where none has more than two facets."""
-    first, edge = numbered_alike([_keys(faces, vertices).view(np.uint64)])
+    first, edge = number_equal_rows([_keys(faces, vertices).view(np.uint64)])
     counts = np.bincount(edge, minlength=len(first))
     starts = np.cumsum(counts) - counts
     if counts.max(initial=0) > 2:

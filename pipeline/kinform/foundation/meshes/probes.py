@@ -19,10 +19,10 @@ import numpy as np
 
 from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.algebra.vectors import cross, dot, lengths, times
+from kinform.foundation.concatenation import concatenated
 from kinform.foundation.constants import SLIVER_WIDTH
-from kinform.foundation.joined import joined
 from kinform.foundation.meshes.boxes import facet_boxes, triangle_boxes
-from kinform.foundation.meshes.closest import Triangles
+from kinform.foundation.meshes.closest_facets import Triangles
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, fcl_pose, partial_model, point_model
 from kinform.foundation.meshes.slivers import beside, crossings, meetings
 from kinform.foundation.sorting import distinct
@@ -247,7 +247,7 @@ def cast_all(casts: Sequence[Cast], width: float = SLIVER_WIDTH) -> list[Hits]:
         return out
     ends = [0, *accumulate(len(casts[k].points) for k in some)]
     points, directions, reach = (
-        joined([getattr(casts[k], name) for k in some]) for name in ("points", "directions", "reach")
+        concatenated([getattr(casts[k], name) for k in some]) for name in ("points", "directions", "reach")
     )
     across = cross(directions, _UNITS.take(np.abs(directions).argmin(axis=1), axis=0))
     across *= (width * reach / lengths(across))[:, None]
@@ -260,8 +260,8 @@ def cast_all(casts: Sequence[Cast], width: float = SLIVER_WIDTH) -> list[Hits]:
     met = _meetings(regions, [slivers[i:j] for i, j in pairwise(ends)])
     meshes = [region.index.mesh for region in regions]
     probe = np.concatenate([probe + start for (probe, _), start in zip(met, ends, strict=False)])
-    normal = joined([region.index.normals(facet) for region, (_, facet) in zip(regions, met, strict=True)])
-    corner = joined(
+    normal = concatenated([region.index.normals(facet) for region, (_, facet) in zip(regions, met, strict=True)])
+    corner = concatenated(
         [mesh.vertices.take(mesh.faces[facet, 0], axis=0) for mesh, (_, facet) in zip(meshes, met, strict=True)]
     )
     facing = dot(normal, directions.take(probe, axis=0))

@@ -10,9 +10,9 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
-from kinform.foundation.meshes.divided import inner_weights
-from kinform.foundation.meshes.parity import RAYS, Ray
+from kinform.foundation.meshes.ray_parity import RAYS, Ray
 from kinform.foundation.meshes.shells import shells_of
+from kinform.foundation.meshes.subdivision import inner_weights
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh

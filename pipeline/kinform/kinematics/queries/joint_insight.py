@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.foundation.meant import did_you_mean
+from kinform.foundation.name_hints import did_you_mean
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.bodies.classification import evidence_between
 from kinform.kinematics.joints.bodies.extents import Extents

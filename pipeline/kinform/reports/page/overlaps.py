@@ -8,7 +8,7 @@ import numpy as np
 from manifold3d import Error, Manifold, Mesh64
 
 from kinform.design import Design
-from kinform.foundation.at_work import at_work_on
+from kinform.foundation.current_work import working_on
 from kinform.foundation.processes import threads_ran
 from kinform.model.assembly import Part
 from kinform.model.contacts import Interference
@@ -26,7 +26,7 @@ def overlap_shapes(design: Design) -> list[Shape | None]:
     solids: dict[str, Manifold | None] = {}
     shapes: list[Shape | None] = []
     for item in found[:MOST_OVERLAPS]:
-        with at_work_on(*item.parts):
+        with working_on(*item.parts):
             both = [_solid(parts[name], solids, centre, scale) for name in item.parts]
             shapes.append(_common(both[0], both[1], item, centre, scale))
     return shapes + [None] * (len(found) - len(shapes))

@@ -9,7 +9,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.graphs.components import components
-from kinform.foundation.meshes.near import Near
+from kinform.foundation.meshes.near_points import Near
 from kinform.foundation.sorting import coarse
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.groups import columns_of, members

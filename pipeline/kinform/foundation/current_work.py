@@ -1,23 +1,27 @@
-"""What native code is at work on, noted where whoever watches this process can read it: native code that crashes, or
-hangs until it is ended, leaves no other word. Nothing is noted where nobody watches."""
+"""The names of the parts that native code works on, in memory shared with the process that supervises this one.
+
+Native code that crashes or hangs leaves no other trace. Without a supervisor nothing is written.
+"""
 
 from __future__ import annotations
 
 import mmap
 
 BYTES = 1024
-"""Of a note, its length in the first two included; what is longer is cut."""
+"""Size of the shared memory. Its first two bytes are the length of the text; the rest holds two names of the 255
+characters that file systems allow. Longer texts are cut."""
 
 board: mmap.mmap | None = None
-"""Memory that is shared with who watches; None where nobody does."""
+"""Memory that is shared with the supervisor; None without one."""
 
 
 _text = ""
-"""What is noted now."""
+"""The text on the board."""
 
 
-class at_work_on:
-    """While native code works on these parts; then on what it worked on before. Takes about a microsecond."""
+class working_on:
+    """Context in which native code works on these parts; afterwards the board has its former text. Takes about a
+    microsecond."""
 
     __slots__ = ("_before", "_names")
 
@@ -38,12 +42,12 @@ class at_work_on:
 
 
 def write(target: mmap.mmap, text: str) -> None:
-    """Put a note on a board."""
+    """Write a text to a board."""
     data = text.encode("utf-8", "replace")[: BYTES - 2]
     target[2 : 2 + len(data)] = data
     target[:2] = len(data).to_bytes(2, "little")
 
 
 def read(source: mmap.mmap) -> str:
-    """The note on a board; "" where there is none."""
+    """The text on a board, "" if it is empty."""
     return source[2 : 2 + int.from_bytes(source[:2], "little")].decode("utf-8", "replace")

@@ -1,4 +1,4 @@
-"""Rows by attribute, for notebooks: as HTML, and as a data frame where pandas is installed."""
+"""Tables of records for notebooks: as HTML, and as a pandas data frame."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 
 class Tabled:
-    """Something with rows; a notebook shows it as a table."""
+    """Base class of what a notebook shows as a table."""
 
     columns: Sequence[str] = ()
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import meeting_box, triangle_boxes
-from kinform.foundation.meshes.near import Nearest
+from kinform.foundation.meshes.near_points import Nearest
 from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 

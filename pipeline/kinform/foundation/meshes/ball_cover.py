@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.meshes.divided import inner_weights, longest_sides
-from kinform.foundation.meshes.near import Nearest
+from kinform.foundation.meshes.near_points import Nearest
+from kinform.foundation.meshes.subdivision import inner_weights, longest_sides
 from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh
 

@@ -1,4 +1,4 @@
-"""Files that are files: a pipe makes who opens it wait for somebody else, and a device may never end."""
+"""Checks that a path is a regular file: opening a pipe waits for its writer, and reading a device may never end."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import stat
 from pathlib import Path
 
 AS_A_FILE = "write what comes through it to a file, and name that file"
-"""What to do about it."""
+"""The remedy in messages about a pipe or a device."""
 
 
 def no_folder(folder: Path) -> tuple[str, str]:

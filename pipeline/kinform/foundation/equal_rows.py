@@ -1,8 +1,8 @@
-"""Which rows are alike: by tables of places, without a sort.
+"""Equal rows of an array of integers, found with hash tables instead of a sort.
 
-Each row goes to a slot of a table by a hash of its words; the first row of a slot stays there, and leads those that
-equal it. The others, which are few, are hashed again, otherwise, into a table of their own. What comes out is not that
-of the hash: two rows are alike where all their words are.
+Each row goes to a slot of a table by a hash of its words. The first row of a slot stays there and leads the rows that
+equal it. The few others are hashed again with another hash into a smaller table. The result does not depend on the
+hash: rows are equal where all their words are.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from kinform.model.arrays import Ints
 
 HASHES = 12
-"""Hashes of rows before what is left, one row in eight after each, is sorted."""
+"""Tables before the rest is sorted. Each leaves about one row in eight, so that 8^12 rows leave one: a sort is needed
+only where rows are chosen against the hash."""
 
 
 _Words = Sequence[NDArray[np.unsignedinteger]]
@@ -24,9 +25,9 @@ _ODD = (0x9E3779B1, 0x85EBCA77, 0xC2B2AE3D)
 _MIX = 0x2C1B3C6D
 
 
-def first_alike(words: _Words) -> Ints:
-    """(n,) place of the first row that equals each, by its words: columns (n,) of unsigned integers of 32 bits, or of
-    64."""
+def first_equal_rows(words: _Words) -> Ints:
+    """(n,) index of the first row that equals each row. `words` are the columns (n,): unsigned integers of 32 or 64
+    bits."""
     rest = np.arange(len(words[0]))
     leader = np.empty_like(rest)
     for turn in range(HASHES):
@@ -44,15 +45,15 @@ def first_alike(words: _Words) -> Ints:
     return leader
 
 
-def numbered_alike(words: _Words) -> tuple[Ints, Ints]:
-    """Places of the first rows of each kind, ascending, and for every row (n,) the number of its kind among them."""
-    leader = first_alike(words)
+def number_equal_rows(words: _Words) -> tuple[Ints, Ints]:
+    """Indices of the first row of each set of equal rows, ascending, and for every row (n,) the number of its set."""
+    leader = first_equal_rows(words)
     leads = leader == np.arange(len(leader))
     return np.flatnonzero(leads), (np.cumsum(leads) - 1).take(leader)
 
 
 def _slots(words: _Words, turn: int) -> Ints:
-    """(n,) slots, of as many as rows and up to twice as many; in each turn others."""
+    """(n,) slots, of a table with one to two slots a row; each turn uses another hash."""
     number = words[0].dtype.type
     width = 8 * words[0].dtype.itemsize
     mixed = words[0] * number(_ODD[turn % len(_ODD)])
@@ -65,14 +66,14 @@ def _slots(words: _Words, turn: int) -> Ints:
 
 
 def _first_in_slot(slots: Ints) -> Ints:
-    """(n,) the first place that has the same slot as each: of numbers put into one slot the last stays."""
+    """(n,) the first index that has the same slot as each row. Written in reverse order, as the last write stays."""
     table = np.empty(1 << len(slots).bit_length(), np.int64)
     table[slots[::-1]] = np.arange(len(slots) - 1, -1, -1)
     return table.take(slots)
 
 
 def _differ(words: _Words, lead: Ints, of: _Words | None = None) -> NDArray[np.bool_]:
-    """(n,) whether the rows differ from those at the places `lead`, of the same rows or of others."""
+    """(n,) whether each row differs from the row `lead` of the same words, or of `of`."""
     there = of or words
     apart: NDArray[np.bool_] = there[0].take(lead) != words[0]
     for column, other in zip(words[1:], there[1:], strict=True):

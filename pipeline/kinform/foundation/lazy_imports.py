@@ -1,7 +1,4 @@
-"""Public names of a package that are imported when they are first used.
-
-A command looks at a small part of what a package offers; what it does not look at costs nothing to start.
-"""
+"""Public names of a package that are imported on first use, so that a command starts without what it does not use."""
 
 from __future__ import annotations
 
@@ -11,9 +8,9 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 
-def first_used(package: str, where: Mapping[str, str]) -> Callable[[str], Any]:
-    """The `__getattr__` of a package; `where` names the module below it, and with a colon the name there if it is
-    another one."""
+def lazy_attributes(package: str, where: Mapping[str, str]) -> Callable[[str], Any]:
+    """The `__getattr__` of a package. `where` maps a public name to the module below the package that has it, followed
+    by a colon and the name there if that differs."""
 
     def found(name: str) -> Any:
         if name not in where:

@@ -1,4 +1,4 @@
-"""Names in messages: as they are shown, a few of many, and which was probably meant."""
+"""Names in messages: quoting, shortened lists, and suggestions for misspelt names."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ import difflib
 from collections.abc import Iterable
 
 NAME_SHOWN = 255
-"""Characters of a name that a message shows."""
+"""Characters of a name that a message shows: the longest name that file systems allow."""
 CLOSE_NAMES = 0.6
-"""Likeness (of difflib, its default) from which on a known name is probably the one that was meant."""
+"""Least similarity of a suggested name: the default of `difflib.get_close_matches`."""
 CHOICES_COMPARED = 500
-"""Known names that a wrong one is compared with: each takes ten microseconds."""
+"""Most known names that a wrong one is compared with: each takes 10 µs, all of them 5 ms."""
 MEANT_NAMES = 2
-"""Names that are proposed, at most."""
+"""Most names that are suggested. Chosen, not measured."""
 LISTED_NAMES = 12
-"""Known names that are listed where none is close."""
+"""Most known names that are listed where none is close. Chosen, not measured."""
 
 
 def in_quotes(name: object) -> str:

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.foundation.joined import joined
+from kinform.foundation.concatenation import concatenated
 from kinform.foundation.meshes.box_pairs import BOXES_MATRIX, meeting_boxes
 from kinform.foundation.meshes.boxes import triangle_boxes
 from kinform.foundation.meshes.slivers import sides_of
@@ -30,7 +30,7 @@ APART_ROUNDED = 1e-6
 """Share of a distance by which what keeps it is further apart."""
 
 
-def keep_apart(asked: Sequence[tuple[Array, Array, float]]) -> list[bool]:
+def surely_separated(asked: Sequence[tuple[Array, Array, float]]) -> list[bool]:
     """Whether it is sure that no triangle (n, 3, 3) of the first comes within a distance (m) of one (m, 3, 3) of the
     second, for each of these three."""
     out, near = [False] * len(asked), {}
@@ -74,8 +74,8 @@ def _not_parted(
 
 def _not_parted_of(asked: Sequence[tuple[Array, Array, float]], pairs: dict[int, tuple[Ints, Ints]]) -> set[int]:
     """The same of few of them, all of whose pairs are asked."""
-    first = joined([asked[k][0].take(one, axis=0) for k, (one, _) in pairs.items()])
-    second = joined([asked[k][1].take(two, axis=0) for k, (_, two) in pairs.items()])
+    first = concatenated([asked[k][0].take(one, axis=0) for k, (one, _) in pairs.items()])
+    second = concatenated([asked[k][1].take(two, axis=0) for k, (_, two) in pairs.items()])
     owner = np.repeat(list(pairs), [len(one) for one, _ in pairs.values()])
     distances, out = np.array([distance for *_, distance in asked]), set[int]()
     for start in range(0, len(owner), APART_AT_ONCE):

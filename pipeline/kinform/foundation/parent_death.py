@@ -1,4 +1,4 @@
-"""Processes that end with the one that began them, however that was ended. On Linux; elsewhere they go on."""
+"""Child processes that are killed when their parent dies, however it died. On Linux only; elsewhere they go on."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import sys
 _FAILED = 2
 
 
-def end_with(parent: int) -> None:
-    """Have the system kill this process when its parent, the process of that number, is gone."""
+def exit_with_parent(parent: int) -> None:
+    """Have the kernel kill this process when its parent, the process with that id, dies."""
     if sys.platform != "linux":
         return
     import ctypes

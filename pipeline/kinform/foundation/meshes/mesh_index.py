@@ -9,18 +9,18 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross_columns, dot
 from kinform.foundation.graphs.components import components
-from kinform.foundation.meshes.balls import Balls
+from kinform.foundation.meshes.ball_cover import Balls
 from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
-from kinform.foundation.meshes.bulges import bulge_of
-from kinform.foundation.meshes.closest import Triangles
+from kinform.foundation.meshes.chordal_deviation import standoffs
+from kinform.foundation.meshes.closest_facets import Triangles
 from kinform.foundation.meshes.depths import Depths
 from kinform.foundation.meshes.edges import SharedEdges, shared_edges
 from kinform.foundation.meshes.fcl_adapter import fcl_model, partial_model
-from kinform.foundation.meshes.parity import Inside
+from kinform.foundation.meshes.near_facets import near_boxes
+from kinform.foundation.meshes.outline_bulges import bulge_of
 from kinform.foundation.meshes.probes import KEPT_TRIANGLES, Region
-from kinform.foundation.meshes.proximity import near_boxes
+from kinform.foundation.meshes.ray_parity import Inside
 from kinform.foundation.meshes.rings import Ring, RingRow, ring_rows
-from kinform.foundation.meshes.standoffs import standoffs
 from kinform.foundation.meshes.surface_table import SurfaceTable
 from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Flags, Ints

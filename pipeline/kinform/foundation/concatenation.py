@@ -1,4 +1,4 @@
-"""Rows of several arrays as one array."""
+"""Concatenation that copies nothing where there is one array."""
 
 from __future__ import annotations
 
@@ -11,6 +11,6 @@ from numpy.typing import NDArray
 Scalar = TypeVar("Scalar", bound=np.generic)
 
 
-def joined(arrays: Sequence[NDArray[Scalar]]) -> NDArray[Scalar]:
-    """All rows of some arrays, at least one; that array itself where it is one."""
+def concatenated(arrays: Sequence[NDArray[Scalar]]) -> NDArray[Scalar]:
+    """The rows of one or more arrays; a single array is returned as it is."""
     return arrays[0] if len(arrays) == 1 else np.concatenate(arrays)

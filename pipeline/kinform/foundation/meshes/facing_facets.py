@@ -6,11 +6,11 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
-from kinform.foundation.joined import joined
+from kinform.foundation.concatenation import concatenated
 from kinform.foundation.meshes.box_pairs import meeting_in_slabs
 from kinform.foundation.meshes.boxes import meeting_box, triangle_boxes
-from kinform.foundation.meshes.closest import distances_between
-from kinform.foundation.meshes.proximity import near_boxes
+from kinform.foundation.meshes.closest_facets import distances_between
+from kinform.foundation.meshes.near_facets import near_boxes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 
@@ -67,9 +67,9 @@ def facing(first: Array, second: Array, distance: float, opposed: float) -> Faci
         out.append((i[near_by], j[near_by], gaps[near_by]))
     if not out:
         return Facing.of_none()
-    one, two, gaps = (
-        joined([i for i, *_ in out]), joined([j for _, j, _ in out]), joined([gaps for *_, gaps in out])
-    )  # fmt: skip
+    one = concatenated([i for i, *_ in out])
+    two = concatenated([j for _, j, _ in out])
+    gaps = concatenated([gaps for *_, gaps in out])
     return Facing(normals.take(one, axis=0), others.take(two, axis=0), gaps, asked.take(one))
 
 
@@ -121,4 +121,4 @@ def _meeting(first: tuple[Array, Array], second: tuple[Array, Array]) -> tuple[I
         return np.zeros(len(beside), np.int64), beside
     half = len(first[0]) // 2
     parts = [_meeting((first[0][some], first[1][some]), second) for some in (slice(0, half), slice(half, None))]
-    return joined([parts[0][0], parts[1][0] + half]), joined([parts[0][1], parts[1][1]])
+    return concatenated([parts[0][0], parts[1][0] + half]), concatenated([parts[0][1], parts[1][1]])
