@@ -29,6 +29,7 @@ from kinform.contacts.search.apart import far_apart
 from kinform.contacts.search.pair_view import PairView, pair_view
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.meshes.mesh_index import MeshStore
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, freeze
 from kinform.model.assembly import Part
@@ -208,7 +209,7 @@ def _of_scattered(pair: PairView, patch: Patch, alone: bool) -> Patch:
     if alone and patch.kind == "plane" and _strip(pair, patch):
         return replace(patch, kind="freeform")
     if patch.kind == "plane" or (patch.one_sided and patch.kind in ("cylinder", "cone", "sphere")):
-        lean = max(scatter) / max(float(np.sqrt(patch.area)), 1e-300)
+        lean = max(scatter) / max(float(np.sqrt(patch.area)), TINY)
         (turn, shift), (tilt, offset) = patch.uncertainty, patch.mismatch
         return replace(patch, uncertainty=(max(turn, lean), shift), mismatch=(max(tilt, lean), offset))
     return patch

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from kinform.foundation.algebra.vectors import canonical_sign
 from kinform.foundation.records import altered
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, freeze
 from kinform.model.assembly import Mesh
@@ -180,7 +181,7 @@ def _rigid_fit(reference: _Cloud, copy: _Cloud) -> Copy | None:
     X_CO[:3, :3], X_CO[:3, 3] = R_CO, copy.middle - R_CO @ reference.middle
     scatter = COVERAGE * float(np.sqrt((off**2).sum() / len(off))) / np.sqrt(len(off))
     freeze(X_CO)
-    return Copy(reference.digest, X_CO, scatter / max(float(np.sqrt(spread[1] / len(a))), 1e-300), scatter)
+    return Copy(reference.digest, X_CO, scatter / max(float(np.sqrt(spread[1] / len(a))), TINY), scatter)
 
 
 def surfaces_of_copy(surfaces: MeshSurfaces, digest: str, copy: Copy) -> MeshSurfaces:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical_sign, dot
+from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Ints
 from kinform.surfaces.constants import COVERAGE
@@ -75,7 +76,7 @@ def flat(work: Patchwork, number: Ints, scales: Scales) -> list[Description]:
     size = np.linalg.norm(outward, axis=1)
     heads = np.array([polygons[0] for polygons in planes])
     rounding, first = scales.rounding[work.mesh[heads]], work.normal[heads]
-    outward = np.where(size[:, None] > 0, outward / np.maximum(size, 1e-300)[:, None], first)
+    outward = np.where(size[:, None] > 0, outward / np.maximum(size, TINY)[:, None], first)
     normal, centre, variances = fit_planes(region, points, outward)
     distance = dot(points - columns_of(centre, region), columns_of(normal, region))
     squares, samples, deepest = _deviations(region, distance, count)
@@ -109,7 +110,7 @@ def freeform(polygons: Ints, chord: float) -> Description:
 
 def standoffs(work: Patchwork, edges: Ints) -> Array:
     """(n,) how far the facets at these edges may stand off a smooth surface through their vertices."""
-    a, b, length = work.a[edges], work.b[edges], np.maximum(work.length[edges], 1e-300)
+    a, b, length = work.a[edges], work.b[edges], np.maximum(work.length[edges], TINY)
     area = np.minimum(work.area[a], work.area[b])
     # a short common edge says nothing of how far the two polygons reach from it
     width = np.minimum(area / length, 2 * np.sqrt(area))
@@ -204,7 +205,7 @@ def _uncertainties(
     freedom = np.maximum(samples - free, 1)
     scatter = np.maximum(np.sqrt(squares / freedom), ROUNDED_SCATTER * scale.rounding)
     matrix, _ = normal_equations(sums_of(region, count), columns.T, np.zeros(len(columns)))
-    size = np.sqrt(np.maximum(np.einsum("rii->ri", matrix), 1e-300))
+    size = np.sqrt(np.maximum(np.einsum("rii->ri", matrix), TINY))
     outer = size[:, :, None] * size[:, None, :]
     inverse = np.linalg.pinv(np.ascontiguousarray(matrix) / outer, hermitian=True, rcond=SINGULAR) / outer
     vague = samples <= free

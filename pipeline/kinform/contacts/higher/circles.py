@@ -19,6 +19,7 @@ from kinform.contacts.mating.charts import perpendicular
 from kinform.contacts.search.pair_view import NearSurfaces, PairView
 from kinform.foundation.algebra.vectors import cross, lengths, times
 from kinform.foundation.meshes.boxes import meeting_box
+from kinform.foundation.rounding import SOLVED
 from kinform.foundation.sorting import heads, median
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
@@ -78,7 +79,7 @@ class Rim(Circle):
         """(n,) angles evenly over what is there of it, and the arc (m) that each stands for."""
         total = float(self.spans.sum())
         most = BALL_BORE_SAMPLES
-        count = min(max(math.ceil(most * total / (2.0 * math.pi) - 1e-9), RIM_SAMPLES), most)
+        count = min(max(math.ceil(most * total / (2.0 * math.pi) - SOLVED), RIM_SAMPLES), most)
         passed = (np.arange(count) + 0.5) / count * total
         ends = np.cumsum(self.spans)
         edge = np.minimum(np.searchsorted(ends, passed), len(ends) - 1)

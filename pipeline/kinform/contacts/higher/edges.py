@@ -16,6 +16,7 @@ from kinform.contacts.higher.sharp import ConvexEdges, on_surface
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.pair_view import PairView, PartView
 from kinform.foundation.algebra.vectors import dot, lengths
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
@@ -78,7 +79,7 @@ def _bends(sharp: PartView, edges: ConvexEdges, k: int, tolerances: Tolerances) 
     meets = np.flatnonzero(np.isin(edges.ends, edges.ends[k]).any(axis=1))
     start, stop = (sharp.vertices[edges.ends[np.append(meets, k)][:, side]] for side in (0, 1))
     along = stop - start
-    unit = along / np.maximum(np.linalg.norm(along, axis=1), 1e-300)[:, None]
+    unit = along / np.maximum(np.linalg.norm(along, axis=1), TINY)[:, None]
     turns = np.arccos(np.minimum(1.0, np.abs(unit[:-1] @ unit[-1])))
     return bool(((turns > tolerances.coplanar) & (turns < tolerances.smooth_edge)).any())
 
@@ -144,7 +145,7 @@ def _rises(sharp: PartView, edges: ConvexEdges, height: Array) -> Flags:
         third = corners.sum(axis=1) - edges.ends.sum(axis=1)
         reach = sharp.vertices[third] - sharp.vertices[edges.ends[:, 0]]
         along = sharp.vertices[edges.ends[:, 1]] - sharp.vertices[edges.ends[:, 0]]
-        along = along / np.maximum(lengths(along), 1e-300)[:, None]
+        along = along / np.maximum(lengths(along), TINY)[:, None]
         away = lengths(reach - dot(reach, along)[:, None] * along)
         out &= height[third] - base > EDGE_RISE * away
     return out

@@ -22,6 +22,7 @@ from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.graphs.components import components, roots
 from kinform.foundation.meshes.edges import shared_edges
 from kinform.foundation.meshes.near_points import Near
+from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.foundation.sorting import ascending, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
@@ -295,7 +296,7 @@ def _leaders(points: Array, grain: float) -> Ints:
 
     Steps of more than the grain along either coordinate part them into groups; a group that is no larger is near
     itself, and only others need to be measured."""
-    spare, count = 1e-9, len(points)
+    spare, count = SOLVED, len(points)
     x, y = np.ascontiguousarray(points.T)
     aside, step, group = np.zeros(count, bool), np.zeros(count, bool), np.empty(count, np.int64)
     np.greater(x[1:] - x[:-1], (1.0 + spare) * grain, out=aside[1:])
@@ -344,7 +345,7 @@ def may_curve(part: PartView, pieces: Segments, smooth_edge: float) -> Flags:
     one, two = steps.take(before, axis=0), steps.take(leaving.take(joints), axis=0)
     turn = np.abs(np.arctan2(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0], dot(one, two)))
     # for rounding; and a closed curve that is nowhere cut overlaps itself, and turns there twice
-    spare = 1.0 + 1e-6
+    spare = 1.0 + SINGLE
     turn[turn >= spare * smooth_edge] = 0.0
     if 2.0 * spare * turn.sum() < CURVE_BEND_LEAST:
         return np.zeros(number, bool)

@@ -24,6 +24,7 @@ from kinform.contacts.search.pair_view import NearSurfaces, PairView, PartView, 
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.meshes.boxes import meeting_box
 from kinform.foundation.meshes.near_facets import near_boxes
+from kinform.foundation.rounding import ARITHMETIC, SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
@@ -229,11 +230,11 @@ def _parallel_place(first: Curve, second: Curve, s: float, t: float) -> _Place |
         off, turn = ax * wx + ay * wy, ux * wy - uy * wx
         a, b, c, d = along, -1.0 + lam * (ay * wx - ax * wy), -kappa * along, lam * along
         size = a * d - b * c
-        if abs(size) < 1e-12 * (abs(kappa) + abs(lam) + 1e-300):
+        if abs(size) < ARITHMETIC * (abs(kappa) + abs(lam) + TINY):
             return None
         s_new = min(max(s + (b * turn - d * off) / size / speed, 0.0), ends[0])
         t_new = min(max(t + (c * off - a * turn) / size / other_speed, 0.0), ends[1])
-        still = abs(s_new - s) < 1e-12 * ends[0] and abs(t_new - t) < 1e-12 * ends[1]
+        still = abs(s_new - s) < ARITHMETIC * ends[0] and abs(t_new - t) < ARITHMETIC * ends[1]
         s, t = s_new, t_new
         if still:
             break
@@ -360,4 +361,4 @@ def _radius(curve: Curve, met: _Meeting) -> float:
     """Radius of curvature (m) where they meet; 0 for a straight line."""
     k = int(np.argmin(np.linalg.norm(curve.points - met.point, axis=1)))
     bend = abs(float(curve.at(curve.knots[k : k + 1])[2][0]))
-    return 1.0 / bend if bend > 1e-9 / max(float(curve.knots[-1]), 1e-300) else 0.0
+    return 1.0 / bend if bend > SOLVED / max(float(curve.knots[-1]), TINY) else 0.0

@@ -19,6 +19,7 @@ from kinform.contacts.search.pair_view import PairView, PartView, boxes_of
 from kinform.foundation.meshes.closest_facets import distances_from
 from kinform.foundation.meshes.fcl_adapter import UNIT, partial_model
 from kinform.foundation.meshes.near_facets import near_boxes
+from kinform.foundation.rounding import TINY
 from kinform.model.arrays import Array, Ints
 from kinform.model.contacts import Patch
 
@@ -47,7 +48,7 @@ def unknown_touches(pair: PairView) -> list[Patch]:
     if gap > min(_touches_within(pair, sum(chords)), pair.tolerance):
         return []
     normal = out_of_a - out_of_b
-    normal = normal / max(float(np.linalg.norm(normal)), 1e-300)
+    normal = normal / max(float(np.linalg.norm(normal)), TINY)
     touch = TouchSamples(
         points=place[None],
         normals=normal[None],

@@ -16,6 +16,7 @@ import numpy as np
 from kinform.foundation.algebra import vectors
 from kinform.foundation.algebra.vectors import cross, lengths, norm, times
 from kinform.foundation.meshes.boxes import middles
+from kinform.foundation.rounding import SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
@@ -65,7 +66,7 @@ def perpendicular(axis: Array, hint: Array | None = None) -> Array:
     if hint is not None:
         across = hint - (hint @ axis) * axis
         length = norm(across)
-        if length > HINT_LEAST * max(norm(hint), 1e-300):
+        if length > HINT_LEAST * max(norm(hint), TINY):
             return np.asarray(across / length)
     return -vectors.perpendicular(axis)[0]
 
@@ -143,7 +144,7 @@ class _Axial:
         middle = self._azimuth(self._arms(middles(triangles))[1])[:, None]
         turn = self._azimuth(across) - middle
         turn -= 2.0 * math.pi * np.rint(turn / (2.0 * math.pi))
-        turn = np.where(radius > 1e-9 * radius.max(initial=0.0), turn, 0.0)
+        turn = np.where(radius > SOLVED * radius.max(initial=0.0), turn, 0.0)
         return along, radius, middle + turn
 
     def _radial(self, azimuth: Array) -> Array:
@@ -260,7 +261,7 @@ class SphereChart:
         rise = times(rays, self.pole)
         shown = middles(rays) @ self.pole > POLE_SEEN
         rays, rise = rays[shown], rise[shown]
-        stretch = self.radius * np.sqrt(2.0 / np.maximum(1.0 + rise, 1e-9))
+        stretch = self.radius * np.sqrt(2.0 / np.maximum(1.0 + rise, SOLVED))
         return np.asarray(stretch[..., None] * times(rays, plane_basis(self.pole).T))
 
     def window(self) -> Array | None:

@@ -29,6 +29,7 @@ from kinform.contacts.search.pair_view import CLEARANCE_SHARE, NearSurfaces, Pai
 from kinform.foundation.meshes.boxes import facet_boxes
 from kinform.foundation.meshes.rings import RING_SPARE, Ring, RingRow
 from kinform.foundation.meshes.surface_table import SurfaceTable
+from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
@@ -157,7 +158,7 @@ def _that_fit(
     side = np.array([*(one.side for one in cylinders), *(row.side for row in others)])
     corner = np.array([*(one.corner for one in cylinders), *(row.corner for row in others)])
     flat = np.array([*(one.flats[1] for one in cylinders), *(row.flat for row in others)])
-    least, out = np.cos(TILT_LIKELY * MATING_TILT) - 1e-6, []
+    least, out = np.cos(TILT_LIKELY * MATING_TILT) - SINGLE, []
     for row in rows:
         gap = np.minimum(np.minimum(np.abs(corner - row.corner), np.abs(flat - row.corner)), np.abs(row.flat - corner))
         rough = 2.0 * RING_SPARE * (row.corner + corner)
@@ -207,7 +208,7 @@ def _may_enclose(pair: PairView, sides: list[list[_Round]]) -> Flags:
     outer, flat = np.where(inner, corner_b, corner_a[:, None]), np.where(inner, flat_b, flat_a[:, None])
     play = np.maximum(pair.play, CLEARANCE_SHARE * bar)
     # of the smaller radius of the two it is less
-    limit = (1.0 + 1e-9) * MATING_REACH * np.minimum(play, bar / HALF_RADIUS_SHARE)
+    limit = (1.0 + SOLVED) * MATING_REACH * np.minimum(play, bar / HALF_RADIUS_SHARE)
     off = np.minimum(np.abs(outer - bar), np.abs(flat - bar))
     return np.asarray((side_a[:, None] * side_b <= 0.0) & (off <= limit))
 

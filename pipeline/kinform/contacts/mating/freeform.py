@@ -23,6 +23,7 @@ from kinform.foundation.algebra.vectors import cross, dot, widest_gap
 from kinform.foundation.constants import SLIVER_WIDTH
 from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import meeting_box, middles, triangle_boxes
+from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import among, distinct
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
@@ -127,7 +128,7 @@ def _probes(pair: PairView, surfaces: SurfacePair, facing: _Facing) -> tuple[Pro
         able = slice(None) if facing is None else np.flatnonzero(among(facets[chosen], facing[k]))
         points.append(centres[chosen][able])
         normals.append(sense * part.normals(facets[chosen])[able])
-        shares.append((0.5 * areas * total / max(float(areas.sum()), 1e-300))[able])
+        shares.append((0.5 * areas * total / max(float(areas.sum()), TINY))[able])
     place = np.concatenate(points)
     gaps, reaches = np.zeros(len(place)), np.full(len(place), reach)
     return Probes.of(place, np.concatenate(normals), gaps, reaches, surfaces), np.concatenate(shares)
@@ -177,7 +178,7 @@ def _turning(patch: Patch, pair: PairView, surfaces: SurfacePair) -> Patch:
         return patch
     velocity = cross(axes.axis, patch.points - axes.point)
     speed = np.linalg.norm(velocity, axis=1)
-    along = velocity / np.maximum(speed, 1e-300)[:, None]
+    along = velocity / np.maximum(speed, TINY)[:, None]
     normals = patch.normals - dot(patch.normals, along)[:, None] * along
     return replace(
         patch,

@@ -16,6 +16,7 @@ from kinform.contacts.constants import MATING_REACH
 from kinform.contacts.mating.charts import Chart
 from kinform.contacts.search.pair_view import CLEARANCE_SHARE, PairView, SurfacePair
 from kinform.foundation.algebra.vectors import cross, norm
+from kinform.foundation.rounding import ARITHMETIC, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
@@ -77,7 +78,7 @@ def radial_limit(play: float, radius: float) -> float:
 
 def _shares(first: float, second: float) -> tuple[float, float]:
     """Weights of two estimates with these uncertainties, summing to 1."""
-    floor = 1e-3 * max(first, second, 1e-300)
+    floor = 1e-3 * max(first, second, TINY)
     one, two = 1.0 / max(first, floor) ** 2, 1.0 / max(second, floor) ** 2
     return one / (one + two), two / (one + two)
 
@@ -130,6 +131,6 @@ def mean_axes(surfaces: SurfacePair, middle: Array) -> Axes:
 def aligned(pair: PairView, axes: Axes, clearance: float, length: float) -> bool:
     """Whether two axes agree: to what the clearance allows over the engaged length, or within `alignment`."""
     spare = max(clearance, 0.0)
-    tilt = pair.tolerances.alignment + 2.0 * axes.uncertainty[0] + 2.0 * spare / max(length, 1e-12)
+    tilt = pair.tolerances.alignment + 2.0 * axes.uncertainty[0] + 2.0 * spare / max(length, ARITHMETIC)
     offset = spare + min(2.0 * axes.uncertainty[1], pair.tolerance) + MATING_OFFSET * pair.tolerance
     return axes.misalignment <= min(tilt, MATING_TILT) and axes.offset <= offset

@@ -22,6 +22,7 @@ from kinform.contacts.search.pair_view import PairView, SurfacePair, boxes_of
 from kinform.foundation.algebra.vectors import dot, lengths
 from kinform.foundation.meshes.box_pairs import Boxes, meeting_boxes
 from kinform.foundation.meshes.boxes import meeting_box, middles
+from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
@@ -114,7 +115,7 @@ def _may_rest(view: PairView, rows: Ints, facets: Ints, normals: Array) -> Flags
         radius = np.where(conical, 0.0, giver.radii.take(rows))
         heights[curved] = lengths(across) * cosine[:, None] - along * sine[:, None] - radius[:, None]
         radial = middles(across)
-        radial /= np.maximum(lengths(radial), 1e-300)[:, None]
+        radial /= np.maximum(lengths(radial), TINY)[:, None]
         outward = cosine[:, None] * radial - sine[:, None] * axes
         facing = giver.sides.take(rows) * dot(outward, normals.take(curved, axis=0))
         # of a middle that is nearly on the axis nothing is clear

@@ -19,6 +19,7 @@ from kinform.contacts.mating.regions import regions
 from kinform.foundation.algebra.vectors import lengths
 from kinform.foundation.concatenation import concatenated
 from kinform.foundation.meshes.boxes import triangle_boxes
+from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
 
 PATCH_BINS = 24
@@ -44,7 +45,7 @@ def _resampled(polygon: Array, step: Array) -> Array:
     ends = np.concatenate([polygon[1:], polygon[:1]])
     if step[0] == step[1] == math.inf:
         return np.asarray(polygon + 0.0 * (ends - polygon))
-    counts = np.maximum(np.ceil((np.abs(ends - polygon) / step).max(axis=1) - 1e-9), 1).astype(np.int64)
+    counts = np.maximum(np.ceil((np.abs(ends - polygon) / step).max(axis=1) - SOLVED), 1).astype(np.int64)
     rows = np.repeat(np.arange(len(polygon)), counts)
     first = np.repeat(np.cumsum(counts) - counts, counts)
     share = (np.arange(len(rows)) - first) / counts[rows]

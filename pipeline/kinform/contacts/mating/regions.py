@@ -15,6 +15,7 @@ from manifold3d import CrossSection, FillRule
 from kinform.contacts.mating.cells import POINT_SAME, signed_areas
 from kinform.foundation.concatenation import concatenated
 from kinform.foundation.equal_rows import number_equal_rows
+from kinform.foundation.rounding import ARITHMETIC
 from kinform.foundation.sorting import numbered
 from kinform.model.arrays import Array, Ints
 
@@ -30,7 +31,7 @@ def regions(flats: Sequence[Array], units: Sequence[float]) -> list[CrossSection
     signed, own = signed_areas(flat), unit.take(owner)
     turned = signed < 0.0
     flat = (np.where(turned[:, None, None], flat[:, ::-1], flat) if turned.any() else flat) / own[:, None, None]
-    large = np.abs(signed) > 1e-12 * own * own
+    large = np.abs(signed) > ARITHMETIC * own * own
     if not large.all():
         flat, owner = flat[large], owner[large]
     ends = np.searchsorted(owner, np.arange(len(flats) + 1)).tolist()

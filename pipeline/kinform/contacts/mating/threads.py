@@ -17,6 +17,7 @@ from kinform.contacts.mating.mate import Axes, aligned, mean_axes
 from kinform.contacts.mating.patches import PATCH_AREA, classify_fit
 from kinform.contacts.search.pair_view import PairView, PartView, SurfacePair
 from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
@@ -78,7 +79,7 @@ def _fit(pair: PairView, surfaces: SurfacePair) -> tuple[Axes, float, float] | N
     middle, size = surfaces.box()
     axes = mean_axes(surfaces, middle)
     engaged = float(size @ np.abs(axes.axis))
-    turns = engaged / max(abs(first), 1e-12)
+    turns = engaged / max(abs(first), ARITHMETIC)
     apart = abs(first - second)
     pitch = 0.5 * (first + second)
     limit = FLANK_GAP * abs(pitch)
@@ -159,15 +160,15 @@ def _profile(part: PartView, facets: Ints, axes: Axes, advance: float) -> _Profi
     along = end - start
     middle = 0.5 * (start + end)
     centre = azimuth.mean(axis=1)
-    normal = np.stack([-along[:, 1], -advance / np.maximum(middle[:, 0], 1e-300) * along[:, 0], along[:, 0]], axis=1)
-    normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
+    normal = np.stack([-along[:, 1], -advance / np.maximum(middle[:, 0], TINY) * along[:, 0], along[:, 0]], axis=1)
+    normal /= np.maximum(np.linalg.norm(normal, axis=1), TINY)[:, None]
     radial = np.cos(centre)[:, None] * base + np.sin(centre)[:, None] * aside
     sense = np.sign(dot(_turned(normal, radial, axes.axis), part.normals(facets)))
     profile = _Profile(
         start, end, normal * sense[:, None], centre, middle[:, 1] + advance * centre,
         0.5 * np.ptp(height, axis=1), part.index.areas(facets),
     )  # fmt: skip
-    return profile.select(np.flatnonzero((spans.max(axis=1) > 1e-9 * distance.max(initial=0.0)) & (sense != 0)))
+    return profile.select(np.flatnonzero((spans.max(axis=1) > SOLVED * distance.max(initial=0.0)) & (sense != 0)))
 
 
 def _wrapped(angle: Array) -> Array:
@@ -197,7 +198,7 @@ def _places(profile: _Profile, pitch: float) -> tuple[Ints, Array, Array, Array,
     azimuth = profile.azimuth[facet]
     normal = profile.normal[facet].copy()
     # the slope of the helix changes with the distance from the axis
-    normal[:, 1] = -pitch / (2 * math.pi) * normal[:, 2] / np.maximum(points[:, 0], 1e-300)
+    normal[:, 1] = -pitch / (2 * math.pi) * normal[:, 2] / np.maximum(points[:, 0], TINY)
     normal /= np.linalg.norm(normal, axis=1)[:, None]
     return facet, points, normal, azimuth, points[:, 1] + pitch / (2 * math.pi) * azimuth
 
@@ -231,15 +232,15 @@ def _resting(mine: _Profile, other: _Profile, pitch: float, limit: float) -> _Sa
     opposite = their_normal[near]
     gap = offset[..., 0] * opposite[..., 0] + offset[..., 1] * opposite[..., 2]
     along = other.end[line] - other.start[line]
-    length = np.maximum(np.linalg.norm(along, axis=2), 1e-300)
+    length = np.maximum(np.linalg.norm(along, axis=2), TINY)
     from_start = their_points[near] - other.start[line] + offset
     foot = np.einsum("ijk,ijk->ij", from_start, along) / length**2
     beside = np.abs(height[:, None] - their_height[near]) - other.reach[line] - mine.reach[kept][facet][:, None]
     good = (
         (np.einsum("ijk,ijk->ij", np.broadcast_to(normal[:, None], opposite.shape), opposite) < FLANKS_FACING)
         & (np.abs(gap) <= limit)
-        & (foot >= -1e-6)
-        & (foot <= 1.0 + 1e-6)
+        & (foot >= -SINGLE)
+        & (foot <= 1.0 + SINGLE)
         & (beside <= limit)
     )
     best = np.argmin(np.where(good, np.abs(gap), np.inf), axis=1)

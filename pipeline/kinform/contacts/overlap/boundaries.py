@@ -12,6 +12,7 @@ from kinform.contacts.search.pair_view import PairView, PartView
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.meshes.probes import Region, crossings_of
 from kinform.foundation.meshes.separated_sets import surely_separated
+from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
@@ -152,7 +153,7 @@ def parting(patches: list[Patch]) -> Array | None:
     for _ in range(PARTING_STEPS):
         step = normals[np.argmin(normals @ nearest)] - nearest
         gain = -float(step @ nearest)
-        if gain <= 1e-9:
+        if gain <= SOLVED:
             break
         nearest = nearest + min(1.0, gain / float(step @ step)) * step
     length = float(np.linalg.norm(nearest))

@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from kinform.foundation.rounding import TINY
 from kinform.model.arrays import Array
 
 _NEXT, _AFTER = np.array([1, 2, 0]), np.array([2, 0, 1])
@@ -94,7 +95,7 @@ def box(points: Array) -> tuple[Array, Array]:
 def normalised(vectors: Array) -> Array:
     """Vectors (…, 3) of length one; zero vectors stay."""
     length = np.sqrt(np.einsum("...i,...i", vectors, vectors))
-    return np.asarray(vectors / np.maximum(length, 1e-300)[..., None])
+    return np.asarray(vectors / np.maximum(length, TINY)[..., None])
 
 
 def norm(vector: Array) -> float:

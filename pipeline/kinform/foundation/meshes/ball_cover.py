@@ -6,6 +6,7 @@ import numpy as np
 
 from kinform.foundation.meshes.near_points import Nearest
 from kinform.foundation.meshes.subdivision import inner_weights, longest_sides
+from kinform.foundation.rounding import TINY
 from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh
 
@@ -33,14 +34,14 @@ def _balls(mesh: Mesh) -> list[tuple[Nearest, float]]:
     """Middles of balls that hold all facets, with their radius (m), by octaves of it."""
     corners = mesh.vertices.take(mesh.faces, axis=0)
     longest = longest_sides(corners)
-    parts = np.clip(np.ceil(longest / max(BALL_SHARE * mesh.diagonal, 1e-300)), 1, BALL_PARTS).astype(np.int64)
+    parts = np.clip(np.ceil(longest / max(BALL_SHARE * mesh.diagonal, TINY)), 1, BALL_PARTS).astype(np.int64)
     middles, radii = [], []
     for number in np.flatnonzero(np.bincount(parts)).tolist():
         alike = parts == number
         middles.append((inner_weights(number) @ corners[alike]).reshape(-1, 3))
         radii.append(np.repeat(2.0 / 3.0 * longest[alike] / number, number * number))
     points, radius = np.concatenate(middles), np.concatenate(radii)
-    size, low = max(mesh.diagonal, 1e-300), mesh.vertices.min(axis=0)
+    size, low = max(mesh.diagonal, TINY), mesh.vertices.min(axis=0)
     level = np.ceil(np.log2(np.maximum(radius / size, BALL_SHARE))).astype(np.int64)
     out = []
     for k in range(int(level.min()), int(level.max()) + 1):

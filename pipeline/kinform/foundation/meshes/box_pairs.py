@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from kinform.foundation.concatenation import concatenated
 from kinform.foundation.meshes.boxes import FlatBoxes, meeting_box
+from kinform.foundation.rounding import SOLVED, TINY
 from kinform.model.arrays import Array, Ints
 
 BOXES_MATRIX = 600_000
@@ -49,9 +50,9 @@ def meeting_boxes(first: Boxes, second: Boxes, most: float = math.inf) -> tuple[
         return _compared(first, second, most)
     (low, high), (low_other, high_other) = first, second
     whole = np.maximum(high.max(axis=0), high_other.max(axis=0)) - np.minimum(low.min(axis=0), low_other.min(axis=0))
-    share = whole / np.maximum((high - low).mean(axis=0) + (high_other - low_other).mean(axis=0), 1e-300)
+    share = whole / np.maximum((high - low).mean(axis=0) + (high_other - low_other).mean(axis=0), TINY)
     axes = np.sort(np.argsort(share, kind="stable")[1:])
-    reach = 0.5 * (high - low).max(axis=0)[axes] * (1.0 + 1e-9)
+    reach = 0.5 * (high - low).max(axis=0)[axes] * (1.0 + SOLVED)
     middles = 0.5 * (low + high)
     listed = FlatBoxes(low_other[:, axes] - reach, high_other[:, axes] + reach)
     if listed.listed_at(middles[:, axes]) > BESIDE_MOST:

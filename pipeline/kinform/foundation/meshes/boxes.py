@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.foundation.rounding import ARITHMETIC, TINY
 from kinform.foundation.sorting import ascending
 from kinform.model.arrays import Array, Flags, Ints
 
@@ -173,7 +174,7 @@ class FlatBoxes:
     def _list(self) -> None:
         low, high = self.low, self.high
         self._origin = low.min(axis=0, initial=np.inf)
-        whole = np.maximum(high.max(axis=0, initial=-np.inf) - self._origin, 1e-300)
+        whole = np.maximum(high.max(axis=0, initial=-np.inf) - self._origin, TINY)
         side = int(np.clip(2.0 * np.sqrt(len(low)), 1, GRID_FINEST))
         while True:
             self._cell, self._side = whole / side, side
@@ -302,8 +303,8 @@ def together(low: Array, high: Array) -> Ints:
     if not len(low):
         return np.zeros(0, np.int64)
     size = (high - low).max(axis=1)
-    whole = max(float((bounds(high)[1] - bounds(low)[0]).max()), 1e-300)
-    octave = np.clip(np.floor(np.log2(np.maximum(size, 1e-12 * whole) / whole)), -SIZE_OCTAVES, 0).astype(np.int64)
+    whole = max(float((bounds(high)[1] - bounds(low)[0]).max()), TINY)
+    octave = np.clip(np.floor(np.log2(np.maximum(size, ARITHMETIC * whole) / whole)), -SIZE_OCTAVES, 0).astype(np.int64)
     return np.lexsort((_places(low, high), -octave)).astype(np.int64)
 
 
@@ -315,7 +316,7 @@ def along_curve(low: Array, high: Array) -> Ints:
 def _places(low: Array, high: Array) -> Ints:
     """(n,) where the middles of boxes (n, d) are along a Z-curve."""
     dimensions, least = low.shape[1], bounds(low)[0]
-    whole = max(float((bounds(high)[1] - least).max()), 1e-300)
+    whole = max(float((bounds(high)[1] - least).max()), TINY)
     spread, code = _spread(dimensions), np.zeros(len(low), np.int64)
     for axis in range(dimensions):
         place = (0.5 * (low[:, axis] + high[:, axis]) - least[axis]) / whole * 2.0**PLACE_BITS

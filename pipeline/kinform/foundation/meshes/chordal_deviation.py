@@ -19,6 +19,7 @@ from kinform.foundation.algebra.vectors import cross, dot, lengths
 from kinform.foundation.constants import STANDOFF_EDGES
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import shared_edges
+from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import distinct, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
@@ -78,7 +79,7 @@ def _slivers(corners: Array, spans: Array, sides: Ints, turn: Array, rounding: f
     along = np.roll(corners, -1, axis=1) - corners
     longest = np.sqrt(np.einsum("mki,mki->mk", along, along).max(axis=1))
     doubled = lengths(spans)
-    low = doubled / np.maximum(longest, 1e-300)
+    low = doubled / np.maximum(longest, TINY)
     first, second = sides
     lower = np.where(low[first] <= low[second], first, second)
     rounded = low[lower] * turn < STANDOFF_ROUNDED * rounding
@@ -128,7 +129,7 @@ class _Polygons:
         out = np.zeros(len(self.area))
         least = self.area[sides].min(axis=0)
         # a short edge says nothing of how far the polygons reach from it
-        width = np.minimum(least / np.maximum(length, 1e-300), 2.0 * np.sqrt(least))
+        width = np.minimum(least / np.maximum(length, TINY), 2.0 * np.sqrt(least))
         np.maximum.at(out, sides.ravel(), np.tile(STANDOFF_EDGES * width * turn / 8.0, 2))
         return out
 
@@ -158,8 +159,8 @@ class _Polygons:
         # slivers know little of how a surface bends, and what is much farther off than the polygon reaches less
         square = np.einsum("kc,kc->k", apart, apart)
         own = 4.0 * np.einsum("kc,kcd,kd->k", apart, reach[one], apart)
-        near = np.minimum(own / np.maximum(square * square, 1e-300), 1.0) ** 2
-        weight = near * np.minimum(self.area[other] / np.maximum(self.area[one], 1e-300), 1.0)
+        near = np.minimum(own / np.maximum(square * square, TINY), 1.0) ** 2
+        weight = near * np.minimum(self.area[other] / np.maximum(self.area[one], TINY), 1.0)
         products = (u * u, u * v, v * v, u * p, u * q + v * p, v * q)
         uu, uv, vv, up, mixed, vq = (np.bincount(one, weight * values, count) for values in products)
         matrix = np.zeros((count, 3, 3))
@@ -194,7 +195,7 @@ class _Polygons:
         off = self.vertices[self.corner] - self.middle[self.owner]
         furthest = np.zeros(count)
         np.maximum.at(furthest, self.owner, lengths(off))
-        narrow = self.area / np.maximum(2.0 * furthest, 1e-300)
+        narrow = self.area / np.maximum(2.0 * furthest, TINY)
         x, y = np.einsum("ki,kci->ck", off, frame[self.owner])
         squares = (np.bincount(self.owner, product, count) for product in (x * x, x * y, x * y, y * y))
         reach = np.stack(list(squares), axis=1).reshape(-1, 2, 2) / np.bincount(self.owner)[:, None, None]

@@ -12,6 +12,7 @@ from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.meshes.boxes import along_curve, facet_boxes
 from kinform.foundation.meshes.closest_facets import distances_between
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, partial_model, point_model
+from kinform.foundation.rounding import SOLVED
 from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
@@ -135,7 +136,7 @@ class Depths:
             beyond = np.maximum(self._low[:, axis] - place, place - self._high[:, axis])
             beyond = np.maximum(beyond, 0.0, out=beyond)
             square += np.square(beyond, out=beyond)
-        return np.asarray((1.0 - 1e-9) * np.sqrt(square, out=square))
+        return np.asarray((1.0 - SOLVED) * np.sqrt(square, out=square))
 
     @cached_property
     def _whole(self) -> fcl.CollisionObject:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.meshes.boxes import meeting_box
+from kinform.foundation.rounding import TINY
 from kinform.model.arrays import Array, Flags, Ints
 
 CELLS_MOST = 48
@@ -27,7 +28,7 @@ def near_boxes(low_a: Array, high_a: Array, low_b: Array, high_b: Array, margin:
     sides = [np.ascontiguousarray(side.T) for side in (low_a, high_a, low_b, high_b)]
     low = np.maximum(sides[0].min(axis=1), sides[2].min(axis=1)) - margin
     high = np.minimum(sides[1].max(axis=1), sides[3].max(axis=1)) + margin
-    size = np.maximum(high - low, 1e-300)
+    size = np.maximum(high - low, TINY)
     finest = min(CELLS_MOST, CELLS_LEAST + int(np.sqrt(len(low_a) + len(low_b)) / 4))
     counts = np.maximum(np.ceil(finest * size / size.max()), 1).astype(np.int64)
     placed_a, placed_b = (_cells(sides[k], sides[k + 1], 0.0, low, size, counts) for k in (0, 2))

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array, Ints
 
 LINE = np.array([0.57735, 0.51763, 0.63144, 0.44317])
@@ -63,7 +64,8 @@ class Near:
         place = points @ (line / np.linalg.norm(line))
         order = np.argsort(place)
         ordered = place[order]
-        counts = np.searchsorted(ordered, ordered + distance * (1 + 1e-9), side="right") - np.arange(1, len(points) + 1)
+        beyond = np.searchsorted(ordered, ordered + distance * (1 + SOLVED), side="right")
+        counts = beyond - np.arange(1, len(points) + 1)
         if counts.sum() > max(FEW_PAIRS, SHARED_PAIRS * len(points)):
             return None
         first = np.repeat(np.arange(len(points)), counts)

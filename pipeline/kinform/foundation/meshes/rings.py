@@ -17,6 +17,7 @@ from kinform.foundation.algebra.vectors import canonical, cross, dot, lengths, n
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import SharedEdges
 from kinform.foundation.meshes.surface_table import SurfaceTable
+from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import distinct, heads, median, numbered
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
@@ -190,7 +191,7 @@ def _ridges(
     bent = _bent(sine, dot(one, two)).nonzero()[0]
     edges, one, two = edges.where(between.take(bent)), one.take(bent, axis=0), two.take(bent, axis=0)
     along = edges.along(vertices)
-    length, direction = lengths(along), across.take(bent, axis=0) / np.maximum(sine.take(bent), 1e-300)[:, None]
+    length, direction = lengths(along), across.take(bent, axis=0) / np.maximum(sine.take(bent), TINY)[:, None]
     straight = np.abs(dot(along, direction)) > np.cos(RING_ASKEW) * length
     kept = (straight & (length > 0.0)).nonzero()[0]
     convex = edges.convexity(vertices, one, two) > 0.0

@@ -13,6 +13,7 @@ from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
 from kinform.foundation.meshes.ray_parity import RAYS, Ray
 from kinform.foundation.meshes.shells import shells_of
 from kinform.foundation.meshes.subdivision import inner_weights
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
@@ -90,7 +91,7 @@ def _wrong(mesh: Mesh, shell: Ints, chosen: Ints, volumes: Array) -> Array:
     points = inner_weights(PROBE_PARTS) @ corners + (depth[:, None] * normals)[:, None]
     winding = _windings(mesh, points.reshape(-1, 3)).reshape(points.shape[:2])
     bad = np.where(cavity[:, None], winding < -0.5, winding > 1.5).mean(axis=1)
-    whole = np.maximum(np.bincount(shell, areas, len(volumes)), 1e-300)
+    whole = np.maximum(np.bincount(shell, areas, len(volumes)), TINY)
     return np.asarray(np.bincount(shell, areas * bad, len(volumes)) / whole)
 
 

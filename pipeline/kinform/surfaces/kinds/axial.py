@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.rounding import TINY
 from kinform.model.arrays import Array
 from kinform.surfaces.groups import repeated
 from kinform.surfaces.kinds.batch import Batch, Params
@@ -66,7 +67,7 @@ def cylindrical(params: Params, points: Array) -> Cylindrical:
     rho = each[0] + each[1]
     rho += each[2]
     np.sqrt(rho, out=rho)
-    away *= 1.0 / np.maximum(rho, 1e-300)
+    away *= 1.0 / np.maximum(rho, TINY)
     return Cylindrical(t, rho, away.T)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import among, ascending, occurrences
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.groups import group_mean, group_moments, group_range, repeated, spheres_of
@@ -76,7 +77,7 @@ def _axis_of_edges(batch: Batch) -> tuple[Array, Array]:
     rows = inner.nonzero()[0]
     matrix = group_moments(region.take(rows), work.along(edge.take(rows)).T, batch.count)
     values, vectors = np.linalg.eigh(np.nan_to_num(matrix))
-    total = np.maximum(values.sum(axis=1), 1e-300)
+    total = np.maximum(values.sum(axis=1), TINY)
     return np.ascontiguousarray(vectors[:, :, 2]), values[:, 2] / total
 
 

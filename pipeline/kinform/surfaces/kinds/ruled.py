@@ -12,6 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.rounding import ARITHMETIC, TINY
 from kinform.foundation.sorting import among, distinct
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.constants import NORMAL_SLACK, ROWS
@@ -328,7 +329,7 @@ class Ruled(Kind, Protocol):
         axis = params[:, :3] + change[:, 2:3] * x + change[:, 3:4] * y
         square = axis * axis
         length = np.sqrt(square[:, 0] + square[:, 1] + square[:, 2])
-        out[:, :3] = axis / np.maximum(length, 1e-300)[:, None]
+        out[:, :3] = axis / np.maximum(length, TINY)[:, None]
         out[:, 6] = np.maximum(radius + change[:, 4], LEAST_RADIUS)
         if self.tapers:
             taper = params[:, 7] + change[:, 5]
@@ -371,7 +372,7 @@ def generators(batch: Batch, params: Params) -> tuple[Ints, Ints, Flags]:
 def _along(work: Patchwork, params: Params, region: Ints, edge: Ints) -> Flags:
     """Whether each edge runs along a generator of its region's surface."""
     sizes = np.bincount(region, minlength=len(params))
-    bow = 8 * BOW * np.maximum(np.abs(params[:, 6]), 1e-12)
+    bow = 8 * BOW * np.maximum(np.abs(params[:, 6]), ARITHMETIC)
     mine = repeated(np.array([*params.T[:3], bow]).T, sizes)
     direction = mine[:, :3]
     cones = params[:, 7].nonzero()[0]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import among, distinct
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.groups import columns_of, group_mean, group_moments, group_sum, parted, spheres_through
@@ -75,7 +76,7 @@ class Sphere(DoublyCurved):
         """Distance, normal and radius."""
         offset = points - params[:, 3:6]
         rho = np.sqrt(dot(offset, offset))
-        return Probe(rho - params[:, 6], offset / np.maximum(rho, 1e-300)[:, None], params[:, 6])
+        return Probe(rho - params[:, 6], offset / np.maximum(rho, TINY)[:, None], params[:, 6])
 
     def equations(self, params: Params, points: Array) -> tuple[Array, Array]:
         """By centre (3) and radius."""
@@ -89,7 +90,7 @@ class Sphere(DoublyCurved):
         surrounded = np.bincount(region, minlength=batch.count)
         each = work.area.take(batch.polygon)
         total = group_sum(batch.region, work.normals(batch.polygon) * each[:, None], batch.count)
-        area = np.maximum(np.bincount(batch.region, each, batch.count), 1e-300)
+        area = np.maximum(np.bincount(batch.region, each, batch.count), TINY)
         # a cap of half-angle φ has the mean normal (1 + cos φ) / 2
         cos = np.clip(2 * np.linalg.norm(total, axis=1) / area - 1, -1.0, 1.0)
         credible = (surrounded >= 4) & (params[:, 6] * (1 - cos) > SAGITTA * scale.fit)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.rounding import ARITHMETIC, TINY
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.groups import columns_of, group_range, quantile, spheres_through
 from kinform.surfaces.kinds.axial import azimuths, cylindrical, frames
@@ -75,7 +76,7 @@ class Torus(DoublyCurved):
         stepped = params.copy()
         stepped[:, 3:6] += shift[:, :1] * x + shift[:, 1:2] * y + shift[:, 2:] * params[:, :3]
         leaning = params[:, :3] + tilt[:, :1] * x + tilt[:, 1:] * y
-        stepped[:, :3] = leaning / np.maximum(np.linalg.norm(leaning, axis=1), 1e-300)[:, None]
+        stepped[:, :3] = leaning / np.maximum(np.linalg.norm(leaning, axis=1), TINY)[:, None]
         stepped[:, 6:] = np.maximum(params[:, 6:] + np.clip(change[:, 5:], -bound / 2, bound), LEAST_RADIUS)
         return stepped
 
@@ -84,7 +85,7 @@ class Torus(DoublyCurved):
         t, rho, radial = cylindrical(params, points)
         across = rho - params[:, 6]
         q = np.sqrt(across * across + t * t)
-        scale = 1.0 / np.maximum(q, 1e-300)
+        scale = 1.0 / np.maximum(q, TINY)
         normal = (across * scale)[:, None] * radial + (t * scale)[:, None] * params[:, :3]
         return Probe(q - params[:, 7], normal, params[:, 6] + params[:, 7])
 
@@ -93,7 +94,7 @@ class Torus(DoublyCurved):
         t, rho, radial = cylindrical(params, points)
         across = rho - params[:, 6]
         q = np.sqrt(across * across + t * t)
-        scale = 1.0 / np.maximum(q, 1e-300)
+        scale = 1.0 / np.maximum(q, TINY)
         x, y = frames(params[:, :3])
         rx, ry = dot(radial, x), dot(radial, y)
         out, up = across * scale, t * scale
@@ -129,7 +130,7 @@ def _rotation_axes(batch: Batch) -> tuple[Array, Array, Flags]:
     """(axis, point, whether there is one) about which each region's polygons turn into themselves."""
     motion = slippage(batch.patchwork, batch.region, batch.polygon, batch.count)
     turn = np.linalg.norm(motion.angular, axis=1)
-    scale = np.maximum(turn, 1e-12)[:, None]
+    scale = np.maximum(turn, ARITHMETIC)[:, None]
     axis, moment = motion.angular / scale, motion.linear / scale
     pitch = np.abs(dot(axis, moment))
     point = motion.middle + cross(axis, moment) * motion.size[:, None]

@@ -12,6 +12,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import dot, normalised
 from kinform.foundation.graphs.components import components
+from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
@@ -119,7 +120,7 @@ def _flat_edges(
     strict = solid & (angle < tolerances.coplanar) & (height < scale.fit)
     flat = strict | (solid & (height < scale.noise) & (angle < COPLANAR_ANGLE))
     lost = max(COPLANAR_SIGMAS * scale.scatter, COPLANAR_ROUNDINGS * scale.rounding)
-    narrow0, narrow1 = (1 / np.maximum(mesh.altitude.take(f), 1e-300) for f in (f0, f1))
+    narrow0, narrow1 = (1 / np.maximum(mesh.altitude.take(f), TINY) for f in (f0, f1))
     turned = COPLANAR_ANGLE + TURNED_SIGMAS * lost / COPLANAR_SIGMAS * (narrow0 + narrow1)
     open_ = np.flatnonzero(solid & ~flat & (angle < np.minimum(turned, MOST_TURNED)))
     flat[open_] = np.abs(departures(mesh, inner.take(open_))) < lost
@@ -176,7 +177,7 @@ def _moments(polygon: Ints, area: Array, normal: Array, middle: Array) -> Moment
     sums = sums_of(polygon, count)
     mean = np.ascontiguousarray(sums(normal.T * area).T)
     weight = np.where((total <= 0)[polygon], 1.0, area)
-    centre = sums(middle.T * weight) / np.maximum(sums(weight), 1e-300)
+    centre = sums(middle.T * weight) / np.maximum(sums(weight), TINY)
     return total, normalised(mean), np.ascontiguousarray(centre.T)
 
 
@@ -241,7 +242,7 @@ def _peel(mesh: Facets, label: Ints, f0: Ints, f1: Ints, scale: Scale) -> Ints:
 def _in_planes(mesh: Facets, first: Ints, facets: Ints, group: Ints, scale: Scale) -> Flags:
     """Which of the facets are in the plane of their group, fitted to what is in that of the facet `first` of each."""
     normal, point = mesh.normal[first], mesh.vertices[mesh.faces[first]].mean(axis=1)
-    reach = np.maximum(mesh.altitude[first], 1e-300)
+    reach = np.maximum(mesh.altitude[first], TINY)
     on: Flags = np.empty(len(facets), bool)
     for step in range(PEEL_STEPS):
         for rows in slices(len(facets), ROWS):

@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import ascending
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
@@ -63,7 +64,7 @@ class Curvature:
     def ratio(self) -> Array:
         """|weak| / |strong|: 0 on cylinders and cones, 1 on spheres; 1 where nothing bends."""
         strong = np.abs(self.strong)
-        return np.where(strong > 0, np.abs(self.weak) / np.maximum(strong, 1e-300), 1.0)
+        return np.where(strong > 0, np.abs(self.weak) / np.maximum(strong, TINY), 1.0)
 
 
 def links(work: Patchwork, free: Flags) -> Links:
@@ -76,7 +77,7 @@ def links(work: Patchwork, free: Flags) -> Links:
     first = np.r_[True, np.diff(key[order]) != 0] if len(key) else np.zeros(0, bool)
     number = np.empty(len(key), np.int64)
     number[order] = np.cumsum(first) - 1
-    shared = np.maximum(np.bincount(number, work.length[edge])[number] if len(key) else np.zeros(0), 1e-300)
+    shared = np.maximum(np.bincount(number, work.length[edge])[number] if len(key) else np.zeros(0), TINY)
     wide = np.maximum(work.area[a], work.area[b]) / shared
     narrow = np.minimum(work.area[a], work.area[b]) / shared
     return Links(edge, a, b, wide < ALIKE_WIDTHS * narrow)
@@ -86,7 +87,7 @@ def curvature(work: Patchwork, link: Links) -> Curvature:
     """Curvature of every polygon, averaged over it and its neighbours of like width."""
     edge, a, b = link.edge, link.a, link.b
     along = work.along(edge).T
-    amount = work.angle[edge] * work.sign[edge] / np.maximum(work.length[edge], 1e-300) / 2
+    amount = work.angle[edge] * work.sign[edge] / np.maximum(work.length[edge], TINY) / 2
     rows = np.flatnonzero(link.alike)
     near_a, near_b = a.take(rows), b.take(rows)
 
@@ -94,7 +95,7 @@ def curvature(work: Patchwork, link: Links) -> Curvature:
         of_b = np.bincount(near_a, value[near_b], work.count)
         return np.asarray(value + of_b + np.bincount(near_b, value[near_a], work.count))
 
-    area = np.maximum(with_neighbours(work.area.astype(float)), 1e-300)
+    area = np.maximum(with_neighbours(work.area.astype(float)), TINY)
     tensor = []
     for i, j in _PAIRS:
         term = amount * along[i] * along[j]
@@ -116,7 +117,7 @@ def principal(tensor: Sequence[Array]) -> tuple[Array, Array, Array]:
     x, y, z = xx - mean, yy - mean, zz - mean
     size = np.sqrt((x * x + y * y + z * z + 2 * (xy * xy + xz * xz + yz * yz)) / 6)
     determinant = x * (y * z - yz * yz) - xy * (xy * z - yz * xz) + xz * (xy * yz - y * xz)
-    angle = np.arccos(np.clip(determinant / np.maximum(2 * size**3, 1e-300), -1.0, 1.0)) / 3
+    angle = np.arccos(np.clip(determinant / np.maximum(2 * size**3, TINY), -1.0, 1.0)) / 3
     high, low = mean + 2 * size * np.cos(angle), mean + 2 * size * np.cos(angle + 2 * np.pi / 3)
     middle = 3 * mean - high - low
     above = np.abs(high) > np.abs(low)
@@ -153,7 +154,7 @@ def continues(work: Patchwork, bent: Curvature, link: Links) -> Flags:
     cosine = dot(along_a, along_b)
     step = work.middles(b) - work.middles(a)
     square = step * step
-    size = np.maximum(np.sqrt(square[:, 0] + (square[:, 1] + square[:, 2])), 1e-300)
+    size = np.maximum(np.sqrt(square[:, 0] + (square[:, 1] + square[:, 2])), TINY)
     going = np.abs(dot(step, along_a + along_b * np.sign(cosine)[:, None])) / 2 / size
     turn = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
     allowed = np.where(going > GOING_ALONG, TURNED_ALONG, TURNED_ALONG + work.angle[link.edge])

@@ -15,6 +15,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross_columns, dot
 from kinform.foundation.graphs.components import components
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
@@ -124,7 +125,7 @@ def departures(mesh: Facets, edges: Ints) -> Array:
         squares = np.zeros(len(a))
         for minor in (uv, cross_columns(u, w), cross_columns(v, w), cross_columns(c - b, d - b)):
             squares += dot(minor, minor)
-        out[run] = -dot(uv, w) / np.sqrt(np.maximum(squares, 1e-300))
+        out[run] = -dot(uv, w) / np.sqrt(np.maximum(squares, TINY))
     return out
 
 

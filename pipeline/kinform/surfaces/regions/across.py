@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Flags, Ints
 from kinform.surfaces.groups import Ragged
@@ -68,7 +69,7 @@ def _onward(work: Patchwork, ridges: Ints) -> tuple[Flags, tuple[Ints, Ints]]:
     place, following, ridge = place[apart], following[apart], ridge[apart]
     length, longer = work.length[ridge], work.length[following]
     alike = (longer <= GOES_ON * length) & (length <= GOES_ON * longer)
-    cosine = np.abs(dot(work.along(ridge), work.along(following))) / np.maximum(length * longer, 1e-300)
+    cosine = np.abs(dot(work.along(ridge), work.along(following))) / np.maximum(length * longer, TINY)
     least, most = TURNS_ON
     on = alike & (cosine >= np.cos(most)) & (cosine <= np.cos(least))
     found = np.zeros(2 * len(ridges), bool)

@@ -10,6 +10,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, cross_columns, dot
 from kinform.foundation.graphs.components import components
+from kinform.foundation.rounding import ARITHMETIC, SINGLE
 from kinform.foundation.sorting import median
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.describe import Description
@@ -84,13 +85,13 @@ def turning_lines(work: Patchwork, free: Flags) -> list[list[Line]]:
         arm = centre - repeated(middle, sizes)
         square = dot(arm, arm)
         spread = [float(np.sqrt(weight[run] @ square[run] / size)) for run, size in zip(runs, total, strict=True)]
-        reach = np.maximum(spread, 1e-12)
+        reach = np.maximum(spread, ARITHMETIC)
         rows[:, :3] = cross_columns(arm / reach.repeat(sizes)[:, None], normal)
         weighed = rows * weight.repeat(6).reshape(-1, 6)
         matrix = np.stack([weighed[run].T @ rows[run] / size for run, size in zip(runs, total, strict=True)])
         twist = np.linalg.eigh(matrix)[1][:, :, 0]
         speed = np.abs(np.concatenate([rows[run] @ motion for run, motion in zip(runs, twist, strict=True)]))
-        typical = np.maximum([median(speed[run]) for run in runs], 1e-6)
+        typical = np.maximum([median(speed[run]) for run in runs], SINGLE)
         weight = area / (1 + (speed / typical.repeat(sizes)) ** 2)
     for run, motion, about, size in zip(runs, twist, middle, reach.tolist(), strict=True):
         turn = float(np.linalg.norm(motion[:3]))

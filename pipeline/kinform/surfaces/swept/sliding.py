@@ -10,6 +10,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical_sign, cross, dot
 from kinform.foundation.graphs.components import components
+from kinform.foundation.rounding import ARITHMETIC, TINY
 from kinform.model.arrays import Array, Ints
 from kinform.surfaces.constants import COVERAGE
 from kinform.surfaces.describe import Description
@@ -81,7 +82,7 @@ def _extrusion(
     middle = weight @ work.centre[polygons] / weight.sum()
     _, vertex = work.corners.expand(polygons)
     span = (work.vertices[vertex] - middle) @ axis
-    length = max(float(np.ptp(span)), 1e-12)
+    length = max(float(np.ptp(span)), ARITHMETIC)
     angular = float(min(COVERAGE * (speed + rounding / length) / spread, np.pi / 2))
     return Description(
         "extrusion", polygons, axis, middle, extent=(float(span.min()), float(span.max())),
@@ -126,7 +127,7 @@ def _surface_of_turn(work: Patchwork, polygons: Ints, motion: Slippage, k: int, 
     turning, size = float(np.linalg.norm(motion.angular[k])), float(motion.size[k])
     if turning < TURNS:
         return None
-    gained = max(float(motion.next_speed[k]), 1e-12)
+    gained = max(float(motion.next_speed[k]), ARITHMETIC)
     angular = float(min(COVERAGE * (motion.speed[k] + rounding / size) / gained, np.pi / 2))
     axis, moment = motion.angular[k] / turning, motion.linear[k] / turning
     point = motion.middle[k] + cross(axis, moment) * size
@@ -137,7 +138,7 @@ def _surface_of_turn(work: Patchwork, polygons: Ints, motion: Slippage, k: int, 
     radial = arm - span[:, None] * axis
     rho = np.linalg.norm(radial, axis=1)
     radius = float(np.average(rho, weights=work.area[polygons]))
-    outward = np.average(dot(work.normal[polygons], radial) / np.maximum(rho, 1e-300), weights=work.area[polygons])
+    outward = np.average(dot(work.normal[polygons], radial) / np.maximum(rho, TINY), weights=work.area[polygons])
     screws = abs(advance) > SCREW_ADVANCE * radius
     return Description(
         "helicoid" if screws else "revolution", polygons, axis, point, radius=radius, side=1 if outward >= 0 else -1,

@@ -16,6 +16,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical_sign, cross, dot, perpendicular
 from kinform.foundation.graphs.components import components
+from kinform.foundation.rounding import SINGLE, TINY
 from kinform.foundation.sorting import among, distinct, median
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
@@ -100,7 +101,7 @@ class _Screw:
         """Share (n,) of the screw's speed along the normals there, and the slope (n,) of the helices."""
         turning = cross(np.broadcast_to(self.axis, centres.shape), centres - self.point)
         velocity = turning + self.advance * self.axis
-        size = np.maximum(np.linalg.norm(velocity, axis=1), 1e-300)
+        size = np.maximum(np.linalg.norm(velocity, axis=1), TINY)
         return dot(normals, velocity) / size, np.abs(self.advance) / size
 
 
@@ -179,7 +180,7 @@ def _with_helices(work: Patchwork, edges: Ints, about: Sequence[Line], scale: Sc
         length = work.length.take(edge)
         rise = np.abs(dot(work.along(edge), columns_of(np.array([axis for axis, _ in some]), line)))
         across = np.sqrt(np.maximum(length * length - rise * rise, 0.0))
-        turn = np.minimum(ARC * across / np.maximum(np.sqrt(one * other), 1e-300), HELIX_STEP)
+        turn = np.minimum(ARC * across / np.maximum(np.sqrt(one * other), TINY), HELIX_STEP)
         flat = (1.0 - PLAINLY) * rise < STEEP[1] * turn * (one + other) / 2
         turned = np.bincount(line, np.where(flat & (rise > shown), turn, 0.0), len(some))
         out += [(some[k], edge[line == k]) for k in np.flatnonzero(turned >= enough).tolist()]
@@ -217,7 +218,7 @@ def _slopes(
     turn -= 2 * np.pi * np.round(turn / (2 * np.pi))
     length = np.hypot(rise, mean * turn)
     level = np.abs(widening) <= wide * LEVEL * length + LEVEL_NOISES * scale.noise
-    turning = (np.abs(turn) < HELIX_STEP) & (np.abs(turn) * mean > LEAST_ARC * np.abs(rise)) & (np.abs(turn) > 1e-6)
+    turning = (np.abs(turn) < HELIX_STEP) & (np.abs(turn) * mean > LEAST_ARC * np.abs(rise)) & (np.abs(turn) > SINGLE)
     advance = np.where(turning, rise / np.where(turning, turn, 1.0), 0.0)
     doubt = ADVANCE_NOISES * scale.noise / np.maximum(np.abs(turn), 1e-9)
     steep = (np.abs(advance) > STEEP[0] * mean + doubt) & (np.abs(advance) < STEEP[1] * mean)
@@ -304,7 +305,7 @@ def _solve(work: Patchwork, helices: _Helices, screw: _Screw, scale: Scale) -> t
     scatter = max(HELIX_MEDIANS * median(np.abs(base)), scale.rounding)
     weight = 1.0 / np.maximum(np.abs(base) / (HELIX_SIGMAS * scatter), 1.0) ** 2
     matrix = (columns * weight[:, None]).T @ columns
-    size = np.sqrt(np.maximum(np.diag(matrix), 1e-300))
+    size = np.sqrt(np.maximum(np.diag(matrix), TINY))
     inverse = np.linalg.pinv(matrix / np.outer(size, size), hermitian=True, rcond=VAGUE_HELIX) / np.outer(size, size)
     change = -inverse @ (columns.T @ (weight * base))
     return _step(screw, change), inverse, scatter, float(np.ptp(height))
@@ -343,7 +344,7 @@ def _members(work: Patchwork, free: Flags, helices: _Helices, screw: _Screw) -> 
     use[use] &= fitting[work.b[use]]
     label = components(work.a[use], work.b[use], work.count)
     area = np.where(fitting, work.area, 0.0)
-    whole = np.maximum(np.bincount(label, area, work.count), 1e-300)
+    whole = np.maximum(np.bincount(label, area, work.count), TINY)
     mean = np.bincount(label, area * share, work.count) / whole
     square = np.sqrt(np.bincount(label, area * share**2, work.count) / whole)
     steep = np.bincount(label, area * slope, work.count) / whole
@@ -384,7 +385,7 @@ def _description(work: Patchwork, edges: Ints, screw: _Screw, members: Ints, sca
     arm = work.centre[members] - point
     radial = arm - (arm @ axis)[:, None] * axis
     distance = np.linalg.norm(radial, axis=1)
-    outward = float(dot(normal, radial) / np.maximum(distance, 1e-300) @ weight)
+    outward = float(dot(normal, radial) / np.maximum(distance, TINY) @ weight)
     _, vertex = work.corners.expand(members)
     span = (work.vertices[vertex] - point) @ axis
     return Description(
