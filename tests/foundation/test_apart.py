@@ -56,7 +56,7 @@ def test_what_keeps_a_distance_has_no_point_nearer_and_does_not_hang_on_the_othe
     order = rng.permutation(len(asked))
     assert surely_separated([asked[k] for k in order]) == [told[k] for k in order]
     assert [surely_separated([one])[0] for one in asked] == told
-    monkeypatch.setattr(separated_sets, "APART_AT_ONCE", 7)
+    monkeypatch.setattr(separated_sets, "ROWS", 7)
     monkeypatch.setattr(separated_sets, "APART_SOME", 3)
     assert surely_separated(asked) == told
 

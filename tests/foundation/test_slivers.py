@@ -165,7 +165,7 @@ def test_slabs_find_the_boxes_that_comparison_finds(seed, at_once, away):
         kinds.append((low, low + largest * rng.uniform(0, 1, (count, 3)) ** 3))
     every = box_pairs.meeting_boxes(*kinds)
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(box_pairs, "SLAB", at_once)
+        patched.setattr(box_pairs, "BOXES_MATRIX", at_once)
         in_slabs = box_pairs.meeting_in_slabs(*kinds)
     assert bool(len(every[0])) or away
     assert [found.tolist() for found in in_slabs] == [found.tolist() for found in every]
@@ -196,7 +196,7 @@ def test_of_more_boxes_than_are_wanted_it_is_told_that_they_are_too_many(seed, s
 def test_directions_are_asked_together_or_in_turn_with_one_answer(most, monkeypatch):
     first, second = scene(5)
     expected = told_by_fcl(first, second)
-    monkeypatch.setattr(slivers, "MET_FEW", most)
+    monkeypatch.setattr(slivers, "MANY", most)
     assert pairs(first, second) == expected
 
 

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from kinform.foundation.constants import MANY
 from kinform.foundation.sorting import (
     DIGIT,
     FEW_BITS,
-    MANY,
     among,
     ascending,
     distinct,

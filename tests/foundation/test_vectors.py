@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinform.foundation.algebra.vectors import MANY, cross, cross_columns
+from kinform.foundation.algebra.vectors import cross, cross_columns
+from kinform.foundation.constants import MANY
 
 
 @pytest.mark.parametrize("count", [0, 1, 7, MANY])

@@ -8,14 +8,15 @@ import numpy as np
 import pytest
 from support.solids import ball, box, part
 
-from kinform.foundation.meshes.ray_parity import SEEN_AT_ONCE, winding
+from kinform.foundation.constants import ROWS
+from kinform.foundation.meshes.ray_parity import winding
 
 FINE = part("ball", ball(10, 128), np.eye(4)).mesh
 """Of 10 mm radius, and of more facets than are had at once."""
 
 
 def test_points_are_inside_once_or_not_at_all():
-    assert len(FINE.faces) > SEEN_AT_ONCE
+    assert len(FINE.faces) > ROWS
     rng = np.random.default_rng(1)
     away = rng.normal(size=(300, 3))
     away /= np.linalg.norm(away, axis=1)[:, None]

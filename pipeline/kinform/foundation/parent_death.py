@@ -6,8 +6,6 @@ import os
 import signal
 import sys
 
-_FAILED = 2
-
 
 def exit_with_parent(parent: int) -> None:
     """Have the kernel kill this process when its parent, the process with that id, dies."""
@@ -18,4 +16,4 @@ def exit_with_parent(parent: int) -> None:
     set_death_signal = 1  # PR_SET_PDEATHSIG
     ctypes.CDLL(None).prctl(set_death_signal, signal.SIGKILL, 0, 0, 0)
     if os.getppid() != parent:  # already
-        os._exit(_FAILED)
+        os._exit(2)

@@ -6,10 +6,6 @@ is named, a number is a choice: the meshes of the fixtures and of real robots gi
 
 from __future__ import annotations
 
-import numpy as np
-
-EPS32: float = float(np.finfo(np.float32).eps)
-"""Relative rounding of single precision, in which STL files store coordinates."""
 COVERAGE = 3.0
 """Stated uncertainties are this many standard deviations."""
 ROWS = 2**15

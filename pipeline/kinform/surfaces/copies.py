@@ -14,13 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.foundation.algebra.vectors import canonical_sign
+from kinform.foundation.constants import EPS32
 from kinform.foundation.records import altered
 from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, freeze
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
-from kinform.surfaces.constants import COVERAGE, EPS32
+from kinform.surfaces.constants import COVERAGE
 
 COPY_ROUNDINGS = 2
 """Roundings of the largest coordinate by which a vertex of a copy may be off."""

@@ -11,15 +11,13 @@ from typing import TypeAlias
 
 import numpy as np
 
+from kinform.foundation.constants import MANY
 from kinform.foundation.rounding import ARITHMETIC, TINY
 from kinform.foundation.sorting import ascending, heads
 from kinform.model.arrays import Array, Ints
 
 Sums: TypeAlias = Callable[[Array], Array]
 """Gives the sums (…, count) by group of values (…, n)."""
-
-MANY = 600
-"""Numbers from which on two fast sorts take less time than one that keeps the order of equal ones."""
 
 
 class Ragged:

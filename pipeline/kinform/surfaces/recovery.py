@@ -11,6 +11,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from kinform.foundation.algebra.vectors import box
+from kinform.foundation.constants import EPS32
 from kinform.foundation.memory import keep_heap, uncollected
 from kinform.foundation.records import made
 from kinform.foundation.sorting import ascending, coarse
@@ -19,7 +20,6 @@ from kinform.model.arrays import Array, Ints, freeze
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
 from kinform.model.tolerances import Tolerances
-from kinform.surfaces.constants import EPS32
 from kinform.surfaces.describe import Description, curved, flat, freeform, patch_chords
 from kinform.surfaces.groups import members
 from kinform.surfaces.kinds.batch import Batch

@@ -17,7 +17,8 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 ROUNDINGS = 8.0
-"""Roundings of a coordinate in what follows from a few: positions of parts, what is measured on them, and twists."""
+"""Spacings of doubles by which a coordinate that follows from a few others is off: positions of parts, what is measured
+on them, and twists each add one or two. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)

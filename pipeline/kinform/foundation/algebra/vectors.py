@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from kinform.foundation.constants import MANY
 from kinform.foundation.rounding import TINY
 from kinform.model.arrays import Array
 
@@ -21,13 +22,6 @@ CROSS = _CROSS.reshape(3, 9)
 """(3, 9): a @ CROSS is the matrix of a × …, row by row. A product is much faster than components."""
 
 _UNITS = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-
-SOME = 300
-"""Numbers in an array from which on lengths column by column, to the same bits, are quicker."""
-
-MANY = 3000
-"""Numbers in an array from which on products column by column, to the same bits, are quicker: at 10,000 vectors six
-times."""
 
 
 def cross(a: Array, b: Array) -> Array:
@@ -107,7 +101,7 @@ def norm(vector: Array) -> float:
 
 def lengths(rows: Array) -> Array:
     """(…,) lengths of vectors (…, 3), to the bits of np.linalg.norm along the last axis."""
-    if rows.size < SOME or rows.shape[-1] != 3:
+    if rows.size < MANY or rows.shape[-1] != 3:
         return np.asarray(np.sqrt(np.add.reduce(rows * rows, axis=-1)))
     x, y, z = rows[..., 0], rows[..., 1], rows[..., 2]
     square = x * x

@@ -11,9 +11,8 @@ from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh
 
 BALL_SHARE = 0.012
-"""Share of a mesh's diagonal that balls about its facets are as small as."""
-BALL_PARTS = 6
-"""Divisions of a facet's side for it at most."""
+"""Largest radius of the balls about facets, as a share of the diagonal of the mesh: a few thousand balls cover a mesh.
+Chosen, not measured."""
 
 
 class Balls:
@@ -34,7 +33,8 @@ def _balls(mesh: Mesh) -> list[tuple[Nearest, float]]:
     """Middles of balls that hold all facets, with their radius (m), by octaves of it."""
     corners = mesh.vertices.take(mesh.faces, axis=0)
     longest = longest_sides(corners)
-    parts = np.clip(np.ceil(longest / max(BALL_SHARE * mesh.diagonal, TINY)), 1, BALL_PARTS).astype(np.int64)
+    # at most 6² smaller triangles a facet: long thin ones get larger balls
+    parts = np.clip(np.ceil(longest / max(BALL_SHARE * mesh.diagonal, TINY)), 1, 6).astype(np.int64)
     middles, radii = [], []
     for number in np.flatnonzero(np.bincount(parts)).tolist():
         alike = parts == number

@@ -9,44 +9,40 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.foundation.constants import KEPT_FACETS
 from kinform.foundation.rounding import ARITHMETIC, TINY
 from kinform.foundation.sorting import ascending
 from kinform.model.arrays import Array, Flags, Ints
 
 CHUNK = 48
-"""Facets of a chunk."""
+"""Facets of a chunk: a box is compared with all chunks, and with the facets of those that it meets. Chosen, not
+measured."""
 OFTEN = 128
-"""Questions that are cheaper to answer without chunks than the chunks are to make: they take as long as 100 to 200 of
-them, of 20,000 facets and of 400,000."""
+"""Questions up to which chunks are not made: to make them takes as long as 100 to 200 questions, for 20,000 facets as
+for 400,000."""
 CHUNKED_LEAST = 16_000
-"""Facets up to which all are asked as quickly as chunks are: 0.02 ms."""
-COLUMNS_MOST = 200_000
-"""Facets up to which the sides of their boxes are kept by columns as well, of which numpy compares as many in a third
-of the time: 10 MB."""
+"""Facets up to which comparing all takes no longer than with chunks: 0.02 ms."""
 GRID_FINEST = 512
-"""Cells along the side of a grid, at most."""
+"""Most cells along the side of a grid: 2 MB of counts."""
 GRID_LISTED = 12
-"""Cells of a grid that a facet is listed in on average, at most, ..."""
-GRID_LISTED_LEAST = 4096
-"""... and these in all, which cost nothing."""
+"""Most cells of a grid that a facet is listed in on average: beyond, the grid is made coarser. Chosen, not measured."""
 UNLISTED = 32
-"""Comparisons of points with boxes, a facet, that cost less than a grid."""
-FOLLOWED = 2
-"""Such comparisons that a point beside a box along one axis takes to be compared along the other."""
+"""Comparisons of points with boxes a facet that together cost as much as making a grid."""
 COMPARED_MOST = 8000
-"""So many comparisons of points with boxes take no longer than to find out which need not be compared."""
+"""Comparisons of points with boxes that take no longer than finding out which of them are not needed."""
 FOLLOWED_AT_ONCE = 500_000
-"""Of which so many, and those of one box, are compared at once: 30 MB."""
+"""Comparisons of points with boxes that are made at once: 30 MB."""
 SIZE_OCTAVES = 20
-"""Octaves of size that facets are sorted by."""
+"""Octaves of size that facets are sorted by: down to a millionth of the whole, where files end."""
 PLACE_BITS = 10
-"""Bits of a coordinate along the Z-curve that facets are sorted along."""
+"""Bits of a coordinate along the Z-curve that facets are sorted along: three coordinates fit into 31 bits, which numpy
+sorts in half of the time."""
 ROWS_TOGETHER = 64
-"""Rows of an array that are looked at as one for the least and the greatest of its columns."""
-BOXES_AT_ONCE = 200_000
-"""Boxes times boxes up to which all are compared with all: blocks of fewer take longer."""
+"""Rows that are viewed as one wide row for the least and the greatest of each column. Chosen, not measured."""
+BOXES_MATRIX = 600_000
+"""Boxes times boxes up to which all of one kind are compared with all of another; of more, so many at once."""
 BOXES_A_BLOCK = 64
-"""Neighbouring boxes of which more are compared together, with what comes near them."""
+"""Neighbouring boxes that are compared together with what comes near them. Chosen, not measured."""
 
 
 def bounds(points: NDArray[np.floating]) -> tuple[Array, Array]:
@@ -105,7 +101,7 @@ def boxes_within(first: tuple[Array, Array], second: tuple[Array, Array], margin
     """(n, m) whether boxes come within `margin` of each other along every axis: lowest and highest corners (n, d) of
     the first kind, (m, d) of the second. Many are compared in blocks of neighbours with what their box comes near."""
     (low_a, high_a), (low_b, high_b) = first, second
-    if len(low_a) * len(low_b) <= BOXES_AT_ONCE:
+    if len(low_a) * len(low_b) <= BOXES_MATRIX:
         return _within(low_a, high_a, low_b, high_b, margin)
     out = np.zeros((len(low_a), len(low_b)), bool)
     order = together(low_a, high_a)
@@ -154,7 +150,7 @@ class FacetBoxes:
 
     def _meeting(self, low: Array, high: Array) -> Flags:
         """(n,) of all boxes, asked column by column where these can be kept."""
-        if len(self.low) > COLUMNS_MOST:
+        if len(self.low) > KEPT_FACETS:
             return meeting_box(self.low, self.high, low, high)
         if self._columns is None:
             self._columns = np.ascontiguousarray(self.low.T), np.ascontiguousarray(self.high.T)
@@ -181,7 +177,8 @@ class FlatBoxes:
             left, lower, right, upper = (self._cells(column, k % 2) for k, column in enumerate(self._sides))
             wide, tall = right - left + 1, upper - lower + 1
             listed = int((wide * tall).sum())
-            if side == 1 or listed <= GRID_LISTED * len(low) + GRID_LISTED_LEAST:
+            # a few thousand entries in all cost nothing
+            if side == 1 or listed <= GRID_LISTED * len(low) + 4096:
                 break
             side = (side + 1) // 2
         # each box by the columns of cells that it covers, and each of these by its cells
@@ -241,7 +238,8 @@ class FlatBoxes:
             ranges.append((begin, places.searchsorted(self._sides[2 + axis].take(near), side="right") - begin))
         numbers = [int(number.sum()) for _, number in ranges]
         axis = 0 if numbers[0] <= numbers[1] else 1
-        self._left -= len(left) + FOLLOWED * numbers[axis]
+        # a box that one axis does not exclude is compared along the other: about two comparisons
+        self._left -= len(left) + 2 * numbers[axis]
         if self._left <= 0:
             return None
         which, box = self._along(points, axis, orders[axis], near, *ranges[axis])

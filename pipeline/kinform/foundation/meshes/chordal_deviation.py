@@ -32,13 +32,13 @@ STANDOFF_CUT = 3.0
 that leaves half of a facet leaves about a third. Without, 4 of 300 random sockets overlap, of 41; without a limit, fans
 of long facets hide 0.6 mm of a motor in an arm."""
 STANDOFF_FAN = 300
-"""Polygons that meet at a vertex up to which each speaks for all others there."""
+"""Polygons at a vertex up to which each of them speaks for all others there: pairs grow with the square, and a fan of
+more is the end of a cylinder. Chosen, not measured."""
 STANDOFF_ROUNDED = 4.0
-"""Roundings by which a sliver may be out of the plane of the facet beside it and be in it ..."""
+"""Roundings by which a sliver may leave the plane of the facet beside it and still lie in it: those of its vertices and
+of the plane. Chosen, not measured."""
 STANDOFF_SLIVER = 0.1
-"""... and how low it is for that, as a share of that facet."""
-STANDOFF_TURN = 2.0
-"""Angles of smooth edges by which facets that share a vertex may turn."""
+"""Largest height of such a sliver, as a share of that of the facet beside it. Chosen, not measured."""
 
 
 def standoffs(vertices: Array, faces: Ints, smooth: float, coplanar: float, rounding: float) -> Array:
@@ -147,7 +147,8 @@ class _Polygons:
         differ = np.flatnonzero(one != other)
         keys = distinct(np.sort(one[differ] * np.int64(len(self.area)) + other[differ]))
         one, other = np.divmod(keys, len(self.area))
-        near = dot(self.normal[one], self.normal[other]) > np.cos(STANDOFF_TURN * smooth)
+        # two smooth edges meet at a vertex
+        near = dot(self.normal[one], self.normal[other]) > np.cos(2.0 * smooth)
         return one[near], other[near]
 
     def bent(self, one: Ints, other: Ints) -> Array:

@@ -14,21 +14,19 @@ import numpy as np
 from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import meeting_box, triangle_boxes
 from kinform.foundation.meshes.near_points import Nearest
+from kinform.foundation.rounding import ARITHMETIC, SOLVED
 from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 
 # meshes/closest
-AS_NEAR = 1e-9
-"""Share of their distance by which facets may be farther than the nearest and still as near, ..."""
-CLOSEST_ROUNDING = 1e-15
-"""... and share of the largest coordinate."""
 CLOSEST_SOME = 60_000
-"""Points times the corners that bound how far they are off: nearer bounds cost more than they leave to be measured."""
+"""Corners of facets, times points, whose distance bounds that of the nearest facet: more corners give closer bounds but
+cost more than they save."""
 CLOSEST_MOST = 1_000_000
-"""Points times the facets near each up to which all are measured: 0.1 s, and 0.2 GB."""
+"""Points times facets near each up to which all are measured: 0.1 s and 0.2 GB. Beyond, FCL is asked."""
 CLOSEST_SIFTED = 8
-"""Facets near each point from which on it is asked first which of their boxes are no farther than the nearest facet:
-that takes a tenth of measuring them, and leaves a few."""
+"""Facets near a point from which on their boxes are compared first: that takes a tenth of measuring them and leaves a
+few."""
 
 
 class Triangles:
@@ -63,8 +61,8 @@ def _nearest(points: Array, triangles: Triangles) -> tuple[Array, Ints] | None:
         return np.zeros(0), np.zeros(0, np.int64)
     corners, (low, high) = triangles.corners, triangles.boxes
     some = corners[:: len(points) * len(corners) // CLOSEST_SOME + 1, 0]
-    reach = (1.0 + AS_NEAR) * Nearest(some).away(points)[:, None]
-    rounding = CLOSEST_ROUNDING * triangles.largest
+    reach = (1.0 + SOLVED) * Nearest(some).away(points)[:, None]
+    rounding = ARITHMETIC * triangles.largest
     least, most = points - reach, points + reach
     beside = meeting_box(low, high, least.min(axis=0), most.max(axis=0)).nonzero()[0]
     corners = corners.take(beside, axis=0)
@@ -79,7 +77,7 @@ def _nearest(points: Array, triangles: Triangles) -> tuple[Array, Ints] | None:
     # the box of a corner touches that of its facet, so that every point has candidates, in their order
     starts = np.searchsorted(point, np.arange(len(points)))
     distance = np.minimum.reduceat(away, starts)
-    as_near = (away <= ((1.0 + AS_NEAR) * distance + rounding).take(point)).nonzero()[0]
+    as_near = (away <= ((1.0 + SOLVED) * distance + rounding).take(point)).nonzero()[0]
     first = as_near[np.searchsorted(point[as_near], np.arange(len(points)))]
     return distance, beside[facet[first]]
 
@@ -100,7 +98,7 @@ def _sifted(corners: Array, places: Array, point: Ints, facet: Ints, rounding: f
     nearest = (square == least_of.take(point)).nonzero()[0]
     nearest = nearest.take(heads(point.take(nearest)).nonzero()[0])
     most = _from_origin(corners.take(facet.take(nearest), axis=2) - places)
-    most *= (1.0 + AS_NEAR) ** 2
+    most *= (1.0 + SOLVED) ** 2
     most += 2.0 * rounding
     most *= most
     kept = (square <= most.take(point)).nonzero()[0]

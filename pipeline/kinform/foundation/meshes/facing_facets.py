@@ -7,15 +7,13 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.concatenation import concatenated
+from kinform.foundation.constants import ROWS
 from kinform.foundation.meshes.box_pairs import meeting_in_slabs
 from kinform.foundation.meshes.boxes import meeting_box, triangle_boxes
 from kinform.foundation.meshes.closest_facets import distances_between
 from kinform.foundation.meshes.near_facets import near_boxes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
-
-FACING_AT_ONCE = 20_000
-"""Pairs of facets that are measured at once: 20 MB."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,8 +55,8 @@ def facing(first: Array, second: Array, distance: float, opposed: float) -> Faci
     opposing = dot(normals.take(one, axis=0), others.take(two, axis=0)) <= opposed
     one, two = one[opposing], two[opposing]
     out: list[tuple[Ints, Ints, Array]] = []
-    for start in range(0, len(one), FACING_AT_ONCE):
-        i, j = one[start : start + FACING_AT_ONCE], two[start : start + FACING_AT_ONCE]
+    for start in range(0, len(one), ROWS):
+        i, j = one[start : start + ROWS], two[start : start + ROWS]
         mine, other = first.take(i, axis=0), second.take(j, axis=0)
         front = _in_front(mine, normals.take(i, axis=0), other, distance)
         front &= _in_front(other, others.take(j, axis=0), mine, distance)

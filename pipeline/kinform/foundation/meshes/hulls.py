@@ -4,14 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.foundation.constants import ROWS
+from kinform.foundation.rounding import SINGLE
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
-
-HULL_POINTS = 4096
-"""Points that are held against the planes of a hull at once: memory, no result depends on it."""
-HULL_THICKNESS = 1e-7
-"""Share of its size by which a flat set of points is thickened on each side, so that it has a hull: far below what any
-mesh is exact to."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,8 +25,8 @@ class Hull:
         """How far (m) each of the points (k, 3) lies outside, at least: beyond the plane that it is farthest beyond;
         negative inside. Exact where the nearest place of the hull is inside of a face."""
         out = np.full(len(points), -np.inf)
-        for start in range(0, len(points), HULL_POINTS):
-            block = slice(start, start + HULL_POINTS)
+        for start in range(0, len(points), ROWS):
+            block = slice(start, start + ROWS)
             out[block] = (points[block] @ self.planes[:, :3].T + self.planes[:, 3]).max(axis=1)
         return out
 
@@ -51,7 +47,7 @@ def hull_of(points: Array) -> Hull | None:
     try:
         hull = ConvexHull(scaled)
     except QhullError:
-        steps = HULL_THICKNESS * np.array([*np.eye(3), *-np.eye(3)])
+        steps = SINGLE * np.array([*np.eye(3), *-np.eye(3)])
         scaled = (scaled[:, None, :] + steps).reshape(-1, 3)
         hull = ConvexHull(scaled)
     normals, offsets = hull.equations[:, :3], hull.equations[:, 3] * size

@@ -8,6 +8,7 @@ import fcl
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross_columns, dot
+from kinform.foundation.constants import EPS32, KEPT_FACETS
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.ball_cover import Balls
 from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
@@ -28,18 +29,14 @@ from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
 from kinform.model.tolerances import Tolerances
 
-KEPT_EDGES = 200_000
-"""Facets up to which the shared edges of a mesh are kept: 10 MB."""
 LARGE_MESH = 1_000_000
-"""Facets from which on a model of all of them, half a gigabyte, is made only where one of some does not do."""
+"""Facets from which on a model of all of them, half a gigabyte, is made only where a model of some does not do."""
 ABOUT = 0.02
-"""Distance from another part, in diagonals of a large mesh, within which its facets are expected to be asked for."""
+"""Distance from another part, in diagonals of a large mesh, within which its facets are expected to be asked for:
+motions that are tried stay within it. Chosen, not measured."""
 MOST_EXPECTED = 0.8
-"""Share of its facets above which a model of all is made, which does for every other part."""
-KEPT_SPANS = 200_000
-"""Facets up to which the spans of a mesh are kept: 5 MB; of more those that are asked for are computed anew."""
-EPS32 = 2.0**-23
-"""Relative rounding of single precision, in which STL files store coordinates."""
+"""Share of the facets above which a model of all is made instead, which serves all other parts too. Chosen, not
+measured."""
 
 
 class MeshIndex:
@@ -72,7 +69,7 @@ class MeshIndex:
 
     def spans(self, facets: Ints) -> Array:
         """(n, 3) cross products of two edges of each facet: outward, of twice its area (m²)."""
-        if self._spans is None and len(self.mesh.faces) <= KEPT_SPANS:
+        if self._spans is None and len(self.mesh.faces) <= KEPT_FACETS:
             self._spans = _spans(self.triangles.corners)
         return (
             _spans(self.mesh.vertices.take(self.mesh.faces[facets], axis=0))
@@ -92,7 +89,7 @@ class MeshIndex:
             return self._normals.take(facets, axis=0)
         self._asked += len(facets)
         count = len(self.mesh.faces)
-        if count <= KEPT_TRIANGLES or (self._asked > count and count <= KEPT_SPANS):
+        if count <= KEPT_TRIANGLES or (self._asked > count and count <= KEPT_FACETS):
             self._normals = _normals(self.spans(np.arange(count)))
             return self._normals.take(facets, axis=0)
         return _normals(self.spans(facets))
@@ -181,7 +178,7 @@ class MeshIndex:
         if self._edges is not None:
             return self._edges
         edges = shared_edges(self.mesh.faces, len(self.mesh.vertices), by_corner=True)
-        if len(self.mesh.faces) <= KEPT_EDGES:
+        if len(self.mesh.faces) <= KEPT_FACETS:
             self._edges = edges
         return edges
 
@@ -202,7 +199,7 @@ class MeshIndex:
 
     def _kept_among(self, chosen: Flags) -> Ints | None:
         """Rows of the edges, where they are kept and none has more than two facets, of which both are chosen."""
-        if len(self.mesh.faces) > KEPT_EDGES:
+        if len(self.mesh.faces) > KEPT_FACETS:
             return None
         if self._single is None:
             low, high = self.edges.ends.T

@@ -12,11 +12,6 @@ from kinform.foundation.meshes.boxes import meeting_box
 from kinform.foundation.rounding import TINY
 from kinform.model.arrays import Array, Flags, Ints
 
-CELLS_MOST = 48
-"""Most cells along the longest side of the common box."""
-CELLS_LEAST = 8
-"""Least; between them a quarter of the root of the number of boxes is added."""
-
 
 def near_boxes(low_a: Array, high_a: Array, low_b: Array, high_b: Array, margin: float) -> tuple[Flags, Flags]:
     """Which boxes (n, 3) of the first kind may come within `margin` of any (m, 3) of the second, and the reverse.
@@ -29,7 +24,8 @@ def near_boxes(low_a: Array, high_a: Array, low_b: Array, high_b: Array, margin:
     low = np.maximum(sides[0].min(axis=1), sides[2].min(axis=1)) - margin
     high = np.minimum(sides[1].max(axis=1), sides[3].max(axis=1)) + margin
     size = np.maximum(high - low, TINY)
-    finest = min(CELLS_MOST, CELLS_LEAST + int(np.sqrt(len(low_a) + len(low_b)) / 4))
+    # 8 to 48 cells along the longest side, more for more boxes. Chosen, not measured
+    finest = min(48, 8 + int(np.sqrt(len(low_a) + len(low_b)) / 4))
     counts = np.maximum(np.ceil(finest * size / size.max()), 1).astype(np.int64)
     placed_a, placed_b = (_cells(sides[k], sides[k + 1], 0.0, low, size, counts) for k in (0, 2))
     keep_a = _occupied(_grid(_cells(sides[2], sides[3], margin, low, size, counts), counts), placed_a)

@@ -17,11 +17,11 @@ from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array, Ints
 
 LINE = np.array([0.57735, 0.51763, 0.63144, 0.44317])
-"""(4,) direction along which no designer lays an edge."""
+"""(4,) direction that no designer lays an edge along: few points share a place on it."""
 FEW_PAIRS = 1 << 16
-"""Pairs that share a place up to which all of them are measured: in all, ..."""
+"""Pairs of points that share a place up to which all are measured, in all. Chosen, not measured."""
 SHARED_PAIRS = 2
-"""... and a point."""
+"""The same a point. Chosen, not measured."""
 MEASURED = 1 << 21
 """Distances to points of one set that are measured before a tree is made: 0.02 s, a tenth of what importing trees
 takes."""

@@ -14,18 +14,16 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.meshes.surface_table import SurfaceTable
+from kinform.foundation.rounding import ARITHMETIC
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.surfaces import KINDS
 
 BULGE = 0.35
 """Share of a chord by which a smooth curve may stand off it: cubic curves through 32° and lengths of one to three come
 to 0.3 at worst."""
-BENDS_LEAST = 1e-12
-"""By which the cosine between two planes is less than 1 where they are no continuation of each other."""
 BENDS_MOST = 1.05
-"""Share of the angle of a smooth edge up to which planes may meet smoothly, as an outline is not quite across them."""
-BENDS_PLANES = 1000
-"""Planes from which on it is not asked which of them do."""
+"""Largest angle between two planes that may meet smoothly, in angles of a smooth edge: outlines are not quite across
+the edge."""
 
 
 _PLANE = KINDS.index("plane")
@@ -47,7 +45,8 @@ def bulge_of(corners: Array, labels: Ints, table: SurfaceTable, exact: Flags, sm
 
 def _bending(normals: Array, smooth: float) -> Flags:
     """(n,) which of planes with these normals (n, 3) may meet another one smoothly."""
-    if len(normals) > BENDS_PLANES:
+    # pairs of more planes would be millions; then any bend counts as smooth
+    if len(normals) > 1000:
         return np.ones(len(normals), bool)
     cosine = normals @ normals.T
-    return np.asarray(((cosine < 1.0 - BENDS_LEAST) & (cosine > math.cos(BENDS_MOST * smooth))).any(axis=1))
+    return np.asarray(((cosine < 1.0 - ARITHMETIC) & (cosine > math.cos(BENDS_MOST * smooth))).any(axis=1))

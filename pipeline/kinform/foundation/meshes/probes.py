@@ -30,10 +30,9 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 
-HITS_A_PROBE = 256
-"""Facets that one probe may hit on average."""
 STEEP_LEAST = 1e-3
-"""Least cosine between a probe and a facet's normal at which the place where they meet is known."""
+"""Least cosine between a probe and the normal of a facet at which their intersection is known: below, rounding of the
+facet moves it by more than a thousand times as much."""
 KEPT_TRIANGLES = 50_000
 """Facets up to which the corners of a mesh, or of those near another part, are kept, and their boxes: 6 MB."""
 MET_AT_ONCE = 100_000
@@ -297,7 +296,8 @@ def _met_by_trees(region: Region, slivers: Array) -> tuple[Ints, Ints]:
     mesh = region.index.mesh
     probe_model = fcl_model(slivers.reshape(-1, 3), np.arange(3 * len(slivers)).reshape(-1, 3))
     # Contact points stay off: they cost, come several to a facet, and depend on FCL's own tolerance.
-    most = HITS_A_PROBE * (len(slivers) + 16)
+    # FCL lists the facets that are hit: a few hundred a probe are more than any part has in a row
+    most = 256 * (len(slivers) + 16)
     request = fcl.CollisionRequest(num_max_contacts=most, enable_contact=False)
     result = fcl.CollisionResult()
     if region.facets is None:

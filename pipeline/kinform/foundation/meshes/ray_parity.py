@@ -8,14 +8,13 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, perpendicular
+from kinform.foundation.constants import ROWS
 from kinform.foundation.meshes.boxes import FlatBoxes, facet_boxes
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
 
 RAYS = np.array([[0.577, 0.523, 0.627], [-0.67, 0.31, 0.675], [0.21, -0.83, 0.517]])
-"""(3, 3) directions along which no designer lays an edge."""
-SEEN_AT_ONCE = 4096
-"""Points times the facets whose solid angles are had at once: what is had of them stays in the cache."""
+"""(3, 3) directions that no designer lays an edge along: rays rarely graze an edge."""
 
 
 class Ray:
@@ -95,9 +94,9 @@ def winding(mesh: Mesh, points: Array) -> Array:
     (Van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30, 1983)."""
     columns, corners = np.ascontiguousarray(mesh.vertices.T), once(mesh.faces).T
     out = np.zeros(len(points))
-    for begin in range(0, corners.shape[1], SEEN_AT_ONCE):
-        facets = columns[:, corners[:, begin : begin + SEEN_AT_ONCE]]
-        some = max(1, SEEN_AT_ONCE // facets.shape[2])
+    for begin in range(0, corners.shape[1], ROWS):
+        facets = columns[:, corners[:, begin : begin + ROWS]]
+        some = max(1, ROWS // facets.shape[2])
         for start in range(0, len(points), some):
             out[start : start + some] += _solid_angles(facets, points[start : start + some]).sum(axis=1)
     return out / (4.0 * np.pi)

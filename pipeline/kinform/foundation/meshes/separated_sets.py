@@ -13,21 +13,20 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.foundation.concatenation import concatenated
-from kinform.foundation.meshes.box_pairs import BOXES_MATRIX, meeting_boxes
-from kinform.foundation.meshes.boxes import triangle_boxes
+from kinform.foundation.constants import ROWS
+from kinform.foundation.meshes.box_pairs import meeting_boxes
+from kinform.foundation.meshes.boxes import BOXES_MATRIX, triangle_boxes
 from kinform.foundation.meshes.slivers import sides_of
+from kinform.foundation.rounding import SINGLE
 from kinform.model.arrays import Array, Flags, Ints
 
 APART_MOST = 20
-"""Pairs of triangles near each other, in all triangles, beyond which it is not asked whether all keep apart."""
+"""Pairs of near triangles, per triangle, beyond which sets count as not separated without looking: the search for a
+contact then takes less. Chosen, not measured."""
 APART_SOME = 32
-"""Of these at most so many are asked first."""
+"""Pairs that are looked at first, at most: where sets are not separated, a few tell."""
 APART_TOGETHER = 50_000
-"""Pairs of triangles of several sets that are brought together, 10 MB."""
-APART_AT_ONCE = 4096
-"""Pairs of triangles that are looked at in one pass."""
-APART_ROUNDED = 1e-6
-"""Share of a distance by which what keeps it is further apart."""
+"""Pairs of triangles of several sets that are handled together: 10 MB."""
 
 
 def surely_separated(asked: Sequence[tuple[Array, Array, float]]) -> list[bool]:
@@ -78,8 +77,8 @@ def _not_parted_of(asked: Sequence[tuple[Array, Array, float]], pairs: dict[int,
     second = concatenated([asked[k][1].take(two, axis=0) for k, (_, two) in pairs.items()])
     owner = np.repeat(list(pairs), [len(one) for one, _ in pairs.values()])
     distances, out = np.array([distance for *_, distance in asked]), set[int]()
-    for start in range(0, len(owner), APART_AT_ONCE):
-        part = slice(start, start + APART_AT_ONCE)
+    for start in range(0, len(owner), ROWS):
+        part = slice(start, start + ROWS)
         one, two = (np.ascontiguousarray(side[part].transpose(1, 2, 0)) for side in (first, second))
         origin = one[0].copy()
         one -= origin
@@ -104,7 +103,7 @@ def _parted(mine: Array, other: Array, far: Array) -> Flags:
     place -= reach
     begin, end, third = place
     long = np.sqrt(axes[0] * axes[0] + axes[1] * axes[1] + axes[2] * axes[2])
-    spare += (far * (1.0 + APART_ROUNDED)) * long
+    spare += (far * (1.0 + SINGLE)) * long
     parted = np.logical_or.reduce(np.minimum(np.minimum(begin, end), third) > spare)
     parted |= np.maximum(np.maximum(begin[0], end[0]), third[0]) < -spare[0]
     return np.asarray(parted)
