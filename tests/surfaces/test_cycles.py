@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from kinform.foundation.rounding import SOLVED
+
 import numpy as np
 import pytest
 from support.meshes import of_manifold
@@ -10,7 +12,7 @@ from support.solids import block, centred_rod
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces.kinds.batch import Batch
 from kinform.surfaces.recovery import _Start
-from kinform.surfaces.regions.cycles import STEADY, Cycles
+from kinform.surfaces.regions.cycles import Cycles
 
 REGIONS = 6
 
@@ -65,7 +67,7 @@ def test_nothing_is_known_where_a_fit_moves_or_a_region_still_grows(patchwork):
     _, numbers, params = after(patchwork, regions, 8)
     assert filled(patchwork, regions, 8).ahead(numbers, params) is not None
     moved = params.copy()
-    moved[1, 4] += 2 * STEADY
+    moved[1, 4] += 2 * SOLVED
     assert filled(patchwork, regions, 8).ahead(numbers, moved) is None
     cycles = filled(patchwork, regions, 7)
     grown, _, fits = after(patchwork, regions, 7)

@@ -13,6 +13,7 @@ from kinform.contacts.overlap.solids import SolidStore
 from kinform.contacts.pair import PairContacts, mated_pairs, pair_contacts, touching
 from kinform.contacts.search.candidates import Pair, candidate_pairs
 from kinform.contacts.search.pair_view import PairView
+from kinform.foundation.constants import LITTLE_FACETS
 from kinform.foundation.current_work import working_on
 from kinform.foundation.meshes.mesh_index import LARGE_MESH, MeshStore
 from kinform.foundation.processes import Crash, map_in_processes
@@ -30,9 +31,6 @@ SHARES = 4
 """Shares of the pairs that each process gets at least, one after the other: some take much longer than others."""
 LITTLE_PAIRS = 64
 """Pairs, of ..."""
-LITTLE_FACETS = 10_000
-"""... facets in all, that are looked at in one process: less than half a second of work, and another process costs 0.05
-to 0.1 s to start, with what it imports."""
 
 
 class _Work:

@@ -11,10 +11,10 @@ from typing import NamedTuple
 import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical_sign, dot
-from kinform.foundation.rounding import TINY
+from kinform.foundation.constants import COVERAGE
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, TINY
 from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Ints
-from kinform.surfaces.constants import COVERAGE
 from kinform.surfaces.groups import columns_of, group_range, group_sum, members, normal_equations, parted, sums_of
 from kinform.surfaces.kinds.axial import angular_widths, azimuths, cylindrical
 from kinform.surfaces.kinds.batch import Batch, Params
@@ -28,13 +28,7 @@ from kinform.surfaces.regions.candidates import Candidates
 ROUNDED_SCATTER = 0.3
 """Least scatter of the vertices of a curved surface, in roundings: rounding to a step of one scatters by 1/√12."""
 ROUNDED_SCATTER_OF_PLANES = 0.6
-"""The same for planes, which are stated twice as carefully."""
-LEAST_SPREAD = 1e-12
-"""Extent of a plane across its longest direction, at least, for its uncertainty."""
-SINGULAR = 1e-14
-"""Ratio of eigenvalues below which a direction of the parameters is undetermined."""
-FULL_TURN = 1e-6
-"""Angle by which a sweep may miss a whole turn that is one."""
+"""The same for planes: twice as much, as planes are often known by few vertices. Chosen, not measured."""
 
 
 class Description(NamedTuple):
@@ -81,7 +75,7 @@ def flat(work: Patchwork, number: Ints, scales: Scales) -> list[Description]:
     distance = dot(points - columns_of(centre, region), columns_of(normal, region))
     squares, samples, deepest = _deviations(region, distance, count)
     scatter = np.maximum(np.sqrt(squares / np.maximum(samples - 3, 1)), ROUNDED_SCATTER_OF_PLANES * rounding)
-    spread = np.maximum(np.sqrt(variances[:, 1] * samples), LEAST_SPREAD)
+    spread = np.maximum(np.sqrt(variances[:, 1] * samples), ARITHMETIC)
     angular = np.minimum(COVERAGE * scatter / spread, np.pi / 2)
     linear = np.maximum(COVERAGE * scatter / np.sqrt(np.maximum(samples, 1)), rounding)
     numbers = (values.tolist() for values in (deepest, angular, linear, squares, samples))
@@ -207,7 +201,7 @@ def _uncertainties(
     matrix, _ = normal_equations(sums_of(region, count), columns.T, np.zeros(len(columns)))
     size = np.sqrt(np.maximum(np.einsum("rii->ri", matrix), TINY))
     outer = size[:, :, None] * size[:, None, :]
-    inverse = np.linalg.pinv(np.ascontiguousarray(matrix) / outer, hermitian=True, rcond=SINGULAR) / outer
+    inverse = np.linalg.pinv(np.ascontiguousarray(matrix) / outer, hermitian=True, rcond=ARITHMETIC) / outer
     vague = samples <= free
     offset = _largest(inverse[:, :2, :2] if has_axis else inverse[:, :3, :3])
     linear = np.where(vague, 1.0, COVERAGE * scatter * offset)
@@ -255,4 +249,4 @@ def angles_covered(params: Params, batch: Batch, width: Array) -> Array:
     same = np.flatnonzero(region[1:] == region[:-1]) + 1
     reach[same] = np.maximum(reach[same], high[by_size[before[same - 1] % len(high)]])
     covered = np.bincount(region, np.maximum(np.minimum(high, turn) - np.maximum(low, reach), 0), count) + wrapped
-    return np.where(covered > turn - FULL_TURN, turn, covered)
+    return np.where(covered > turn - SINGLE, turn, covered)

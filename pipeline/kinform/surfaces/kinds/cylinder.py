@@ -16,9 +16,11 @@ from kinform.surfaces.kinds.ruled import Ruled, generators
 from kinform.surfaces.polygons.noise import Scales
 
 RIDGES_AGREE = 0.98
-"""Share of the squared lengths of inner edges along one direction, above which they are the ridges of a cylinder."""
+"""Share of the squared lengths of the inner edges that lies along one direction, above which these edges are the ridges
+of a cylinder. Chosen, not measured."""
 EQUAL_STEPS = 1.02
-"""Ratio of the angles of strips and ridges up to which their steps are equal."""
+"""Ratio of the angles of strips and ridges up to which their steps are equal: 2 % is far above rounding. Chosen, not
+measured."""
 
 
 class Cylinder(Ruled):

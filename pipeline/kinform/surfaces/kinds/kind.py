@@ -18,9 +18,11 @@ from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.polygons.noise import Scales
 
 DAMPING = 1e-11
-"""Share of the scaled diagonal that is added to normal equations: nothing to a regular fit, a bound for a vague one."""
+"""Share of the scaled diagonal that is added to normal equations: it changes nothing in a regular fit, and bounds the
+step of a vague one."""
 NEAR = 4
-"""Tolerances within which shared vertices of spheres and tori define them: beyond, they lie on chords."""
+"""Tolerances within which shared vertices of spheres and tori define them: beyond, they lie on chords. Chosen, not
+measured."""
 
 
 class Probe(NamedTuple):

@@ -10,13 +10,11 @@ from kinform.foundation.sorting import among, distinct
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.groups import columns_of, group_mean, group_moments, group_sum, parted, spheres_through
 from kinform.surfaces.kinds.batch import Batch, Params
-from kinform.surfaces.kinds.constants import LEAST_POINTS, SAGITTA
+from kinform.surfaces.kinds.constants import LARGEST_DOUBLE, LEAST_POINTS, SAGITTA
 from kinform.surfaces.kinds.kind import DoublyCurved, Probe
 from kinform.surfaces.kinds.quadrics import distance_from_second
 from kinform.surfaces.polygons.noise import Scales
 
-LARGEST_SPHERE = 5.0
-"""Radius, in spans, beyond which a face is no sphere that a joint could use."""
 SECOND_QUADRIC = 0.5
 """Fits by which the vertices of a sphere are off every other quadric in the mean, at least: two rings lie on one to
 the last digits, to a fifth of a fit where vertices scatter; three rings of a cap whose sagitta is just enough are half
@@ -49,7 +47,7 @@ class Sphere(DoublyCurved):
         params[:, 3:6] = middle + centre
         params[:, 6] = np.sqrt(np.maximum(square, 0.0))
         usable = (np.bincount(region, minlength=count) >= LEAST_POINTS) & (square > 0)
-        return params, usable & (params[:, 6] < LARGEST_SPHERE) & np.isfinite(params).all(axis=1)
+        return params, usable & (params[:, 6] < LARGEST_DOUBLE) & np.isfinite(params).all(axis=1)
 
     def defining(self, batch: Batch, params: Params, tolerance: Array) -> tuple[Ints, Ints]:
         """Those that three polygons share, near the surface; where these are one ring, also those on it that two

@@ -22,18 +22,17 @@ from kinform.surfaces.groups import columns_of
 from kinform.surfaces.polygons.patchwork import Patchwork
 
 ALIKE_WIDTHS = 3.0
-"""Ratio of widths up to which neighbours look like facets of one surface."""
+"""Ratio of widths up to which neighbours look like facets of one surface. Chosen, not measured."""
 ALIKE_STRONG = 0.35
 """Difference of the larger principal curvatures of neighbours on one surface, as a share of the largest: what coarse
 facets of unequal width make of equal ones."""
 ALIKE_WEAK = 0.3
-"""The same of the smaller principal curvatures."""
+"""The same of the smaller principal curvatures. Chosen, not measured."""
 SIMPLE_RATIO = 0.12
-"""Ratio of the two curvatures below which a polygon bends one way only."""
-GOING_ALONG = 0.7
-"""Cosine between a step to the neighbour and the generators, above which it goes along them."""
+"""Ratio of the two curvatures below which a polygon bends one way only. Chosen, not measured."""
 TURNED_ALONG = 0.03
-"""Angle between the generators of neighbours on one surface that bends one way, besides that of their normals."""
+"""rad between the generators of neighbours on one surface that bends one way, besides that of their normals. Chosen,
+not measured."""
 
 
 _PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
@@ -157,5 +156,6 @@ def continues(work: Patchwork, bent: Curvature, link: Links) -> Flags:
     size = np.maximum(np.sqrt(square[:, 0] + (square[:, 1] + square[:, 2])), TINY)
     going = np.abs(dot(step, along_a + along_b * np.sign(cosine)[:, None])) / 2 / size
     turn = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
-    allowed = np.where(going > GOING_ALONG, TURNED_ALONG, TURNED_ALONG + work.angle[link.edge])
+    # a step to the neighbour within 45° of the generators goes along them
+    allowed = np.where(going > 0.7, TURNED_ALONG, TURNED_ALONG + work.angle[link.edge])
     return np.asarray(~simple | (turn <= allowed))

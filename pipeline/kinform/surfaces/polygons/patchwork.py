@@ -19,17 +19,16 @@ from kinform.foundation.sorting import distinct
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
+from kinform.surfaces.constants import FLAT_NOISES
 from kinform.surfaces.groups import Ragged, columns_of, parted
 from kinform.surfaces.polygons.coplanar import coplanar_facets
 from kinform.surfaces.polygons.facets import Facets, angles
 from kinform.surfaces.polygons.noise import Scale
 
 SLACK_ROUNDINGS = 2
-"""Roundings, over the altitude, by which the normal of a polygon may be turned."""
+"""Roundings, over the altitude, by which the normal of a polygon may be turned: one at either end."""
 MOST_SLACK = 0.3
-"""Angle by which rounding may turn a normal, at most."""
-FLAT_NOISES = 2
-"""Height, in noises, that a polygon gains over its neighbour below which their edge is neither convex nor concave."""
+"""rad by which rounding may turn a normal, at most: beyond, the normal means nothing. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,15 +28,14 @@ TURNS_ON = (0.03, 0.56)
 than a smooth edge."""
 GOES_ON = 2.05
 """Ratio of lengths up to which the next edge goes on with a ridge: a fillet is longer than the edges of its corners."""
-OPEN = 3.1
-"""Angle that strips subtend together, at most, that may run across bands round another axis."""
 
 
 def along(territory: Territory, kind: Cylinder, growth: Growth) -> tuple[Growth, Ints]:
     """The cylinders but those across bands, and the edges (n,) which are ridges of these or go on with them."""
     work, batch, params = territory.patchwork, growth.batch, growth.surfaces.params
     sweep = np.bincount(batch.region, kind.widths(batch, params), batch.count)
-    open_ = batch.where(sweep < OPEN)
+    # strips across bands round another axis subtend less than half a turn
+    open_ = batch.where(sweep < 3.1)
     if not len(open_.region):
         return growth, np.zeros(0, np.int64)
     region, edge, inner = generators(open_, params)
