@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from kinform.foundation.rounding import SOLVED
-
 import numpy as np
 import pytest
 from support.meshes import of_manifold
 from support.solids import block, centred_rod
 
+from kinform.foundation.rounding import SOLVED
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces.kinds.batch import Batch
 from kinform.surfaces.recovery import _Start

@@ -27,10 +27,8 @@ TOGETHER_PAIRS = 64
 """Pairs whose decisions are taken together: numpy takes as long to begin as to go through hundreds of numbers, ..."""
 TOGETHER_FACETS = 50_000
 """... as long as no more facets come to those of the first pair: what is known of one takes about half a kilobyte."""
-SHARES = 4
-"""Shares of the pairs that each process gets at least, one after the other: some take much longer than others."""
 LITTLE_PAIRS = 64
-"""Pairs, of ..."""
+"""Pairs up to which one process looks at all, where their facets are few too. Chosen, not measured."""
 
 
 class _Work:
@@ -162,7 +160,8 @@ def _computed(
 ) -> dict[Pair, PairContacts]:
     """The contacts of all pairs of the work: of many small ones at once; where a process ends over that, one by one, so
     that it is told which pair it was."""
-    share = len(work.order) if jobs <= 1 else len(work.order) // (SHARES * jobs)
+    # each process gets a few shares of the pairs: some take much longer than others
+    share = len(work.order) if jobs <= 1 else len(work.order) // (4 * jobs)
     for most in (max(1, min(TOGETHER_PAIRS, share)), 1):
         chunks, done = work.chunks(most), dict[Pair, PairContacts]()
         computed = map_in_processes(work.contacts, chunks, jobs, None, _name_of, little=little, meanwhile=meanwhile)

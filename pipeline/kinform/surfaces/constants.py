@@ -15,4 +15,4 @@ ROWS = 1 << 14
 cache. It bounds memory and changes no result."""
 NORMAL_SLACK = 5e-3
 """rad by which the normal of a facet may differ from that of the surface, besides half of the angle that the facet
-subtends: ten times what single precision turns typical facets by. Chosen, not measured."""
+subtends. Chosen, not measured."""

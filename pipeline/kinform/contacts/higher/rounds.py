@@ -14,7 +14,7 @@ from kinform.contacts.higher.constants import BALL_BORE_SAMPLES, ROLLER_SAMPLES
 from kinform.contacts.higher.meeting import Meeting
 from kinform.contacts.higher.rings import ring
 from kinform.contacts.higher.stations import evenly
-from kinform.contacts.higher.tapers import ROUND_AXIS, tapers
+from kinform.contacts.higher.tapers import tapers
 from kinform.contacts.mating.charts import perpendicular
 from kinform.contacts.search.pair_view import SurfacePair
 from kinform.foundation.algebra.vectors import cross
@@ -72,7 +72,7 @@ def _taper_on_plane(surfaces: SurfacePair, parallel: float) -> Meeting | None:
     (axis, normal), (apex, origin), half = surfaces.axes, surfaces.points, surfaces.both("half_angles")[0]
     below = axis * float(axis @ normal) - normal
     size = float(np.linalg.norm(below))
-    if size < ROUND_AXIS:
+    if size < SOLVED:
         return None
     generator = math.cos(half) * axis + math.sin(half) * below / size
     if abs(float(generator @ normal)) > math.sin(parallel):
@@ -96,9 +96,9 @@ def _ball_on_cone(surfaces: SurfacePair) -> Meeting | None:
     aside = arm - along * axis
     far = float(np.linalg.norm(aside))
     convex = surfaces.sides[1] > 0
-    if convex and far < ROUND_AXIS * radius:
+    if convex and far < SOLVED * radius:
         return None
-    base = perpendicular(axis, aside if far > ROUND_AXIS * radius else None)
+    base = perpendicular(axis, aside if far > SOLVED * radius else None)
     angle = 2 * math.pi * np.arange(1 if convex else BALL_BORE_SAMPLES) / BALL_BORE_SAMPLES
     outward = np.cos(angle)[:, None] * base + np.sin(angle)[:, None] * cross(axis, base)
     normals = surfaces.sides[1] * (math.cos(half) * outward - math.sin(half) * axis)

@@ -14,15 +14,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.algebra.vectors import lengths
+from kinform.foundation.algebra.vectors import NEXT, lengths
 from kinform.foundation.concatenation import concatenated
 from kinform.foundation.meshes.boxes import middles
+from kinform.foundation.rounding import SINGLE
 from kinform.foundation.sorting import heads, numbered
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
-
-POINT_SAME = 1e-6
-"""Points of a region closer than this are one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +123,7 @@ def _split(corners: Array, size: Array, owner: Ints) -> tuple[Array, Ints]:
     `owner` (n,), until no edge is longer than it; by owner."""
     small, owners = [], []
     while True:
-        edges = corners - corners[:, _NEXT]
+        edges = corners - corners[:, NEXT]
         edges /= size.take(owner, axis=1)[:, None]
         edges *= edges
         length = np.sqrt(edges[0] + edges[1])
@@ -140,7 +138,7 @@ def _split(corners: Array, size: Array, owner: Ints) -> tuple[Array, Ints]:
             owners.append(owner.take(left))
             corners, length, owner = corners.take(rows, axis=2), length.take(rows, axis=1), owner.take(rows)
         corner, every = length.argmax(axis=0), np.arange(count)
-        begin, end, third = corners[:, corner, every], corners[:, _NEXT[corner], every], corners[:, corner - 1, every]
+        begin, end, third = corners[:, corner, every], corners[:, NEXT[corner], every], corners[:, corner - 1, every]
         corners = np.empty((2, 3, 2 * count))
         corners[:, 0, :count] = begin
         corners[:, 1, :count] = corners[:, 0, count:] = 0.5 * (begin + end)
@@ -153,10 +151,6 @@ def _split(corners: Array, size: Array, owner: Ints) -> tuple[Array, Ints]:
         order = owner.argsort(kind="stable")
         corners, owner = corners.take(order, axis=2), owner.take(order)
     return corners, owner
-
-
-_NEXT = np.array([1, 2, 0])
-"""The corner of a triangle that follows on each."""
 
 
 def probed(every: Sequence[Cells]) -> list[Array]:
@@ -209,7 +203,7 @@ def _together(every: Sequence[Cells]) -> tuple[Ints, list[int]]:
 
 def _keys(points: Array, unit: float) -> NDArray[np.complex128]:
     """One number a point (n, 2) m, the same for points that are one."""
-    grid = np.ascontiguousarray(points / (POINT_SAME * unit))
+    grid = np.ascontiguousarray(points / (SINGLE * unit))
     return np.rint(grid, out=grid).view(np.complex128)[:, 0]
 
 

@@ -16,20 +16,17 @@ import numpy as np
 from kinform.foundation.algebra import vectors
 from kinform.foundation.algebra.vectors import cross, lengths, norm, times
 from kinform.foundation.meshes.boxes import middles
-from kinform.foundation.rounding import SOLVED, TINY
+from kinform.foundation.rounding import SINGLE, SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
 CHART_ARC = math.radians(15.0)
-"""rad: angle that one sample of a curved surface may stand for."""
+"""rad: angle of a curved surface that one sample stands for: its normal is then within 7.5°. Chosen, not measured."""
 CHART_FAR = 1e3
-"""Radii to which charts of cylinders and cones reach."""
-HINT_LEAST = 1e-6
-"""Share of a hint across an axis below which it says nothing."""
-POLE_SEEN = -0.97
-"""Least cosine from the pole of what Lambert's projection shows: beyond, facets would be torn apart."""
+"""Radii to which charts of cylinders and cones reach: more than any part that turns. Chosen, not measured."""
 SEEN_FROM_AXIS = 1e-3
-"""Share of the radius nearer than which to the axis or centre a point gives no direction to look in."""
+"""Distance from the axis or centre, in radii, below which a point gives no direction to look in. Chosen, not
+measured."""
 
 
 class Chart(Protocol):
@@ -66,7 +63,7 @@ def perpendicular(axis: Array, hint: Array | None = None) -> Array:
     if hint is not None:
         across = hint - (hint @ axis) * axis
         length = norm(across)
-        if length > HINT_LEAST * max(norm(hint), TINY):
+        if length > SINGLE * max(norm(hint), TINY):
             return np.asarray(across / length)
     return -vectors.perpendicular(axis)[0]
 
@@ -259,7 +256,8 @@ class SphereChart:
     def flatten(self, triangles: Array) -> Array:
         rays = _unit_rows(triangles - self.point)
         rise = times(rays, self.pole)
-        shown = middles(rays) @ self.pole > POLE_SEEN
+        # beyond this angle from the pole Lambert's projection would tear facets apart
+        shown = middles(rays) @ self.pole > -0.97
         rays, rise = rays[shown], rise[shown]
         stretch = self.radius * np.sqrt(2.0 / np.maximum(1.0 + rise, SOLVED))
         return np.asarray(stretch[..., None] * times(rays, plane_basis(self.pole).T))

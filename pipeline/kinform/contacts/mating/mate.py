@@ -21,11 +21,12 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 HALF_RADIUS_SHARE = 3.0
-"""A radial gap of the radius divided by this is no fit."""
+"""A radial gap of more than the radius divided by this is no fit. Chosen, not measured."""
 MATING_TILT = math.radians(5.0)
-"""rad: no clearance excuses a greater angle between two mating axes."""
+"""rad: largest angle between two axes that mate, whatever the clearance. Chosen, not measured."""
 MATING_OFFSET = 0.5
-"""By so much axes or centres of surfaces that mate may miss each other beyond the clearance."""
+"""Distance, in contact tolerances, by which axes or centres of surfaces that mate may miss each other beyond the
+clearance. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 from manifold3d import CrossSection, FillRule, triangulate
 
+from kinform.contacts.constants import RIM_POINTS
 from kinform.contacts.mating.cells import Cells, Cut, gathered, signed_areas
 from kinform.contacts.mating.charts import Chart
 from kinform.contacts.mating.regions import regions
@@ -23,15 +24,11 @@ from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
 
 PATCH_BINS = 24
-"""Least number of bins of a patch, so that a blocked part of it can be told."""
-PATCH_RIM_POINTS = 96
-"""Greatest number of points that stand for the rim."""
+"""Fewest bins of a patch, so that a blocked part of it can be told. Chosen, not measured."""
 REGION_THIN = 0.01
-"""Regions thinner than this are lines, not patches."""
-REGION_SIMPLE = REGION_THIN * 0.1
-"""Corners of a region that are off by less than this are left out."""
+"""Width, in contact tolerances, below which a region is a line, not a patch. Chosen, not measured."""
 REGION_SMALL = 0.02
-"""Regions smaller than this share of the squared tolerance are points, not patches."""
+"""Area, in squared contact tolerances, below which a region is a point, not a patch. Chosen, not measured."""
 
 
 def _perimeter(polygons: list[Array]) -> float:
@@ -88,7 +85,8 @@ def _pieces(region: CrossSection, thin: float) -> list[list[Array]]:
     """The connected pieces of a region that are neither points nor narrower than `thin`, as polygons."""
     pieces = []
     for piece in region.decompose():
-        polygons = [np.asarray(p) for p in piece.simplify(REGION_SIMPLE).to_polygons()]
+        # corners that are off by a tenth of a thin region are left out
+        polygons = [np.asarray(p) for p in piece.simplify(REGION_THIN * 0.1).to_polygons()]
         area = piece.area()
         if polygons and area >= REGION_SMALL and 2.0 * area >= thin * _perimeter(polygons):
             pieces.append(polygons)
@@ -100,7 +98,7 @@ def _rim(polygons: list[Array], flat: bool) -> Array:
     corners = np.concatenate(polygons)
     if flat:
         corners = np.concatenate([np.asarray(p) for p in CrossSection.hull_points(corners).to_polygons()])
-    every = math.ceil(len(corners) / PATCH_RIM_POINTS)
+    every = math.ceil(len(corners) / RIM_POINTS)
     return np.asarray(corners[::every])
 
 

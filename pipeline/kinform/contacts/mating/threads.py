@@ -12,9 +12,10 @@ import math
 
 import numpy as np
 
+from kinform.contacts.constants import PATCH_AREA, SAMPLES
 from kinform.contacts.mating.charts import plane_basis
 from kinform.contacts.mating.mate import Axes, aligned, mean_axes
-from kinform.contacts.mating.patches import PATCH_AREA, classify_fit
+from kinform.contacts.mating.patches import classify_fit
 from kinform.contacts.search.pair_view import PairView, PartView, SurfacePair
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED, TINY
@@ -23,21 +24,13 @@ from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 
 PITCH_SAME = 2e-3
-"""Relative difference of two pitches that are meant as one; less where the engagement is long."""
+"""Relative difference of two leads that are meant as one; less where the engagement is long. Chosen, not measured."""
 THREAD_AXIS_VAGUE = 0.02
-"""rad: what is known no better than this about its axis is no thread that mates."""
-THREAD_FACETS = 400
-"""Greatest number of facets of either side that give samples."""
+"""rad: uncertainty of its axis from which on a surface is no thread that mates. Chosen, not measured."""
 PROFILE_SHARES = np.array([1.0, 3.0, 5.0]) / 6.0
 """Where samples lie on the profile of a facet: the middles of its thirds."""
-FLANK_NEIGHBOURS = 24
-"""Samples of the other side that are held against each."""
-FLANK_HELIX_WEIGHT = 0.1
-"""Weight of the distance along the helix in looking for these."""
-FLANKS_FACING = -0.7
-"""Greatest cosine between the normals of two flanks that lie on each other."""
 FLANK_GAP = 0.15
-"""Greatest gap of two flanks, in pitches: beyond, neither is the other's."""
+"""Largest gap of two flanks, in leads: beyond, neither is the other's. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,7 +200,7 @@ def _resting(mine: _Profile, other: _Profile, pitch: float, limit: float) -> _Sa
     """Samples of one side that lie within `limit` (m) of the other side's profile, and half their areas."""
     from scipy.spatial import cKDTree
 
-    kept = np.arange(0, len(mine.area), max(1, math.ceil(len(mine.area) / THREAD_FACETS)))
+    kept = np.arange(0, len(mine.area), max(1, math.ceil(len(mine.area) / SAMPLES)))
     share = len(mine.area) / max(len(kept), 1)
     facet, points, normal, azimuth, height = _places(mine.select(kept), pitch)
     if not len(facet) or not len(other.area):
@@ -219,10 +212,12 @@ def _resting(mine: _Profile, other: _Profile, pitch: float, limit: float) -> _Sa
 
     def embedded(places: Array, heights: Array) -> Array:
         turn = np.mod(places[:, 1], lead)
-        return np.stack([places[:, 0], np.where(turn >= lead, 0.0, turn), FLANK_HELIX_WEIGHT * (heights - low)], axis=1)
+        # distances along the helix count a tenth in looking for neighbours
+        return np.stack([places[:, 0], np.where(turn >= lead, 0.0, turn), 0.1 * (heights - low)], axis=1)
 
     tree = cKDTree(embedded(their_points, their_height), boxsize=[far, lead, far])
-    count = min(FLANK_NEIGHBOURS, len(their_points))
+    # samples of the other side that are held against each
+    count = min(24, len(their_points))
     _, near = tree.query(embedded(points, height), k=count)
     near = near.reshape(len(points), count)
     line = theirs[near]
@@ -236,8 +231,9 @@ def _resting(mine: _Profile, other: _Profile, pitch: float, limit: float) -> _Sa
     from_start = their_points[near] - other.start[line] + offset
     foot = np.einsum("ijk,ijk->ij", from_start, along) / length**2
     beside = np.abs(height[:, None] - their_height[near]) - other.reach[line] - mine.reach[kept][facet][:, None]
+    # normals of flanks on each other oppose within 45°
     good = (
-        (np.einsum("ijk,ijk->ij", np.broadcast_to(normal[:, None], opposite.shape), opposite) < FLANKS_FACING)
+        (np.einsum("ijk,ijk->ij", np.broadcast_to(normal[:, None], opposite.shape), opposite) < -0.7)
         & (np.abs(gap) <= limit)
         & (foot >= -SINGLE)
         & (foot <= 1.0 + SINGLE)

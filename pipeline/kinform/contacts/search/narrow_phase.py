@@ -24,7 +24,8 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 
 BETWEEN_MARGIN = 0.01
-"""What lies this close to one of the two facets that a probe meets is not between them."""
+"""Distance, in contact tolerances, from one of the two facets that a probe meets within which nothing counts as between
+them. Chosen, not measured."""
 BETWEEN_SHARE = 0.05
 """The same as a share of the distance of the two facets."""
 

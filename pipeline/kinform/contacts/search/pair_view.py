@@ -29,14 +29,10 @@ from kinform.model.surfaces import KINDS, MeshSurfaces
 from kinform.model.tolerances import Tolerances
 
 CLEARANCE_SHARE = 0.03
-"""Share of its radius that a shaft may be smaller than its bore, where that is more than the contact tolerance."""
-FEW_BESIDE = 1000
-"""Facets in the common box of two parts up to which all are taken for near: to look closer takes as long as FCL's model
-of the rest."""
+"""Share of its radius that a shaft may be smaller than its bore, where that is more than the contact tolerance. Chosen,
+not measured."""
 MOST_SURFACES = 3000
 """Surfaces of one part that a pair looks at: a bound of memory for crumpled meshes."""
-OVERLAPS_KEPT = 200_000
-"""Surfaces times surfaces of a pair up to which it is kept which come near each other: 0.2 MB."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +124,8 @@ def _facing(a: PartView, b: PartView, beside: tuple[_Boxed, _Boxed], margin: flo
     """Both parts, with those of their facets `beside` each other that come within `margin` (m) of the other as those
     that probes can meet."""
     (facets_a, low_a, high_a), (facets_b, low_b, high_b) = beside
-    if len(facets_a) + len(facets_b) > FEW_BESIDE or not len(facets_a) or not len(facets_b):
+    # of fewer facets all count as near: to look closer takes as long as FCL's model of the rest
+    if len(facets_a) + len(facets_b) > 1000 or not len(facets_a) or not len(facets_b):
         keep_a, keep_b = near_boxes(low_a, high_a, low_b, high_b, margin)
         facets_a, facets_b = facets_a[keep_a], facets_b[keep_b]
     a, b = _probed(a, facets_a, margin), _probed(b, facets_b, margin)
@@ -372,7 +369,8 @@ class PairView:
         known = self._overlaps.get(margin)
         if known is None:
             known = boxes_within((a.lows, a.highs), (b.lows, b.highs), margin)
-            if known.size > OVERLAPS_KEPT:
+            # surfaces times surfaces up to which it is kept which come near each other: 0.2 MB
+            if known.size > 200_000:
                 return known
             self._overlaps[margin] = known
         return known.copy()

@@ -13,7 +13,8 @@ from kinform.foundation.constants import MANY
 from kinform.foundation.rounding import TINY
 from kinform.model.arrays import Array
 
-_NEXT, _AFTER = np.array([1, 2, 0]), np.array([2, 0, 1])
+NEXT, _AFTER = np.array([1, 2, 0]), np.array([2, 0, 1])
+"""Index that follows each of three, of a coordinate or a corner of a triangle, and the one after it."""
 _CROSS = np.zeros((3, 3, 3))
 for _i in range(3):
     _CROSS[_i, (_i + 2) % 3, (_i + 1) % 3] = 1.0
@@ -31,7 +32,7 @@ def cross(a: Array, b: Array) -> Array:
         u, v, w = b.tolist()
         return np.array([y * w - z * v, z * u - x * w, x * v - y * u])
     if max(a.size, b.size) < MANY:
-        return np.asarray(a.take(_NEXT, -1) * b.take(_AFTER, -1) - a.take(_AFTER, -1) * b.take(_NEXT, -1))
+        return np.asarray(a.take(NEXT, -1) * b.take(_AFTER, -1) - a.take(_AFTER, -1) * b.take(NEXT, -1))
     out = np.empty(a.shape if a.shape == b.shape else np.broadcast(a, b).shape)
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         out[..., i] = a[..., j] * b[..., k] - a[..., k] * b[..., j]

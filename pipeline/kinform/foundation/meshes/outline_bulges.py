@@ -13,10 +13,9 @@ import math
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
-from kinform.foundation.meshes.surface_table import SurfaceTable
+from kinform.foundation.meshes.surface_table import PLANE, SurfaceTable
 from kinform.foundation.rounding import ARITHMETIC
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.model.surfaces import KINDS
 
 BULGE = 0.35
 """Share of a chord by which a smooth curve may stand off it: cubic curves through 32° and lengths of one to three come
@@ -26,14 +25,11 @@ BENDS_MOST = 1.05
 the edge."""
 
 
-_PLANE = KINDS.index("plane")
-
-
 def bulge_of(corners: Array, labels: Ints, table: SurfaceTable, exact: Flags, smooth: float) -> float:
     """m, of facets (F, 3, 3) of surfaces `labels` (F,), of which some are `exact` cylinders (s,). Edges are smooth
     below `smooth` (rad)."""
     bent = ~exact
-    plane = np.flatnonzero(table.kinds == _PLANE)
+    plane = np.flatnonzero(table.kinds == PLANE)
     bent[plane] = _bending(table.axes.take(plane, axis=0), smooth)
     facets = np.flatnonzero(bent.take(labels))
     if not len(facets):

@@ -17,13 +17,13 @@ from kinform.foundation.algebra.vectors import canonical, cross, dot, lengths, n
 from kinform.foundation.constants import SCATTERED
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import SharedEdges
-from kinform.foundation.meshes.surface_table import SurfaceTable
+from kinform.foundation.meshes.surface_table import PLANE, SurfaceTable
 from kinform.foundation.rounding import SOLVED, TINY
 from kinform.foundation.sorting import distinct, heads, median, numbered
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
-from kinform.model.surfaces import KINDS, MeshSurfaces
+from kinform.model.surfaces import MeshSurfaces
 
 RING_FEW = 6
 """Up to so many flats a ring is round only where ..."""
@@ -133,7 +133,7 @@ def ring_rows(
 ) -> tuple[RingRow, ...]:
     """The rows of flats that may be rings among the planes of a mesh with the table of its surfaces, these shared edges
     (by corner), and surfaces (k, 2) that share some, by direction, sense and lowest facet."""
-    plane = table.kinds == KINDS.index("plane")
+    plane = table.kinds == PLANE
     if plane.sum() < RING_SIDES or not _any_bent(table, borders, plane):
         return ()
     piece, ridges = _ridges(mesh, surfaces, table, edges, plane)
