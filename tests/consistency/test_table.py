@@ -277,7 +277,7 @@ def test_a_rule_fires_on_a_wrong_design_and_not_on_one_like_it(derive_design, co
 
 
 ELSEWHERE = {
-    "KF209": "tests/contacts/test_unknown.py",
+    "KF209": "tests/contacts/higher/test_unknown.py",
     "KF123": "tests/descriptions/test_described.py",
     "KF124": "tests/descriptions/test_described.py",
     "KF130": "tests/descriptions/test_described.py",
