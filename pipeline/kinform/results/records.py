@@ -13,7 +13,7 @@ import types
 import typing
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, fields, is_dataclass, replace
-from typing import Annotated, Any, NewType
+from typing import Annotated, Any, Literal, NewType
 
 import numpy as np
 
@@ -62,6 +62,8 @@ def hint(annotation: Any) -> Hint:
             (annotation,) = (kind for kind in typing.get_args(annotation) if kind is not types.NoneType)
         elif isinstance(annotation, NewType):
             annotation = annotation.__supertype__
+        elif origin is Literal:
+            annotation = type(typing.get_args(annotation)[0])
         else:
             unit = next((item for item in said if isinstance(item, str)), None)
             return Hint(annotation, optional, unit, next((item for item in said if isinstance(item, Columns)), None))

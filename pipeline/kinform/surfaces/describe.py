@@ -15,6 +15,7 @@ from kinform.foundation.constants import COVERAGE
 from kinform.foundation.rounding import ARITHMETIC, SINGLE, TINY
 from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Ints
+from kinform.model.surfaces import SurfaceKind
 from kinform.surfaces.groups import columns_of, group_range, group_sum, members, normal_equations, parted, sums_of
 from kinform.surfaces.kinds.axial import angular_widths, azimuths, cylindrical
 from kinform.surfaces.kinds.batch import Batch, Params
@@ -34,7 +35,7 @@ ROUNDED_SCATTER_OF_PLANES = 0.6
 class Description(NamedTuple):
     """One surface in unit coordinates; fields as those of `Surface`."""
 
-    kind: str
+    kind: SurfaceKind
     polygons: Ints
     axis: Array
     point: Array

@@ -25,7 +25,7 @@ from kinform.contacts.presses import beyond_press
 from kinform.foundation.algebra.vectors import canonical_sign, widest_gap
 from kinform.model.arrays import Array, freeze
 from kinform.model.assembly import Assembly, Part
-from kinform.model.contacts import Contacts, Patch, Suggestion
+from kinform.model.contacts import Contacts, Patch, Suggestion, SuggestionKind
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces
 
@@ -105,7 +105,8 @@ def _of_pair(pair: Pair, patches: list[Patch], scene: _Scene, tolerance: float) 
     if not planes:
         return out
     pivoted = [_pivoted(plane, patches, tolerance) for plane in planes]
-    for round_it, kind, where in ((False, "holes", ""), (True, "spigot", " round a journal")):
+    ways: tuple[tuple[bool, SuggestionKind, str], ...] = ((False, "holes", ""), (True, "spigot", " round a journal"))
+    for round_it, kind, where in ways:
         holes = _holes(pair, [p for p, yes in zip(planes, pivoted, strict=True) if yes == round_it], scene, tolerance)
         if len(holes.radii) >= 2:
             text = f"{len(holes.radii)} aligned empty holes{where}"
@@ -119,7 +120,7 @@ def _of_pair(pair: Pair, patches: list[Patch], scene: _Scene, tolerance: float) 
     return out
 
 
-def _hint(pair: Pair, kind: str, evidence: str, axis: Array, point: Array) -> Suggestion:
+def _hint(pair: Pair, kind: SuggestionKind, evidence: str, axis: Array, point: Array) -> Suggestion:
     """A suggestion with the canonical sign of the axis; that of a pocket points out of it."""
     turned = axis if kind == "pocket" else canonical_sign(axis) * axis
     return Suggestion(pair, kind, evidence, np.asarray(freeze(turned + 0.0)), np.asarray(freeze(point + 0.0)))

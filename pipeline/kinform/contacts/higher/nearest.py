@@ -10,6 +10,7 @@ from kinform.contacts.higher.beside import Beside, beside
 from kinform.contacts.search.pair_view import NearSurfaces
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
+from kinform.model.surfaces import SurfaceKind
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +79,7 @@ def nearest(circle: Circle, near: NearSurfaces, row: int, dips: Dips) -> Array:
     return middle
 
 
-def evened(circle: Circle, angles: Array, normals: Array, kind: str) -> Array:
+def evened(circle: Circle, angles: Array, normals: Array, kind: SurfaceKind) -> Array:
     """(n, 3) normals all round a circle, alike about its axis: a surface that is not quite about the same axis turns
     with it as much as one that is. Those of a sphere pass its middle as they are."""
     if kind == "sphere":

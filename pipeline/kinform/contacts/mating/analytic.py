@@ -35,6 +35,7 @@ from kinform.contacts.mating.mate import (
 from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.foundation.algebra.vectors import cross, dot, lengths, norm
 from kinform.model.arrays import Array, Flags
+from kinform.model.surfaces import SurfaceKind
 
 TILT_LIKELY = 1.5
 """Angles of axes up to this many times the limit are looked at: uncertainties add to it. Chosen, not measured."""
@@ -212,7 +213,7 @@ def _sphere_mates(pair: PairView, overlap: Flags) -> Iterator[Mate]:
         )
 
 
-def _nearly_coaxial(pair: PairView, overlap: Flags, kind: str) -> Iterator[SurfacePair]:
+def _nearly_coaxial(pair: PairView, overlap: Flags, kind: SurfaceKind) -> Iterator[SurfacePair]:
     """Surfaces of one kind, convex with concave, whose axes are roughly parallel."""
     a, b = pair.near
     rows, columns, flags = pair.of_kinds(overlap, kind)

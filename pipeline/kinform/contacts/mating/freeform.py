@@ -27,8 +27,9 @@ from kinform.foundation.rounding import SINGLE, TINY
 from kinform.foundation.sorting import among, distinct
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
+from kinform.model.surfaces import SurfaceKind
 
-FREEFORM_KINDS = ("freeform", "torus", "revolution", "extrusion", "helicoid")
+FREEFORM_KINDS: tuple[SurfaceKind, ...] = ("freeform", "torus", "revolution", "extrusion", "helicoid")
 """Kinds whose contacts are found facet by facet."""
 TURNING_KINDS = ("torus", "revolution")
 """Of these, those that turn on themselves about an axis."""

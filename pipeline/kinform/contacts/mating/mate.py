@@ -19,6 +19,7 @@ from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.rounding import ARITHMETIC, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
+from kinform.model.contacts import PatchKind
 
 HALF_RADIUS_SHARE = 3.0
 """A radial gap of more than the radius divided by this is no fit. Chosen, not measured."""
@@ -38,7 +39,7 @@ class Mate:
     """
 
     surfaces: SurfacePair
-    kind: str
+    kind: PatchKind
     chart: Chart
     sign: float
     axis: Array

@@ -15,7 +15,7 @@ from kinform.contacts.mating.overlay import overlays
 from kinform.contacts.search.narrow_phase import Probes, verify_all
 from kinform.contacts.search.pair_view import PairView
 from kinform.model.arrays import Array, freeze
-from kinform.model.contacts import Patch
+from kinform.model.contacts import Fit, Patch
 
 GAP_SCATTER = 0.1
 """Scatter, in contact tolerances, of the measured gap of a face that rests on a plane, and of profiles that lie along
@@ -106,7 +106,7 @@ def _probes(mate: Mate, flat: Array, tolerance: float) -> Probes:
     return Probes.of(points, mate.sign * mate.chart.normals(points), gaps, reach, mate.surfaces)
 
 
-def classify_fit(gaps: Array, chord: float, uncertainty: float, tolerance: float) -> str:
+def classify_fit(gaps: Array, chord: float, uncertainty: float, tolerance: float) -> Fit:
     """Fit of a patch by its signed gaps (n,) m.
 
     Beyond chord errors and uncertainty: clearance, or interference. No gap at all, as far as the surfaces

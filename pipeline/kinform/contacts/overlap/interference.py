@@ -22,7 +22,7 @@ from kinform.contacts.search.pair_view import PairView, PartView, near_facets
 from kinform.foundation.meshes.boxes import middles
 from kinform.foundation.meshes.ray_parity import winding
 from kinform.model.arrays import Array, Flags, Ints, freeze
-from kinform.model.contacts import Interference, Patch
+from kinform.model.contacts import Interference, OverlapMethod, Patch
 
 SURELY_INSIDE = 0.75
 """How often the facets of an open mesh go round a point that counts as inside: of a round gap in them, as wide as it is
@@ -203,7 +203,7 @@ def _crossed(owner: PartView, other: PartView) -> tuple[Array, Ints]:
 
 
 def _interference(
-    a: PartView, b: PartView, volume: float, depth: float, place: Array, mated: bool, method: str
+    a: PartView, b: PartView, volume: float, depth: float, place: Array, mated: bool, method: OverlapMethod
 ) -> Interference:
     names = (a.part.name, b.part.name)
     return Interference(names, volume, depth, np.asarray(freeze(place)), mated, method)

@@ -25,7 +25,7 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Part
 from kinform.model.names import PartName
-from kinform.model.surfaces import KINDS, MeshSurfaces
+from kinform.model.surfaces import KINDS, MeshSurfaces, SurfaceKind
 from kinform.model.tolerances import Tolerances
 
 CLEARANCE_SHARE = 0.03
@@ -192,7 +192,7 @@ class NearSurfaces(SurfaceTable):
     facets: tuple[Ints, ...]
     """Near facets of each surface."""
 
-    def of_kind(self, *kinds: str) -> Ints:
+    def of_kind(self, *kinds: SurfaceKind) -> Ints:
         """Positions of the surfaces of these kinds."""
         if self.present.isdisjoint(kinds):
             return _NONE
@@ -262,7 +262,7 @@ class SurfacePair:
         return int(self.a.ids[self.row]), int(self.b.ids[self.column])
 
     @property
-    def kinds(self) -> tuple[str, str]:
+    def kinds(self) -> tuple[SurfaceKind, SurfaceKind]:
         """Of KINDS."""
         return KINDS[self.a.kinds[self.row]], KINDS[self.b.kinds[self.column]]
 
@@ -380,7 +380,7 @@ class PairView:
         """Those that were asked for, by margin."""
         return {}
 
-    def of_kinds(self, overlap: Flags, *kinds: str) -> tuple[Ints, Ints, Flags]:
+    def of_kinds(self, overlap: Flags, *kinds: SurfaceKind) -> tuple[Ints, Ints, Flags]:
         """Positions of the near surfaces of these kinds of a (s,) and of b (t,), and the flags `overlap` of these (s,
         t)."""
         rows, columns = (side.of_kind(*kinds) for side in self.near)

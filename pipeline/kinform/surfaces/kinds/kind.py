@@ -13,6 +13,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
+from kinform.model.surfaces import SurfaceKind
 from kinform.surfaces.groups import columns_of, in_order, normal_equations, solve_normal, sums_of
 from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.polygons.noise import Scales
@@ -74,7 +75,7 @@ class Moving:
 class Kind(Protocol):
     """One kind of curved surface."""
 
-    name: str
+    name: SurfaceKind
     least: int
     """Polygons that a region of this kind has at least."""
     bends: tuple[float, float]
