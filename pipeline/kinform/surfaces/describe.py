@@ -26,6 +26,9 @@ from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.candidates import Candidates
 
+SINGULAR = 1e-14
+"""Ratio of eigenvalues below which a direction of the parameters is undetermined."""
+
 ROUNDED_SCATTER = 0.3
 """Least scatter of the vertices of a curved surface, in roundings: rounding to a step of one scatters by 1/√12."""
 ROUNDED_SCATTER_OF_PLANES = 0.6
@@ -202,7 +205,7 @@ def _uncertainties(
     matrix, _ = normal_equations(sums_of(region, count), columns.T, np.zeros(len(columns)))
     size = np.sqrt(np.maximum(np.einsum("rii->ri", matrix), TINY))
     outer = size[:, :, None] * size[:, None, :]
-    inverse = np.linalg.pinv(np.ascontiguousarray(matrix) / outer, hermitian=True, rcond=ARITHMETIC) / outer
+    inverse = np.linalg.pinv(np.ascontiguousarray(matrix) / outer, hermitian=True, rcond=SINGULAR) / outer
     vague = samples <= free
     offset = _largest(inverse[:, :2, :2] if has_axis else inverse[:, :3, :3])
     linear = np.where(vague, 1.0, COVERAGE * scatter * offset)

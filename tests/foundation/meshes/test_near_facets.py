@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kinform.foundation.meshes.boxes import BOXES_MATRIX, FlatBoxes, boxes_within
+from kinform.foundation.meshes.boxes import BOXES_AT_ONCE, FlatBoxes, boxes_within
 from kinform.foundation.meshes.near_facets import near_boxes
 
 
@@ -32,7 +32,7 @@ def test_none_that_is_near_is_missed(seed, margin, size):
 def test_boxes_in_blocks_are_those_of_all_with_all(seed, margin, size, many):
     rng = np.random.default_rng(seed)
     counts = (700, 500) if many else (90, 70)
-    assert (counts[0] * counts[1] > BOXES_MATRIX) == many
+    assert (counts[0] * counts[1] > BOXES_AT_ONCE) == many
     # on a grid, so that some are apart by just the margin
     (low_a, high_a), (low_b, high_b) = (
         (np.round(low, 2), np.round(high, 2)) for low, high in (boxes(rng, count, 1.0, size) for count in counts)

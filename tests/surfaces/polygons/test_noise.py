@@ -137,7 +137,7 @@ def test_a_ring_and_a_point_are_a_cone(segments):
 
 
 def test_a_scanned_shape_does_not_fall_into_planes():
-    ball = of_manifold(m3.Manifold.sphere(0.02, 300))
+    ball = of_manifold(m3.Manifold.sphere(0.02, 480))
     x, y, z = ball.vertices.T
     swelling = 1 + 0.5 / 20 * np.sin(700 * x) * np.cos(500 * y) + 0.2 / 20 * np.cos(300 * z)
     shape = replace(ball, vertices=ball.vertices * swelling[:, None])

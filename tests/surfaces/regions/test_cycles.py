@@ -7,11 +7,10 @@ import pytest
 from support.meshes import of_manifold
 from support.solids import block, centred_rod
 
-from kinform.foundation.rounding import SOLVED
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces.kinds.batch import Batch
 from kinform.surfaces.recovery import _Start
-from kinform.surfaces.regions.cycles import Cycles
+from kinform.surfaces.regions.cycles import STEADY, Cycles
 
 REGIONS = 6
 
@@ -66,7 +65,7 @@ def test_nothing_is_known_where_a_fit_moves_or_a_region_still_grows(patchwork):
     _, numbers, params = after(patchwork, regions, 8)
     assert filled(patchwork, regions, 8).ahead(numbers, params) is not None
     moved = params.copy()
-    moved[1, 4] += 2 * SOLVED
+    moved[1, 4] += 2 * STEADY
     assert filled(patchwork, regions, 8).ahead(numbers, moved) is None
     cycles = filled(patchwork, regions, 7)
     grown, _, fits = after(patchwork, regions, 7)

@@ -14,6 +14,9 @@ from kinform.foundation.rounding import ARITHMETIC, TINY
 from kinform.foundation.sorting import ascending
 from kinform.model.arrays import Array, Flags, Ints
 
+BOXES_AT_ONCE = 200_000
+"""Boxes times boxes up to which all are compared with all in `boxes_within`: blocks of fewer take longer."""
+
 CHUNK = 48
 """Facets of a chunk: a box is compared with all chunks, and with the facets of those that it meets. Chosen, not
 measured."""
@@ -101,7 +104,7 @@ def boxes_within(first: tuple[Array, Array], second: tuple[Array, Array], margin
     """(n, m) whether boxes come within `margin` of each other along every axis: lowest and highest corners (n, d) of
     the first kind, (m, d) of the second. Many are compared in blocks of neighbours with what their box comes near."""
     (low_a, high_a), (low_b, high_b) = first, second
-    if len(low_a) * len(low_b) <= BOXES_MATRIX:
+    if len(low_a) * len(low_b) <= BOXES_AT_ONCE:
         return _within(low_a, high_a, low_b, high_b, margin)
     out = np.zeros((len(low_a), len(low_b)), bool)
     order = together(low_a, high_a)

@@ -14,9 +14,13 @@ import numpy as np
 from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import meeting_box, triangle_boxes
 from kinform.foundation.meshes.near_points import Nearest
-from kinform.foundation.rounding import ARITHMETIC, SOLVED
+from kinform.foundation.rounding import SOLVED
 from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
+
+CLOSEST_ROUNDING = 1e-15
+"""Rounding of distances, as a share of the largest coordinate: facets within it are as near. Four spacings of doubles:
+more would name another of two near facets."""
 
 # meshes/closest
 CLOSEST_SOME = 60_000
@@ -62,7 +66,7 @@ def _nearest(points: Array, triangles: Triangles) -> tuple[Array, Ints] | None:
     corners, (low, high) = triangles.corners, triangles.boxes
     some = corners[:: len(points) * len(corners) // CLOSEST_SOME + 1, 0]
     reach = (1.0 + SOLVED) * Nearest(some).away(points)[:, None]
-    rounding = ARITHMETIC * triangles.largest
+    rounding = CLOSEST_ROUNDING * triangles.largest
     least, most = points - reach, points + reach
     beside = meeting_box(low, high, least.min(axis=0), most.max(axis=0)).nonzero()[0]
     corners = corners.take(beside, axis=0)

@@ -18,12 +18,16 @@ from kinform.foundation.constants import SCATTERED
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import SharedEdges
 from kinform.foundation.meshes.surface_table import PLANE, SurfaceTable
-from kinform.foundation.rounding import SOLVED, TINY
+from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import distinct, heads, median, numbered
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
+
+RING_FLAT = 1e-8
+"""Corners whose spread across their length is no more than the root of this share of it are on a line at first sight:
+beyond, sums about their middle keep eight digits."""
 
 RING_FEW = 6
 """Up to so many flats a ring is round only where ..."""
@@ -307,7 +311,7 @@ def _circles(mesh: Mesh, rows: list[_Row]) -> _Circles:
     sums = np.add.reduceat(np.stack([x * x, x * y, y * y, x * square, y * square, square], axis=1), starts)
     xx, xy, yy, xs, ys, s = sums.T
     determinant = xx * yy - xy * xy
-    determinant[determinant <= SOLVED * (xx + yy) ** 2] = np.nan
+    determinant[determinant <= RING_FLAT * (xx + yy) ** 2] = np.nan
     one, two = 0.5 * (yy * xs - xy * ys) / determinant, 0.5 * (xx * ys - xy * xs) / determinant
     radius = np.sqrt(s / number + one * one + two * two)
     apart = np.hypot(x - one.take(row), y - two.take(row))

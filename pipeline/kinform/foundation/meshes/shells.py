@@ -12,8 +12,10 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import EdgeTable, unsorted_edge_table
-from kinform.foundation.rounding import SINGLE
 from kinform.model.arrays import Array, Flags, Ints
+
+SAME_ANGLE = 1e-7
+"""rad: facets about an edge within this are coincident."""
 
 
 def shells_of(vertices: Array, faces: Ints, edges: EdgeTable | None = None) -> Ints:
@@ -61,7 +63,7 @@ def _across_material(vertices: Array, faces: Ints, edges: EdgeTable, which: Flag
     backward = ~edges.forward[half]
     order = np.lexsort((angle, owner))
     angle, owner_sorted = angle[order], owner[order]
-    step = np.concatenate([[False], (owner_sorted[1:] != owner_sorted[:-1]) | (np.diff(angle) > SINGLE)])
+    step = np.concatenate([[False], (owner_sorted[1:] != owner_sorted[:-1]) | (np.diff(angle) > SAME_ANGLE)])
     # at one angle the backward facet comes first: it closes what came before, not what begins here
     order = order[np.lexsort((~backward[order], np.cumsum(step)))]
     return _next_backward(half[order], owner[order], backward[order])
@@ -95,7 +97,7 @@ def _angles(vertices: Array, faces: Ints, half: Ints, owner: Ints, forward: Flag
     v = cross(along, u)
     # a forward facet's outward normal is along × out, so its material lies at decreasing angles
     angle: Array = np.mod(-np.arctan2(dot(out, v), dot(out, u)), 2 * np.pi)
-    angle[angle > 2 * np.pi - SINGLE] = 0.0
+    angle[angle > 2 * np.pi - SAME_ANGLE] = 0.0
     return angle
 
 

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+CONVERGED = 1e-13
+"""Change of the parameters (rad, spans) at which a fit stands still: some hundred roundings of doubles. A larger one
+changes surfaces in their last digits, and with them which samples of contact are kept."""
+
 LARGEST_DOUBLE = 5.0
 """Radius, in spans, beyond which a sphere or torus is none that a joint could use: half of that of cylinders, as they
 bend both ways. Chosen, not measured."""

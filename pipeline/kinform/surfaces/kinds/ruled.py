@@ -29,7 +29,7 @@ from kinform.surfaces.groups import (
 )
 from kinform.surfaces.kinds.axial import OF_AXIS, Cylindrical, angular_widths, azimuths, cylindrical, frames
 from kinform.surfaces.kinds.batch import Batch, Params
-from kinform.surfaces.kinds.constants import RING_APART, TILT_LIMIT
+from kinform.surfaces.kinds.constants import CONVERGED, RING_APART, TILT_LIMIT
 from kinform.surfaces.kinds.kind import DAMPING, Kind, Moving, Probe, distinct_angles
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
@@ -139,7 +139,7 @@ class Ruled(Kind, Protocol):
             matrix, right = normal_equations(of_group, columns.T, residual)
             change = self.change(matrix, right)
             params = kept.of(moving.taken(self.step(params, change, frame), before))
-            region, vertex = moving.after(change, ARITHMETIC, region, vertex)
+            region, vertex = moving.after(change, CONVERGED, region, vertex)
         return self._looked_at_again(batch, kept, params, change, region, vertex) if steps else params
 
     def _looked_at_again(

@@ -14,7 +14,7 @@ from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.groups import columns_of, group_range, quantile, spheres_through
 from kinform.surfaces.kinds.axial import azimuths, cylindrical, frames
 from kinform.surfaces.kinds.batch import Batch, Params
-from kinform.surfaces.kinds.constants import LARGEST_DOUBLE, RING_APART, SAGITTA, TILT_LIMIT
+from kinform.surfaces.kinds.constants import CONVERGED, LARGEST_DOUBLE, RING_APART, SAGITTA, TILT_LIMIT
 from kinform.surfaces.kinds.kind import DoublyCurved, Probe, distinct_angles
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.slippage import slippage
@@ -35,7 +35,7 @@ class Torus(DoublyCurved):
     handicap = 1.5
     shared = 2
     most_steps = 6
-    still = ARITHMETIC
+    still = CONVERGED
 
     def propose(self, batch: Batch) -> tuple[Params, Flags]:
         """Circle through the profile of the vertices that polygons share, about the axis of the normals."""

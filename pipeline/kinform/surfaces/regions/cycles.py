@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.rounding import SOLVED
 from kinform.foundation.sorting import among, sorted_keys
 from kinform.model.arrays import Flags, Ints
 from kinform.surfaces.groups import parted
 from kinform.surfaces.kinds.batch import Batch, Params
+
+STEADY = 1e-8
+"""Largest change of the parameters (rad, spans) of a region over a period: a two hundredth of the least noise."""
 
 PERIODS = (2, 3)
 """Rounds after which regions are what they were, where they gain and lose the same polygons without end."""
@@ -48,7 +50,7 @@ class Cycles:
             then, fits = self._fits[-period]
             moved = np.abs(params - fits[then.searchsorted(number)]).max(axis=1)
             returning = open_ & self._returning(period)
-            returning[number[moved > SOLVED]] = False
+            returning[number[moved > STEADY]] = False
             keys = self._keys[-period]
             known.append(keys.take(returning.take(keys // work.count).nonzero()[0]))
             if len(known[-1]) == len(keys) and returning.sum() == len(number):
