@@ -94,7 +94,7 @@ def test_millimetres_that_are_read_as_metres_are_said_too(begun):
     ran = kinform(folder, "init", *(f"{name}.stl" for name in servo_and_bracket()), "--units", "m", "-o", "large.toml")
     assert ran.returncode == 0
     assert "warning: " in ran.stderr and '"mm"' in ran.stderr
-    assert "[[group]]" not in (folder / "large.toml").read_text()
+    assert "## " not in (folder / "large.toml").read_text()
 
 
 def test_the_manifest_alone_goes_to_stdout(begun):
