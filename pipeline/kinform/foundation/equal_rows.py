@@ -22,7 +22,9 @@ only where rows are chosen against the hash."""
 _Words = Sequence[NDArray[np.unsignedinteger]]
 
 _ODD = (0x9E3779B1, 0x85EBCA77, 0xC2B2AE3D)
+"""The first three primes of xxHash32."""
 _MIX = 0x2C1B3C6D
+"""A multiplier of the 32-bit hashes of C. Wellons (hash-prospector). Any odd number with mixed bits would do."""
 
 
 def first_equal_rows(words: _Words) -> Ints:
