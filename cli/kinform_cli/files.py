@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from kinform.foundation.regular import no_folder, not_a_file
+from kinform.foundation.regular_files import no_folder, not_a_file
 from kinform_cli import console
 from kinform_cli.errors import refuse
 from kinform_cli.progress import Working
@@ -206,7 +206,7 @@ def sources_of(named: Sequence[Path]) -> list[Path]:
     meshes. InputError where there is none of them, or several of the first kind that there is."""
     if len(named) != 1 or not named[0].is_dir():
         return list(named)
-    from kinform.foundation.meant import first_names
+    from kinform.foundation.name_hints import first_names
 
     inside = sorted(path for path in named[0].iterdir() if path.is_file())
     for kind, ends in (("manifest", (".toml",)), ("robot description", DESCRIPTIONS), ("CAD or scene file", SCENES)):

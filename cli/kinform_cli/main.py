@@ -49,9 +49,9 @@ def entry() -> NoReturn:
 
         supervision.divide()
         interrupts.listen()
-        from kinform.foundation import at_work
+        from kinform.foundation import current_work
 
-        at_work.board = supervision.board
+        current_work.board = supervision.board
         if os.environ.get("KINFORM_DEBUG"):
             faulthandler.enable()
         # nearly all that is made stays until the end: looking for garbage often finds none

@@ -184,7 +184,7 @@ def printed(
     for text in stated or ():
         name, equals, file = text.partition("=")
         if name not in set(FindingsFormat):
-            from kinform.foundation.meant import did_you_mean
+            from kinform.foundation.name_hints import did_you_mean
 
             remedy = did_you_mean(name, FindingsFormat, "the formats")
             raise typer.BadParameter(f"{name!r} is no format: {remedy}", param_hint="--format")

@@ -20,7 +20,7 @@ GRACE = 1.5
 
 
 board: mmap.mmap | None = None
-"""Where the process that does the work notes what native code is at work on (`kinform.foundation.at_work`)."""
+"""Where the process that does the work notes what native code is at work on (`kinform.foundation.current_work`)."""
 
 
 def divide() -> None:
@@ -42,9 +42,9 @@ def divide() -> None:
     if worker:
         _watch(worker, awaited)
     if os.getpid() != watching:
-        from kinform.foundation.orphans import end_with  # what the watching process does without
+        from kinform.foundation.parent_death import exit_with_parent  # what the watching process does without
 
-        end_with(watching)
+        exit_with_parent(watching)
     signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 from kinform.design import Design
 from kinform.errors import Problem, ResultsError, StageError
-from kinform.foundation.tabled import Tabled, rows_of
+from kinform.foundation.notebook_tables import Tabled, rows_of
 
 if TYPE_CHECKING:
     from kinform.behaviour import Behaviour

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import gc
 import subprocess
 import sys
+import weakref
 
 import numpy as np
 import pytest
 from manifold3d import Manifold
 
-from kinform.foundation.memory import give_back
+from kinform.foundation.memory import give_back, uncollected
 from kinform.foundation.meshes import fcl_adapter
 
 KEPT = """
@@ -78,3 +80,45 @@ def test_large_models_are_what_small_ones_are(monkeypatch):
     points, faces = np.asarray(mesh.vert_properties, float), np.asarray(mesh.tri_verts, np.int64)
     assert fcl_adapter.fcl_model(points, faces).num_tries_() == len(faces)
     assert asked
+
+
+class Held:
+    """Something that can be watched."""
+
+
+@pytest.fixture(params=[True, False], ids=["on", "off"])
+def before(request):
+    was = gc.isenabled()
+    (gc.enable if request.param else gc.disable)()
+    yield request.param
+    (gc.enable if was else gc.disable)()
+
+
+def test_the_search_is_off_within_and_as_before_afterwards(before):
+    with uncollected():
+        assert not gc.isenabled()
+        with uncollected():
+            assert not gc.isenabled()
+        assert not gc.isenabled()
+    assert gc.isenabled() == before
+
+
+def test_the_search_is_as_before_after_an_error_and_after_each_call(before):
+    @uncollected()
+    def failing(count):
+        assert not gc.isenabled()
+        raise ValueError(count)
+
+    for count in range(2):
+        with pytest.raises(ValueError) as caught:  # noqa: PT011
+            failing(count)
+        assert caught.value.args == (count,)
+        assert gc.isenabled() == before
+
+
+def test_what_is_in_no_cycle_goes_at_once():
+    with uncollected():
+        thing = Held()
+        watched = weakref.ref(thing)
+        del thing
+        assert watched() is None

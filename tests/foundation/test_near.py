@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from kinform.foundation.meshes.near import Near
+from kinform.foundation.meshes.near_points import Near
 
 
 @pytest.mark.parametrize(("count", "distance"), [(0, 0.1), (1, 0.1), (400, 0.05), (4000, 1e-3), (4000, 0.06)])

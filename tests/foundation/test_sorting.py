@@ -7,12 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from kinform.foundation.constants import MANY
 from kinform.foundation.sorting import (
     DIGIT,
     FEW_BITS,
-    MANY,
     among,
     ascending,
+    coarse,
     distinct,
     median,
     numbered,
@@ -61,3 +62,16 @@ def test_distinct_keys_how_often_each_occurs_and_which_is_which(numbers):
 def test_keys_are_found_among_ordered_ones(keys, ordered):
     found = among(np.array(keys, np.int64), np.array(sorted(ordered), np.int64))
     assert found.tolist() == [key in ordered for key in keys]
+
+
+def test_values_that_rounding_parts_are_equal_and_others_keep_their_order():
+    rng = np.random.default_rng(4)
+    values = np.concatenate([10.0 ** rng.uniform(-12, 3, 1000), [0.0, 1.0, 0.5, 2.0**-20]])
+    shaken = values * (1.0 + rng.uniform(-4e-16, 4e-16, len(values)))
+    # but for those that lie on a limit between two
+    assert np.count_nonzero(coarse(values) != coarse(shaken)) <= 1
+    apart = np.sort(values)
+    apart = apart[np.r_[True, np.diff(apart) > 1e-7 * apart[1:]]]
+    assert np.all(np.diff(coarse(apart)) > 0.0)
+    np.testing.assert_array_equal(coarse(np.array([0.0, 1.0, 0.5, 3.0])), [0.0, 1.0, 0.5, 3.0])
+    assert coarse(np.array([1.0 - 1e-16]))[0] == coarse(np.array([1.0 + 1e-15]))[0] == 1.0

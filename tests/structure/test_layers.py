@@ -203,7 +203,7 @@ def test_no_name_that_a_package_gives_on_first_use_is_that_of_a_module_in_it():
 
 
 def _first_used(node: ast.AST) -> bool:
-    return isinstance(node, ast.Call) and getattr(node.func, "id", "") == "first_used"
+    return isinstance(node, ast.Call) and getattr(node.func, "id", "") == "lazy_attributes"
 
 
 def test_no_name_of_a_module_is_given_twice():

@@ -191,7 +191,7 @@ def _printed(stated: list[str]) -> tuple[BatchFormat, list[tuple[BatchFormat, Pa
     for text in stated:
         name, equals, file = text.partition("=")
         if name not in set(BatchFormat):
-            from kinform.foundation.meant import did_you_mean
+            from kinform.foundation.name_hints import did_you_mean
 
             remedy = did_you_mean(name, BatchFormat, "the formats")
             raise typer.BadParameter(f"{name!r} is no format: {remedy}", param_hint="--format")

@@ -106,7 +106,7 @@ def _derived(design: Design, name: str, source: Path) -> str:
     """The name of the derived joint that the function, or kinform, calls so. An error where there is none."""
     if design.kinematics is None:
         return name
-    from kinform.foundation.meant import did_you_mean
+    from kinform.foundation.name_hints import did_you_mean
     from kinform.function import resolve_joint
 
     found = resolve_joint(design.assembly, design.kinematics, name)

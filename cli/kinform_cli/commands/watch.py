@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from kinform.foundation.regular import AS_A_FILE, not_a_file
+from kinform.foundation.regular_files import AS_A_FILE, not_a_file
 from kinform_cli import console, errors, files
 from kinform_cli.commands.report import show_page
 from kinform_cli.errors import refuse

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinform.foundation.lazily import first_used
+from kinform.foundation.lazy_imports import lazy_attributes
 
 if TYPE_CHECKING:
     from kinform.batch.crew import Crew
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = ["FORMATS", "Crew", "Found", "Record", "Row", "Settings", "changed_since", "discover", "render", "run"]
 
-__getattr__ = first_used(
+__getattr__ = lazy_attributes(
     __name__,
     {
         "Crew": "crew",

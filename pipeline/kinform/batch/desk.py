@@ -23,8 +23,8 @@ from typing import IO, Any
 
 from kinform.batch.task import DIED, INPUT, INTERNAL, MEMORY, TIME, Answer, Failure, Limits, Task, failed
 from kinform.errors import InputError, KinformError, Problem, ResultsError
-from kinform.foundation import at_work
-from kinform.foundation.orphans import end_with
+from kinform.foundation import current_work
+from kinform.foundation.parent_death import exit_with_parent
 from kinform.foundation.processes import cause_of
 from kinform.foundation.words import number
 
@@ -71,7 +71,7 @@ def _read(stream: IO[bytes], length: int) -> bytes:
 
 def main() -> None:
     """Do tasks until stdin ends."""
-    end_with(os.getppid())
+    exit_with_parent(os.getppid())
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     asked = os.fdopen(os.dup(0), "rb", buffering=0)
     answers = os.fdopen(os.dup(1), "wb")
@@ -115,7 +115,7 @@ def attend(task: Task, asker: int | None = None) -> Answer:
     if len(data) > 8 and len(data) == 8 + int.from_bytes(data[:8], "little"):
         answer: Answer = pickle.loads(data[8:])
         return replace(answer, seconds=seconds)
-    return Answer(task.key, failure=_dead(status, at_work.read(board)), seconds=seconds)
+    return Answer(task.key, failure=_dead(status, current_work.read(board)), seconds=seconds)
 
 
 def _work(task: Task, desk: int, reading: int, writing: int, board: mmap.mmap) -> None:
@@ -123,9 +123,9 @@ def _work(task: Task, desk: int, reading: int, writing: int, board: mmap.mmap) -
     code = 1
     try:
         os.setpgid(0, 0)
-        end_with(desk)
+        exit_with_parent(desk)
         os.close(reading)
-        at_work.board = board
+        current_work.board = board
         with os.fdopen(writing, "wb") as stream:
             send(stream, do(task))
         code = 0

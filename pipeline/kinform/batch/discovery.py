@@ -17,7 +17,7 @@ from typing import Any
 from kinform.errors import InputError, Problem
 from kinform.form.constants import MANIFEST_BYTES
 from kinform.form.sources import states_units
-from kinform.foundation.regular import not_a_file
+from kinform.foundation.regular_files import not_a_file
 from kinform.frozen import dataclass
 
 HEAD = 65536

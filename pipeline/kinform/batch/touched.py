@@ -25,7 +25,7 @@ from urllib.parse import unquote
 
 from kinform.batch.discovery import DESCRIPTIONS, Found
 from kinform.errors import InputError, Problem
-from kinform.foundation.regular import not_a_file
+from kinform.foundation.regular_files import not_a_file
 
 _FOLLOWED = (".toml", ".gltf", ".obj", ".dae", ".yaml", ".yml", ".csv", *DESCRIPTIONS)
 """Suffixes of files that name others, or may."""

@@ -17,7 +17,7 @@ from typing import Any
 
 from kinform.catalog.entry import CatalogJoint, CatalogRequirement, Entry, Triple
 from kinform.errors import InputError, Problem
-from kinform.foundation.regular import not_a_file
+from kinform.foundation.regular_files import not_a_file
 from kinform.frozen import dataclass
 from kinform.results import replace_file
 

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from kinform.foundation.algebra.displacements import inverse, twist_of
-from kinform.foundation.meshes.closest import closest_facets
+from kinform.foundation.meshes.closest_facets import closest_facets
 from kinform.foundation.rounding import SINGLE, SOLVED, TINY
 from kinform.foundation.words import angle, direction, length, listed
 from kinform.model.arrays import Array, Ints

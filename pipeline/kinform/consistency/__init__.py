@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinform.foundation.lazily import first_used
+from kinform.foundation.lazy_imports import lazy_attributes
 from kinform.model.findings import verdict
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ __all__ = [
 
 CODE_VERSION: int = 52
 
-__getattr__ = first_used(
+__getattr__ = lazy_attributes(
     __name__,
     {
         "Baseline": "baseline",

@@ -13,8 +13,9 @@ from kinform.contacts.overlap.solids import SolidStore
 from kinform.contacts.pair import PairContacts, mated_pairs, pair_contacts, touching
 from kinform.contacts.search.candidates import Pair, candidate_pairs
 from kinform.contacts.search.pair_view import PairView
-from kinform.foundation.at_work import at_work_on
-from kinform.foundation.meshes.index import LARGE_MESH, MeshStore
+from kinform.foundation.constants import LITTLE_FACETS
+from kinform.foundation.current_work import working_on
+from kinform.foundation.meshes.mesh_index import LARGE_MESH, MeshStore
 from kinform.foundation.processes import Crash, map_in_processes
 from kinform.foundation.progress import Progress
 from kinform.model.assembly import Assembly
@@ -26,13 +27,8 @@ TOGETHER_PAIRS = 64
 """Pairs whose decisions are taken together: numpy takes as long to begin as to go through hundreds of numbers, ..."""
 TOGETHER_FACETS = 50_000
 """... as long as no more facets come to those of the first pair: what is known of one takes about half a kilobyte."""
-SHARES = 4
-"""Shares of the pairs that each process gets at least, one after the other: some take much longer than others."""
 LITTLE_PAIRS = 64
-"""Pairs, of ..."""
-LITTLE_FACETS = 10_000
-"""... facets in all, that are looked at in one process: less than half a second of work, and another process costs 0.05
-to 0.1 s to start, with what it imports."""
+"""Pairs up to which one process looks at all, where their facets are few too. Chosen, not measured."""
 
 
 class _Work:
@@ -63,11 +59,11 @@ class _Work:
         out, begun = [PairContacts((), None, None)] * len(pairs), []
         for k, (pair, mates) in enumerate(zip(pairs, mated, strict=True)):
             if mates is not None:
-                with at_work_on(_name_of((pair,))):
+                with working_on(_name_of((pair,))):
                     begun.append((k, mates, touching(mates)))
         told = _crossing([(mates.pair, patches) for _, mates, patches in begun])
         for (k, mates, patches), crosses in zip(begun, told, strict=True):
-            with at_work_on(_name_of((pairs[k],))):
+            with working_on(_name_of((pairs[k],))):
                 out[k] = pair_contacts(mates, patches, crosses, self.solids)
         return out
 
@@ -164,7 +160,8 @@ def _computed(
 ) -> dict[Pair, PairContacts]:
     """The contacts of all pairs of the work: of many small ones at once; where a process ends over that, one by one, so
     that it is told which pair it was."""
-    share = len(work.order) if jobs <= 1 else len(work.order) // (SHARES * jobs)
+    # each process gets a few shares of the pairs: some take much longer than others
+    share = len(work.order) if jobs <= 1 else len(work.order) // (4 * jobs)
     for most in (max(1, min(TOGETHER_PAIRS, share)), 1):
         chunks, done = work.chunks(most), dict[Pair, PairContacts]()
         computed = map_in_processes(work.contacts, chunks, jobs, None, _name_of, little=little, meanwhile=meanwhile)

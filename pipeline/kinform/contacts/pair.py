@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.contacts.constants import MATING_REACH, TOUCH
+from kinform.contacts.constants import MATING_REACH, PARALLEL_SINE, TOUCH
 from kinform.contacts.higher.beside_patches import holding_touches
 from kinform.contacts.higher.edges import edge_contacts
-from kinform.contacts.higher.points_and_lines import ACROSS_SINE, higher_pairs, pins_in_slots, tubes_for_facets
+from kinform.contacts.higher.points_and_lines import higher_pairs, pins_in_slots, tubes_for_facets
 from kinform.contacts.higher.profiles import profile_contacts
 from kinform.contacts.higher.rims import rim_contacts, seats
 from kinform.contacts.higher.rollers import lines_beside_flanges
@@ -28,7 +28,8 @@ from kinform.contacts.overlap.solids import SolidStore
 from kinform.contacts.search.apart import far_apart
 from kinform.contacts.search.pair_view import PairView, pair_view
 from kinform.foundation.algebra.vectors import cross
-from kinform.foundation.meshes.index import MeshStore
+from kinform.foundation.meshes.mesh_index import MeshStore
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, freeze
 from kinform.model.assembly import Part
@@ -40,7 +41,7 @@ NARROW_SHARE = 5e-4
 """Share of the contact of a pair below which overlaps narrower than such lenses say nothing: corners cross by chance.
 Of 38 kinds of clean random assemblies one was in doubt without this (1e-4); the shoulder that it is for has 3e-2."""
 STRIP_AREA = 0.02
-"""Share of the area of a part below which a plane may be a facet of a curve."""
+"""Share of the area of a part below which a plane may be a facet of a curve. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -208,7 +209,7 @@ def _of_scattered(pair: PairView, patch: Patch, alone: bool) -> Patch:
     if alone and patch.kind == "plane" and _strip(pair, patch):
         return replace(patch, kind="freeform")
     if patch.kind == "plane" or (patch.one_sided and patch.kind in ("cylinder", "cone", "sphere")):
-        lean = max(scatter) / max(float(np.sqrt(patch.area)), 1e-300)
+        lean = max(scatter) / max(float(np.sqrt(patch.area)), TINY)
         (turn, shift), (tilt, offset) = patch.uncertainty, patch.mismatch
         return replace(patch, uncertainty=(max(turn, lean), shift), mismatch=(max(tilt, lean), offset))
     return patch
@@ -216,7 +217,7 @@ def _of_scattered(pair: PairView, patch: Patch, alone: bool) -> Patch:
 
 def _across(patch: Patch, along: Array) -> bool:
     """Whether it is of planes that leave motion across the direction `along` free."""
-    return patch.kind == "plane" and float(np.linalg.norm(cross(patch.axis, along))) < ACROSS_SINE
+    return patch.kind == "plane" and float(np.linalg.norm(cross(patch.axis, along))) < PARALLEL_SINE
 
 
 def _firm(pair: PairView, patch: Patch) -> bool:

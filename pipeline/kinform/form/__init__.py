@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinform.foundation.lazily import first_used
+from kinform.foundation.lazy_imports import lazy_attributes
 
 if TYPE_CHECKING:
     from kinform.form.from_python import from_meshes
@@ -27,7 +27,7 @@ __all__ = ["CODE_VERSION", "from_meshes", "init_manifest", "load", "load_meshes"
 CODE_VERSION: int = 29
 """Bumped when results change."""
 
-__getattr__ = first_used(
+__getattr__ = lazy_attributes(
     __name__,
     {
         "from_meshes": "from_python",

@@ -11,8 +11,8 @@ from pathlib import Path
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, scaled
 from kinform.form.problems import Problems
 from kinform.form.sources import AS_IT_IS, Reading, is_scene
-from kinform.foundation.meant import did_you_mean, first_names, in_quotes
-from kinform.foundation.regular import AS_A_FILE, listing, not_a_file
+from kinform.foundation.name_hints import did_you_mean, first_names, in_quotes
+from kinform.foundation.regular_files import AS_A_FILE, listing, not_a_file
 from kinform.foundation.units import metres_per
 from kinform.frozen import dataclass
 from kinform.model.assembly import Assembly, Mesh, Part

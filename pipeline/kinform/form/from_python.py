@@ -17,7 +17,7 @@ from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate, sc
 from kinform.form.problems import Problems
 from kinform.form.readers.poses import shift
 from kinform.form.scenes.scene import Node, Scene, ScenePart, parts_of
-from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.name_hints import did_you_mean, in_quotes
 from kinform.foundation.units import UNITS, metres_per
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Part, Source, Subassembly

@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from kinform.foundation.meant import did_you_mean
+from kinform.foundation.name_hints import did_you_mean
 
 _INSTEAD = {"density": "material", "material": "density", "rpy": "quaternion", "quaternion": "rpy"}
 """Keys that say the same in two ways."""

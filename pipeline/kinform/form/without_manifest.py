@@ -20,7 +20,7 @@ from kinform.form.meshes.raw import MeshError, RawMesh
 from kinform.form.problems import Problems
 from kinform.form.readers.poses import shift
 from kinform.form.sources import states_units
-from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.name_hints import did_you_mean, in_quotes
 from kinform.foundation.rounding import ARITHMETIC
 from kinform.foundation.units import METRES_PER_UNIT, UNITS, metres_per
 from kinform.foundation.words import length

@@ -1,10 +1,14 @@
-"""The ground floor: what all stages share, and nothing of any stage.
+"""What all stages share, and nothing of any stage.
 
 Sub-packages; each imports only those above it:
 
 - `algebra`: vectors, rotations, displacements, screws, splines
 - `graphs`: components, blocks and cycles, without physics
-- `meshes`: edges, shells, boxes, nearness, probes, FCL
+- `meshes`: edges, shells, boxes, nearest and facing facets, probes, FCL
+
+Beside them: `rounding` (four levels), `constants`, `sorting`, `equal_rows`, `concatenation` for arrays; `processes`,
+`current_work`, `parent_death`, `memory`, `lockstep` for how work is run; `texts`, `regular_files`, `name_hints`,
+`words`, `units` for files and messages.
 """
 
 __all__ = ["CODE_VERSION"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 _DARK = 0.0031308
-"""Linear values up to which sRGB is a line (IEC 61966-2-1)."""
+"""Linear value up to which sRGB is a straight line (IEC 61966-2-1)."""
 
 
 def hexed(rgb: Sequence[float]) -> str:

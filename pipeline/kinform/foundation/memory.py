@@ -12,7 +12,8 @@ from functools import cache
 import numpy as np
 
 LEARNT = (32 << 20) - (64 << 10)
-"""Bytes of the largest array from which glibc learns, with room for what it adds to it."""
+"""Bytes of the largest array whose release makes glibc raise its mmap threshold: DEFAULT_MMAP_THRESHOLD_MAX, 32 MiB,
+less room for its header."""
 
 
 @contextmanager

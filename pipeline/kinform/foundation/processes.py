@@ -18,8 +18,8 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any, TypeVar
 
 from kinform.errors import KinformError
-from kinform.foundation import at_work
-from kinform.foundation.at_work import at_work_on
+from kinform.foundation import current_work
+from kinform.foundation.current_work import working_on
 from kinform.foundation.progress import Progress
 
 Item = TypeVar("Item")
@@ -88,7 +88,7 @@ def _results(
 ) -> Iterator[Result]:
     if jobs <= 1 or _threaded:
         for item in items:
-            with at_work_on(name(item)):
+            with working_on(name(item)):
                 result = function(item)
             yield result
         return
@@ -151,7 +151,7 @@ def _begin(function: Callable[[Any], Any]) -> None:
     """Remember what is to be done, and leave Ctrl-C to the process that waits for it."""
     global _function
     _function = function
-    at_work.board = None
+    current_work.board = None
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
@@ -239,7 +239,7 @@ def _answer(function: Callable[[], Any], reading: int, writing: int) -> None:
     code = 1
     try:
         os.close(reading)
-        at_work.board = None  # what ends this process is told by who asked for it
+        current_work.board = None  # what ends this process is told by who asked for it
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         answer = _answered(function)
         with os.fdopen(writing, "wb") as stream:

@@ -8,19 +8,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.foundation.constants import MANY
 from kinform.model.arrays import Array, Flags, Ints
 
-BITS = 63
-"""Of a whole number without its sign."""
-
 DIGIT = 16
-"""Bits of numbers that numpy sorts by counting."""
+"""Bits of numbers that numpy sorts by counting (radix sort of 16-bit integers)."""
 
 FEW_BITS = 31
-"""Of numbers that numpy sorts in half of the time."""
-
-MANY = 1000
-"""Keys from which on it is worth a look whether they are such numbers."""
+"""Bits of numbers that fit into 32-bit integers, which numpy sorts in half of the time."""
 
 
 def ascending(keys: Ints, below: int) -> Ints:
@@ -28,7 +23,8 @@ def ascending(keys: Ints, below: int) -> Ints:
     bits = len(keys).bit_length()
     if below <= 1 << DIGIT:
         return np.argsort(keys.astype(np.uint16), kind="stable")
-    if below.bit_length() + bits > BITS:
+    # an int64 without its sign has 63 bits
+    if below.bit_length() + bits > 63:
         return np.argsort(keys, kind="stable")
     placed = keys.astype(np.int64) << bits
     placed |= np.arange(len(keys))

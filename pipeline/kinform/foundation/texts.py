@@ -7,12 +7,12 @@ import re
 from pathlib import Path
 from typing import Any
 
-from kinform.foundation.regular import not_a_file
+from kinform.foundation.regular_files import not_a_file
 
 JSON_DEPTH = 32
-"""Brackets in each other in a JSON file: those that kinform writes go five deep."""
+"""Deepest nesting of brackets in a JSON file: those that kinform writes have five, and Python's parser recurses."""
 JSON_DIGITS = 18
-"""Digits of a whole number in a JSON file: more is no count."""
+"""Most digits of a whole number in a JSON file: those of a 64-bit integer."""
 JSON_LARGEST = 1e60
 """The largest magnitude of a number in a JSON file: moments of inertia of mountains in g·mm² are smaller, and cubes of
 it are still finite."""

@@ -8,11 +8,6 @@ from collections.abc import Callable, Iterable, Sequence
 
 from kinform.foundation.units import METRES_PER_UNIT
 
-# not in `constants`, which costs the import of numpy
-
-LEAST_JOINT = 9
-"""Characters of the name of a joint below which its bodies are not shortened each by itself: both keep three."""
-
 GREAT_MOMENT, FINE_MOMENT = 1.0, 1e-3
 """kg·m²: moments of inertia are shown in kg·m² where one is greater than the first, in kg·mm² where one is greater than
 the second, else in g·mm²; so they have no exponents. A choice."""
@@ -155,7 +150,8 @@ def shortened(name: str, room: int) -> str:
 def shortened_ends(name: str, room: int) -> str:
     """The name shortened in its middle; that of a joint between two bodies in both of theirs."""
     first, between, second = name.partition("~")
-    if not between or len(name) <= room or room < LEAST_JOINT:
+    # both bodies keep three characters at least
+    if not between or len(name) <= room or room < 9:
         return shortened(name, room)
     start = shortened(first, room - 1 - min((room - 1) // 2, len(second)))
     return f"{start}~{shortened(second, room - 1 - len(start))}"

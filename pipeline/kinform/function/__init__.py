@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinform.foundation.lazily import first_used
+from kinform.foundation.lazy_imports import lazy_attributes
 
 if TYPE_CHECKING:
     from kinform.function.acted_freedoms import FREEDOMS, ActedFreedom, acted_freedom
@@ -30,7 +30,7 @@ __all__ = [
 
 CODE_VERSION: int = 6
 
-__getattr__ = first_used(
+__getattr__ = lazy_attributes(
     __name__,
     {
         "FREEDOMS": "acted_freedoms",

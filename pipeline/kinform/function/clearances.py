@@ -15,9 +15,9 @@ from collections.abc import Mapping, Sequence
 import fcl
 import numpy as np
 
-from kinform.foundation.at_work import at_work_on
+from kinform.foundation.current_work import working_on
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_model, fcl_pose
-from kinform.foundation.meshes.index import MeshIndex
+from kinform.foundation.meshes.mesh_index import MeshIndex
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.model.assembly import Assembly, Mesh, Part
@@ -86,7 +86,7 @@ class Apart:
                 break
             if low > enough:
                 return Nearest(low, names, best.place)
-            with at_work_on(*names):
+            with working_on(*names):
                 distance, facets = _distance(a, pair.first.X_WP, b, X_second)
             if distance < best.distance:
                 place = _between(_corners_at(a, facets[0], pair.first.X_WP), _corners_at(b, facets[1], X_second))
@@ -133,7 +133,7 @@ def _pair(
     if names not in contacts.tolerance or overlapping:
         tests = [(keep_a, keep_b)]
     else:
-        with at_work_on(*names):
+        with working_on(*names):
             near_a, near_b = _near(a, keep_a, b, keep_b, contacts.tolerance[names])
         tests = [(keep_a & ~near_a, keep_b)]
         if near_a.any():

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinform.foundation.lazily import first_used
+from kinform.foundation.lazy_imports import lazy_attributes
 
 if TYPE_CHECKING:
     from kinform.kinematics.ball_and_stick import functional
@@ -59,7 +59,7 @@ __all__ = [
 CODE_VERSION = 54
 """Bumped when the results of this stage change for the same input."""
 
-__getattr__ = first_used(
+__getattr__ = lazy_attributes(
     __name__,
     {
         "derive": "derivation",

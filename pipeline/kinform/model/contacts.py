@@ -2,12 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.names import PartName
 from kinform.model.quantities import Direction, Lead, Metres, PartPair, Place, Radians, SquareMetres, columns
+from kinform.model.surfaces import SurfaceKind
+
+PatchKind = Literal[SurfaceKind, "other", "point", "line"]
+"""The kind of the analytic surfaces that gave the normals. torus, revolution, extrusion: of facets, so that the common
+rotation or translation stays free; helicoid: of the profile, so that the common screw does. other: planes that touch
+askew; freeform: normals of facets; point and line: higher pairs."""
+Fit = Literal["clearance", "touch", "transition", "interference"]
+"""Beyond chordal deviation and uncertainty."""
+OverlapMethod = Literal["manifold", "facets"]
+"""manifold: by the solid that both share. facets: by points on facets, where a mesh is open."""
+SuggestionKind = Literal["holes", "pressed", "pocket", "spigot", "rim", "bolt circle"]
+"""holes, pressed or pocket: one body. spigot: holes line up round a journal, which a flange has, and a joint in one of
+its poses. rim or bolt circle: an axis of a contact of planes alone."""
+Confidence = Literal["fair", "low"]
+"""low: a nominal overlap may be a journal drawn too large, and rims lie beside true axes too."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,10 +35,7 @@ class Patch:
     parts: PartPair
     surfaces: Annotated[tuple[int, int], columns("surface_a", "surface_b")]
     """Index of the surface in each part's MeshSurfaces."""
-    kind: str
-    """plane, cylinder, cone, sphere, …: of the analytic surface(s) that gave the normals. torus, revolution, extrusion:
-    of facets, so that the common turn or slide stays free; helicoid: of the profile, so that the common screw does.
-    Else: other (planes that touch askew), freeform (normals of facets), point and line (higher pairs)."""
+    kind: PatchKind
     one_sided: bool
     """True: analytic on one side, facets of no known surface on the other."""
     points: Array
@@ -51,8 +63,7 @@ class Patch:
     """Of the direction (rad) and of the position (m) of the common geometry, from both fits."""
     chord: Metres
     """m: sum of the chord errors of both surfaces."""
-    fit: str
-    """clearance, touch, transition or interference, beyond chord errors and uncertainty."""
+    fit: Fit
     pitch: Lead = 0.0
     """m a turn that two helicoids have in common, right-handed positive; 0 for other kinds."""
     tolerance: Metres = 0.0
@@ -92,8 +103,7 @@ class Interference:
     """(3,) m: centroid of the overlap."""
     mated: bool
     """True: all of it lies at mating patches within the contact tolerance, and can be pressed (a press fit)."""
-    method: str
-    """"manifold" or "facets"."""
+    method: OverlapMethod
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,9 +111,7 @@ class Suggestion:
     """What the geometry hints at and does not prove: that two parts are one body, or turn about an axis."""
 
     parts: PartPair
-    kind: str
-    """holes, pressed or pocket: one body. spigot: holes line up round a journal, which a flange has, and a joint in one
-    of its poses. rim or bolt circle: an axis of a contact of planes alone."""
+    kind: SuggestionKind
     evidence: str
     axis: Direction
     """(3,) of the holes, of the fit, out of the pocket, or of the joint."""
@@ -116,8 +124,8 @@ class Suggestion:
         return self.kind in ("holes", "pressed", "pocket")
 
     @property
-    def confidence(self) -> str:
-        """fair or low: a nominal overlap may be a journal drawn too large, and rims lie beside true axes too."""
+    def confidence(self) -> Confidence:
+        """How far the kind of evidence can be trusted."""
         return "fair" if self.kind in ("holes", "pocket") else "low"
 
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal, get_args
 
 from kinform.frozen import dataclass
 from kinform.model.arrays import Ints
 from kinform.model.quantities import Direction, Metres, Place, Radians, SquareMetres, columns
 
-KINDS = (
-    "plane", "cylinder", "cone", "sphere", "torus", "helicoid", "revolution", "extrusion", "freeform",
-)  # fmt: skip
+SurfaceKind = Literal["plane", "cylinder", "cone", "sphere", "torus", "helicoid", "revolution", "extrusion", "freeform"]
+KINDS: tuple[SurfaceKind, ...] = get_args(SurfaceKind)
+"""All kinds; tables have the index into these."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +24,7 @@ class Surface:
     on it, `radius` the mean distance from it. extrusion: `axis` its direction. freeform: all zero.
     """
 
-    kind: str
+    kind: SurfaceKind
     axis: Direction
     """(3,) unit, or zero where the kind has none."""
     point: Place

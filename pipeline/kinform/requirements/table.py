@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pydantic import Field
 
 from kinform.form.tables import Name, Table
-from kinform.foundation.meant import in_quotes
+from kinform.foundation.name_hints import in_quotes
 from kinform.requirements.kind import Fault
 
 

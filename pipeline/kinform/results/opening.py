@@ -12,7 +12,7 @@ from pathlib import Path
 import h5py
 
 from kinform.errors import ResultsError
-from kinform.foundation.regular import not_a_file
+from kinform.foundation.regular_files import not_a_file
 from kinform.results.held import HeldGroup, hold
 from kinform.results.replacement import refuse
 from kinform.results.seal import BLOCK, Seal, is_sealed, read_seal

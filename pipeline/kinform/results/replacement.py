@@ -18,7 +18,7 @@ except ImportError:  # Windows: files that are left behind stay
     fcntl = None  # type: ignore[assignment]
 
 from kinform.errors import Problem, ResultsError
-from kinform.foundation.regular import no_folder
+from kinform.foundation.regular_files import no_folder
 
 _PREFIX, _SUFFIX = ".kinform-", ".tmp"
 

@@ -12,7 +12,7 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
-from kinform.foundation.regular import listing, not_a_file
+from kinform.foundation.regular_files import listing, not_a_file
 from kinform.reuse import fingerprints
 from kinform.reuse.dependence import STAGES, Stage
 from kinform.reuse.digest import digest

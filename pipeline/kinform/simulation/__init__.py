@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinform.foundation.lazily import first_used
+from kinform.foundation.lazy_imports import lazy_attributes
 from kinform.simulation.request import simulate
 from kinform.simulation.settings import SolverSettings
 from kinform.simulation.subject import port_model
@@ -32,7 +32,7 @@ __all__ = [
 
 CODE_VERSION: int = 36
 
-__getattr__ = first_used(
+__getattr__ = lazy_attributes(
     __name__,
     {
         "Course": "system_simulation", "Probe": "outcome.sensing", "simulate_system": "system_simulation",

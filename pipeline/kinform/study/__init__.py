@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinform.foundation.lazily import first_used
+from kinform.foundation.lazy_imports import lazy_attributes
 
 if TYPE_CHECKING:
     from kinform.study.plan import Plan, read_plan
@@ -17,4 +17,4 @@ if TYPE_CHECKING:
 
 __all__ = ["Outcome", "Plan", "read_plan", "run"]
 
-__getattr__ = first_used(__name__, {"Plan": "plan", "read_plan": "plan", "Outcome": "session", "run": "session"})
+__getattr__ = lazy_attributes(__name__, {"Plan": "plan", "read_plan": "plan", "Outcome": "session", "run": "session"})

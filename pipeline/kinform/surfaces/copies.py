@@ -14,19 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.foundation.algebra.vectors import canonical_sign
+from kinform.foundation.constants import COVERAGE, EPS32
 from kinform.foundation.records import altered
+from kinform.foundation.rounding import SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, freeze
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
-from kinform.surfaces.constants import COVERAGE, EPS32
 
 COPY_ROUNDINGS = 2
-"""Roundings of the largest coordinate by which a vertex of a copy may be off."""
-COPY_SIZE_ROUNDINGS = 4
-"""Roundings by which the size of a copy may be, with room for the rounding of sums."""
-MIRRORED = 1e-9
-"""Spread across a flat mesh, as a share of its length, below which it is its own mirror image."""
+"""Roundings of the largest coordinate by which a vertex of a copy may be off: one of the original, one of the copy."""
 
 
 TURNS = ("cylinder", "torus", "revolution", "extrusion", "helicoid")
@@ -75,7 +72,8 @@ def _alike(meshes: Mapping[str, Mesh], group: list[str]) -> list[list[str]]:
         points -= points.mean(axis=1, keepdims=True)
         sizes[digest] = (float(np.sqrt(np.einsum("ij,ij->", points, points) / points.shape[1])), rounding)
     ordered = sorted(group, key=lambda digest: (sizes[digest][0], digest))
-    allowed = COPY_SIZE_ROUNDINGS * max(rounding for _, rounding in sizes.values())
+    # twice the roundings of a vertex, for the rounding of sums
+    allowed = 4 * max(rounding for _, rounding in sizes.values())
     sets: list[list[str]] = [[ordered[0]]]
     for before, digest in itertools.pairwise(ordered):
         if sizes[digest][0] - sizes[before][0] > allowed:
@@ -169,7 +167,7 @@ def _rigid_fit(reference: _Cloud, copy: _Cloud) -> Copy | None:
     a, b = reference.about, copy.about
     u, spread, vt = np.linalg.svd(a.T @ b)
     sense = np.sign(np.linalg.det(u @ vt))
-    if sense < 0 and spread[2] > MIRRORED * spread[0]:
+    if sense < 0 and spread[2] > SOLVED * spread[0]:
         return None
     R_CO = (u * np.array([1.0, 1.0, sense])) @ vt
     R_CO = R_CO.T
@@ -180,7 +178,7 @@ def _rigid_fit(reference: _Cloud, copy: _Cloud) -> Copy | None:
     X_CO[:3, :3], X_CO[:3, 3] = R_CO, copy.middle - R_CO @ reference.middle
     scatter = COVERAGE * float(np.sqrt((off**2).sum() / len(off))) / np.sqrt(len(off))
     freeze(X_CO)
-    return Copy(reference.digest, X_CO, scatter / max(float(np.sqrt(spread[1] / len(a))), 1e-300), scatter)
+    return Copy(reference.digest, X_CO, scatter / max(float(np.sqrt(spread[1] / len(a))), TINY), scatter)
 
 
 def surfaces_of_copy(surfaces: MeshSurfaces, digest: str, copy: Copy) -> MeshSurfaces:

@@ -11,9 +11,11 @@ from typing import NamedTuple
 import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical_sign, dot
+from kinform.foundation.constants import COVERAGE
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, TINY
 from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Array, Ints
-from kinform.surfaces.constants import COVERAGE
+from kinform.model.surfaces import SurfaceKind
 from kinform.surfaces.groups import columns_of, group_range, group_sum, members, normal_equations, parted, sums_of
 from kinform.surfaces.kinds.axial import angular_widths, azimuths, cylindrical
 from kinform.surfaces.kinds.batch import Batch, Params
@@ -24,22 +26,19 @@ from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.candidates import Candidates
 
+SINGULAR = 1e-14
+"""Ratio of eigenvalues below which a direction of the parameters is undetermined."""
+
 ROUNDED_SCATTER = 0.3
 """Least scatter of the vertices of a curved surface, in roundings: rounding to a step of one scatters by 1/√12."""
 ROUNDED_SCATTER_OF_PLANES = 0.6
 """The same for planes, which are stated twice as carefully."""
-LEAST_SPREAD = 1e-12
-"""Extent of a plane across its longest direction, at least, for its uncertainty."""
-SINGULAR = 1e-14
-"""Ratio of eigenvalues below which a direction of the parameters is undetermined."""
-FULL_TURN = 1e-6
-"""Angle by which a sweep may miss a whole turn that is one."""
 
 
 class Description(NamedTuple):
     """One surface in unit coordinates; fields as those of `Surface`."""
 
-    kind: str
+    kind: SurfaceKind
     polygons: Ints
     axis: Array
     point: Array
@@ -75,12 +74,12 @@ def flat(work: Patchwork, number: Ints, scales: Scales) -> list[Description]:
     size = np.linalg.norm(outward, axis=1)
     heads = np.array([polygons[0] for polygons in planes])
     rounding, first = scales.rounding[work.mesh[heads]], work.normal[heads]
-    outward = np.where(size[:, None] > 0, outward / np.maximum(size, 1e-300)[:, None], first)
+    outward = np.where(size[:, None] > 0, outward / np.maximum(size, TINY)[:, None], first)
     normal, centre, variances = fit_planes(region, points, outward)
     distance = dot(points - columns_of(centre, region), columns_of(normal, region))
     squares, samples, deepest = _deviations(region, distance, count)
     scatter = np.maximum(np.sqrt(squares / np.maximum(samples - 3, 1)), ROUNDED_SCATTER_OF_PLANES * rounding)
-    spread = np.maximum(np.sqrt(variances[:, 1] * samples), LEAST_SPREAD)
+    spread = np.maximum(np.sqrt(variances[:, 1] * samples), ARITHMETIC)
     angular = np.minimum(COVERAGE * scatter / spread, np.pi / 2)
     linear = np.maximum(COVERAGE * scatter / np.sqrt(np.maximum(samples, 1)), rounding)
     numbers = (values.tolist() for values in (deepest, angular, linear, squares, samples))
@@ -109,7 +108,7 @@ def freeform(polygons: Ints, chord: float) -> Description:
 
 def standoffs(work: Patchwork, edges: Ints) -> Array:
     """(n,) how far the facets at these edges may stand off a smooth surface through their vertices."""
-    a, b, length = work.a[edges], work.b[edges], np.maximum(work.length[edges], 1e-300)
+    a, b, length = work.a[edges], work.b[edges], np.maximum(work.length[edges], TINY)
     area = np.minimum(work.area[a], work.area[b])
     # a short common edge says nothing of how far the two polygons reach from it
     width = np.minimum(area / length, 2 * np.sqrt(area))
@@ -204,7 +203,7 @@ def _uncertainties(
     freedom = np.maximum(samples - free, 1)
     scatter = np.maximum(np.sqrt(squares / freedom), ROUNDED_SCATTER * scale.rounding)
     matrix, _ = normal_equations(sums_of(region, count), columns.T, np.zeros(len(columns)))
-    size = np.sqrt(np.maximum(np.einsum("rii->ri", matrix), 1e-300))
+    size = np.sqrt(np.maximum(np.einsum("rii->ri", matrix), TINY))
     outer = size[:, :, None] * size[:, None, :]
     inverse = np.linalg.pinv(np.ascontiguousarray(matrix) / outer, hermitian=True, rcond=SINGULAR) / outer
     vague = samples <= free
@@ -254,4 +253,4 @@ def angles_covered(params: Params, batch: Batch, width: Array) -> Array:
     same = np.flatnonzero(region[1:] == region[:-1]) + 1
     reach[same] = np.maximum(reach[same], high[by_size[before[same - 1] % len(high)]])
     covered = np.bincount(region, np.maximum(np.minimum(high, turn) - np.maximum(low, reach), 0), count) + wrapped
-    return np.where(covered > turn - FULL_TURN, turn, covered)
+    return np.where(covered > turn - SINGLE, turn, covered)

@@ -11,14 +11,13 @@ from typing import TypeAlias
 
 import numpy as np
 
+from kinform.foundation.constants import MANY
+from kinform.foundation.rounding import ARITHMETIC, TINY
 from kinform.foundation.sorting import ascending, heads
 from kinform.model.arrays import Array, Ints
 
 Sums: TypeAlias = Callable[[Array], Array]
 """Gives the sums (…, count) by group of values (…, n)."""
-
-MANY = 600
-"""Numbers from which on two fast sorts take less time than one that keeps the order of equal ones."""
 
 
 class Ragged:
@@ -169,7 +168,7 @@ def group_mean(groups: Ints, values: Array, count: int, weight: Array | None = N
     if weight is None:
         size = np.maximum(np.bincount(groups, minlength=count), 1)
         return np.asarray(group_sum(groups, values, count) / size[:, None])
-    total = np.maximum(sums_of(groups, count)(weight), 1e-300)
+    total = np.maximum(sums_of(groups, count)(weight), TINY)
     return np.asarray(group_sum(groups, values * weight[:, None], count) / total[:, None])
 
 
@@ -232,11 +231,11 @@ def normal_equations(sums: Sums, columns: Array, residual: Array) -> tuple[Array
     return matrix.transpose(2, 0, 1), right
 
 
-def solve_normal(matrix: Array, right: Array, damping: float = 1e-12) -> Array:
+def solve_normal(matrix: Array, right: Array, damping: float = ARITHMETIC) -> Array:
     """Solutions (count, k) of scaled, slightly damped symmetric systems; never raises."""
     count, k = right.shape
     entries = matrix.transpose(1, 2, 0)
-    scale = 1.0 / np.sqrt(np.maximum(entries.diagonal().T, 1e-300))
+    scale = 1.0 / np.sqrt(np.maximum(entries.diagonal().T, TINY))
     scaled = np.multiply(entries, scale[:, None], order="C")
     scaled *= scale
     scaled.reshape(k * k, count)[:: k + 1] += damping

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from kinform.foundation.algebra.vectors import box
+from kinform.foundation.constants import EPS32, LITTLE_FACETS
 from kinform.foundation.memory import keep_heap, uncollected
 from kinform.foundation.records import made
 from kinform.foundation.sorting import ascending, coarse
@@ -19,7 +20,6 @@ from kinform.model.arrays import Array, Ints, freeze
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
 from kinform.model.tolerances import Tolerances
-from kinform.surfaces.constants import EPS32
 from kinform.surfaces.describe import Description, curved, flat, freeform, patch_chords
 from kinform.surfaces.groups import members
 from kinform.surfaces.kinds.batch import Batch
@@ -37,10 +37,8 @@ PACK = 200_000
 """Facets of meshes that are recovered at once, at most. A step of numpy takes as long to begin as for a few hundred
 rows: so100 (60,000 facets in 13 meshes) takes 1.0 s of processor in one pack and 2.0 s mesh by mesh; packs of 400,000
 gain 7 % over packs of 100,000, those of 200,000 5 %, for 140 and 60 MB more."""
-LITTLE = 10_000
-"""Facets in all that are recovered in one pack, however many processors there are: less than half a second of work."""
 THREAD_FACET = 2e-2
-"""Share of the area below which a plane may be a facet of a thread."""
+"""Share of the area of a mesh below which a plane may be a facet of a thread. Chosen, not measured."""
 
 
 def recover(mesh: Mesh, tolerances: Tolerances) -> MeshSurfaces:
@@ -72,7 +70,7 @@ def recover_all(meshes: Sequence[Mesh], tolerances: Tolerances) -> list[MeshSurf
 def packs(facets: Sequence[int], jobs: int = 1) -> list[list[int]]:
     """Positions of meshes of so many facets, the largest first, in packs that `recover_all` takes at once: none of more
     than `constants.PACK` facets in which there are several meshes, and as many as jobs where there is enough to do."""
-    several = jobs > 1 and sum(facets) > LITTLE
+    several = jobs > 1 and sum(facets) > LITTLE_FACETS
     most = min(PACK, sum(facets) // jobs) if several else PACK
     out: list[list[int]] = []
     held = most + 1

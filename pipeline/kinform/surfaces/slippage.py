@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross_columns, dot
+from kinform.foundation.rounding import ARITHMETIC, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.surfaces.groups import columns_of, group_mean, sums_of
@@ -39,10 +40,10 @@ def slippage(work: Patchwork, patch: Ints, polygon: Ints, count: int) -> Slippag
     """The motions of `count` patches, given as pairs (patch, polygon)."""
     normal, centre, weight = work.normals(polygon), work.middles(polygon), work.area.take(polygon)
     sums = sums_of(patch, count)
-    total = np.maximum(sums(weight), 1e-300)
+    total = np.maximum(sums(weight), TINY)
     middle = group_mean(patch, centre, count, weight)
     offset = centre - columns_of(middle, patch)
-    size = np.maximum(np.sqrt(sums(weight * dot(offset, offset)) / total), 1e-12)
+    size = np.maximum(np.sqrt(sums(weight * dot(offset, offset)) / total), ARITHMETIC)
     rows = np.concatenate([cross_columns(offset / size.take(patch)[:, None], normal).T, normal.T])
     matrix: Array = np.empty((count, 6, 6))
     for i in range(6):

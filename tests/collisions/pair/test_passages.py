@@ -12,7 +12,7 @@ from support.solids import box, part, random_pose, rod
 
 from kinform.collisions.pair.passages import Path, passages
 from kinform.foundation.algebra.displacements import displacement
-from kinform.foundation.meshes.index import MeshIndex
+from kinform.foundation.meshes.mesh_index import MeshIndex
 
 SOLIDS = {
     "block": box(-30, 30, -12, 12, -9, 9),

@@ -13,7 +13,7 @@ from support.solids import ball, box, part, random_pose, rod
 from kinform.collisions.parts import coarse_meshes
 from kinform.collisions.parts.coarse_meshes import coarse_mesh
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_model, fcl_pose
-from kinform.foundation.meshes.index import MeshIndex
+from kinform.foundation.meshes.mesh_index import MeshIndex
 
 SEEDS = range(8)
 

@@ -14,7 +14,7 @@ from support.assemblies import assembly
 from support.solids import box, part, rod
 from support.touching import touching as touching_of
 
-from kinform.foundation.levelled import levelled
+from kinform.foundation.tied_sizes import tied_sizes
 from kinform.kinematics import propose
 from kinform.kinematics.partition.sides import TouchingParts, substantial
 
@@ -134,7 +134,7 @@ def test_sizes_that_differ_by_rounding_are_equal_and_so_are_their_sums(seed, uni
     kinds = rng.choice([1.0, 0.3, 0.3003 / 1.3, 7e-5, 0.0], 40)
     names = [f"part{k}" for k in range(40)]
     rounded = {n: unit * k * (1 + 2e-4 * rng.uniform(-1, 1)) for n, k in zip(names, kinds, strict=True)}
-    level = levelled(rounded)
+    level = tied_sizes(rounded)
     assert list(level) == names
     sizes = np.array(list(level.values()))
     assert np.allclose(sizes, unit * kinds, rtol=3e-4, atol=0.0 if kinds.min() else 1e-300)
@@ -150,6 +150,6 @@ def test_which_of_equal_links_is_between_the_others_does_not_hang_on_rounding(se
     rng = np.random.default_rng(seed)
     names = ["a", "b", "c"]
     pairs = list(pairwise(names))
-    volume = levelled({name: 1e-6 * (1 + 1e-5 * rng.uniform(-1, 1)) for name in names})
+    volume = tied_sizes({name: 1e-6 * (1 + 1e-5 * rng.uniform(-1, 1)) for name in names})
     graph = TouchingParts(names, pairs, volume, [])
     assert graph.sides(frozenset(pairs), frozenset(pairs)) == [(("a",), ("b",)), (("b",), ("c",))]

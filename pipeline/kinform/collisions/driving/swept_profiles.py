@@ -13,7 +13,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, perpendicular
 from kinform.foundation.meshes.boxes import along_curve, bounds, facet_boxes
-from kinform.foundation.meshes.proximity import near_boxes
+from kinform.foundation.meshes.near_facets import near_boxes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 

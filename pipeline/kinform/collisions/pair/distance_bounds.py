@@ -17,7 +17,7 @@ from kinform.collisions.pair.constants import CERTAIN
 from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.parts.shapes import Shapes
-from kinform.foundation.at_work import at_work_on
+from kinform.foundation.current_work import working_on
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_pose
 from kinform.foundation.rounding import SINGLE
 from kinform.model.arrays import Array
@@ -77,7 +77,7 @@ class Wholes(Apart):
     @cached_property
     def _objects(self) -> tuple[tuple[fcl.CollisionObject, fcl.CollisionObject], float]:
         """Both by few facets, and how far (m) these are off the parts, together."""
-        with at_work_on(*self._names):
+        with working_on(*self._names):
             (first, off), (second, away) = (self._shapes.coarse(name) for name in self._names)
         return (fcl.CollisionObject(first), fcl.CollisionObject(second)), off + away
 
@@ -85,7 +85,7 @@ class Wholes(Apart):
         """By few facets of both, less what these are off."""
         objects, off = self._objects
         objects[1].setTransform(fcl_pose(self._to_first @ D @ self._X_WB))
-        with at_work_on(*self._names):
+        with working_on(*self._names):
             return max(CERTAIN * fcl_distance(*objects) - off, 0.0)
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from kinform.collisions.constants import DEPTH_MEASURED
 from kinform.collisions.pair.constants import CERTAIN
 from kinform.foundation.algebra.vectors import dot
-from kinform.foundation.meshes.index import MeshIndex
+from kinform.foundation.meshes.mesh_index import MeshIndex
 from kinform.foundation.rounding import TINY
 from kinform.model.arrays import Array, Flags, Ints
 

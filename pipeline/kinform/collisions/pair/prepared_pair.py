@@ -22,7 +22,7 @@ from kinform.collisions.pair.penetration import DEPTH_FINER, Penetration
 from kinform.collisions.parts.probes import Probes
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.vectors import perpendicular
-from kinform.foundation.at_work import at_work_on
+from kinform.foundation.current_work import working_on
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_pose
 from kinform.foundation.rounding import SOLVED
 from kinform.foundation.sorting import distinct
@@ -105,7 +105,7 @@ class PairTest:
 
     @cached_property
     def _objects(self) -> tuple[fcl.CollisionObject, fcl.CollisionObject]:
-        with at_work_on(*self.names):
+        with working_on(*self.names):
             first, second = (
                 fcl.CollisionObject(self._shapes.model(n, f)) for n, f in zip(self.names, self.facets, strict=True)
             )
@@ -143,7 +143,7 @@ class PairTest:
         start (`DrawnOverlap`), by more than they may rub on; None where it does not, or they share nothing that is
         thicker than what is thin beside what mates may be deep."""
         X = self.pose(displacement(start))
-        with at_work_on(*self.names):
+        with working_on(*self.names):
             if X.tobytes() not in self._drawn:
                 self._drawn[X.tobytes()] = DrawnOverlap(*self._meshes, X, OVERLAP_THIN * self.loose)
             return self._drawn[X.tobytes()].leads_in(lambda s: self.pose(displacement(s)), start, end, self._rubs)
@@ -165,7 +165,7 @@ class PairTest:
             return float("inf"), (0, 0)
         self._place(D)
         result = fcl.DistanceResult()
-        with at_work_on(*self.names):
+        with working_on(*self.names):
             return fcl_distance(self._objects[0], self._objects[1], result), (result.b1, result.b2)
 
     def hits(self, D: Array) -> Ints:
@@ -173,7 +173,7 @@ class PairTest:
         if self.empty:
             return np.zeros((0, 2), dtype=np.int64)
         self._place(D)
-        with at_work_on(*self.names):
+        with working_on(*self.names):
             return _hits(*self._objects)
 
     def height(self, D: Array, nearest: tuple[int, int]) -> float:
@@ -359,14 +359,14 @@ class PairTest:
         places."""
         if least > 0.0 and self.shallow([D], [segments], [least])[0]:
             return 0.0
-        with at_work_on(*self.names):
+        with working_on(*self.names):
             deepest = self._penetration.deepest(self.pose(D), segments, finer)
         return deepest if deepest > least else 0.0
 
     def shallow(self, displacements: Sequence[Array], segments: Sequence[Array], least: Sequence[float]) -> list[bool]:
         """Of several displacements (4, 4), whether the parts certainly go no deeper into each other than `least` (m)
         between segments (n, 2, 3) where they cross there."""
-        with at_work_on(*self.names):
+        with working_on(*self.names):
             return self._penetration.shallow([self.pose(D) for D in displacements], segments, least)
 
     @cached_property

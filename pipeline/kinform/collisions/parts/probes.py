@@ -11,8 +11,8 @@ import numpy as np
 
 from kinform.collisions.constants import DEPTH_MEASURED
 from kinform.foundation.algebra.vectors import dot
-from kinform.foundation.meshes.divided import inner_weights, longest_sides
-from kinform.foundation.meshes.index import MeshIndex
+from kinform.foundation.meshes.mesh_index import MeshIndex
+from kinform.foundation.meshes.subdivision import inner_weights, longest_sides
 from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import ascending
 from kinform.frozen import dataclass

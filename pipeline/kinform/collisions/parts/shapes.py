@@ -15,7 +15,7 @@ from kinform.collisions.parts.slippage import Allowed, OwnMotions, Slippage
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.meshes.boxes import box_corners
 from kinform.foundation.meshes.fcl_adapter import fcl_model, partial_model
-from kinform.foundation.meshes.index import MeshIndex, MeshStore
+from kinform.foundation.meshes.mesh_index import MeshIndex, MeshStore
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.contacts import Contacts, Patch

@@ -27,7 +27,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, rows
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.graphs.graph import UnionFind
-from kinform.foundation.meshes.facing import Facing, facing
+from kinform.foundation.meshes.facing_facets import Facing, facing
 from kinform.foundation.words import quoted
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints

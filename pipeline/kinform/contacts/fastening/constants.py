@@ -5,4 +5,4 @@ from __future__ import annotations
 import math
 
 AXES_PARALLEL = math.radians(0.5)
-"""rad: greatest angle between two axes that line up."""
+"""rad: largest angle between two axes that line up. Chosen, not measured."""

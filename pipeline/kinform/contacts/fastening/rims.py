@@ -20,8 +20,6 @@ from kinform.model.surfaces import MeshSurfaces, Surface
 
 RIM_KINDS = frozenset({"cylinder", "cone", "torus", "revolution"})
 """Surfaces at which a rim ends."""
-RIM_SCATTER = 0.01
-"""Greatest spread of the distances of a rim's vertices from its axis, of their mean."""
 
 
 def rims_of(part: Part, surfaces: MeshSurfaces, plane: int) -> list[tuple[Array, float]]:
@@ -72,7 +70,8 @@ def _circle(edges: Array, surface: Surface) -> float | None:
     across = offset - (offset @ surface.axis)[..., None] * surface.axis
     distance = np.linalg.norm(across, axis=2)
     radius = float(distance.mean())
-    if radius <= 0.0 or float(np.ptp(distance)) > RIM_SCATTER * radius:
+    # the vertices of a rim are as far from its axis to within 1 %
+    if radius <= 0.0 or float(np.ptp(distance)) > 0.01 * radius:
         return None
     cosine = np.clip(dot(across[:, 0], across[:, 1]) / distance.prod(axis=1), -1.0, 1.0)
     return radius if float(np.arccos(cosine).sum()) >= ROUND_SWEEP else None

@@ -25,20 +25,16 @@ from kinform.contacts.presses import beyond_press
 from kinform.foundation.algebra.vectors import canonical_sign, widest_gap
 from kinform.model.arrays import Array, freeze
 from kinform.model.assembly import Assembly, Part
-from kinform.model.contacts import Contacts, Patch, Suggestion
+from kinform.model.contacts import Contacts, Patch, Suggestion, SuggestionKind
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces
 
-AXIS_AREA = 100.0
-"""Least area, in squared contact tolerances, of a contact from which an axis is read."""
 PATTERN_ALIKE = 0.02
-"""Relative difference of radii and distances within which holes are of one pattern."""
+"""Relative difference of radii and distances within which holes are of one pattern. Chosen, not measured."""
 UPRIGHT_COSINE = 0.9999
-"""Least cosine of planes that are parallel, and of holes that stand on one."""
+"""Least cosine of planes that are parallel, and of holes that stand on one: 0.8°. Chosen, not measured."""
 WALL_COSINE = 0.02
-"""Cosine below which a face is parallel to a direction."""
-POCKET_GAP = math.pi - 0.05
-"""rad: walls with no wider gap between them leave no way aside."""
+"""Cosine below which a face is parallel to a direction: 1.1°. Chosen, not measured."""
 
 
 Pair = tuple[PartName, PartName]
@@ -109,7 +105,8 @@ def _of_pair(pair: Pair, patches: list[Patch], scene: _Scene, tolerance: float) 
     if not planes:
         return out
     pivoted = [_pivoted(plane, patches, tolerance) for plane in planes]
-    for round_it, kind, where in ((False, "holes", ""), (True, "spigot", " round a journal")):
+    ways: tuple[tuple[bool, SuggestionKind, str], ...] = ((False, "holes", ""), (True, "spigot", " round a journal"))
+    for round_it, kind, where in ways:
         holes = _holes(pair, [p for p, yes in zip(planes, pivoted, strict=True) if yes == round_it], scene, tolerance)
         if len(holes.radii) >= 2:
             text = f"{len(holes.radii)} aligned empty holes{where}"
@@ -117,12 +114,13 @@ def _of_pair(pair: Pair, patches: list[Patch], scene: _Scene, tolerance: float) 
             return out
     largest = planes[0]
     flat = all(patch.kind == "plane" and abs(float(patch.axis @ largest.axis)) > UPRIGHT_COSINE for patch in patches)
-    if flat and sum(patch.area for patch in planes) >= AXIS_AREA * tolerance**2:
+    # no axis is read from a contact of less than ten by ten contact tolerances
+    if flat and sum(patch.area for patch in planes) >= 100.0 * tolerance**2:
         out += _axis(pair, planes, scene, tolerance)
     return out
 
 
-def _hint(pair: Pair, kind: str, evidence: str, axis: Array, point: Array) -> Suggestion:
+def _hint(pair: Pair, kind: SuggestionKind, evidence: str, axis: Array, point: Array) -> Suggestion:
     """A suggestion with the canonical sign of the axis; that of a pocket points out of it."""
     turned = axis if kind == "pocket" else canonical_sign(axis) * axis
     return Suggestion(pair, kind, evidence, np.asarray(freeze(turned + 0.0)), np.asarray(freeze(point + 0.0)))
@@ -172,7 +170,8 @@ def _pocket(pair: Pair, firm: list[Patch]) -> list[Suggestion]:
         walls = normals[np.abs(along) < WALL_COSINE]
         if along.min() <= -WALL_COSINE or (np.abs(axes @ floor.axis) <= 1 - WALL_COSINE).any():
             continue
-        if len(walls) and widest_gap(walls, floor.axis) < POCKET_GAP:
+        # walls with no gap of half a turn between them leave no way out sideways
+        if len(walls) and widest_gap(walls, floor.axis) < (math.pi - 0.05):
             text = "in a pocket that it can leave one way only"
             return [_hint(pair, "pocket", text, floor.axis, floor.point)]
     return []

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from kinform.contacts.search.pair_view import NearSurfaces
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.model.surfaces import KINDS
@@ -57,4 +58,4 @@ def beside(near: NearSurfaces, row: int, points: Array) -> Beside:
 
 
 def _unit(vectors: Array, lengths: Array) -> Array:
-    return np.asarray(vectors / np.maximum(lengths, 1e-300)[:, None])
+    return np.asarray(vectors / np.maximum(lengths, TINY)[:, None])

@@ -14,16 +14,14 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from kinform.contacts.constants import EXACT_GAP, TOUCH, TOUCHING
-from kinform.contacts.higher.constants import ROUND_KINDS, SIGMAS
-from kinform.contacts.higher.points_and_lines import OPPOSITE_COSINE, may_touch, touches_between
+from kinform.contacts.higher.constants import ROUND_KINDS, STRAIGHT_COSINE
+from kinform.contacts.higher.points_and_lines import may_touch, touches_between
 from kinform.contacts.mating.unread import ENCLOSED_HELD, MotionsLeft, motions_left, unread_surfaces
 from kinform.contacts.search.pair_view import PairView
 from kinform.foundation.algebra.screws import Frame
+from kinform.foundation.constants import COVERAGE
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
-
-CORNER_COSINE = 0.5
-"""Two walls are at a corner for a pin where what they hold has at most this cosine, either way."""
 
 
 def holding_touches(pair: PairView, patches: Sequence[Patch]) -> list[Patch]:
@@ -81,15 +79,16 @@ def _cornered(pair: PairView, touches: list[Patch], left: MotionsLeft, play: flo
 
 def _play(patch: Patch) -> float:
     """m by which the axis or the centre of the patch may be elsewhere."""
-    return max(patch.gap, 0.0) + patch.offset + SIGMAS * patch.uncertainty[1]
+    return max(patch.gap, 0.0) + patch.offset + COVERAGE * patch.uncertainty[1]
 
 
 def _opposite(cosine: Array) -> Flags:
-    return np.asarray(cosine < OPPOSITE_COSINE)
+    return np.asarray(cosine < -STRAIGHT_COSINE)
 
 
 def _askew(cosine: Array) -> Flags:
-    return np.asarray(np.abs(cosine) < CORNER_COSINE)
+    # two walls within 60° of perpendicular are a corner for a pin
+    return np.asarray(np.abs(cosine) < 0.5)
 
 
 def _any_cosine(

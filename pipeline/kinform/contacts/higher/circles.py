@@ -10,15 +10,16 @@ import math
 
 import numpy as np
 
-from kinform.contacts.constants import ROUND_SWEEP
+from kinform.contacts.constants import FLUSH_ANGLE, ROUND_SWEEP
 from kinform.contacts.higher.beside import EXACT_KINDS, beside
-from kinform.contacts.higher.constants import BALL_BORE_SAMPLES, EDGE_RISE
+from kinform.contacts.higher.constants import BALL_BORE_SAMPLES
 from kinform.contacts.higher.nearest import Circle
 from kinform.contacts.higher.sharp import ConvexEdges
 from kinform.contacts.mating.charts import perpendicular
 from kinform.contacts.search.pair_view import NearSurfaces, PairView
 from kinform.foundation.algebra.vectors import cross, lengths, times
 from kinform.foundation.meshes.boxes import meeting_box
+from kinform.foundation.rounding import SOLVED
 from kinform.foundation.sorting import heads, median
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
@@ -26,10 +27,8 @@ from kinform.model.surfaces import KINDS
 
 RIM_UNEVEN = 0.02
 """Vertices of a rim are on one circle to within this: a sixth of what touches."""
-RIM_EVEN = 0.75
-"""Least share of the vertices of a rim that are."""
 RIM_SAMPLES = 4
-"""Least number of samples along a rim of which not all is there."""
+"""Fewest samples along a partial rim: two at either end hold a plane. Chosen, not measured."""
 
 
 _TURNING, _EXACT, _PLANE, _SPHERE = (
@@ -62,7 +61,7 @@ class Rim(Circle):
     def rises(self, angles: Array, normals: Array) -> Flags:
         """(n,) whether both faces leave a surface that touches the rim at these angles, with outward normals (n, 3)."""
         speeds = np.stack([(self.outward(angles) * normals).sum(axis=1), normals @ self.axis])
-        return np.asarray((self.slopes @ speeds > EDGE_RISE).all(axis=0))
+        return np.asarray((self.slopes @ speeds > math.sin(FLUSH_ANGLE)).all(axis=0))
 
     def has(self, angles: Array, slack: float) -> Flags:
         """(n,) whether the part has an edge there, or within `slack` (rad)."""
@@ -78,7 +77,7 @@ class Rim(Circle):
         """(n,) angles evenly over what is there of it, and the arc (m) that each stands for."""
         total = float(self.spans.sum())
         most = BALL_BORE_SAMPLES
-        count = min(max(math.ceil(most * total / (2.0 * math.pi) - 1e-9), RIM_SAMPLES), most)
+        count = min(max(math.ceil(most * total / (2.0 * math.pi) - SOLVED), RIM_SAMPLES), most)
         passed = (np.arange(count) + 0.5) / count * total
         ends = np.cumsum(self.spans)
         edge = np.minimum(np.searchsorted(ends, passed), len(ends) - 1)
@@ -169,7 +168,8 @@ def _rim(view: PairView, rows: Ints, axis: _Axis, ends: Ints) -> Rim | None:
     radius, centre = median(far.ravel()), axis.point + float(along.mean()) * axis.along
     off = np.abs(far - radius)
     loose = float(off.max()) > limit + float(near.chords[rows].max()) or np.ptp(along) > limit
-    if loose or radius <= limit or np.count_nonzero(off <= limit) < RIM_EVEN * off.size:
+    # most vertices of a rim are on its circle
+    if loose or radius <= limit or np.count_nonzero(off <= limit) < 0.75 * off.size:
         return None
     outward = perpendicular(axis.along)
     slopes = _slopes(near, rows, centre + radius * outward, axis.along, outward)
@@ -204,4 +204,4 @@ def _slopes(near: NearSurfaces, rows: Ints, on: Array, axis: Array, outward: Arr
     slopes = np.stack([-normals[:, 1], normals[:, 0]], axis=1)
     # where the edge is convex, each face goes down beside the other
     down = np.array([slopes[0] @ normals[1], slopes[1] @ normals[0]])
-    return None if np.abs(down).min() < EDGE_RISE else -np.sign(down)[:, None] * slopes
+    return None if np.abs(down).min() < math.sin(FLUSH_ANGLE) else -np.sign(down)[:, None] * slopes

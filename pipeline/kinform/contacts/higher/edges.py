@@ -10,22 +10,21 @@ import math
 
 import numpy as np
 
-from kinform.contacts.constants import GIVER_AREA, PROBE_SPARE, TOUCH
-from kinform.contacts.higher.constants import EDGE_RISE, LINE_SAMPLES, ZONE
+from kinform.contacts.constants import FLUSH_ANGLE, PATCH_AREA, PROBE_SPARE, TOUCH
+from kinform.contacts.higher.constants import LINE_SAMPLES, ZONE
 from kinform.contacts.higher.sharp import ConvexEdges, on_surface
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.pair_view import PairView, PartView
 from kinform.foundation.algebra.vectors import dot, lengths
+from kinform.foundation.meshes.surface_table import PLANE
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
-from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances
 
 NEARLY = 1.001
-"""Share of a limit within which it is looked closer whether it is kept: far more than rounding."""
-EDGES_MOST = 64
-"""More edges and corners than these on one plane are a rough surface."""
+"""Factor on a limit within which it is checked exactly: far more than rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,9 +51,9 @@ def edge_contacts(
     out = []
     for view, first, edges in ((pair, True, convex[0]), (pair.swapped, False, convex[1])):
         planes = view.near[1]
-        large = planes.areas >= GIVER_AREA * pair.tolerance**2
+        large = planes.areas >= PATCH_AREA * pair.tolerance**2
         sharp = edges.where(edges.cosine < math.cos(pair.tolerances.smooth_edge))
-        rows = np.flatnonzero((planes.kinds == KINDS.index("plane")) & large)
+        rows = np.flatnonzero((planes.kinds == PLANE) & large)
         for row in rows[_reached(view, sharp, rows)]:
             touches = _standing(view, sharp, int(row))
             out += [
@@ -78,7 +77,7 @@ def _bends(sharp: PartView, edges: ConvexEdges, k: int, tolerances: Tolerances) 
     meets = np.flatnonzero(np.isin(edges.ends, edges.ends[k]).any(axis=1))
     start, stop = (sharp.vertices[edges.ends[np.append(meets, k)][:, side]] for side in (0, 1))
     along = stop - start
-    unit = along / np.maximum(np.linalg.norm(along, axis=1), 1e-300)[:, None]
+    unit = along / np.maximum(np.linalg.norm(along, axis=1), TINY)[:, None]
     turns = np.arccos(np.minimum(1.0, np.abs(unit[:-1] @ unit[-1])))
     return bool(((turns > tolerances.coplanar) & (turns < tolerances.smooth_edge)).any())
 
@@ -106,7 +105,8 @@ def _standing(view: PairView, edges: ConvexEdges, row: int) -> list[_Touch]:
     corners = np.setdiff1d(ends[inside], ends[lying])
     if len(corners):
         corners = corners[_lowest(sharp, corners, height, slope)]
-    if not 0 < len(lines) + len(corners) <= EDGES_MOST:
+    # more edges and corners on one plane are a rough surface
+    if not 0 < len(lines) + len(corners) <= 64:
         return []
     spots: list[tuple[Ints, Array, Array | None]] = [
         (
@@ -144,9 +144,9 @@ def _rises(sharp: PartView, edges: ConvexEdges, height: Array) -> Flags:
         third = corners.sum(axis=1) - edges.ends.sum(axis=1)
         reach = sharp.vertices[third] - sharp.vertices[edges.ends[:, 0]]
         along = sharp.vertices[edges.ends[:, 1]] - sharp.vertices[edges.ends[:, 0]]
-        along = along / np.maximum(lengths(along), 1e-300)[:, None]
+        along = along / np.maximum(lengths(along), TINY)[:, None]
         away = lengths(reach - dot(reach, along)[:, None] * along)
-        out &= height[third] - base > EDGE_RISE * away
+        out &= height[third] - base > math.sin(FLUSH_ANGLE) * away
     return out
 
 

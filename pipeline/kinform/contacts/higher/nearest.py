@@ -10,9 +10,7 @@ from kinform.contacts.higher.beside import Beside, beside
 from kinform.contacts.search.pair_view import NearSurfaces
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
-
-RIM_STEPS = 20
-"""Steps between two such places to where it comes nearest: the angle is then exact."""
+from kinform.model.surfaces import SurfaceKind
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +67,8 @@ def nearest(circle: Circle, near: NearSurfaces, row: int, dips: Dips) -> Array:
     """(n,) angles at which the circle is nearest to the surface at position `row`."""
     low, high, down, up = dips.low, dips.high, dips.down, dips.up
     middle = low
-    for _ in range(RIM_STEPS if len(low) else 0):
+    # after twenty steps the angle is exact
+    for _ in range(20 if len(low) else 0):
         middle = (low * up - high * down) / (up - down)
         normals = beside(near, row, circle.points(middle)).normals
         rate = circle.radius * (normals * circle.forward(middle)).sum(axis=1)
@@ -80,7 +79,7 @@ def nearest(circle: Circle, near: NearSurfaces, row: int, dips: Dips) -> Array:
     return middle
 
 
-def evened(circle: Circle, angles: Array, normals: Array, kind: str) -> Array:
+def evened(circle: Circle, angles: Array, normals: Array, kind: SurfaceKind) -> Array:
     """(n, 3) normals all round a circle, alike about its axis: a surface that is not quite about the same axis turns
     with it as much as one that is. Those of a sphere pass its middle as they are."""
     if kind == "sphere":

@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from kinform.contacts.constants import CYLINDER_EXACT
+from kinform.contacts.constants import CYLINDER_EXACT, FLUSH_ANGLE
 from kinform.contacts.mating.charts import plane_basis
 from kinform.contacts.search.pair_view import PartView
 from kinform.foundation.algebra import splines
@@ -21,24 +21,15 @@ from kinform.foundation.algebra.splines import Cubics
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.graphs.components import components, roots
 from kinform.foundation.meshes.edges import shared_edges
-from kinform.foundation.meshes.near import Near
+from kinform.foundation.meshes.near_points import Near
+from kinform.foundation.meshes.surface_table import CYLINDER
+from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.foundation.sorting import ascending, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.model.surfaces import KINDS
 
-SEGMENT_LONG = 3.0
-"""A segment this many times longer than both neighbours is a straight face between curves."""
-CURVE_BEND_LEAST = math.radians(3.0)
-"""rad: a curve that turns less than this in all is a straight face."""
-STRIP_HEIGHT = 0.3
-"""A facet is a strip of a doubly curved surface where its neighbour on along the direction is longer than this
-share."""
 CURVE_SAMPLES = 6
-"""Samples a segment, to find where two curves come close."""
-
-
-_CYLINDER = KINDS.index("cylinder")
+"""Samples a segment to find where two curves come close; Newton's method does the rest. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,7 +211,9 @@ def segments(part: PartView, sheet: Sheet, direction: Array, alignment: float, g
     if len(leaving):
         inner, outer = inner.take(leaving), outer.take(leaving)
         heights = [_height(part, sheet.facets.take(side), direction) for side in (inner, outer)]
-        upright[inner[heights[1] > STRIP_HEIGHT * heights[0]]] = False
+        # a facet is a strip of a doubly curved surface where its neighbour along the direction is longer than this
+        # share
+        upright[inner[heights[1] > 0.3 * heights[0]]] = False
     rows = upright.nonzero()[0]
     if not len(rows):
         return None
@@ -295,7 +288,7 @@ def _leaders(points: Array, grain: float) -> Ints:
 
     Steps of more than the grain along either coordinate part them into groups; a group that is no larger is near
     itself, and only others need to be measured."""
-    spare, count = 1e-9, len(points)
+    spare, count = SOLVED, len(points)
     x, y = np.ascontiguousarray(points.T)
     aside, step, group = np.zeros(count, bool), np.zeros(count, bool), np.empty(count, np.int64)
     np.greater(x[1:] - x[:-1], (1.0 + spare) * grain, out=aside[1:])
@@ -344,13 +337,13 @@ def may_curve(part: PartView, pieces: Segments, smooth_edge: float) -> Flags:
     one, two = steps.take(before, axis=0), steps.take(leaving.take(joints), axis=0)
     turn = np.abs(np.arctan2(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0], dot(one, two)))
     # for rounding; and a closed curve that is nowhere cut overlaps itself, and turns there twice
-    spare = 1.0 + 1e-6
+    spare = 1.0 + SINGLE
     turn[turn >= spare * smooth_edge] = 0.0
-    if 2.0 * spare * turn.sum() < CURVE_BEND_LEAST:
+    if 2.0 * spare * turn.sum() < FLUSH_ANGLE:
         return np.zeros(number, bool)
     run = components(entering[through], leaving[through], number)
     bent = np.bincount(run.take(before), turn, number)
-    return np.asarray((2.0 * spare * spare * bent >= CURVE_BEND_LEAST).take(run))
+    return np.asarray((2.0 * spare * spare * bent >= FLUSH_ANGLE).take(run))
 
 
 def _chains(start: Ints, end: Ints, count: int, near: Flags) -> list[Ints]:
@@ -389,7 +382,8 @@ def _cut(part: PartView, pieces: Segments, chain: Ints, near: Flags, smooth_edge
     exact = _circular(part, labels)
     before, after = np.arange(-1, count - 1), np.arange(1, count + 1) % count
     turn = np.arctan2(unit[before, 0] * unit[:, 1] - unit[before, 1] * unit[:, 0], dot(unit[before], unit))
-    flat = length > SEGMENT_LONG * np.maximum(length[before], length[after])
+    # a segment three times as long as both neighbours is a straight face between curves
+    flat = length > 3.0 * np.maximum(length[before], length[after])
     cut = (np.abs(turn) >= smooth_edge) | flat | flat[before]
     cut |= (labels != labels[before]) & (exact | exact[before])
     if not closed:
@@ -406,7 +400,7 @@ def _cut(part: PartView, pieces: Segments, chain: Ints, near: Flags, smooth_edge
             labels=labels[run],
             lows=pieces.lows[chain[run]],
             highs=pieces.highs[chain[run]],
-            exact=bool(exact[run].all() or np.abs(turn[run[1:]]).sum() < CURVE_BEND_LEAST),
+            exact=bool(exact[run].all() or np.abs(turn[run[1:]]).sum() < FLUSH_ANGLE),
             near=near[chain[run]],
         )
         for run in runs
@@ -417,5 +411,5 @@ def _cut(part: PartView, pieces: Segments, chain: Ints, near: Flags, smooth_edge
 def _circular(part: PartView, labels: Ints) -> Flags:
     """Whether each segment belongs to an exact cylinder."""
     table = part.table
-    round_ = table.kinds.take(labels) == _CYLINDER
+    round_ = table.kinds.take(labels) == CYLINDER
     return np.asarray(round_ & (table.residuals.take(labels) < CYLINDER_EXACT * table.chords.take(labels)))

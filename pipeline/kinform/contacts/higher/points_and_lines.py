@@ -14,8 +14,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.contacts.constants import CLEARLY, MATING_REACH, PROBE_SPARE, TOUCH
-from kinform.contacts.higher.constants import CAPTIVE, ZONE
+from kinform.contacts.constants import MATING_REACH, PARALLEL_SINE, PROBE_SPARE, TOUCH
+from kinform.contacts.higher.constants import CAPTIVE, STRAIGHT_COSINE, ZONE
 from kinform.contacts.higher.meeting import Meeting
 from kinform.contacts.higher.rounds import meeting, on_plane
 from kinform.contacts.higher.stations import where_short
@@ -23,20 +23,14 @@ from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.narrow_phase import Probes, verify
 from kinform.contacts.search.pair_view import CLEARANCE_SHARE, NearSurfaces, PairView, SurfacePair
 from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.meshes.surface_table import CONE, CYLINDER, SPHERE
+from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances
 
-OPPOSITE_COSINE = -0.999
-"""Two sides of a slot hold a pin where their normals have at most this cosine."""
-ACROSS_SINE = 1e-3
-"""Directions with at most this sine between them are parallel: planes across a line leave it free."""
-
-
-_CYLINDER = KINDS.index("cylinder")
-_SPHERE = KINDS.index("sphere")
 _PLANAR = np.array([kind == "plane" for kind in KINDS])
 _ROUNDED = np.array([kind in ("sphere", "cylinder", "torus", "cone") for kind in KINDS])
 """Which kinds of surfaces balls and rollers touch, by their numbers."""
@@ -99,7 +93,7 @@ def _candidates(view: PairView, flags: Flags, first: bool) -> Flags:
         apart &= (other.kinds != kinds) | hollow  # what is hollow comes second
     # a roller in a ring not much wider is a shaft in its bore, a ball in such a bowl that of a joint: they mate, or
     # keep apart
-    tube = (kinds == other.kinds) & ((kinds == _CYLINDER) | (kinds == _SPHERE)) & hollow
+    tube = (kinds == other.kinds) & ((kinds == CYLINDER) | (kinds == SPHERE)) & hollow
     play = MATING_REACH * np.maximum(view.play, CLEARANCE_SHARE * other.radii)
     apart &= ~tube | (other.radii - ball.radii.take(rows)[:, None] > play)
     out[rows] = flags[rows] & (plane | apart)
@@ -110,7 +104,7 @@ def _candidates(view: PairView, flags: Flags, first: bool) -> Flags:
 
 def _convex(near: NearSurfaces) -> Flags:
     """(s,) which are balls and rollers."""
-    return np.asarray((near.sides > 0) & ((near.radii > 0) | (near.kinds == KINDS.index("cone"))))
+    return np.asarray((near.sides > 0) & ((near.radii > 0) | (near.kinds == CONE)))
 
 
 def tubes_for_facets(pair: PairView, patches: list[Patch]) -> list[Patch]:
@@ -178,9 +172,9 @@ def _off_planes(view: PairView) -> Flags:
     arms = roller.points.take(rows, axis=0)[:, None] - flat.points.take(columns, axis=0)
     gaps = np.sum(arms * normals, axis=2) - roller.radii.take(rows)[:, None]
     ends = roller.extents.take(rows, axis=0)[:, :, None] * sine[:, None]
-    limit = CAPTIVE * view.tolerance + CLEARLY * (np.abs(arms).max(axis=2) + np.abs(ends).max(axis=1))
+    limit = CAPTIVE * view.tolerance + SOLVED * (np.abs(arms).max(axis=2) + np.abs(ends).max(axis=1))
     clear = (gaps + ends.min(axis=1) > limit) | (gaps + ends.max(axis=1) < -limit)
-    out[rows[:, None], columns] = clear | (np.abs(sine) > np.sin(parallel) + CLEARLY)
+    out[rows[:, None], columns] = clear | (np.abs(sine) > np.sin(parallel) + SOLVED)
     return out
 
 
@@ -238,7 +232,7 @@ def _held(touches: list[_Touch], tolerance: float) -> list[_Touch]:
 def _opposes(touch: _Touch, other: _Touch) -> bool:
     """Whether the other surface holds the same ball or pin from the opposite side."""
     same = touch.first == other.first and touch.surfaces.row == other.surfaces.row
-    return same and float((touch.meeting.normals @ other.meeting.normals.T).min()) < OPPOSITE_COSINE
+    return same and float((touch.meeting.normals @ other.meeting.normals.T).min()) < -STRAIGHT_COSINE
 
 
 def pins_in_slots(pair: PairView, patches: list[Patch]) -> list[Patch]:
@@ -247,7 +241,7 @@ def pins_in_slots(pair: PairView, patches: list[Patch]) -> list[Patch]:
     axis = patches[0].axis if patches else np.zeros(3)
 
     def parallel(patch: Patch) -> bool:
-        return float(np.linalg.norm(cross(patch.axis, axis))) < ACROSS_SINE
+        return float(np.linalg.norm(cross(patch.axis, axis))) < PARALLEL_SINE
 
     if not patches or not all(patch.kind == "plane" and parallel(patch) for patch in patches):
         return []
@@ -259,7 +253,7 @@ def _faces(patch: Patch, other: Patch) -> bool:
     """Whether another line holds the same pin from the opposite side."""
     side = 0 if patch.radii[0] > 0.0 else 1
     same = other.radii[side] > 0.0 and patch.surfaces[side] == other.surfaces[side]
-    return same and float((patch.normals @ other.normals.T).min()) < OPPOSITE_COSINE
+    return same and float((patch.normals @ other.normals.T).min()) < -STRAIGHT_COSINE
 
 
 def _probes(touch: _Touch, tolerance: float) -> Probes:

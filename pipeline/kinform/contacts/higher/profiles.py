@@ -13,47 +13,36 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.contacts.constants import EXACT_GAP, MATING_REACH, TOUCH
+from kinform.contacts.constants import EXACT_GAP, FLUSH_ANGLE, MATING_REACH, PARALLEL_SINE, TOUCH
 from kinform.contacts.higher.closest_places import CURVES_OPPOSED, closest_places
-from kinform.contacts.higher.constants import CAPTIVE, LINE_SAMPLES, SIGMAS, ZONE
+from kinform.contacts.higher.constants import CAPTIVE, LINE_SAMPLES, ZONE
 from kinform.contacts.higher.outlines import Curve, Segments, Sheet, curves, may_curve, segments
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.mating.charts import plane_basis
 from kinform.contacts.search.apart import bulge_of
 from kinform.contacts.search.pair_view import NearSurfaces, PairView, PartView, near_facets
 from kinform.foundation.algebra.vectors import cross, norm
+from kinform.foundation.constants import COVERAGE
 from kinform.foundation.meshes.boxes import meeting_box
-from kinform.foundation.meshes.proximity import near_boxes
+from kinform.foundation.meshes.near_facets import near_boxes
+from kinform.foundation.rounding import ARITHMETIC, SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.tolerances import Tolerances
 
-DIRECTIONS_TRIED = 6
-"""Directions tried, those of the largest faces first."""
-DIRECTION_SINE = 1e-3
-"""Directions with at most this sine between them are tried once."""
-GRAIN = 1e-3
-"""Ends of segments within this are one point."""
-SHEET_RINGS = 6
-"""Rings of facets about the common box of two parts: as many segments settle a spline."""
-NEWTON_STEPS = 20
-"""Steps of Newton's method to where two curves are parallel."""
-CURVE_END_SPARE = math.radians(3.0)
-"""rad: a curve may end this much before it is parallel to the other: it goes on where it was cut."""
 SLIP_LEAST = 0.1
 """Share of the shortest segment, or of the contact tolerance, by which points that touch may be off each other's
-normal."""
+normal. Chosen, not measured."""
 ROUNDER = 0.2
-"""Curves touch along a line where they part from each other at least at this share of their own curvatures."""
+"""Share of their own curvatures at which curves that touch along a line diverge at least. Chosen, not measured."""
 LENGTH_SHARED = 0.1
-"""Outlines touch along more than this."""
+"""Least length, in contact tolerances, along which outlines touch. Chosen, not measured."""
 DISTINCT_DISTANCE = 0.2
-"""Lines of contact nearer to each other than this, ..."""
-DISTINCT_COSINE = 0.9
-"""... with normals of at least this cosine, are one."""
+"""Distance, in contact tolerances, within which lines of contact with similar normals are one. Chosen, not measured."""
 GAP_ROUNDING = 2e-3
-"""Lines of contact whose gaps differ by no more than this, or by two chord errors, touch alike."""
+"""Difference of gaps, in contact tolerances, up to which lines of contact touch alike; two chordal deviations where
+that is more. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,9 +97,10 @@ def _directions(near: tuple[NearSurfaces, NearSurfaces]) -> list[Array]:
     axes.sort(key=lambda item: (-item[0], *item[1].tolist()))
     out: list[Array] = []
     for _, axis in axes:
-        if all(norm(cross(axis, other)) > DIRECTION_SINE for other in out):
+        if all(norm(cross(axis, other)) > PARALLEL_SINE for other in out):
             out.append(axis)
-        if len(out) == DIRECTIONS_TRIED:
+        # those of the largest faces
+        if len(out) == 6:
             break
     return out
 
@@ -121,7 +111,7 @@ def _meetings(pair: PairView, sheets: list[Sheet], direction: Array) -> list[_Me
     found: dict[int, Segments] = {}
     # of few facets none runs along it sooner than of many
     for k in sorted((0, 1), key=lambda k: len(sheets[k].facets)):
-        pieces = segments(pair.parts[k], sheets[k], direction, tolerances.alignment, GRAIN * tolerance)
+        pieces = segments(pair.parts[k], sheets[k], direction, tolerances.alignment, EXACT_GAP * tolerance)
         if pieces is None:
             return []
         found[k] = pieces
@@ -173,7 +163,8 @@ def _sheet(part: PartView, low: Array, high: Array, tolerances: Tolerances) -> S
     inside = np.zeros(len(part.vertices), dtype=bool)
     corners = [np.ascontiguousarray(column) for column in part.faces.T]
     fresh = chosen.nonzero()[0]
-    for _ in range(SHEET_RINGS):
+    # six rings of facets about the common box of two parts: as many segments settle a spline
+    for _ in range(6):
         inside[part.faces[fresh]] = True
         around = inside[corners[0]] | inside[corners[1]] | inside[corners[2]]
         fresh = (around & ~chosen).nonzero()[0]
@@ -221,7 +212,8 @@ def _parallel_place(first: Curve, second: Curve, s: float, t: float) -> _Place |
     From the parameters s and t; None where the Jacobian is singular.
     """
     ends = (float(first.knots[-1]), float(second.knots[-1]))
-    for _ in range(NEWTON_STEPS):
+    # steps of Newton's method to where two curves are parallel
+    for _ in range(20):
         (px, py), (ux, uy), kappa, speed = _at(first, s)
         (qx, qy), (wx, wy), lam, other_speed = _at(second, t)
         ax, ay, along = px - qx, py - qy, ux * wx + uy * wy
@@ -229,11 +221,11 @@ def _parallel_place(first: Curve, second: Curve, s: float, t: float) -> _Place |
         off, turn = ax * wx + ay * wy, ux * wy - uy * wx
         a, b, c, d = along, -1.0 + lam * (ay * wx - ax * wy), -kappa * along, lam * along
         size = a * d - b * c
-        if abs(size) < 1e-12 * (abs(kappa) + abs(lam) + 1e-300):
+        if abs(size) < ARITHMETIC * (abs(kappa) + abs(lam) + TINY):
             return None
         s_new = min(max(s + (b * turn - d * off) / size / speed, 0.0), ends[0])
         t_new = min(max(t + (c * off - a * turn) / size / other_speed, 0.0), ends[1])
-        still = abs(s_new - s) < 1e-12 * ends[0] and abs(t_new - t) < 1e-12 * ends[1]
+        still = abs(s_new - s) < ARITHMETIC * ends[0] and abs(t_new - t) < ARITHMETIC * ends[1]
         s, t = s_new, t_new
         if still:
             break
@@ -260,7 +252,7 @@ def _refined(first: Curve, second: Curve, s: float, t: float, tolerance: float) 
     slip = abs(float((at.q - at.p) @ mean))
     relative = float(kappa + lam)
     inner = max(tolerance, float(np.diff(first.knots).min()))
-    if abs(turn) > math.sin(CURVE_END_SPARE):
+    if abs(turn) > math.sin(FLUSH_ANGLE):
         return None
     if abs(gap) > MATING_REACH * tolerance or slip > SLIP_LEAST * inner:
         return None
@@ -283,9 +275,10 @@ def _distinct(meetings: list[_Meeting], tolerance: float) -> list[_Meeting]:
         low, high = met.reach
         if high - low <= LENGTH_SHARED * tolerance:
             continue
+        # normals within 26°
         if all(
             float(np.linalg.norm(met.point - other.point)) > DISTINCT_DISTANCE * tolerance
-            or float(met.normal @ other.normal) < DISTINCT_COSINE
+            or float(met.normal @ other.normal) < 0.9
             for other in out
         ):
             out.append(met)
@@ -325,13 +318,13 @@ def _one_line(meetings: list[_Meeting]) -> list[_Meeting]:
 
 def _agree(one: _Meeting, two: _Meeting) -> bool:
     """Whether both lie on one line of action."""
-    allowed = SIGMAS * (one.doubt + two.doubt) + 1e-6
+    allowed = COVERAGE * (one.doubt + two.doubt) + 1e-6
     if float(one.normal @ two.normal) < 0.0:
         return False
     angle = abs(float(one.normal[0] * two.normal[1] - one.normal[1] * two.normal[0]))
     apart = two.point - one.point
     off = abs(float(one.normal[0] * apart[1] - one.normal[1] * apart[0]))
-    place = SIGMAS * (one.place + two.place)
+    place = COVERAGE * (one.place + two.place)
     return angle <= allowed and off <= allowed * float(np.linalg.norm(apart)) + place
 
 
@@ -360,4 +353,4 @@ def _radius(curve: Curve, met: _Meeting) -> float:
     """Radius of curvature (m) where they meet; 0 for a straight line."""
     k = int(np.argmin(np.linalg.norm(curve.points - met.point, axis=1)))
     bend = abs(float(curve.at(curve.knots[k : k + 1])[2][0]))
-    return 1.0 / bend if bend > 1e-9 / max(float(curve.knots[-1]), 1e-300) else 0.0
+    return 1.0 / bend if bend > SOLVED / max(float(curve.knots[-1]), TINY) else 0.0

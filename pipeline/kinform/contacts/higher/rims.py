@@ -12,24 +12,21 @@ import math
 
 import numpy as np
 
-from kinform.contacts.constants import PROBE_SPARE, TOUCH
+from kinform.contacts.constants import PROBE_SPARE, RIM_POINTS, TOUCH
 from kinform.contacts.higher.beside import Beside, beside
 from kinform.contacts.higher.circles import Rim, rims_of
-from kinform.contacts.higher.constants import BALL_BORE_SAMPLES, RIM_TRIED, ZONE
+from kinform.contacts.higher.constants import BALL_BORE_SAMPLES, ZONE
 from kinform.contacts.higher.nearest import dips_of, evened, nearest
 from kinform.contacts.higher.sharp import ConvexEdges, convex_edges_of_first, on_surface
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.pair_view import NearSurfaces, PairView
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.meshes.boxes import meeting_box
+from kinform.foundation.rounding import SINGLE
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
-
-RIM_ENDS = 1e-6
-"""rad by which an edge of a rim may be longer, for rounding."""
-
 
 _ROUND = np.isin(KINDS, ("sphere", "cylinder", "cone", "torus"))
 _SEATED = np.isin(KINDS, ("sphere", "cone", "torus"))
@@ -115,7 +112,7 @@ def _beside_any(view: PairView, rows: Ints) -> Flags:
 def _touches(view: PairView, rim: Rim, row: int) -> list[_Touch]:
     """All round, or at points, or not at all."""
     near, limit = view.near[1], TOUCH * view.tolerance
-    angles = 2.0 * math.pi * np.arange(RIM_TRIED) / RIM_TRIED
+    angles = 2.0 * math.pi * np.arange(RIM_POINTS) / RIM_POINTS
     round_it = beside(near, row, rim.points(angles))
     if not -limit <= float(round_it.gaps.max()) or float(round_it.gaps.min()) > limit + rim.radius * angles[1]:
         return []
@@ -142,7 +139,7 @@ def _nearest(rim: Rim, near: NearSurfaces, row: int, angles: Array, there: Besid
     step = 2.0 * math.pi / len(angles)
     dips = dips.where(rim.has(dips.low + 0.5 * step, 0.5 * step))
     middle = nearest(rim, near, row, dips)
-    return middle[rim.has(middle, RIM_ENDS)]
+    return middle[rim.has(middle, SINGLE)]
 
 
 def _kept(view: PairView, rim: Rim, row: int, angles: Array, spacing: float) -> _Touch | None:

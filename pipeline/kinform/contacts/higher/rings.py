@@ -13,8 +13,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from kinform.contacts.constants import RIM_POINTS
 from kinform.contacts.higher.beside import EXACT_KINDS, beside
-from kinform.contacts.higher.constants import BALL_BORE_SAMPLES, RIM_TRIED
+from kinform.contacts.higher.constants import BALL_BORE_SAMPLES
 from kinform.contacts.higher.meeting import Meeting
 from kinform.contacts.higher.nearest import Circle, dips_of, evened, nearest
 from kinform.contacts.mating.charts import perpendicular
@@ -29,7 +30,7 @@ def ring(surfaces: SurfacePair, parallel: float, limit: float) -> Meeting | None
     if surfaces.kinds[1] not in EXACT_KINDS:
         return None
     middle, tube, kind = _middle(surfaces), surfaces.both("minor_radii")[0], surfaces.kinds[1]
-    angles = _equal(RIM_TRIED)
+    angles = _equal(RIM_POINTS)
     there = beside(surfaces.b, surfaces.column, middle.points(angles))
     low, high = tube - limit, tube + limit
     if float(there.gaps.min()) > high + middle.radius * angles[1]:

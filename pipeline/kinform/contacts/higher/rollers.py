@@ -13,27 +13,27 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.contacts.constants import TOUCH
+from kinform.contacts.constants import PARALLEL_SINE, TOUCH
 from kinform.contacts.higher.constants import ROUND_KINDS
-from kinform.contacts.higher.points_and_lines import ACROSS_SINE, touches_between
+from kinform.contacts.higher.points_and_lines import touches_between
 from kinform.contacts.search.pair_view import PairView, PartView
 from kinform.foundation.algebra.vectors import cross, norm
-from kinform.foundation.meshes.surface_table import SurfaceTable
+from kinform.foundation.meshes.surface_table import PLANE, SPHERE, SurfaceTable
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 
 ROUND_PLACE = 1e-3
-"""Share of a part's span by which the axes of its surfaces may lie beside one, all of which it turns about."""
+"""Distance from a common axis, as a share of the span of a part, within which the axes of its surfaces are one. Chosen,
+not measured."""
 ROUND_REST = 0.02
-"""Share of the area of a part that is round all over that may be anything: a mark, a centre, a scrap of a chamfer."""
+"""Share of the area of a round part that need not be round: a mark, a centre, a sliver of a chamfer. Chosen, not
+measured."""
 
 
 _ROUND = np.array([kind in ROUND_KINDS for kind in KINDS])
 _RACE = np.array([kind in ("cylinder", "cone") for kind in KINDS])
 """Which kinds are round, and which are races of rollers, by their numbers."""
-_SPHERE = KINDS.index("sphere")
-_PLANE = KINDS.index("plane")
 
 
 def lines_beside_flanges(pair: PairView, patches: Sequence[Patch]) -> list[Patch]:
@@ -66,7 +66,7 @@ def _ends(patch: Patch, axis: Array, place: Array, span: float) -> bool:
     """Whether a plane lies across an axis through a place, or a ball is about a place on it, as well as the roller, of
     this span (m), is known to be round."""
     if patch.kind == "plane":
-        return norm(cross(patch.axis, axis)) < ACROSS_SINE
+        return norm(cross(patch.axis, axis)) < PARALLEL_SINE
     return norm(cross(patch.point - place, axis)) < ROUND_PLACE * span
 
 
@@ -75,12 +75,12 @@ def _round_all_over(part: PartView, surface: int) -> bool:
     stands out beyond it, as the flange of a disc beyond its boss; or it is a ball."""
     table, span = part.table, part.index.mesh.size.span
     axis, point = table.axes[surface], table.points[surface]
-    if table.kinds[surface] == _SPHERE:
+    if table.kinds[surface] == SPHERE:
         return _area(table, np.arange(len(table.kinds)) != surface) < ROUND_REST * float(table.areas.sum())
     aside = np.linalg.norm(cross(table.points - point, axis), axis=1) < ROUND_PLACE * span
-    along = np.linalg.norm(cross(table.axes, axis), axis=1) < ACROSS_SINE
-    turns: Flags = _ROUND[table.kinds] & aside & (along | (table.kinds == _SPHERE))
-    turns |= (table.kinds == _PLANE) & along
+    along = np.linalg.norm(cross(table.axes, axis), axis=1) < PARALLEL_SINE
+    turns: Flags = _ROUND[table.kinds] & aside & (along | (table.kinds == SPHERE))
+    turns |= (table.kinds == PLANE) & along
     if _area(table, ~turns) >= ROUND_REST * float(table.areas.sum()):
         return False
     mesh = part.index.mesh

@@ -14,10 +14,11 @@ from kinform.contacts.higher.constants import BALL_BORE_SAMPLES, ROLLER_SAMPLES
 from kinform.contacts.higher.meeting import Meeting
 from kinform.contacts.higher.rings import ring
 from kinform.contacts.higher.stations import evenly
-from kinform.contacts.higher.tapers import ROUND_AXIS, tapers
+from kinform.contacts.higher.tapers import tapers
 from kinform.contacts.mating.charts import perpendicular
 from kinform.contacts.search.pair_view import SurfacePair
 from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED
 from kinform.model.arrays import Array
 
 
@@ -71,7 +72,7 @@ def _taper_on_plane(surfaces: SurfacePair, parallel: float) -> Meeting | None:
     (axis, normal), (apex, origin), half = surfaces.axes, surfaces.points, surfaces.both("half_angles")[0]
     below = axis * float(axis @ normal) - normal
     size = float(np.linalg.norm(below))
-    if size < ROUND_AXIS:
+    if size < SOLVED:
         return None
     generator = math.cos(half) * axis + math.sin(half) * below / size
     if abs(float(generator @ normal)) > math.sin(parallel):
@@ -95,9 +96,9 @@ def _ball_on_cone(surfaces: SurfacePair) -> Meeting | None:
     aside = arm - along * axis
     far = float(np.linalg.norm(aside))
     convex = surfaces.sides[1] > 0
-    if convex and far < ROUND_AXIS * radius:
+    if convex and far < SOLVED * radius:
         return None
-    base = perpendicular(axis, aside if far > ROUND_AXIS * radius else None)
+    base = perpendicular(axis, aside if far > SOLVED * radius else None)
     angle = 2 * math.pi * np.arange(1 if convex else BALL_BORE_SAMPLES) / BALL_BORE_SAMPLES
     outward = np.cos(angle)[:, None] * base + np.sin(angle)[:, None] * cross(axis, base)
     normals = surfaces.sides[1] * (math.cos(half) * outward - math.sin(half) * axis)
@@ -115,7 +116,7 @@ def _single(first: Array, second: Array, radius: float, other: float) -> Meeting
     """Two balls, or two balls on the axes of what touches."""
     apart = first - second
     distance = float(np.linalg.norm(apart))
-    if distance <= 1e-12 * (radius + other):
+    if distance <= ARITHMETIC * (radius + other):
         return None
     normal, gap = apart / distance, distance - radius - other
     point = first - (radius + 0.5 * gap) * normal
@@ -127,7 +128,7 @@ def _ball_in_bowl(surfaces: SurfacePair) -> Meeting | None:
     (centre, middle), (radius, bowl) = surfaces.points, surfaces.radii
     aside = centre - middle
     distance = float(np.linalg.norm(aside))
-    if distance <= 1e-12 * bowl or bowl <= radius:
+    if distance <= ARITHMETIC * bowl or bowl <= radius:
         return None
     normal, gap = -aside / distance, bowl - radius - distance
     point, bend = centre - (radius + 0.5 * gap) * normal, bowl * radius / (bowl - radius)
@@ -147,7 +148,7 @@ def _ball(surfaces: SurfacePair) -> Meeting | None:
     if surfaces.sides[1] > 0:
         return _single(centre, foot, radius, bore)
     aside = centre - foot
-    base = perpendicular(axis, aside if np.linalg.norm(aside) > 1e-9 * bore else None)
+    base = perpendicular(axis, aside if np.linalg.norm(aside) > SOLVED * bore else None)
     return _in_tube(centre, foot, axis, base, radius, bore)
 
 
@@ -158,7 +159,7 @@ def _ball_on_ring(surfaces: SurfacePair) -> Meeting | None:
     arm = centre - point
     radial = arm - axis * float(axis @ arm)
     far = float(np.linalg.norm(radial))
-    if tube <= 0.0 or far <= 1e-6 * ring:
+    if tube <= 0.0 or far <= SINGLE * ring:
         return None
     radial /= far
     foot = point + ring * radial
@@ -226,6 +227,6 @@ def _side_by_side(surfaces: SurfacePair) -> tuple[Array, Array, Array, float] | 
     on = p + (low + (high - low) * (np.arange(ROLLER_SAMPLES) + 0.5) / ROLLER_SAMPLES)[:, None] * d
     apart = on - (q + ((on - q) @ e)[:, None] * e)
     distance = np.linalg.norm(apart, axis=1)
-    if distance.min() <= 1e-12 * sum(surfaces.radii):
+    if distance.min() <= ARITHMETIC * sum(surfaces.radii):
         return None
     return on, apart, distance, (high - low) / ROLLER_SAMPLES

@@ -13,9 +13,6 @@ from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array
 
-SHORT_PLANE = 0.5
-"""Share of the length of a roller below which samples stand only where the plane is under it."""
-
 
 def evenly(low: float, high: float) -> Array:
     """(n,) m: middles of equal shares of an extent."""
@@ -40,7 +37,8 @@ def where_short(view: PairView, surfaces: SurfacePair) -> tuple[Array, float] | 
     first = np.maximum(first, np.concatenate([[low], np.maximum.accumulate(last)[:-1]]))
     lengths = np.maximum(last - first, 0.0)
     covered = float(lengths.sum())
-    if not 0.0 < covered < SHORT_PLANE * (high - low):
+    # samples of a plane under less than half of a roller stand only where the plane is
+    if not 0.0 < covered < 0.5 * (high - low):
         return None
     ends = np.cumsum(lengths)
     at = evenly(0.0, covered)

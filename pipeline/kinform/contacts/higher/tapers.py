@@ -13,11 +13,9 @@ from kinform.contacts.higher.constants import ROLLER_SAMPLES
 from kinform.contacts.higher.meeting import Meeting
 from kinform.contacts.search.pair_view import SurfacePair
 from kinform.foundation.algebra.vectors import cross, foot
+from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
-
-ROUND_AXIS = 1e-9
-"""Share of its radius by which a ball may be off the axis of a cone and be on it; the same of a unit axis."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +74,7 @@ def _towards(surfaces: SurfacePair) -> Array | None:
     across = [arm - float(arm @ axis) * axis for arm in arms]
     sizes = [float(np.linalg.norm(arm)) for arm in across]
     best = 0 if sizes[0] >= sizes[1] else 1
-    return across[best] / sizes[best] if sizes[best] > ROUND_AXIS else None
+    return across[best] / sizes[best] if sizes[best] > SOLVED else None
 
 
 def _along(surfaces: SurfacePair, line: _Generator, parallel: float) -> Meeting | None:

@@ -5,14 +5,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.contacts.higher.constants import STRAIGHT_COSINE
 from kinform.contacts.mating.patches import classify_fit
 from kinform.contacts.search.pair_view import PairView
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
-
-STRAIGHT_COSINE = 0.999
-"""Normals with at least this cosine are those of one straight line."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,15 +16,12 @@ from kinform.contacts.constants import TOUCH
 from kinform.contacts.higher.constants import ZONE
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.pair_view import PairView, PartView, boxes_of
-from kinform.foundation.meshes.closest import distances_from
+from kinform.foundation.meshes.closest_facets import distances_from
 from kinform.foundation.meshes.fcl_adapter import UNIT, partial_model
-from kinform.foundation.meshes.proximity import near_boxes
+from kinform.foundation.meshes.near_facets import near_boxes
+from kinform.foundation.rounding import SINGLE, TINY
 from kinform.model.arrays import Array, Ints
 from kinform.model.contacts import Patch
-
-NEAREST_SLACK = 1e-6
-"""Share of their size by which facets that are as near to a place as the nearest may be farther off: in corners and
-along edges there are several."""
 
 
 def unknown_touches(pair: PairView) -> list[Patch]:
@@ -47,7 +44,7 @@ def unknown_touches(pair: PairView) -> list[Patch]:
     if gap > min(_touches_within(pair, sum(chords)), pair.tolerance):
         return []
     normal = out_of_a - out_of_b
-    normal = normal / max(float(np.linalg.norm(normal)), 1e-300)
+    normal = normal / max(float(np.linalg.norm(normal)), TINY)
     touch = TouchSamples(
         points=place[None],
         normals=normal[None],
@@ -83,7 +80,7 @@ def _at(part: PartView, facets: Ints, place: Array, gap: float) -> tuple[int, Ar
     that are as near there."""
     corners = part.vertices[part.faces[facets]]
     away = distances_from(place, corners)
-    nearest = facets[away <= away.min() + NEAREST_SLACK * (gap + float(np.ptp(corners, axis=(0, 1)).max()))]
+    nearest = facets[away <= away.min() + SINGLE * (gap + float(np.ptp(corners, axis=(0, 1)).max()))]
     normals, labels = part.normals(nearest), part.surfaces.labels[nearest]
     mean = np.array([normals[labels == label].mean(axis=0) for label in np.unique(labels)]).mean(axis=0)
-    return int(labels[0]), mean if np.linalg.norm(mean) > NEAREST_SLACK else normals[0]
+    return int(labels[0]), mean if np.linalg.norm(mean) > SINGLE else normals[0]

@@ -35,14 +35,10 @@ from kinform.contacts.mating.mate import (
 from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.foundation.algebra.vectors import cross, dot, lengths, norm
 from kinform.model.arrays import Array, Flags
+from kinform.model.surfaces import SurfaceKind
 
-FACE_SHARE = 0.5
-"""Share of the smaller extent of two faces beyond which a gap between them is none of contact."""
 TILT_LIKELY = 1.5
-"""Angles of axes up to this many times that are looked at."""
-LENS_WIDTH = 0.7
-"""Mean width of a lens between an arc and its chord, over the greatest (2/3), rounded up: polygons with
-different corners on one circle overlap in such lenses."""
+"""Angles of axes up to this many times the limit are looked at: uncertainties add to it. Chosen, not measured."""
 
 
 def analytic_mates(pair: PairView, reach: float) -> list[Mate]:
@@ -79,10 +75,13 @@ def _plane_mate(surfaces: SurfacePair, angle: float, tolerance: float) -> Mate |
     gap = above_a + above_b
     tilt = angle * norm(size)
     # the common box of two faces is thinnest across them: its middle side is their smaller extent
-    limit = MATING_REACH * min(tolerance, FACE_SHARE * sorted(size.tolist())[1])
+    # a gap of more than half of the smaller face is no contact
+    limit = MATING_REACH * min(tolerance, 0.5 * sorted(size.tolist())[1])
     if abs(gap) > limit + tilt:
         return None
     half = middle + 0.5 * (above_b - above_a) * normal
+    # mean width of a lens between an arc and its chord, over the greatest (2/3), rounded up: polygons with different
+    # corners on one circle overlap in such lenses
     return Mate(
         surfaces,
         kind="plane",
@@ -97,7 +96,7 @@ def _plane_mate(surfaces: SurfacePair, angle: float, tolerance: float) -> Mate |
         misalignment=angle,
         uncertainty=(turn, sum(surfaces.shifts)),
         mismatch=(sum(surfaces.turns), sum(surfaces.shifts)),
-        thin=min(LENS_WIDTH * sum(surfaces.both("rims")), tolerance),
+        thin=min(0.7 * sum(surfaces.both("rims")), tolerance),
     )
 
 
@@ -214,7 +213,7 @@ def _sphere_mates(pair: PairView, overlap: Flags) -> Iterator[Mate]:
         )
 
 
-def _nearly_coaxial(pair: PairView, overlap: Flags, kind: str) -> Iterator[SurfacePair]:
+def _nearly_coaxial(pair: PairView, overlap: Flags, kind: SurfaceKind) -> Iterator[SurfacePair]:
     """Surfaces of one kind, convex with concave, whose axes are roughly parallel."""
     a, b = pair.near
     rows, columns, flags = pair.of_kinds(overlap, kind)

@@ -14,15 +14,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.algebra.vectors import lengths
-from kinform.foundation.joined import joined
+from kinform.foundation.algebra.vectors import NEXT, lengths
+from kinform.foundation.concatenation import concatenated
 from kinform.foundation.meshes.boxes import middles
+from kinform.foundation.rounding import SINGLE
 from kinform.foundation.sorting import heads, numbered
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
-
-POINT_SAME = 1e-6
-"""Points of a region closer than this are one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +87,7 @@ def gathered(cuts: Sequence[Cut]) -> list[Cells]:
         return []
     owner = np.repeat(np.arange(len(cuts)), [len(cut.corners) for cut in cuts])
     size = np.array([cut.size for cut in cuts]).T
-    corners, owner = _split(np.ascontiguousarray(joined([cut.corners for cut in cuts]).T), size, owner)
+    corners, owner = _split(np.ascontiguousarray(concatenated([cut.corners for cut in cuts]).T), size, owner)
     held = signed_areas(corners.T) != 0.0
     if not held.all():
         corners, owner = corners[:, :, held], owner[held]
@@ -125,7 +123,7 @@ def _split(corners: Array, size: Array, owner: Ints) -> tuple[Array, Ints]:
     `owner` (n,), until no edge is longer than it; by owner."""
     small, owners = [], []
     while True:
-        edges = corners - corners[:, _NEXT]
+        edges = corners - corners[:, NEXT]
         edges /= size.take(owner, axis=1)[:, None]
         edges *= edges
         length = np.sqrt(edges[0] + edges[1])
@@ -140,7 +138,7 @@ def _split(corners: Array, size: Array, owner: Ints) -> tuple[Array, Ints]:
             owners.append(owner.take(left))
             corners, length, owner = corners.take(rows, axis=2), length.take(rows, axis=1), owner.take(rows)
         corner, every = length.argmax(axis=0), np.arange(count)
-        begin, end, third = corners[:, corner, every], corners[:, _NEXT[corner], every], corners[:, corner - 1, every]
+        begin, end, third = corners[:, corner, every], corners[:, NEXT[corner], every], corners[:, corner - 1, every]
         corners = np.empty((2, 3, 2 * count))
         corners[:, 0, :count] = begin
         corners[:, 1, :count] = corners[:, 0, count:] = 0.5 * (begin + end)
@@ -155,14 +153,10 @@ def _split(corners: Array, size: Array, owner: Ints) -> tuple[Array, Ints]:
     return corners, owner
 
 
-_NEXT = np.array([1, 2, 0])
-"""The corner of a triangle that follows on each."""
-
-
 def probed(every: Sequence[Cells]) -> list[Array]:
     """(bins, 2) m, of each of some cells: for each bin the centroid, of its triangles, that is nearest to its mean."""
-    centroids, (bins, ends) = joined([cells.centroids for cells in every]), _together(every)
-    mean, _ = _means(centroids, joined([cells.areas for cells in every]), bins, ends[-1])
+    centroids, (bins, ends) = concatenated([cells.centroids for cells in every]), _together(every)
+    mean, _ = _means(centroids, concatenated([cells.areas for cells in every]), bins, ends[-1])
     off = lengths(centroids - mean.take(bins, axis=0))
     order = np.lexsort((off, bins))
     chosen = centroids.take(order[heads(bins.take(order))], axis=0)
@@ -171,9 +165,9 @@ def probed(every: Sequence[Cells]) -> list[Array]:
 
 def quadratures(every: Sequence[Cells]) -> list[tuple[Array, Array]]:
     """Points (n, 2) m and the area (n,) m² each stands for, of each of some cells: bins in order, then the rim."""
-    centroids, (bins, ends) = joined([cells.centroids for cells in every]), _together(every)
-    areas = joined([cells.areas for cells in every])
-    corners = joined([cells.corners for cells in every]).reshape(-1, 2)
+    centroids, (bins, ends) = concatenated([cells.centroids for cells in every]), _together(every)
+    areas = concatenated([cells.areas for cells in every])
+    corners = concatenated([cells.corners for cells in every]).reshape(-1, 2)
     shares = np.repeat(areas / 12.0, 3)
     inside, rims, start = np.ones(len(corners), bool), [], 0
     for cells in every:
@@ -209,7 +203,7 @@ def _together(every: Sequence[Cells]) -> tuple[Ints, list[int]]:
 
 def _keys(points: Array, unit: float) -> NDArray[np.complex128]:
     """One number a point (n, 2) m, the same for points that are one."""
-    grid = np.ascontiguousarray(points / (POINT_SAME * unit))
+    grid = np.ascontiguousarray(points / (SINGLE * unit))
     return np.rint(grid, out=grid).view(np.complex128)[:, 0]
 
 

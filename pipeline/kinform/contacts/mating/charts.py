@@ -16,19 +16,17 @@ import numpy as np
 from kinform.foundation.algebra import vectors
 from kinform.foundation.algebra.vectors import cross, lengths, norm, times
 from kinform.foundation.meshes.boxes import middles
+from kinform.foundation.rounding import SINGLE, SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
 CHART_ARC = math.radians(15.0)
-"""rad: angle that one sample of a curved surface may stand for."""
+"""rad: angle of a curved surface that one sample stands for: its normal is then within 7.5°. Chosen, not measured."""
 CHART_FAR = 1e3
-"""Radii to which charts of cylinders and cones reach."""
-HINT_LEAST = 1e-6
-"""Share of a hint across an axis below which it says nothing."""
-POLE_SEEN = -0.97
-"""Least cosine from the pole of what Lambert's projection shows: beyond, facets would be torn apart."""
+"""Radii to which charts of cylinders and cones reach: more than any part that turns. Chosen, not measured."""
 SEEN_FROM_AXIS = 1e-3
-"""Share of the radius nearer than which to the axis or centre a point gives no direction to look in."""
+"""Distance from the axis or centre, in radii, below which a point gives no direction to look in. Chosen, not
+measured."""
 
 
 class Chart(Protocol):
@@ -65,7 +63,7 @@ def perpendicular(axis: Array, hint: Array | None = None) -> Array:
     if hint is not None:
         across = hint - (hint @ axis) * axis
         length = norm(across)
-        if length > HINT_LEAST * max(norm(hint), 1e-300):
+        if length > SINGLE * max(norm(hint), TINY):
             return np.asarray(across / length)
     return -vectors.perpendicular(axis)[0]
 
@@ -143,7 +141,7 @@ class _Axial:
         middle = self._azimuth(self._arms(middles(triangles))[1])[:, None]
         turn = self._azimuth(across) - middle
         turn -= 2.0 * math.pi * np.rint(turn / (2.0 * math.pi))
-        turn = np.where(radius > 1e-9 * radius.max(initial=0.0), turn, 0.0)
+        turn = np.where(radius > SOLVED * radius.max(initial=0.0), turn, 0.0)
         return along, radius, middle + turn
 
     def _radial(self, azimuth: Array) -> Array:
@@ -258,9 +256,10 @@ class SphereChart:
     def flatten(self, triangles: Array) -> Array:
         rays = _unit_rows(triangles - self.point)
         rise = times(rays, self.pole)
-        shown = middles(rays) @ self.pole > POLE_SEEN
+        # beyond this angle from the pole Lambert's projection would tear facets apart
+        shown = middles(rays) @ self.pole > -0.97
         rays, rise = rays[shown], rise[shown]
-        stretch = self.radius * np.sqrt(2.0 / np.maximum(1.0 + rise, 1e-9))
+        stretch = self.radius * np.sqrt(2.0 / np.maximum(1.0 + rise, SOLVED))
         return np.asarray(stretch[..., None] * times(rays, plane_basis(self.pole).T))
 
     def window(self) -> Array | None:

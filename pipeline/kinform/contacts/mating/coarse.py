@@ -28,11 +28,11 @@ from kinform.contacts.mating.patches import mated_patches
 from kinform.contacts.search.pair_view import CLEARANCE_SHARE, NearSurfaces, PairView, PartView, SurfacePair
 from kinform.foundation.meshes.boxes import facet_boxes
 from kinform.foundation.meshes.rings import RING_SPARE, Ring, RingRow
-from kinform.foundation.meshes.surface_table import SurfaceTable
+from kinform.foundation.meshes.surface_table import CYLINDER, SurfaceTable
+from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
-from kinform.model.surfaces import KINDS
 
 PRISM_SIDES = 6
 """Sides up to which bars and sockets whose flats lie on each other are prisms: hexagon keys and nuts. Nobody
@@ -40,13 +40,10 @@ tessellates a cylinder that coarsely, and from 12 sides on strips are found to b
 3 to 200 facets in bores of as many (play to 0.2 mm, with and without collars), judged on 300 others: 1 wrong and 108 in
 doubt, after 119 wrong and 71 in doubt without rings; the one, an octagon that just cannot turn, is in doubt since."""
 TORN_FLATS = 3
-"""So many flats of a ring that lie on flats of another part go round it: fewer may be those of a D or a key."""
+"""Flats of a ring on flats of another part from which on they go round it: fewer may be those of a D-shaft or a key."""
 TANGENT_SHARE = 0.5
 """Share of the gap at the corners of a bore that the gap at its flats has at most, where the bore is taken to be
 tessellated by tangents: the chord error is most of it then."""
-
-
-_CYLINDER = KINDS.index("cylinder")
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,7 +154,7 @@ def _that_fit(
     side = np.array([*(one.side for one in cylinders), *(row.side for row in others)])
     corner = np.array([*(one.corner for one in cylinders), *(row.corner for row in others)])
     flat = np.array([*(one.flats[1] for one in cylinders), *(row.flat for row in others)])
-    least, out = np.cos(TILT_LIKELY * MATING_TILT) - 1e-6, []
+    least, out = np.cos(TILT_LIKELY * MATING_TILT) - SINGLE, []
     for row in rows:
         gap = np.minimum(np.minimum(np.abs(corner - row.corner), np.abs(flat - row.corner)), np.abs(row.flat - corner))
         rough = 2.0 * RING_SPARE * (row.corner + corner)
@@ -207,7 +204,7 @@ def _may_enclose(pair: PairView, sides: list[list[_Round]]) -> Flags:
     outer, flat = np.where(inner, corner_b, corner_a[:, None]), np.where(inner, flat_b, flat_a[:, None])
     play = np.maximum(pair.play, CLEARANCE_SHARE * bar)
     # of the smaller radius of the two it is less
-    limit = (1.0 + 1e-9) * MATING_REACH * np.minimum(play, bar / HALF_RADIUS_SHARE)
+    limit = (1.0 + SOLVED) * MATING_REACH * np.minimum(play, bar / HALF_RADIUS_SHARE)
     off = np.minimum(np.abs(outer - bar), np.abs(flat - bar))
     return np.asarray((side_a[:, None] * side_b <= 0.0) & (off <= limit))
 
@@ -319,7 +316,7 @@ def _row(one: _Round, radius: float) -> NearSurfaces:
         "rims": 0.0, "areas": 0.0,
     }  # fmt: skip
     table = SurfaceTable(
-        kinds=np.array([_CYLINDER]),
+        kinds=np.array([CYLINDER]),
         axes=one.axis[None],
         points=one.point[None],
         extents=np.array([ring.extent]),

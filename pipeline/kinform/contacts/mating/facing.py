@@ -9,17 +9,14 @@ from kinform.contacts.constants import MATING_REACH
 from kinform.contacts.search.pair_view import NearSurfaces, PairView
 from kinform.foundation.algebra.vectors import cross, dot, foot, lengths, norm
 from kinform.foundation.constants import SLIVER_WIDTH
+from kinform.foundation.meshes.surface_table import CYLINDER, PLANE, SPHERE
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.model.surfaces import KINDS
 
 OPPOSED_LEVEL = 0.99999
 """Cosine between opposed planes from which on they are as good as parallel, 0.26°."""
 FACING_NEVER = 0.25
-"""Cosine between normals of surfaces up to which none of their facets face each other, whose normals scatter: half of
-what a probe asks for."""
-
-
-_PLANE, _CYLINDER, _SPHERE = (KINDS.index(kind) for kind in ("plane", "cylinder", "sphere"))
+"""Cosine between normals of surfaces up to which none of their facets face each other, as normals scatter: half of
+`FACING_LEAST`."""
 
 
 def may_face(pair: PairView, unread: Flags) -> bool:
@@ -34,8 +31,8 @@ def may_face(pair: PairView, unread: Flags) -> bool:
     kinds, others = a.kinds[rows], b.kinds[columns]
     cosine = dot(a.axes[rows], b.axes[columns])
     sine = np.sqrt(np.maximum(1.0 - cosine * cosine, 0.0))
-    flat, straight = (kinds == _PLANE) & (others == _PLANE), (kinds == _CYLINDER) & (others == _CYLINDER)
-    across = ((kinds == _PLANE) & (others == _CYLINDER)) | ((kinds == _CYLINDER) & (others == _PLANE))
+    flat, straight = (kinds == PLANE) & (others == PLANE), (kinds == CYLINDER) & (others == CYLINDER)
+    across = ((kinds == PLANE) & (others == CYLINDER)) | ((kinds == CYLINDER) & (others == PLANE))
     left = ~((flat & (cosine > -FACING_NEVER)) | (across & (sine < FACING_NEVER)))
     rows, columns, straight = rows[left], columns[left], straight[left]
     reach = MATING_REACH * pair.tolerance
@@ -57,22 +54,22 @@ def _away(first: NearSurfaces, rows: Ints, second: NearSurfaces, columns: Ints) 
     kinds, others, out = first.kinds[rows], second.kinds[columns], np.full(len(rows), -1.0)
     axes, arms = first.axes[rows], second.points[columns] - first.points[rows]
     high = dot(axes, arms)
-    plane = kinds == _PLANE
+    plane = kinds == PLANE
     cosine = dot(axes, second.axes[columns])
     radii, spare = second.radii[columns], np.zeros(len(rows))
-    level = plane & (others == _PLANE) & (cosine < -OPPOSED_LEVEL)
+    level = plane & (others == PLANE) & (cosine < -OPPOSED_LEVEL)
     # a plane that is not quite parallel is nearer at the ends of both parts
     tilt = np.sqrt(np.maximum(1.0 - cosine * cosine, 0.0))
     spare[level] = (tilt * _reach(first, second))[level]
-    straight = plane & (others == _CYLINDER)
+    straight = plane & (others == CYLINDER)
     ends = second.extents[columns] * cosine[:, None]
     spare[straight] = (tilt * radii)[straight]
     low, most = high + np.where(straight, ends.min(axis=1), 0.0), high + np.where(straight, ends.max(axis=1), 0.0)
-    ball = plane & (others == _SPHERE)
+    ball = plane & (others == SPHERE)
     spare[ball] = radii[ball]
     some = level | straight | ball
     out[some] = (np.maximum(low, -most) - spare)[some]
-    tube = (kinds == _CYLINDER) & (others == _SPHERE)
+    tube = (kinds == CYLINDER) & (others == SPHERE)
     if tube.any():
         from_axis = lengths(arms - high[:, None] * axes)
         bore = first.radii[rows]

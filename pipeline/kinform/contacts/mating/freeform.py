@@ -13,30 +13,26 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.contacts.constants import MATING_REACH
-from kinform.contacts.mating.constants import FREEFORM_ANGLE, SURELY_FACING
+from kinform.contacts.constants import FACING_OPPOSED, MATING_REACH, PATCH_AREA, SAMPLES
+from kinform.contacts.mating.constants import FREEFORM_ANGLE
 from kinform.contacts.mating.mate import aligned, mean_axes, mean_direction
-from kinform.contacts.mating.patches import GAP_SCATTER, PATCH_AREA, SCATTER_CHORDS, classify_fit
+from kinform.contacts.mating.patches import GAP_SCATTER, SCATTER_CHORDS, classify_fit
 from kinform.contacts.search.narrow_phase import Probes, verify
 from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.foundation.algebra.vectors import cross, dot, widest_gap
 from kinform.foundation.constants import SLIVER_WIDTH
 from kinform.foundation.meshes.box_pairs import meeting_boxes
 from kinform.foundation.meshes.boxes import meeting_box, middles, triangle_boxes
+from kinform.foundation.rounding import SINGLE, TINY
 from kinform.foundation.sorting import among, distinct
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
+from kinform.model.surfaces import SurfaceKind
 
-FREEFORM_KINDS = ("freeform", "torus", "revolution", "extrusion", "helicoid")
+FREEFORM_KINDS: tuple[SurfaceKind, ...] = ("freeform", "torus", "revolution", "extrusion", "helicoid")
 """Kinds whose contacts are found facet by facet."""
 TURNING_KINDS = ("torus", "revolution")
 """Of these, those that turn on themselves about an axis."""
-FREEFORM_PROBES = 400
-"""Greatest number of probes from either side of a pair of surfaces."""
-FACETS_FACING = 0.93
-"""Facets rest on each other when their normals oppose within about 20°."""
-ENCLOSING_GAP = 0.95 * math.pi
-"""rad: normals about an axis with no wider gap point to all sides."""
 
 
 def freeform_patches(pair: PairView, overlap: Flags) -> list[Patch]:
@@ -50,7 +46,7 @@ def freeform_patches(pair: PairView, overlap: Flags) -> list[Patch]:
             probed.append((surfaces, probes, shares))
     if not probed:
         return []
-    verdict = verify(pair, [probes for _, probes, _ in probed], FACETS_FACING)
+    verdict = verify(pair, [probes for _, probes, _ in probed], -FACING_OPPOSED)
     patches = []
     for (surfaces, probes, shares), holds, along_a, along_b, cosine in zip(
         probed, verdict.holds, verdict.along_a, verdict.along_b, verdict.cosine, strict=True
@@ -97,7 +93,7 @@ def _may_face(pair: PairView, rows: Ints, columns: Ints, flags: Flags) -> list[t
             return [(int(i), int(j), None) for i, j in np.argwhere(flags)]
         one, two = met
         opposed = dot(normals[0].take(one, axis=0), normals[1].take(two, axis=0))
-        kept = (opposed < SURELY_FACING - FACETS_FACING) & flags[owners[0][one], owners[1][two]]
+        kept = (opposed < SINGLE + FACING_OPPOSED) & flags[owners[0][one], owners[1][two]]
         keys.append((owners[0][one] * flags.shape[1] + owners[1][two])[kept])
         able.append(facets[side].take(met[side][kept]))
     out: list[tuple[int, int, _Facing]] = []
@@ -121,13 +117,13 @@ def _probes(pair: PairView, surfaces: SurfacePair, facing: _Facing) -> tuple[Pro
         inside = meeting_box(centres, centres, low, high)
         # facets without area have no normal
         within = np.nonzero(inside & (part.index.areas(facets) > 0.0))[0]
-        chosen = within[:: max(1, math.ceil(len(within) / FREEFORM_PROBES))]
+        chosen = within[:: max(1, math.ceil(len(within) / SAMPLES))]
         areas = part.index.areas(facets[chosen])
         total = float(part.index.areas(facets[within]).sum())
         able = slice(None) if facing is None else np.flatnonzero(among(facets[chosen], facing[k]))
         points.append(centres[chosen][able])
         normals.append(sense * part.normals(facets[chosen])[able])
-        shares.append((0.5 * areas * total / max(float(areas.sum()), 1e-300))[able])
+        shares.append((0.5 * areas * total / max(float(areas.sum()), TINY))[able])
     place = np.concatenate(points)
     gaps, reaches = np.zeros(len(place)), np.full(len(place), reach)
     return Probes.of(place, np.concatenate(normals), gaps, reaches, surfaces), np.concatenate(shares)
@@ -177,7 +173,7 @@ def _turning(patch: Patch, pair: PairView, surfaces: SurfacePair) -> Patch:
         return patch
     velocity = cross(axes.axis, patch.points - axes.point)
     speed = np.linalg.norm(velocity, axis=1)
-    along = velocity / np.maximum(speed, 1e-300)[:, None]
+    along = velocity / np.maximum(speed, TINY)[:, None]
     normals = patch.normals - dot(patch.normals, along)[:, None] * along
     return replace(
         patch,
@@ -204,7 +200,8 @@ def _sliding(patch: Patch, pair: PairView, surfaces: SurfacePair) -> Patch:
     if max(spread) > alignment or angle > alignment + 2.0 * uncertainty:
         return patch
     scatter = math.sqrt(float(patch.weights @ (patch.gaps - patch.gap) ** 2) / patch.area)
-    encloses = widest_gap(patch.normals, axis) < ENCLOSING_GAP
+    # normals about an axis with no gap of half a turn point to all sides
+    encloses = widest_gap(patch.normals, axis) < (0.95 * math.pi)
     if scatter > max(GAP_SCATTER * pair.tolerance, SCATTER_CHORDS * patch.chord) and not encloses:
         # two cams: they curve away from each other, and touch along a line
         return patch

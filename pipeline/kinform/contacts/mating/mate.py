@@ -16,15 +16,18 @@ from kinform.contacts.constants import MATING_REACH
 from kinform.contacts.mating.charts import Chart
 from kinform.contacts.search.pair_view import CLEARANCE_SHARE, PairView, SurfacePair
 from kinform.foundation.algebra.vectors import cross, norm
+from kinform.foundation.rounding import ARITHMETIC, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
+from kinform.model.contacts import PatchKind
 
 HALF_RADIUS_SHARE = 3.0
-"""A radial gap of the radius divided by this is no fit."""
+"""A radial gap of more than the radius divided by this is no fit. Chosen, not measured."""
 MATING_TILT = math.radians(5.0)
-"""rad: no clearance excuses a greater angle between two mating axes."""
+"""rad: largest angle between two axes that mate, whatever the clearance. Chosen, not measured."""
 MATING_OFFSET = 0.5
-"""By so much axes or centres of surfaces that mate may miss each other beyond the clearance."""
+"""Distance, in contact tolerances, by which axes or centres of surfaces that mate may miss each other beyond the
+clearance. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +39,7 @@ class Mate:
     """
 
     surfaces: SurfacePair
-    kind: str
+    kind: PatchKind
     chart: Chart
     sign: float
     axis: Array
@@ -77,7 +80,7 @@ def radial_limit(play: float, radius: float) -> float:
 
 def _shares(first: float, second: float) -> tuple[float, float]:
     """Weights of two estimates with these uncertainties, summing to 1."""
-    floor = 1e-3 * max(first, second, 1e-300)
+    floor = 1e-3 * max(first, second, TINY)
     one, two = 1.0 / max(first, floor) ** 2, 1.0 / max(second, floor) ** 2
     return one / (one + two), two / (one + two)
 
@@ -130,6 +133,6 @@ def mean_axes(surfaces: SurfacePair, middle: Array) -> Axes:
 def aligned(pair: PairView, axes: Axes, clearance: float, length: float) -> bool:
     """Whether two axes agree: to what the clearance allows over the engaged length, or within `alignment`."""
     spare = max(clearance, 0.0)
-    tilt = pair.tolerances.alignment + 2.0 * axes.uncertainty[0] + 2.0 * spare / max(length, 1e-12)
+    tilt = pair.tolerances.alignment + 2.0 * axes.uncertainty[0] + 2.0 * spare / max(length, ARITHMETIC)
     offset = spare + min(2.0 * axes.uncertainty[1], pair.tolerance) + MATING_OFFSET * pair.tolerance
     return axes.misalignment <= min(tilt, MATING_TILT) and axes.offset <= offset

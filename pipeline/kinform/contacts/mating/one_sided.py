@@ -14,14 +14,15 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from kinform.contacts.constants import CLEARLY, FACING_OPPOSED, GIVER_AREA, MATING_REACH
+from kinform.contacts.constants import FACING_OPPOSED, FLUSH_ANGLE, MATING_REACH, PATCH_AREA
 from kinform.contacts.mating.charts import Chart, ConeChart, CylinderChart, PlaneChart, SphereChart, perpendicular
-from kinform.contacts.mating.constants import SURELY_FACING
 from kinform.contacts.mating.mate import Mate
 from kinform.contacts.search.pair_view import PairView, SurfacePair, boxes_of
 from kinform.foundation.algebra.vectors import dot, lengths
 from kinform.foundation.meshes.box_pairs import Boxes, meeting_boxes
 from kinform.foundation.meshes.boxes import meeting_box, middles
+from kinform.foundation.meshes.surface_table import CONE, PLANE, SPHERE, TORUS
+from kinform.foundation.rounding import SINGLE, SOLVED, TINY
 from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
@@ -29,14 +30,10 @@ from kinform.model.surfaces import KINDS
 
 ANALYTIC_KINDS = ("plane", "cylinder", "cone", "sphere")
 """Kinds of surfaces that give normals to others."""
-PLANES_TILTED = math.radians(3.0)
-"""rad: planes that oppose each other within this lie on each other badly; beyond, they meet at an edge."""
 
 
 _ANALYTIC = np.array([kind in ANALYTIC_KINDS for kind in KINDS])
 """Which kinds of surfaces have equations, by their numbers."""
-
-_PLANE, _SPHERE, _CONE = (KINDS.index(kind) for kind in ("plane", "sphere", "cone"))
 
 
 def one_sided_mates(pair: PairView, overlap: Flags) -> list[Mate]:
@@ -68,7 +65,7 @@ def _beside(view: PairView, wanted: Flags) -> Iterator[tuple[int, int, Ints]]:
     kept = (wanted[row, column]).nonzero()[0]
     row, column, facets = row.take(kept), column.take(kept), every.take(two.take(kept))
     normals = view.b.normals(facets)
-    flat = giver.kinds.take(row) == _PLANE
+    flat = giver.kinds.take(row) == PLANE
     outward = giver.sides.take(row)[:, None] * giver.axes.take(row, axis=0)
     kept = (~flat | (dot(outward, normals) < FACING_OPPOSED)).nonzero()[0]
     row, column, facets, normals = row.take(kept), column.take(kept), facets.take(kept), normals.take(kept, axis=0)
@@ -101,24 +98,24 @@ def _may_rest(view: PairView, rows: Ints, facets: Ints, normals: Array) -> Flags
     axes, kinds = giver.axes.take(rows, axis=0), giver.kinds.take(rows)
     arms = corners - giver.points.take(rows, axis=0)[:, None]
     heights = along = np.einsum("kij,kj->ki", arms, axes)
-    spare = CLEARLY * (np.abs(arms).max(initial=0.0) + giver.radii.max(initial=0.0))
+    spare = SOLVED * (np.abs(arms).max(initial=0.0) + giver.radii.max(initial=0.0))
     out = np.ones(len(rows), bool)
-    curved = np.flatnonzero(kinds != _PLANE)
+    curved = np.flatnonzero(kinds != PLANE)
     if len(curved):
         rows, kinds, axes, along = rows.take(curved), kinds.take(curved), axes.take(curved, axis=0), along[curved]
-        along[kinds == _SPHERE] = 0.0
+        along[kinds == SPHERE] = 0.0
         across = arms[curved] - along[..., None] * axes[:, None]
-        conical = kinds == _CONE
+        conical = kinds == CONE
         half = np.where(conical, giver.half_angles.take(rows), 0.0)
         cosine, sine = np.cos(half), np.sin(half)
         radius = np.where(conical, 0.0, giver.radii.take(rows))
         heights[curved] = lengths(across) * cosine[:, None] - along * sine[:, None] - radius[:, None]
         radial = middles(across)
-        radial /= np.maximum(lengths(radial), 1e-300)[:, None]
+        radial /= np.maximum(lengths(radial), TINY)[:, None]
         outward = cosine[:, None] * radial - sine[:, None] * axes
         facing = giver.sides.take(rows) * dot(outward, normals.take(curved, axis=0))
         # of a middle that is nearly on the axis nothing is clear
-        out[curved] = (facing < FACING_OPPOSED + SURELY_FACING) | (lengths(middles(across)) <= 1e3 * spare)
+        out[curved] = (facing < FACING_OPPOSED + SINGLE) | (lengths(middles(across)) <= 1e3 * spare)
     limit = MATING_REACH * view.tolerance + spare
     return np.asarray(out & (heights.min(axis=1) <= limit) & (heights.max(axis=1) >= -limit))
 
@@ -150,9 +147,9 @@ def _givers_and_takers(view: PairView, overlap: Flags, first: bool) -> Flags:
     the other that rests on it, and planes with larger planes that they lie on askew; of planes of one size that of the
     `first` part gives."""
     giver, taker = view.near
-    large = giver.areas >= GIVER_AREA * view.tolerance**2
+    large = giver.areas >= PATCH_AREA * view.tolerance**2
     resting = _ANALYTIC[giver.kinds][:, None] & ~_ANALYTIC[taker.kinds]
-    flat = (giver.kinds == _PLANE)[:, None] & (taker.kinds == _PLANE)
+    flat = (giver.kinds == PLANE)[:, None] & (taker.kinds == PLANE)
     rows, columns = np.nonzero(overlap & large[:, None] & (resting | flat))
     flags = np.zeros(overlap.shape, bool)
     if not len(rows):
@@ -160,13 +157,13 @@ def _givers_and_takers(view: PairView, overlap: Flags, first: bool) -> Flags:
     kinds = giver.kinds[rows], taker.kinds[columns]
     resting = resting[rows, columns]
     # a ball touches the groove of a ring along a circle or at a point, as `rounds` knows, and does not rest in it
-    resting &= (kinds[0] != _SPHERE) | (kinds[1] != KINDS.index("torus"))
+    resting &= (kinds[0] != SPHERE) | (kinds[1] != TORUS)
     angle = np.arccos(np.clip(-dot(giver.axes[rows], taker.axes[columns]), -1.0, 1.0))
     spread = giver.axis_uncertainty[rows] + taker.axis_uncertainty[columns]
     areas = giver.areas[rows], taker.areas[columns]
     larger = areas[0] >= areas[1] if first else areas[0] > areas[1]
     askew = flat[rows, columns] & larger
-    askew &= (angle > view.tolerances.alignment + spread) & (angle < PLANES_TILTED)
+    askew &= (angle > view.tolerances.alignment + spread) & (angle < FLUSH_ANGLE)
     flags[rows, columns] = resting | askew
     return flags
 

@@ -13,24 +13,22 @@ from collections.abc import Sequence
 import numpy as np
 from manifold3d import CrossSection, FillRule, triangulate
 
+from kinform.contacts.constants import RIM_POINTS
 from kinform.contacts.mating.cells import Cells, Cut, gathered, signed_areas
 from kinform.contacts.mating.charts import Chart
 from kinform.contacts.mating.regions import regions
 from kinform.foundation.algebra.vectors import lengths
-from kinform.foundation.joined import joined
+from kinform.foundation.concatenation import concatenated
 from kinform.foundation.meshes.boxes import triangle_boxes
+from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
 
 PATCH_BINS = 24
-"""Least number of bins of a patch, so that a blocked part of it can be told."""
-PATCH_RIM_POINTS = 96
-"""Greatest number of points that stand for the rim."""
+"""Fewest bins of a patch, so that a blocked part of it can be told. Chosen, not measured."""
 REGION_THIN = 0.01
-"""Regions thinner than this are lines, not patches."""
-REGION_SIMPLE = REGION_THIN * 0.1
-"""Corners of a region that are off by less than this are left out."""
+"""Width, in contact tolerances, below which a region is a line, not a patch. Chosen, not measured."""
 REGION_SMALL = 0.02
-"""Regions smaller than this share of the squared tolerance are points, not patches."""
+"""Area, in squared contact tolerances, below which a region is a point, not a patch. Chosen, not measured."""
 
 
 def _perimeter(polygons: list[Array]) -> float:
@@ -44,7 +42,7 @@ def _resampled(polygon: Array, step: Array) -> Array:
     ends = np.concatenate([polygon[1:], polygon[:1]])
     if step[0] == step[1] == math.inf:
         return np.asarray(polygon + 0.0 * (ends - polygon))
-    counts = np.maximum(np.ceil((np.abs(ends - polygon) / step).max(axis=1) - 1e-9), 1).astype(np.int64)
+    counts = np.maximum(np.ceil((np.abs(ends - polygon) / step).max(axis=1) - SOLVED), 1).astype(np.int64)
     rows = np.repeat(np.arange(len(polygon)), counts)
     first = np.repeat(np.cumsum(counts) - counts, counts)
     share = (np.arange(len(rows)) - first) / counts[rows]
@@ -60,7 +58,7 @@ def _overlaps(asked: Sequence[tuple[Chart, Array, Array, float, float]]) -> list
         return out
     sets = [flat for k in some for flat in flats[k]]
     counts = [len(flat) for flat in sets]
-    flat, starts = joined(sets), np.cumsum([0, *counts[:-1]])
+    flat, starts = concatenated(sets), np.cumsum([0, *counts[:-1]])
     low, high = triangle_boxes(flat)
     least, most = np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)
     least, most = np.maximum(least[0::2], least[1::2]), np.minimum(most[0::2], most[1::2])
@@ -87,7 +85,8 @@ def _pieces(region: CrossSection, thin: float) -> list[list[Array]]:
     """The connected pieces of a region that are neither points nor narrower than `thin`, as polygons."""
     pieces = []
     for piece in region.decompose():
-        polygons = [np.asarray(p) for p in piece.simplify(REGION_SIMPLE).to_polygons()]
+        # corners that are off by a tenth of a thin region are left out
+        polygons = [np.asarray(p) for p in piece.simplify(REGION_THIN * 0.1).to_polygons()]
         area = piece.area()
         if polygons and area >= REGION_SMALL and 2.0 * area >= thin * _perimeter(polygons):
             pieces.append(polygons)
@@ -99,7 +98,7 @@ def _rim(polygons: list[Array], flat: bool) -> Array:
     corners = np.concatenate(polygons)
     if flat:
         corners = np.concatenate([np.asarray(p) for p in CrossSection.hull_points(corners).to_polygons()])
-    every = math.ceil(len(corners) / PATCH_RIM_POINTS)
+    every = math.ceil(len(corners) / RIM_POINTS)
     return np.asarray(corners[::every])
 
 

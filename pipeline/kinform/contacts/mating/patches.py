@@ -8,22 +8,20 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.contacts.constants import EXACT_GAP, MATING_REACH, PROBE_SPARE
+from kinform.contacts.constants import EXACT_GAP, MATING_REACH, PATCH_AREA, PROBE_SPARE
 from kinform.contacts.mating.cells import Cells, probed, quadratures
 from kinform.contacts.mating.mate import Mate
 from kinform.contacts.mating.overlay import overlays
 from kinform.contacts.search.narrow_phase import Probes, verify_all
 from kinform.contacts.search.pair_view import PairView
 from kinform.model.arrays import Array, freeze
-from kinform.model.contacts import Patch
+from kinform.model.contacts import Fit, Patch
 
 GAP_SCATTER = 0.1
-"""Scatter of the measured gap of a face that rests on a plane, and of profiles that lie along each other."""
+"""Scatter, in contact tolerances, of the measured gap of a face that rests on a plane, and of profiles that lie along
+each other. Chosen, not measured."""
 SCATTER_CHORDS = 0.3
-"""The same on curved surfaces, as a share of the chord error, where that is more."""
-PATCH_AREA = 4.0
-"""Least area, in squared tolerances, of patches that are measured by facets: less is a stray touch of two rounded
-edges."""
+"""The same on curved surfaces, as a share of the chordal deviation, where that is more. Chosen, not measured."""
 
 
 def mated_patches(pair: PairView, mates: list[Mate]) -> list[Patch]:
@@ -108,7 +106,7 @@ def _probes(mate: Mate, flat: Array, tolerance: float) -> Probes:
     return Probes.of(points, mate.sign * mate.chart.normals(points), gaps, reach, mate.surfaces)
 
 
-def classify_fit(gaps: Array, chord: float, uncertainty: float, tolerance: float) -> str:
+def classify_fit(gaps: Array, chord: float, uncertainty: float, tolerance: float) -> Fit:
     """Fit of a patch by its signed gaps (n,) m.
 
     Beyond chord errors and uncertainty: clearance, or interference. No gap at all, as far as the surfaces

@@ -12,25 +12,24 @@ from itertools import accumulate
 import numpy as np
 from manifold3d import CrossSection, FillRule
 
-from kinform.contacts.mating.cells import POINT_SAME, signed_areas
-from kinform.foundation.alike import numbered_alike
-from kinform.foundation.joined import joined
+from kinform.contacts.mating.cells import signed_areas
+from kinform.foundation.algebra.vectors import NEXT
+from kinform.foundation.concatenation import concatenated
+from kinform.foundation.equal_rows import number_equal_rows
+from kinform.foundation.rounding import ARITHMETIC, SINGLE
 from kinform.foundation.sorting import numbered
 from kinform.model.arrays import Array, Ints
-
-MANY_TRIANGLES = 64
-"""Triangles of which the outline is quicker to unite than all of them."""
 
 
 def regions(flats: Sequence[Array], units: Sequence[float]) -> list[CrossSection]:
     """The union of each of some sets of triangles (n, 3, 2) m, in units of its unit (m)."""
     if not flats:
         return []
-    flat, owner, unit = joined(flats), np.repeat(np.arange(len(flats)), [len(f) for f in flats]), np.array(units)
+    flat, owner, unit = concatenated(flats), np.repeat(np.arange(len(flats)), [len(f) for f in flats]), np.array(units)
     signed, own = signed_areas(flat), unit.take(owner)
     turned = signed < 0.0
     flat = (np.where(turned[:, None, None], flat[:, ::-1], flat) if turned.any() else flat) / own[:, None, None]
-    large = np.abs(signed) > 1e-12 * own * own
+    large = np.abs(signed) > ARITHMETIC * own * own
     if not large.all():
         flat, owner = flat[large], owner[large]
     ends = np.searchsorted(owner, np.arange(len(flats) + 1)).tolist()
@@ -38,7 +37,8 @@ def regions(flats: Sequence[Array], units: Sequence[float]) -> list[CrossSection
     for k, (i, j) in enumerate(zip(ends[:-1], ends[1:], strict=True)):
         if loops[k] is None:
             own = flat[i:j]
-            loops[k] = _outline(own) if j - i > MANY_TRIANGLES else list(np.ascontiguousarray(own))
+            # of more triangles the outline is quicker to unite than all of them
+            loops[k] = _outline(own) if j - i > 64 else list(np.ascontiguousarray(own))
     return [CrossSection(outline, FillRule.Positive) for outline in loops]
 
 
@@ -48,9 +48,9 @@ def _simple_outlines(flat: Array, owner: Ints, count: int) -> list[list[Array] |
     do, and there are far fewer of them. Each from its lowest corner on, and by that; None of sets in which several
     edges leave one corner."""
     points, of_point = flat.reshape(-1, 2), np.repeat(owner, 3)
-    cells = np.round(points / POINT_SAME)
+    cells = np.round(points / SINGLE)
     cells += 0.0  # one zero
-    first, corner = numbered_alike([*np.ascontiguousarray(cells.T).view(np.uint64), of_point.view(np.uint64)])
+    first, corner = number_equal_rows([*np.ascontiguousarray(cells.T).view(np.uint64), of_point.view(np.uint64)])
     leaving, reaching, times = _one_way(corner)
     of_corner = of_point.take(first)
     out: list[list[Array] | None] = [[] for _ in range(count)]
@@ -85,9 +85,9 @@ def _simple_outlines(flat: Array, owner: Ints, count: int) -> list[list[Array] |
 def _one_way(corner: Ints) -> tuple[Ints, Ints, Ints]:
     """Edges of triangles, by their numbered corners (3n,), that more triangles run one way than the other: the corners
     that they leave and reach, and how many more."""
-    total, end = int(corner.max(initial=0)) + 1, corner.reshape(-1, 3).take(_NEXT, axis=1).ravel()
+    total, end = int(corner.max(initial=0)) + 1, corner.reshape(-1, 3).take(NEXT, axis=1).ravel()
     low, high = np.minimum(corner, end), np.maximum(corner, end)
-    leads, edge = numbered_alike([(low * total + high).view(np.uint64)])
+    leads, edge = number_equal_rows([(low * total + high).view(np.uint64)])
     net = np.bincount(edge, np.where(corner < end, 1.0, -1.0), len(leads)).astype(np.int64)
     left = net.nonzero()[0]
     forward, one, two = net.take(left) > 0, low.take(leads.take(left)), high.take(leads.take(left))
@@ -96,7 +96,7 @@ def _one_way(corner: Ints) -> tuple[Ints, Ints, Ints]:
 
 def _outline(flat: Array) -> list[Array]:
     """The same of one set (n, 3, 2), whatever leaves its corners."""
-    cells = np.round(flat.reshape(-1, 2) / POINT_SAME)
+    cells = np.round(flat.reshape(-1, 2) / SINGLE)
     order = np.lexsort((cells[:, 1], cells[:, 0]))
     fresh = np.r_[True, (cells[order[1:]] != cells[order[:-1]]).any(axis=1)]
     renamed = np.empty(len(order), np.int64)
@@ -126,7 +126,3 @@ def _outline(flat: Array) -> list[Array]:
             if len(loop) > 2:
                 loops.append(points[loop])
     return loops
-
-
-_NEXT = np.array([1, 2, 0])
-"""The corner of a triangle that follows on each."""

@@ -12,31 +12,25 @@ import math
 
 import numpy as np
 
+from kinform.contacts.constants import PATCH_AREA, SAMPLES
 from kinform.contacts.mating.charts import plane_basis
 from kinform.contacts.mating.mate import Axes, aligned, mean_axes
-from kinform.contacts.mating.patches import PATCH_AREA, classify_fit
+from kinform.contacts.mating.patches import classify_fit
 from kinform.contacts.search.pair_view import PairView, PartView, SurfacePair
 from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 
 PITCH_SAME = 2e-3
-"""Relative difference of two pitches that are meant as one; less where the engagement is long."""
+"""Relative difference of two leads that are meant as one; less where the engagement is long. Chosen, not measured."""
 THREAD_AXIS_VAGUE = 0.02
-"""rad: what is known no better than this about its axis is no thread that mates."""
-THREAD_FACETS = 400
-"""Greatest number of facets of either side that give samples."""
+"""rad: uncertainty of its axis from which on a surface is no thread that mates. Chosen, not measured."""
 PROFILE_SHARES = np.array([1.0, 3.0, 5.0]) / 6.0
 """Where samples lie on the profile of a facet: the middles of its thirds."""
-FLANK_NEIGHBOURS = 24
-"""Samples of the other side that are held against each."""
-FLANK_HELIX_WEIGHT = 0.1
-"""Weight of the distance along the helix in looking for these."""
-FLANKS_FACING = -0.7
-"""Greatest cosine between the normals of two flanks that lie on each other."""
 FLANK_GAP = 0.15
-"""Greatest gap of two flanks, in pitches: beyond, neither is the other's."""
+"""Largest gap of two flanks, in leads: beyond, neither is the other's. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +72,7 @@ def _fit(pair: PairView, surfaces: SurfacePair) -> tuple[Axes, float, float] | N
     middle, size = surfaces.box()
     axes = mean_axes(surfaces, middle)
     engaged = float(size @ np.abs(axes.axis))
-    turns = engaged / max(abs(first), 1e-12)
+    turns = engaged / max(abs(first), ARITHMETIC)
     apart = abs(first - second)
     pitch = 0.5 * (first + second)
     limit = FLANK_GAP * abs(pitch)
@@ -159,15 +153,15 @@ def _profile(part: PartView, facets: Ints, axes: Axes, advance: float) -> _Profi
     along = end - start
     middle = 0.5 * (start + end)
     centre = azimuth.mean(axis=1)
-    normal = np.stack([-along[:, 1], -advance / np.maximum(middle[:, 0], 1e-300) * along[:, 0], along[:, 0]], axis=1)
-    normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
+    normal = np.stack([-along[:, 1], -advance / np.maximum(middle[:, 0], TINY) * along[:, 0], along[:, 0]], axis=1)
+    normal /= np.maximum(np.linalg.norm(normal, axis=1), TINY)[:, None]
     radial = np.cos(centre)[:, None] * base + np.sin(centre)[:, None] * aside
     sense = np.sign(dot(_turned(normal, radial, axes.axis), part.normals(facets)))
     profile = _Profile(
         start, end, normal * sense[:, None], centre, middle[:, 1] + advance * centre,
         0.5 * np.ptp(height, axis=1), part.index.areas(facets),
     )  # fmt: skip
-    return profile.select(np.flatnonzero((spans.max(axis=1) > 1e-9 * distance.max(initial=0.0)) & (sense != 0)))
+    return profile.select(np.flatnonzero((spans.max(axis=1) > SOLVED * distance.max(initial=0.0)) & (sense != 0)))
 
 
 def _wrapped(angle: Array) -> Array:
@@ -197,7 +191,7 @@ def _places(profile: _Profile, pitch: float) -> tuple[Ints, Array, Array, Array,
     azimuth = profile.azimuth[facet]
     normal = profile.normal[facet].copy()
     # the slope of the helix changes with the distance from the axis
-    normal[:, 1] = -pitch / (2 * math.pi) * normal[:, 2] / np.maximum(points[:, 0], 1e-300)
+    normal[:, 1] = -pitch / (2 * math.pi) * normal[:, 2] / np.maximum(points[:, 0], TINY)
     normal /= np.linalg.norm(normal, axis=1)[:, None]
     return facet, points, normal, azimuth, points[:, 1] + pitch / (2 * math.pi) * azimuth
 
@@ -206,7 +200,7 @@ def _resting(mine: _Profile, other: _Profile, pitch: float, limit: float) -> _Sa
     """Samples of one side that lie within `limit` (m) of the other side's profile, and half their areas."""
     from scipy.spatial import cKDTree
 
-    kept = np.arange(0, len(mine.area), max(1, math.ceil(len(mine.area) / THREAD_FACETS)))
+    kept = np.arange(0, len(mine.area), max(1, math.ceil(len(mine.area) / SAMPLES)))
     share = len(mine.area) / max(len(kept), 1)
     facet, points, normal, azimuth, height = _places(mine.select(kept), pitch)
     if not len(facet) or not len(other.area):
@@ -218,10 +212,12 @@ def _resting(mine: _Profile, other: _Profile, pitch: float, limit: float) -> _Sa
 
     def embedded(places: Array, heights: Array) -> Array:
         turn = np.mod(places[:, 1], lead)
-        return np.stack([places[:, 0], np.where(turn >= lead, 0.0, turn), FLANK_HELIX_WEIGHT * (heights - low)], axis=1)
+        # distances along the helix count a tenth in looking for neighbours
+        return np.stack([places[:, 0], np.where(turn >= lead, 0.0, turn), 0.1 * (heights - low)], axis=1)
 
     tree = cKDTree(embedded(their_points, their_height), boxsize=[far, lead, far])
-    count = min(FLANK_NEIGHBOURS, len(their_points))
+    # samples of the other side that are held against each
+    count = min(24, len(their_points))
     _, near = tree.query(embedded(points, height), k=count)
     near = near.reshape(len(points), count)
     line = theirs[near]
@@ -231,15 +227,16 @@ def _resting(mine: _Profile, other: _Profile, pitch: float, limit: float) -> _Sa
     opposite = their_normal[near]
     gap = offset[..., 0] * opposite[..., 0] + offset[..., 1] * opposite[..., 2]
     along = other.end[line] - other.start[line]
-    length = np.maximum(np.linalg.norm(along, axis=2), 1e-300)
+    length = np.maximum(np.linalg.norm(along, axis=2), TINY)
     from_start = their_points[near] - other.start[line] + offset
     foot = np.einsum("ijk,ijk->ij", from_start, along) / length**2
     beside = np.abs(height[:, None] - their_height[near]) - other.reach[line] - mine.reach[kept][facet][:, None]
+    # normals of flanks on each other oppose within 45°
     good = (
-        (np.einsum("ijk,ijk->ij", np.broadcast_to(normal[:, None], opposite.shape), opposite) < FLANKS_FACING)
+        (np.einsum("ijk,ijk->ij", np.broadcast_to(normal[:, None], opposite.shape), opposite) < -0.7)
         & (np.abs(gap) <= limit)
-        & (foot >= -1e-6)
-        & (foot <= 1.0 + 1e-6)
+        & (foot >= -SINGLE)
+        & (foot <= 1.0 + SINGLE)
         & (beside <= limit)
     )
     best = np.argmin(np.where(good, np.abs(gap), np.inf), axis=1)

@@ -19,8 +19,9 @@ from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 
 ENCLOSED_HELD = 0.02
-"""Singular value below which patches leave a motion that is to be looked at, turn of a unit twist below which it
-slides, and speed along its normal, as a share of that of its place, above which a point or a line holds a motion."""
+"""Singular value below which patches leave a motion that is to be looked at, rotation of a unit twist below which it
+translates, and speed along its normal, as a share of that of its place, above which a point or a line holds a motion.
+Chosen, not measured."""
 
 
 def unread_surfaces(pair: PairView, patches: Sequence[Patch], reach: float) -> Flags:

@@ -10,20 +10,19 @@ from kinform.contacts.constants import TOUCHING
 from kinform.contacts.overlap.constants import EXACT_OVERLAP
 from kinform.contacts.search.pair_view import PairView, PartView
 from kinform.foundation.algebra.vectors import norm
-from kinform.foundation.meshes.apart import keep_apart
 from kinform.foundation.meshes.probes import Region, crossings_of
+from kinform.foundation.meshes.separated_sets import surely_separated
+from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 
-CURVED_FIRST = 20_000
-"""Facets of a part up to which those of its round surfaces in contact are asked first whether they cross others."""
-PARTING_STEPS = 60
-"""Steps of Frank and Wolfe's method."""
 PARTING_LEAST = 0.1
-"""Least speed at which parts leave all their plane contacts that counts as leaving them, of 1."""
+"""Least speed, of 1, at which parts leave all their plane contacts that counts as leaving them. Chosen, not
+measured."""
 PARTING_TRIED = 0.9
-"""Share of what counts as an overlap by which parts are moved to see whether they are then free."""
+"""Share of what counts as an overlap by which parts are moved to see whether they are then free: less than all, so that
+what is free then is free with certainty."""
 
 
 def boundaries_cross(asked: Sequence[tuple[PairView, list[Patch]]]) -> list[bool | None]:
@@ -81,7 +80,7 @@ def _clear(pairs: dict[int, PairView]) -> set[int]:
     for pair in pairs.values():
         first, second = (part.corners(part.probed) for part in pair.parts)
         asked.append((first, second, EXACT_OVERLAP * norm(_SHIFT) * pair.tolerance))
-    return {k for k, far in zip(pairs, keep_apart(asked), strict=True) if far}
+    return {k for k, far in zip(pairs, surely_separated(asked), strict=True) if far}
 
 
 def _parted(pair: PairView, move: Array) -> bool:
@@ -107,7 +106,8 @@ def _curved(pair: PairView, patches: list[Patch]) -> tuple[Region, Region] | Non
     tight = [
         patch for patch in patches if patch.kind in ("cylinder", "cone", "sphere") and 2.0 * patch.gap <= patch.chord
     ]
-    if not tight or max(len(part.faces) for part in pair.parts) > CURVED_FIRST:
+    # facets up to which those of round surfaces in contact are asked first
+    if not tight or max(len(part.faces) for part in pair.parts) > 20_000:
         return None
     ids = [{patch.surfaces[k] for patch in tight} for k in (0, 1)]
     out = []
@@ -149,10 +149,11 @@ def parting(patches: list[Patch]) -> Array | None:
     if not len(normals):
         return None
     nearest = np.add.reduce(normals, axis=0) / len(normals)
-    for _ in range(PARTING_STEPS):
+    # steps of Frank and Wolfe's method
+    for _ in range(60):
         step = normals[np.argmin(normals @ nearest)] - nearest
         gain = -float(step @ nearest)
-        if gain <= 1e-9:
+        if gain <= SOLVED:
             break
         nearest = nearest + min(1.0, gain / float(step @ step)) * step
     length = float(np.linalg.norm(nearest))

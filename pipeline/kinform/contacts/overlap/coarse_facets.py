@@ -19,7 +19,8 @@ from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.constants import STANDOFF_EDGES
 from kinform.foundation.meshes.box_pairs import Boxes, meeting_boxes
 from kinform.foundation.meshes.boxes import meeting_box
-from kinform.foundation.meshes.closest import distances_between
+from kinform.foundation.meshes.closest_facets import distances_between
+from kinform.foundation.meshes.surface_table import PLANE
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances
@@ -32,7 +33,6 @@ COARSE_AT_ONCE = 4_000_000
 
 _FREE = [KINDS.index(kind) for kind in ("helicoid", "revolution", "extrusion", "freeform")]
 """Kinds whose chord errors are estimates."""
-_PLANE = KINDS.index("plane")
 
 
 class CoarseFacets:
@@ -82,7 +82,7 @@ class _Side:
         self.part, self.floor, self.tolerances = part, floor, tolerances
         table = part.table
         self.free = np.isin(table.kinds, _FREE)
-        self.slacks = np.where(table.kinds == _PLANE, 0.0, table.slacks)
+        self.slacks = np.where(table.kinds == PLANE, 0.0, table.slacks)
         self.bounds = self.slacks + np.where(self.free, (STANDOFF_EDGES - 1.0) * table.chords, 0.0)
         self.most = float(self.bounds.max(initial=0.0))
 

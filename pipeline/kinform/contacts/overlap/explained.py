@@ -23,17 +23,14 @@ from kinform.contacts.overlap.solids import bounds_volume
 from kinform.contacts.search.pair_view import PairView, PartView
 from kinform.foundation.meshes.boxes import middles
 from kinform.foundation.meshes.slivers import CROSSED_FEW, CROSSED_MOST, Met, met_among, near_swept
+from kinform.foundation.meshes.surface_table import PLANE
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
-from kinform.model.surfaces import KINDS
 
 SURELY_EXPLAINED = 0.9
 """Share of the depth that surfaces which mate explain by which facets are moved to see whether all is explained: pieces
 of the overlap are then thinner, too, than what their surfaces explain, as no two sides of one are further apart."""
-
-
-_PLANE = KINDS.index("plane")
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +74,7 @@ class _Question:
         which cut these off or lie in one."""
         for part, facets, places, may in zip(self.parts, self.facets, met, self.mating, strict=True):
             if self.cut_off:
-                may = may | _flags(part, (part.table.kinds == _PLANE).nonzero()[0])
+                may = may | _flags(part, (part.table.kinds == PLANE).nonzero()[0])
             if not may[part.surfaces.labels[facets[places]]].all():
                 return False
         return True
@@ -166,7 +163,7 @@ def _of_round_surfaces(pair: PairView, patch: Patch) -> bool:
     """Whether both its surfaces are round, not flats that stand for one, and it is not of lines, along which others
     that do not mate lie as near."""
     kinds = [part.table.kinds[k] for part, k in zip(pair.parts, patch.surfaces, strict=True)]
-    return patch.kind != "line" and _PLANE not in kinds
+    return patch.kind != "line" and PLANE not in kinds
 
 
 def _explained_by(patch: Patch, allowance: Allowance) -> float:

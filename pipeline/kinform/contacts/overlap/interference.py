@@ -12,22 +12,21 @@ import math
 
 import numpy as np
 
+from kinform.contacts.constants import SAMPLES
 from kinform.contacts.overlap.constants import EXACT_OVERLAP
 from kinform.contacts.overlap.samples import Allowance, Samples, inset, joined_samples, measured, measured_on
 from kinform.contacts.overlap.shrunk import are_within
-from kinform.contacts.overlap.slight import DEPTH_SAMPLES, counts_of, is_slight
+from kinform.contacts.overlap.slight import counts_of, is_slight
 from kinform.contacts.overlap.solids import Piece, SolidStore, bounds_volume
 from kinform.contacts.search.pair_view import PairView, PartView, near_facets
 from kinform.foundation.meshes.boxes import middles
-from kinform.foundation.meshes.parity import winding
+from kinform.foundation.meshes.ray_parity import winding
 from kinform.model.arrays import Array, Flags, Ints, freeze
-from kinform.model.contacts import Interference, Patch
+from kinform.model.contacts import Interference, OverlapMethod, Patch
 
 SURELY_INSIDE = 0.75
 """How often the facets of an open mesh go round a point that counts as inside: of a round gap in them, as wide as it is
 deep, less is seen, and what lies nearer to the gap has no depth that is known."""
-BESIDE_DEEPEST = 100
-"""Points beside the deepest one that are measured too."""
 CUT_FEW = 1500
 """Facets of either part up to which a cut takes no longer, 2 ms, than it takes to see that none is needed, where round
 surfaces touch and one mostly is."""
@@ -112,7 +111,8 @@ def _deepest(a: PartView, b: PartView, piece: Piece, samples: Samples, deep: Fla
     best = int(np.argmax(np.where(deep, samples.depth, -math.inf)))
     points, part, facet = _points_of(piece)
     off = np.linalg.norm(points - samples.points[best], axis=1)
-    beside = np.lexsort((np.arange(len(off)), off))[:BESIDE_DEEPEST]
+    # a hundred points beside the deepest one are measured too
+    beside = np.lexsort((np.arange(len(off)), off))[:100]
     more = measured_on(a, b, points[beside], part[beside], facet[beside])
     return max(float(samples.depth[best]), float(more.depth.max()))
 
@@ -196,14 +196,14 @@ def _crossed(owner: PartView, other: PartView) -> tuple[Array, Ints]:
     corners = owner.vertices.take(owner.faces[near], axis=0)
     points, facets = inset(corners, middles(corners)), np.concatenate([near, np.repeat(near, 3)])
     within = np.nonzero(((points > other.low) & (points < other.high)).all(axis=1))[0]
-    chosen = within[:: max(1, math.ceil(len(within) / DEPTH_SAMPLES))]
+    chosen = within[:: max(1, math.ceil(len(within) / SAMPLES))]
     points, facets = points[chosen], facets[chosen]
     inside = other.index.contains(other.to_part(points))
     return points[inside], facets[inside].astype(np.int64)
 
 
 def _interference(
-    a: PartView, b: PartView, volume: float, depth: float, place: Array, mated: bool, method: str
+    a: PartView, b: PartView, volume: float, depth: float, place: Array, mated: bool, method: OverlapMethod
 ) -> Interference:
     names = (a.part.name, b.part.name)
     return Interference(names, volume, depth, np.asarray(freeze(place)), mated, method)

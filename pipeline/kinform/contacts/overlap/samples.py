@@ -14,7 +14,8 @@ from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 
 SHELL_INSET = 0.98
-"""Points just inside the corners of a facet are at this share of the way to them from its middle."""
+"""Points just inside the corners of a facet are at this share of the way to them from its middle. Chosen, not
+measured."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,7 +20,8 @@ from kinform.foundation.meshes.slivers import crossing
 from kinform.model.arrays import Array, Ints
 
 SHELL_TRIED = 16
-"""Facets of a shell of which one that is not at the surface of another solid tells whether the shell is in it."""
+"""Facets of a shell that are tried for one that is not at the surface of another solid: one tells whether the shell is
+in it. Chosen, not measured."""
 
 
 def are_within(a: PartView, b: PartView, least: float) -> bool:

@@ -8,33 +8,25 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.contacts.constants import SAMPLES
 from kinform.contacts.overlap.samples import SHELL_INSET, Allowance, measured_on
 from kinform.contacts.overlap.solids import Overlap
 from kinform.contacts.search.pair_view import PartView
 from kinform.foundation.meshes.boxes import middles, triangle_boxes
-from kinform.foundation.meshes.closest import distances_between
+from kinform.foundation.meshes.closest_facets import distances_between
+from kinform.foundation.rounding import SINGLE
 from kinform.foundation.sorting import distinct, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
-DEPTH_SAMPLES = 400
-"""Points at which the depth of one pair's overlap is measured."""
-DEPTH_SAMPLES_LEAST = 16
-"""The same of one piece of it, at least."""
-SURELY_SLIGHT = 1e-6
-"""Share of a volume by which it is surely less than another: far more than rounding."""
 SLIGHT_MOST = 400_000
 """Points times the facets that bound their piece up to which it is asked which are near each other: 10 MB, and 5 ms."""
-SLIGHT_SOME = 8
-"""One of so many points is asked about before all are: overlaps that count are deep at most of them."""
-SLIGHT_FEW = 16
-"""Pieces up to which what is not sure to be slight is measured piece by piece at once: that takes 0.2 ms each beside
-what all take together."""
 
 
 def counts_of(own: list[int], facets: int) -> list[int]:
     """How many points of each piece are measured, of its `own` facets, of so many facets of all pieces."""
-    return [max(DEPTH_SAMPLES_LEAST, round(DEPTH_SAMPLES * number / facets)) for number in own]
+    # of one piece at least 16
+    return [max(16, round(SAMPLES * number / facets)) for number in own]
 
 
 def is_slight(a: PartView, b: PartView, overlap: Overlap, allowance: Allowance) -> bool:
@@ -43,7 +35,7 @@ def is_slight(a: PartView, b: PartView, overlap: Overlap, allowance: Allowance) 
     if not len(own):
         return True
     volumes, areas = overlap.sizes
-    thick = np.flatnonzero(volumes > (1.0 - SURELY_SLIGHT) * allowance.floor**3)
+    thick = np.flatnonzero(volumes > (1.0 - SINGLE) * allowance.floor**3)
     if not len(thick):
         return True
     counts = np.array(counts_of(own[thick].tolist(), len(overlap.cut)))
@@ -51,11 +43,12 @@ def is_slight(a: PartView, b: PartView, overlap: Overlap, allowance: Allowance) 
     row, _, piece = chosen
     part, facet = overlap.part[row], overlap.facet[row]
     points = _places(overlap.corners, row, chosen[1])
-    thickness = 2.0 * volumes[thick] / ((1.0 - SURELY_SLIGHT) * areas[thick])
+    thickness = 2.0 * volumes[thick] / ((1.0 - SINGLE) * areas[thick])
     first = _Told(points, part, _labels(a, b, part, facet), piece)
     if _is_within(a, b, overlap, thick, first, thickness, allowance):
         return True
-    if len(thick) <= SLIGHT_FEW:
+    # a few pieces are measured piece by piece: 0.2 ms each, beside what all take together
+    if len(thick) <= 16:
         return False
     samples = measured_on(a, b, points, part, facet)
     piece = np.concatenate([piece[part == 0], piece[part == 1]])
@@ -115,12 +108,12 @@ def _is_within(
         some = np.flatnonzero(side % 2 == k)
         corners[some] = part.vertices.take(part.faces[facet[some]], axis=0)
     bounded = _Bounded(side, corners, *triangle_boxes(corners))
-    allowed *= 1.0 - SURELY_SLIGHT
+    allowed *= 1.0 - SINGLE
     wanted = 2 * told.piece + 1 - told.part
     # where much is deep, some of them tell
+    # one point in eight is asked before all are: overlaps that count are deep at most of them
     return all(
-        bounded.are_near(told.points[some], wanted[some], allowed[some])
-        for some in (slice(None, None, SLIGHT_SOME), slice(None))
+        bounded.are_near(told.points[some], wanted[some], allowed[some]) for some in (slice(None, None, 8), slice(None))
     )
 
 

@@ -18,6 +18,7 @@ from kinform.contacts.search.pair_view import PartView
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.graphs.components import components
 from kinform.foundation.processes import threads_ran
+from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import ascending, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
@@ -117,7 +118,7 @@ def _scaling(mesh: Mesh) -> tuple[Array, float]:
     """Centre (3,) and scale (a power of two) that bring a mesh to the order of 1."""
     low, high = mesh.box
     middle = 0.5 * (low + high)
-    return middle, 2.0 ** math.ceil(math.log2(max(mesh.diagonal, 1e-300)))
+    return middle, 2.0 ** math.ceil(math.log2(max(mesh.diagonal, TINY)))
 
 
 @dataclass

@@ -16,26 +16,20 @@ import numpy as np
 
 from kinform.contacts.constants import CYLINDER_EXACT, MATING_REACH
 from kinform.contacts.search.pair_view import PairView, PartView, near_facets
-from kinform.foundation.meshes.apart import keep_apart
+from kinform.foundation.meshes.separated_sets import surely_separated
+from kinform.foundation.meshes.surface_table import CYLINDER
 from kinform.model.arrays import Array, Flags
-from kinform.model.surfaces import KINDS
 
-APART_FACETS = 10_000
-"""Facets of a part up to which it is asked whether it keeps apart from another: no chain of facets of one plane makes a
-turn of so few."""
 TOUCHING_WITHIN = 0.6
 """Facets on both sides of a point in which parts touch are within this of each other, and what they stand off their
 surfaces: `CAPTIVE`, and thrice `PROBE_SPARE`."""
-
-
-_CYLINDER = KINDS.index("cylinder")
 
 
 def far_apart(pairs: Sequence[PairView]) -> list[bool]:
     """Whether it is sure of each pair that no facets are so near each other that anything touches but surfaces that
     mate, or rings that stand for them: of all at once, and of one whatever the others are."""
     asked = {k: (*_facets(pair, far), far) for k, pair in enumerate(pairs) if (far := _distance(pair)) is not None}
-    told = dict(zip(asked, keep_apart(list(asked.values())), strict=True))
+    told = dict(zip(asked, surely_separated(list(asked.values())), strict=True))
     return [told.get(k, False) for k in range(len(pairs))]
 
 
@@ -43,7 +37,8 @@ def _distance(pair: PairView) -> float | None:
     """m: parts whose facets keep it do not touch; None of large parts, and where threads meet, whose flanks may be
     further apart."""
     a, b = pair.near
-    if max(len(part.faces) for part in pair.parts) > APART_FACETS:
+    # no chain of facets of one plane makes a turn of so few
+    if max(len(part.faces) for part in pair.parts) > 10_000:
         return None
     if "helicoid" in a.present and "helicoid" in b.present:
         return None
@@ -64,7 +59,7 @@ def bulge_of(part: PartView, smooth: float) -> float:
 def exact_cylinders(part: PartView) -> Flags:
     """(s,) which surfaces are cylinders whose fit is better than any curve through their vertices."""
     table = part.table
-    return np.asarray((table.kinds == _CYLINDER) & (table.residuals < CYLINDER_EXACT * table.chords))
+    return np.asarray((table.kinds == CYLINDER) & (table.residuals < CYLINDER_EXACT * table.chords))
 
 
 def _facets(pair: PairView, far: float) -> tuple[Array, Array]:

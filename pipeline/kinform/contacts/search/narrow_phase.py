@@ -17,14 +17,15 @@ import numpy as np
 from kinform.contacts.constants import FACING_LEAST
 from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.foundation.algebra.vectors import dot
-from kinform.foundation.joined import joined
+from kinform.foundation.concatenation import concatenated
 from kinform.foundation.meshes.probes import Cast, Hits, cast_all
 from kinform.foundation.sorting import heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 
 BETWEEN_MARGIN = 0.01
-"""What lies this close to one of the two facets that a probe meets is not between them."""
+"""Distance, in contact tolerances, from one of the two facets that a probe meets within which nothing counts as between
+them. Chosen, not measured."""
 BETWEEN_SHARE = 0.05
 """The same as a share of the distance of the two facets."""
 
@@ -96,7 +97,9 @@ def verify(pair: PairView, sets: list[Probes], facing: float = FACING_LEAST) -> 
 
 def verify_all(asked: Sequence[tuple[PairView, list[Probes]]], facing: float = FACING_LEAST) -> list[Verdict]:
     """The same of several pairs at once."""
-    together = [Probes(*(joined([getattr(p, f.name) for p in sets]) for f in fields(Probes))) for _, sets in asked]
+    together = [
+        Probes(*(concatenated([getattr(p, f.name) for p in sets]) for f in fields(Probes))) for _, sets in asked
+    ]
     casts = [
         Cast(part.region, part.to_part(probes.points), part.turn_to_part(probes.normals), probes.reach)
         for (pair, _), probes in zip(asked, together, strict=True)
@@ -144,14 +147,14 @@ class _Joined:
             own = hits[side::2]
             sides.append(
                 Hits(
-                    joined([hit.probe + start for hit, start in zip(own, starts, strict=False)]),
-                    *(joined([getattr(hit, name) for hit in own]) for name in ("facet", "along", "facing")),
+                    concatenated([hit.probe + start for hit, start in zip(own, starts, strict=False)]),
+                    *(concatenated([getattr(hit, name) for hit in own]) for name in ("facet", "along", "facing")),
                 )
             )
             labels.append(
-                joined([p.parts[side].surfaces.labels.take(hit.facet) for p, hit in zip(pairs, own, strict=True)])
+                concatenated([p.parts[side].surfaces.labels.take(hit.facet) for p, hit in zip(pairs, own, strict=True)])
             )
-        surfaces, gaps = (joined([getattr(p, name) for p in probes]) for name in ("surfaces", "gaps"))
+        surfaces, gaps = (concatenated([getattr(p, name) for p in probes]) for name in ("surfaces", "gaps"))
         return _Joined(pairs, starts, surfaces, gaps, (sides[0], sides[1]), (labels[0], labels[1]))
 
     def verdict(self, facing: float) -> tuple[Flags, Array, Array, Array]:
@@ -183,6 +186,6 @@ class _Joined:
         """(k, 3) of the facets of hits `chosen` (k,) of `probes` (k,), ascending, in the frames of their pairs."""
         facets = self.hits[side].facet.take(chosen)
         ends = probes.searchsorted(self.starts).tolist()
-        return joined(
+        return concatenated(
             [pair.parts[side].normals(facets[i:j]) for pair, i, j in zip(self.pairs, ends, ends[1:], strict=False)]
         )

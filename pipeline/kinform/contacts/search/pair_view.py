@@ -16,27 +16,23 @@ import numpy as np
 from kinform.contacts.constants import MATING_REACH
 from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.meshes.boxes import boxes_within, facet_boxes, meeting_box
-from kinform.foundation.meshes.index import MeshIndex, MeshStore
+from kinform.foundation.meshes.mesh_index import MeshIndex, MeshStore
+from kinform.foundation.meshes.near_facets import near_boxes
 from kinform.foundation.meshes.probes import Region
-from kinform.foundation.meshes.proximity import near_boxes
 from kinform.foundation.meshes.surface_table import SurfaceTable
 from kinform.foundation.sorting import heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Part
 from kinform.model.names import PartName
-from kinform.model.surfaces import KINDS, MeshSurfaces
+from kinform.model.surfaces import KINDS, MeshSurfaces, SurfaceKind
 from kinform.model.tolerances import Tolerances
 
 CLEARANCE_SHARE = 0.03
-"""Share of its radius that a shaft may be smaller than its bore, where that is more than the contact tolerance."""
-FEW_BESIDE = 1000
-"""Facets in the common box of two parts up to which all are taken for near: to look closer takes as long as FCL's model
-of the rest."""
+"""Share of its radius that a shaft may be smaller than its bore, where that is more than the contact tolerance. Chosen,
+not measured."""
 MOST_SURFACES = 3000
 """Surfaces of one part that a pair looks at: a bound of memory for crumpled meshes."""
-OVERLAPS_KEPT = 200_000
-"""Surfaces times surfaces of a pair up to which it is kept which come near each other: 0.2 MB."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +124,8 @@ def _facing(a: PartView, b: PartView, beside: tuple[_Boxed, _Boxed], margin: flo
     """Both parts, with those of their facets `beside` each other that come within `margin` (m) of the other as those
     that probes can meet."""
     (facets_a, low_a, high_a), (facets_b, low_b, high_b) = beside
-    if len(facets_a) + len(facets_b) > FEW_BESIDE or not len(facets_a) or not len(facets_b):
+    # of fewer facets all count as near: to look closer takes as long as FCL's model of the rest
+    if len(facets_a) + len(facets_b) > 1000 or not len(facets_a) or not len(facets_b):
         keep_a, keep_b = near_boxes(low_a, high_a, low_b, high_b, margin)
         facets_a, facets_b = facets_a[keep_a], facets_b[keep_b]
     a, b = _probed(a, facets_a, margin), _probed(b, facets_b, margin)
@@ -195,7 +192,7 @@ class NearSurfaces(SurfaceTable):
     facets: tuple[Ints, ...]
     """Near facets of each surface."""
 
-    def of_kind(self, *kinds: str) -> Ints:
+    def of_kind(self, *kinds: SurfaceKind) -> Ints:
         """Positions of the surfaces of these kinds."""
         if self.present.isdisjoint(kinds):
             return _NONE
@@ -265,7 +262,7 @@ class SurfacePair:
         return int(self.a.ids[self.row]), int(self.b.ids[self.column])
 
     @property
-    def kinds(self) -> tuple[str, str]:
+    def kinds(self) -> tuple[SurfaceKind, SurfaceKind]:
         """Of KINDS."""
         return KINDS[self.a.kinds[self.row]], KINDS[self.b.kinds[self.column]]
 
@@ -372,7 +369,8 @@ class PairView:
         known = self._overlaps.get(margin)
         if known is None:
             known = boxes_within((a.lows, a.highs), (b.lows, b.highs), margin)
-            if known.size > OVERLAPS_KEPT:
+            # surfaces times surfaces up to which it is kept which come near each other: 0.2 MB
+            if known.size > 200_000:
                 return known
             self._overlaps[margin] = known
         return known.copy()
@@ -382,7 +380,7 @@ class PairView:
         """Those that were asked for, by margin."""
         return {}
 
-    def of_kinds(self, overlap: Flags, *kinds: str) -> tuple[Ints, Ints, Flags]:
+    def of_kinds(self, overlap: Flags, *kinds: SurfaceKind) -> tuple[Ints, Ints, Flags]:
         """Positions of the near surfaces of these kinds of a (s,) and of b (t,), and the flags `overlap` of these (s,
         t)."""
         rows, columns = (side.of_kind(*kinds) for side in self.near)

@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh
 from kinform.form.meshes.weld import merge_close, merge_exact, used_only
-from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.foundation.meshes.edges import edge_table
 from kinform.foundation.meshes.shells import shells_of
+from kinform.foundation.name_hints import did_you_mean, in_quotes
 from kinform.foundation.rounding import SINGLE
 from kinform.model.arrays import Array, Ints
 

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.form.meshes.raw import Fault, MeshError
-from kinform.foundation.alike import numbered_alike
-from kinform.foundation.meshes.near import Near
+from kinform.foundation.equal_rows import number_equal_rows
+from kinform.foundation.meshes.near_points import Near
 from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array, Ints
 
@@ -45,7 +45,7 @@ def merge_exact(vertices: NDArray[np.floating]) -> tuple[Ints, Ints]:
     """
     zero = vertices.dtype.type(0)
     word = np.uint32 if vertices.dtype == np.float32 else np.uint64
-    return numbered_alike([(vertices[:, k] + zero).view(word) for k in range(3)])
+    return number_equal_rows([(vertices[:, k] + zero).view(word) for k in range(3)])
 
 
 def merge_close(vertices: Array, distance: float) -> tuple[Ints, Ints]:

@@ -28,9 +28,9 @@ from kinform.form.readers.sensors import sensors_of
 from kinform.form.readers.springs import springs_of
 from kinform.form.sources import AS_IT_IS, Reading, is_source
 from kinform.form.tables import Posed
-from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.foundation.memory import keep_heap
-from kinform.foundation.regular import AS_A_FILE, not_a_file
+from kinform.foundation.name_hints import did_you_mean, in_quotes
+from kinform.foundation.regular_files import AS_A_FILE, not_a_file
 from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array

@@ -18,7 +18,7 @@ from kinform.form.files import DesignFiles
 from kinform.form.readers.csv_tables import law_rows
 from kinform.form.readers.drive_keys import complain_of_drive, efficiencies
 from kinform.form.readers.open_manifest import Scope
-from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.name_hints import did_you_mean, in_quotes
 from kinform.foundation.rounding import SINGLE
 from kinform.model.assembly import Assumption
 from kinform.model.checks import CheckSettings, Ignore, Profile

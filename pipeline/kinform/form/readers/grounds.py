@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from kinform.form.readers.open_manifest import Scope
-from kinform.foundation.levelled import largest
+from kinform.foundation.tied_sizes import largest
 from kinform.model.assembly import Part, Subassembly
 
 

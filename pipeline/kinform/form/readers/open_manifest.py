@@ -24,7 +24,7 @@ from kinform.form.readers.toml_lines import Path as KeyPath
 from kinform.form.readers.toml_text import TomlError, read_toml
 from kinform.form.sources import Source as SourceFile
 from kinform.form.sources import SourceTables, is_scene, is_source, source_tables, unread
-from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.name_hints import did_you_mean, in_quotes
 from kinform.foundation.texts import TextError, read_text
 from kinform.foundation.units import UNITS, metres_per
 from kinform.frozen import dataclass

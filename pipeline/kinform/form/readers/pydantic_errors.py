@@ -14,7 +14,7 @@ from kinform.form.manifest import json_schema
 from kinform.form.problems import Problems
 from kinform.form.readers.places import Lines
 from kinform.form.readers.toml_lines import Path
-from kinform.foundation.meant import did_you_mean, first_names, in_quotes
+from kinform.foundation.name_hints import did_you_mean, first_names, in_quotes
 
 _UNITS = 'lengths have no default unit: write units = "mm" (or m, cm, um, in, ft)'
 

@@ -15,7 +15,7 @@ from pydantic import BaseModel
 
 from kinform.form.readers.csv_tables import path_rows
 from kinform.form.readers.function import FunctionReader
-from kinform.foundation.meant import in_quotes
+from kinform.foundation.name_hints import in_quotes
 from kinform.model.function import Requirement
 from kinform.requirements import kind_of
 from kinform.requirements.quantity import Quantity

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from kinform.form.readers.function import FunctionReader
-from kinform.foundation.meant import in_quotes
+from kinform.foundation.name_hints import in_quotes
 from kinform.model.sensors import Sensor
 
 

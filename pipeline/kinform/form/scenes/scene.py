@@ -13,7 +13,7 @@ import numpy as np
 from kinform.form.constants import FRAME_ROUNDING, PARTS_MOST
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, prevailing
 from kinform.formats.description.tree import distinct
-from kinform.foundation.meant import in_quotes
+from kinform.foundation.name_hints import in_quotes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 

@@ -17,7 +17,7 @@ from kinform.form.meshes.raw import Fault, MeshError
 from kinform.form.scenes.scene import EXPORT, Scene
 from kinform.form.sources import AS_IT_IS, Reading
 from kinform.formats.gltf.reading.reader import read_gltf
-from kinform.foundation.meant import first_names, in_quotes
+from kinform.foundation.name_hints import first_names, in_quotes
 from kinform.foundation.processes import Crash, in_own_process
 from kinform.foundation.words import counted
 

@@ -15,8 +15,8 @@ from kinform.form.scenes.reading import scene_once
 from kinform.form.scenes.scene import EXPORT, Scene, ScenePart, body_names, parts_of
 from kinform.form.sources import Source, SourceTables
 from kinform.foundation.algebra.spatial import quaternions
-from kinform.foundation.meant import first_names, in_quotes
-from kinform.foundation.regular import not_a_file
+from kinform.foundation.name_hints import first_names, in_quotes
+from kinform.foundation.regular_files import not_a_file
 from kinform.foundation.units import metres_per
 
 

@@ -19,7 +19,7 @@ from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate, pr
 from kinform.form.scenes.declarations import refuse_declarations
 from kinform.form.scenes.scene import EXPORT, Node, Scene
 from kinform.form.sources import AS_IT_IS, Reading
-from kinform.foundation.meant import in_quotes
+from kinform.foundation.name_hints import in_quotes
 from kinform.foundation.words import counted
 from kinform.model.arrays import Array
 

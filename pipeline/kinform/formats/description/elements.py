@@ -17,7 +17,7 @@ from kinform.form.constants import LARGEST_NUMBER, TEXT_BYTES, VALUE_LENGTH
 from kinform.form.problems import Problems
 from kinform.formats.description.robot import At
 from kinform.foundation.colours import told
-from kinform.foundation.meant import in_quotes
+from kinform.foundation.name_hints import in_quotes
 
 XML_DEPTH = 255
 """Elements in each other that are read: the limit of libxml2 without its option for huge trees is 256. Bodies of MJCF

@@ -22,8 +22,8 @@ from kinform.formats.description.robot import At, Inertial, Link, Robot, RobotJo
 from kinform.formats.description.tree import distinct
 from kinform.formats.registry import ROBOT_FORMATS, reader_of
 from kinform.foundation.algebra.spatial import quaternions
-from kinform.foundation.meant import first_names, in_quotes
-from kinform.foundation.regular import not_a_file
+from kinform.foundation.name_hints import first_names, in_quotes
+from kinform.foundation.regular_files import not_a_file
 from kinform.foundation.rounding import ARITHMETIC
 from kinform.foundation.units import METRES_PER_UNIT, metres_per
 from kinform.model.arrays import Array

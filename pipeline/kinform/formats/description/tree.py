@@ -8,7 +8,7 @@ import numpy as np
 
 from kinform.form.problems import Problems
 from kinform.formats.description.robot import At, Ratio
-from kinform.foundation.meant import did_you_mean, first_names, in_quotes
+from kinform.foundation.name_hints import did_you_mean, first_names, in_quotes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 

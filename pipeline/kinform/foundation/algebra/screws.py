@@ -12,11 +12,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.foundation.algebra.vectors import box, cross, norm
+from kinform.foundation.rounding import SINGLE, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 ROUNDINGS = 8.0
-"""Roundings of a coordinate in what follows from a few: positions of parts, what is measured on them, and twists."""
+"""Spacings of doubles by which a coordinate that follows from a few others is off: positions of parts, what is measured
+on them, and twists each add one or two. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,18 +77,18 @@ def scaled(twists: Array, frame: Frame) -> Array:
     return np.concatenate([omega * frame.length, at_centre])
 
 
-def span(vectors: Array, tolerance: float = 1e-6) -> Array:
+def span(vectors: Array, tolerance: float = SINGLE) -> Array:
     """Orthonormal basis (n, r) of the span of the columns of `vectors` (n, k)."""
     return spans([vectors], tolerance)[0]
 
 
-def spans(spaces: Sequence[Array], tolerance: float = 1e-6) -> list[Array]:
+def spans(spaces: Sequence[Array], tolerance: float = SINGLE) -> list[Array]:
     """As `span`, of several sets of vectors (n, k), whose numbers k may differ."""
     out = [np.zeros((len(vectors), 0)) for vectors in spaces]
     for count in {vectors.shape[1] for vectors in spaces} - {0}:
         members = [k for k, vectors in enumerate(spaces) if vectors.shape[1] == count]
         left, values, _ = np.linalg.svd(np.array([spaces[k] for k in members]), full_matrices=False)
-        kept = values > tolerance * np.maximum(values[:, :1], 1e-300)
+        kept = values > tolerance * np.maximum(values[:, :1], TINY)
         for k, vectors, of in zip(members, left, kept, strict=True):
             out[k] = vectors[:, of]
     return out

@@ -9,9 +9,12 @@ import math
 
 import numpy as np
 
+from kinform.foundation.constants import MANY
+from kinform.foundation.rounding import TINY
 from kinform.model.arrays import Array
 
-_NEXT, _AFTER = np.array([1, 2, 0]), np.array([2, 0, 1])
+NEXT, _AFTER = np.array([1, 2, 0]), np.array([2, 0, 1])
+"""Index that follows each of three, of a coordinate or a corner of a triangle, and the one after it."""
 _CROSS = np.zeros((3, 3, 3))
 for _i in range(3):
     _CROSS[_i, (_i + 2) % 3, (_i + 1) % 3] = 1.0
@@ -21,13 +24,6 @@ CROSS = _CROSS.reshape(3, 9)
 
 _UNITS = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
-SOME = 300
-"""Numbers in an array from which on lengths column by column, to the same bits, are quicker."""
-
-MANY = 3000
-"""Numbers in an array from which on products column by column, to the same bits, are quicker: at 10,000 vectors six
-times."""
-
 
 def cross(a: Array, b: Array) -> Array:
     """a × b along the last axis (…, 3), broadcast."""
@@ -36,7 +32,7 @@ def cross(a: Array, b: Array) -> Array:
         u, v, w = b.tolist()
         return np.array([y * w - z * v, z * u - x * w, x * v - y * u])
     if max(a.size, b.size) < MANY:
-        return np.asarray(a.take(_NEXT, -1) * b.take(_AFTER, -1) - a.take(_AFTER, -1) * b.take(_NEXT, -1))
+        return np.asarray(a.take(NEXT, -1) * b.take(_AFTER, -1) - a.take(_AFTER, -1) * b.take(NEXT, -1))
     out = np.empty(a.shape if a.shape == b.shape else np.broadcast(a, b).shape)
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         out[..., i] = a[..., j] * b[..., k] - a[..., k] * b[..., j]
@@ -94,7 +90,7 @@ def box(points: Array) -> tuple[Array, Array]:
 def normalised(vectors: Array) -> Array:
     """Vectors (…, 3) of length one; zero vectors stay."""
     length = np.sqrt(np.einsum("...i,...i", vectors, vectors))
-    return np.asarray(vectors / np.maximum(length, 1e-300)[..., None])
+    return np.asarray(vectors / np.maximum(length, TINY)[..., None])
 
 
 def norm(vector: Array) -> float:
@@ -106,7 +102,7 @@ def norm(vector: Array) -> float:
 
 def lengths(rows: Array) -> Array:
     """(…,) lengths of vectors (…, 3), to the bits of np.linalg.norm along the last axis."""
-    if rows.size < SOME or rows.shape[-1] != 3:
+    if rows.size < MANY or rows.shape[-1] != 3:
         return np.asarray(np.sqrt(np.add.reduce(rows * rows, axis=-1)))
     x, y, z = rows[..., 0], rows[..., 1], rows[..., 2]
     square = x * x

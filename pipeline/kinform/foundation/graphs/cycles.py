@@ -14,7 +14,8 @@ Cycle = tuple[tuple[int, int], ...]
 """(edge, +1 or −1) in the order of walking; +1 from the edge's first node to its second."""
 
 FEW = 60
-"""Up to so many edges every cycle of Horton's set is tried."""
+"""Edges up to which every cycle of Horton's set is tried: the set grows with the product of nodes and edges. Chosen,
+not measured."""
 
 
 def short_cycles(nodes: int, edges: Sequence[Edge]) -> list[Cycle]:

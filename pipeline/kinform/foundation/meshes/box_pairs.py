@@ -8,25 +8,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.joined import joined
-from kinform.foundation.meshes.boxes import FlatBoxes, meeting_box
+from kinform.foundation.concatenation import concatenated
+from kinform.foundation.meshes.boxes import BOXES_MATRIX, FlatBoxes, meeting_box
+from kinform.foundation.rounding import SOLVED, TINY
 from kinform.model.arrays import Array, Ints
 
-BOXES_MATRIX = 600_000
-"""Boxes times boxes up to which all are compared, however many of either kind there are."""
-SLAB = 600_000
-"""Boxes times boxes that are looked at in one slab, of those that can meet at all: as many as are all compared."""
-SLABS_MOST = 100
-"""Slabs in all: the horns of so101's motors have 30."""
 BOXES_COMPARED = 1_500_000
-"""The same where there are not very many of either: 1 ms; a grid takes from 0.5 ms to 4."""
+"""Boxes times boxes up to which all are compared where neither kind is very many: 1 ms, and a grid takes 0.5 to 4
+ms."""
 BOXES_EXACT = 20_000
-"""The same up to which they are compared as they are: steps of a scale take 0.04 ms to be made."""
+"""Boxes times boxes up to which they are compared as they are: to convert them to steps of a scale takes 0.04 ms."""
 BOXES_MOST = 50_000
-"""Boxes of either kind up to which a grid is made of them."""
+"""Boxes of either kind up to which a grid is made of them. Beyond, trees of FCL are faster."""
 BESIDE_MOST = 100_000
-"""Pairs in common cells up to which they are compared: a few milliseconds, in which FCL makes a tree of a thousand
-facets."""
+"""Pairs in common cells up to which they are compared: a few milliseconds, in which FCL makes a tree of 1000 facets."""
 
 
 Boxes = tuple[Array, Array]
@@ -49,9 +44,9 @@ def meeting_boxes(first: Boxes, second: Boxes, most: float = math.inf) -> tuple[
         return _compared(first, second, most)
     (low, high), (low_other, high_other) = first, second
     whole = np.maximum(high.max(axis=0), high_other.max(axis=0)) - np.minimum(low.min(axis=0), low_other.min(axis=0))
-    share = whole / np.maximum((high - low).mean(axis=0) + (high_other - low_other).mean(axis=0), 1e-300)
+    share = whole / np.maximum((high - low).mean(axis=0) + (high_other - low_other).mean(axis=0), TINY)
     axes = np.sort(np.argsort(share, kind="stable")[1:])
-    reach = 0.5 * (high - low).max(axis=0)[axes] * (1.0 + 1e-9)
+    reach = 0.5 * (high - low).max(axis=0)[axes] * (1.0 + SOLVED)
     middles = 0.5 * (low + high)
     listed = FlatBoxes(low_other[:, axes] - reach, high_other[:, axes] + reach)
     if listed.listed_at(middles[:, axes]) > BESIDE_MOST:
@@ -74,8 +69,9 @@ def meeting_in_slabs(first: Boxes, second: Boxes) -> tuple[Ints, Ints] | None:
     if not len(asked):
         return asked, asked
     low, high = low[asked], high[asked]
-    slabs = min(-(-len(asked) * len(near) // SLAB), len(asked))
-    if slabs > SLABS_MOST:
+    slabs = min(-(-len(asked) * len(near) // BOXES_MATRIX), len(asked))
+    # more slabs than this take longer than trees; the horns of the motors of so101 need 30
+    if slabs > 100:
         return None
     order = np.argsort(low[:, int(np.argmax(np.ptp(low, axis=0)))], kind="stable") if slabs > 1 else np.arange(len(low))
     found = []
@@ -86,7 +82,7 @@ def meeting_in_slabs(first: Boxes, second: Boxes) -> tuple[Ints, Ints] | None:
         if met is None:
             return None
         found.append(asked[own[met[0]]] * np.int64(len(second[0])) + near[beside[met[1]]])
-    return _split(np.sort(joined(found)), len(second[0]))
+    return _split(np.sort(concatenated(found)), len(second[0]))
 
 
 def _unless_more(most: float, met: tuple[Ints, Ints]) -> tuple[Ints, Ints] | None:

@@ -9,43 +9,43 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.foundation.constants import KEPT_FACETS
+from kinform.foundation.rounding import ARITHMETIC, TINY
 from kinform.foundation.sorting import ascending
 from kinform.model.arrays import Array, Flags, Ints
 
-CHUNK = 48
-"""Facets of a chunk."""
-OFTEN = 128
-"""Questions that are cheaper to answer without chunks than the chunks are to make: they take as long as 100 to 200 of
-them, of 20,000 facets and of 400,000."""
-CHUNKED_LEAST = 16_000
-"""Facets up to which all are asked as quickly as chunks are: 0.02 ms."""
-COLUMNS_MOST = 200_000
-"""Facets up to which the sides of their boxes are kept by columns as well, of which numpy compares as many in a third
-of the time: 10 MB."""
-GRID_FINEST = 512
-"""Cells along the side of a grid, at most."""
-GRID_LISTED = 12
-"""Cells of a grid that a facet is listed in on average, at most, ..."""
-GRID_LISTED_LEAST = 4096
-"""... and these in all, which cost nothing."""
-UNLISTED = 32
-"""Comparisons of points with boxes, a facet, that cost less than a grid."""
-FOLLOWED = 2
-"""Such comparisons that a point beside a box along one axis takes to be compared along the other."""
-COMPARED_MOST = 8000
-"""So many comparisons of points with boxes take no longer than to find out which need not be compared."""
-FOLLOWED_AT_ONCE = 500_000
-"""Of which so many, and those of one box, are compared at once: 30 MB."""
-SIZE_OCTAVES = 20
-"""Octaves of size that facets are sorted by."""
-PLACE_BITS = 10
-"""Bits of a coordinate along the Z-curve that facets are sorted along."""
-ROWS_TOGETHER = 64
-"""Rows of an array that are looked at as one for the least and the greatest of its columns."""
 BOXES_AT_ONCE = 200_000
-"""Boxes times boxes up to which all are compared with all: blocks of fewer take longer."""
+"""Boxes times boxes up to which all are compared with all in `boxes_within`: blocks of fewer take longer."""
+
+CHUNK = 48
+"""Facets of a chunk: a box is compared with all chunks, and with the facets of those that it meets. Chosen, not
+measured."""
+OFTEN = 128
+"""Questions up to which chunks are not made: to make them takes as long as 100 to 200 questions, for 20,000 facets as
+for 400,000."""
+CHUNKED_LEAST = 16_000
+"""Facets up to which comparing all takes no longer than with chunks: 0.02 ms."""
+GRID_FINEST = 512
+"""Most cells along the side of a grid: 2 MB of counts."""
+GRID_LISTED = 12
+"""Most cells of a grid that a facet is listed in on average: beyond, the grid is made coarser. Chosen, not measured."""
+UNLISTED = 32
+"""Comparisons of points with boxes a facet that together cost as much as making a grid."""
+COMPARED_MOST = 8000
+"""Comparisons of points with boxes that take no longer than finding out which of them are not needed."""
+FOLLOWED_AT_ONCE = 500_000
+"""Comparisons of points with boxes that are made at once: 30 MB."""
+SIZE_OCTAVES = 20
+"""Octaves of size that facets are sorted by: down to a millionth of the whole, where files end."""
+PLACE_BITS = 10
+"""Bits of a coordinate along the Z-curve that facets are sorted along: three coordinates fit into 31 bits, which numpy
+sorts in half of the time."""
+ROWS_TOGETHER = 64
+"""Rows that are viewed as one wide row for the least and the greatest of each column. Chosen, not measured."""
+BOXES_MATRIX = 600_000
+"""Boxes times boxes up to which all of one kind are compared with all of another; of more, so many at once."""
 BOXES_A_BLOCK = 64
-"""Neighbouring boxes of which more are compared together, with what comes near them."""
+"""Neighbouring boxes that are compared together with what comes near them. Chosen, not measured."""
 
 
 def bounds(points: NDArray[np.floating]) -> tuple[Array, Array]:
@@ -153,7 +153,7 @@ class FacetBoxes:
 
     def _meeting(self, low: Array, high: Array) -> Flags:
         """(n,) of all boxes, asked column by column where these can be kept."""
-        if len(self.low) > COLUMNS_MOST:
+        if len(self.low) > KEPT_FACETS:
             return meeting_box(self.low, self.high, low, high)
         if self._columns is None:
             self._columns = np.ascontiguousarray(self.low.T), np.ascontiguousarray(self.high.T)
@@ -173,14 +173,15 @@ class FlatBoxes:
     def _list(self) -> None:
         low, high = self.low, self.high
         self._origin = low.min(axis=0, initial=np.inf)
-        whole = np.maximum(high.max(axis=0, initial=-np.inf) - self._origin, 1e-300)
+        whole = np.maximum(high.max(axis=0, initial=-np.inf) - self._origin, TINY)
         side = int(np.clip(2.0 * np.sqrt(len(low)), 1, GRID_FINEST))
         while True:
             self._cell, self._side = whole / side, side
             left, lower, right, upper = (self._cells(column, k % 2) for k, column in enumerate(self._sides))
             wide, tall = right - left + 1, upper - lower + 1
             listed = int((wide * tall).sum())
-            if side == 1 or listed <= GRID_LISTED * len(low) + GRID_LISTED_LEAST:
+            # a few thousand entries in all cost nothing
+            if side == 1 or listed <= GRID_LISTED * len(low) + 4096:
                 break
             side = (side + 1) // 2
         # each box by the columns of cells that it covers, and each of these by its cells
@@ -240,7 +241,8 @@ class FlatBoxes:
             ranges.append((begin, places.searchsorted(self._sides[2 + axis].take(near), side="right") - begin))
         numbers = [int(number.sum()) for _, number in ranges]
         axis = 0 if numbers[0] <= numbers[1] else 1
-        self._left -= len(left) + FOLLOWED * numbers[axis]
+        # a box that one axis does not exclude is compared along the other: about two comparisons
+        self._left -= len(left) + 2 * numbers[axis]
         if self._left <= 0:
             return None
         which, box = self._along(points, axis, orders[axis], near, *ranges[axis])
@@ -302,8 +304,8 @@ def together(low: Array, high: Array) -> Ints:
     if not len(low):
         return np.zeros(0, np.int64)
     size = (high - low).max(axis=1)
-    whole = max(float((bounds(high)[1] - bounds(low)[0]).max()), 1e-300)
-    octave = np.clip(np.floor(np.log2(np.maximum(size, 1e-12 * whole) / whole)), -SIZE_OCTAVES, 0).astype(np.int64)
+    whole = max(float((bounds(high)[1] - bounds(low)[0]).max()), TINY)
+    octave = np.clip(np.floor(np.log2(np.maximum(size, ARITHMETIC * whole) / whole)), -SIZE_OCTAVES, 0).astype(np.int64)
     return np.lexsort((_places(low, high), -octave)).astype(np.int64)
 
 
@@ -315,7 +317,7 @@ def along_curve(low: Array, high: Array) -> Ints:
 def _places(low: Array, high: Array) -> Ints:
     """(n,) where the middles of boxes (n, d) are along a Z-curve."""
     dimensions, least = low.shape[1], bounds(low)[0]
-    whole = max(float((bounds(high)[1] - least).max()), 1e-300)
+    whole = max(float((bounds(high)[1] - least).max()), TINY)
     spread, code = _spread(dimensions), np.zeros(len(low), np.int64)
     for axis in range(dimensions):
         place = (0.5 * (low[:, axis] + high[:, axis]) - least[axis]) / whole * 2.0**PLACE_BITS

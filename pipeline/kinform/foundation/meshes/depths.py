@@ -9,23 +9,19 @@ import fcl
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.constants import ROWS
 from kinform.foundation.meshes.boxes import along_curve, facet_boxes
-from kinform.foundation.meshes.closest import distances_between
+from kinform.foundation.meshes.closest_facets import distances_between
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, partial_model, point_model
+from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
 
 DEPTH_FACETS = 128
-"""Facets of a group."""
-MODEL_WORTH = 1.0
-"""Questions to groups, a facet, that cost as much as a model of all facets: 8 us each, as what it takes a facet."""
+"""Facets of a group, for which FCL makes one model. Chosen, not measured."""
 DEPTH_PART = 16
-"""Facets of a part of a group."""
-DEPTH_POINTS = 2048
-"""Points that are asked together which facets they are near: 40 MB where 200 parts of groups are about each."""
-SLIVER_HEIGHT = 1e-6
-"""Share of a facet's longest side: of a lower one the plane may be off by more than 1e-9 of that."""
+"""Facets of a part of a group, the finer step of the search for near facets. Chosen, not measured."""
 
 
 class Depths:
@@ -54,7 +50,8 @@ class Depths:
         point = fcl.CollisionObject(point_model())
         for k, place in enumerate(UNIT * points):
             point.setTranslation(place)
-            many = self._asked > MODEL_WORTH * len(self._mesh.faces)
+            # a question to a group costs about what a model costs a facet, 8 µs each
+            many = self._asked > len(self._mesh.faces)
             out[k] = fcl_distance(self._whole, point) if many else self._nearest(point, least[k])
         return out
 
@@ -62,8 +59,8 @@ class Depths:
         """(n,) the same where that is less than `enough` (m), of all or each (n,), else this: all together, measured
         from those facets whose boxes come so near; but for slivers, whose planes are not known well enough."""
         out = np.full(len(points), enough)
-        for begin in range(0, len(points), DEPTH_POINTS):
-            some = slice(begin, begin + DEPTH_POINTS)
+        for begin in range(0, len(points), ROWS):
+            some = slice(begin, begin + ROWS)
             point, facet = self._near(points[some], out[some])
             if not len(point):
                 continue
@@ -83,7 +80,7 @@ class Depths:
         sides = first - second, second - third, third - first
         spanned = cross(sides[0], sides[1])
         longest = np.maximum.reduce([dot(side, side) for side in sides])
-        return np.asarray(dot(spanned, spanned) <= (SLIVER_HEIGHT * longest) ** 2)
+        return np.asarray(dot(spanned, spanned) <= (SINGLE * longest) ** 2)
 
     def _near(self, points: Array, reach: Array) -> tuple[Ints, Ints]:
         """Points (k,) by their places, ascending, and facets (k,) whose boxes come as near as `reach` (n,) m along each
@@ -135,7 +132,7 @@ class Depths:
             beyond = np.maximum(self._low[:, axis] - place, place - self._high[:, axis])
             beyond = np.maximum(beyond, 0.0, out=beyond)
             square += np.square(beyond, out=beyond)
-        return np.asarray((1.0 - 1e-9) * np.sqrt(square, out=square))
+        return np.asarray((1.0 - SOLVED) * np.sqrt(square, out=square))
 
     @cached_property
     def _whole(self) -> fcl.CollisionObject:

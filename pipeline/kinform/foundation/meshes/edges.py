@@ -12,13 +12,11 @@ from functools import cached_property
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, dot
-from kinform.foundation.alike import numbered_alike
+from kinform.foundation.algebra.vectors import NEXT, cross, dot
+from kinform.foundation.equal_rows import number_equal_rows
 from kinform.foundation.sorting import ascending, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
-
-_FOLLOWING = np.array([1, 2, 0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,7 +155,7 @@ def edge_table(faces: Ints, vertices: int, by_corner: bool = False) -> EdgeTable
 
 def unsorted_edge_table(faces: Ints, vertices: int) -> EdgeTable:
     """As `edge_table`, but edges as they first occur, which takes no sort where none has more than two facets."""
-    first, edge = numbered_alike([_keys(faces, vertices).view(np.uint64)])
+    first, edge = number_equal_rows([_keys(faces, vertices).view(np.uint64)])
     counts = np.bincount(edge, minlength=len(first))
     starts = np.cumsum(counts) - counts
     if counts.max(initial=0) > 2:
@@ -180,7 +178,7 @@ def _keys(faces: Ints, vertices: int) -> Ints:
 
 def _starts_and_ends(faces: Ints) -> tuple[Ints, Ints]:
     """(3F,) vertices that the half-edges run from and to."""
-    return faces.ravel(), faces.take(_FOLLOWING, axis=1).ravel()
+    return faces.ravel(), faces.take(NEXT, axis=1).ravel()
 
 
 def shared_edges(faces: Ints, vertices: int, by_corner: bool = False) -> SharedEdges:

@@ -12,8 +12,8 @@ from kinform.foundation.sorting import numbered
 from kinform.model.arrays import Array, Ints
 
 UNIT = 2.0**20
-"""What a metre is to FCL. The distance that it finds between triangles is 0 where their edges are shorter than about
-2e-4 of what it counts in: it is given about micrometres, by a power of two, which rounds nothing."""
+"""FCL's units in a metre. It reports 0 for the distance of triangles whose edges are shorter than about 2e-4 of its
+unit: it gets micrometres, by a power of two, which rounds nothing."""
 
 
 MANY_FACETS = 300_000

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.foundation.constants import ROWS
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
-HULL_POINTS = 4096
-"""Points that are held against the planes of a hull at once: memory, no result depends on it."""
 HULL_THICKNESS = 1e-7
-"""Share of its size by which a flat set of points is thickened on each side, so that it has a hull: far below what any
-mesh is exact to."""
+"""Share of its size by which a flat set of points is thickened on each side, so that it has a hull: far below the
+resolution of any mesh file."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,8 +28,8 @@ class Hull:
         """How far (m) each of the points (k, 3) lies outside, at least: beyond the plane that it is farthest beyond;
         negative inside. Exact where the nearest place of the hull is inside of a face."""
         out = np.full(len(points), -np.inf)
-        for start in range(0, len(points), HULL_POINTS):
-            block = slice(start, start + HULL_POINTS)
+        for start in range(0, len(points), ROWS):
+            block = slice(start, start + ROWS)
             out[block] = (points[block] @ self.planes[:, :3].T + self.planes[:, 3]).max(axis=1)
         return out
 

@@ -19,10 +19,10 @@ import numpy as np
 
 from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.algebra.vectors import cross, dot, lengths, times
+from kinform.foundation.concatenation import concatenated
 from kinform.foundation.constants import SLIVER_WIDTH
-from kinform.foundation.joined import joined
 from kinform.foundation.meshes.boxes import facet_boxes, triangle_boxes
-from kinform.foundation.meshes.closest import Triangles
+from kinform.foundation.meshes.closest_facets import Triangles
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, fcl_pose, partial_model, point_model
 from kinform.foundation.meshes.slivers import beside, crossings, meetings
 from kinform.foundation.sorting import distinct
@@ -30,10 +30,9 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 
-HITS_A_PROBE = 256
-"""Facets that one probe may hit on average."""
 STEEP_LEAST = 1e-3
-"""Least cosine between a probe and a facet's normal at which the place where they meet is known."""
+"""Least cosine between a probe and the normal of a facet at which their intersection is known: below, rounding of the
+facet moves it by more than a thousand times as much."""
 KEPT_TRIANGLES = 50_000
 """Facets up to which the corners of a mesh, or of those near another part, are kept, and their boxes: 6 MB."""
 MET_AT_ONCE = 100_000
@@ -247,7 +246,7 @@ def cast_all(casts: Sequence[Cast], width: float = SLIVER_WIDTH) -> list[Hits]:
         return out
     ends = [0, *accumulate(len(casts[k].points) for k in some)]
     points, directions, reach = (
-        joined([getattr(casts[k], name) for k in some]) for name in ("points", "directions", "reach")
+        concatenated([getattr(casts[k], name) for k in some]) for name in ("points", "directions", "reach")
     )
     across = cross(directions, _UNITS.take(np.abs(directions).argmin(axis=1), axis=0))
     across *= (width * reach / lengths(across))[:, None]
@@ -260,8 +259,8 @@ def cast_all(casts: Sequence[Cast], width: float = SLIVER_WIDTH) -> list[Hits]:
     met = _meetings(regions, [slivers[i:j] for i, j in pairwise(ends)])
     meshes = [region.index.mesh for region in regions]
     probe = np.concatenate([probe + start for (probe, _), start in zip(met, ends, strict=False)])
-    normal = joined([region.index.normals(facet) for region, (_, facet) in zip(regions, met, strict=True)])
-    corner = joined(
+    normal = concatenated([region.index.normals(facet) for region, (_, facet) in zip(regions, met, strict=True)])
+    corner = concatenated(
         [mesh.vertices.take(mesh.faces[facet, 0], axis=0) for mesh, (_, facet) in zip(meshes, met, strict=True)]
     )
     facing = dot(normal, directions.take(probe, axis=0))
@@ -297,7 +296,8 @@ def _met_by_trees(region: Region, slivers: Array) -> tuple[Ints, Ints]:
     mesh = region.index.mesh
     probe_model = fcl_model(slivers.reshape(-1, 3), np.arange(3 * len(slivers)).reshape(-1, 3))
     # Contact points stay off: they cost, come several to a facet, and depend on FCL's own tolerance.
-    most = HITS_A_PROBE * (len(slivers) + 16)
+    # FCL lists the facets that are hit: a few hundred a probe are more than any part has in a row
+    most = 256 * (len(slivers) + 16)
     request = fcl.CollisionRequest(num_max_contacts=most, enable_contact=False)
     result = fcl.CollisionResult()
     if region.facets is None:

@@ -14,44 +14,46 @@ from functools import cached_property, partial
 import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical, cross, dot, lengths, normalised, perpendicular, widest_gap
+from kinform.foundation.constants import SCATTERED
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import SharedEdges
-from kinform.foundation.meshes.surface_table import SurfaceTable
+from kinform.foundation.meshes.surface_table import PLANE, SurfaceTable
+from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import distinct, heads, median, numbered
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
-from kinform.model.surfaces import KINDS, MeshSurfaces
+from kinform.model.surfaces import MeshSurfaces
+
+RING_FLAT = 1e-8
+"""Corners whose spread across their length is no more than the root of this share of it are on a line at first sight:
+beyond, sums about their middle keep eight digits."""
 
 RING_FEW = 6
 """Up to so many flats a ring is round only where ..."""
 RING_EVEN = 0.05
 """... their distances from the axis differ by no more than this share of that of the corners: those of a box do not."""
 RING_SIDES = 3
-"""Flats of a ring, at least."""
+"""Fewest flats of a ring: a triangle."""
 RING_TURN = (np.radians(20.0), np.radians(125.0))
 """rad between two neighbours of a ring: of a triangle they differ by 120°; below 32° strips are found to be round, but
 not where three of them are left."""
 RING_PARALLEL = np.radians(1.0)
-"""rad by which the ridges of one ring differ in direction."""
+"""rad: largest angle between the ridges of one ring: far above what vertices scatter by. Chosen, not measured."""
 RING_ASKEW = np.radians(5.0)
-"""rad by which the edge of two flats may leave the line in which their planes meet: vertices scatter."""
+"""rad: largest angle between the edge of two flats and the intersection of their planes: scattered vertices turn short
+edges."""
 RING_ROUND = 5e-3
-"""Share of their distance from the axis by which corners of a ring differ."""
-RING_NOISES = 4.0
-"""The same in standard deviations of scattered vertices: one corner in 16,000 is beyond."""
+"""Largest relative difference of the distances from the axis of the corners of one ring: far above rounding, far below
+the corners of a rectangle. Chosen, not measured."""
 RING_OPEN = np.radians(200.0)
-"""rad: the widest angle about the axis without a flat. Half a ring, as of a half-bearing, goes round enough."""
+"""rad: widest angle about the axis without a flat: half a ring, as of a half-bearing, goes round enough, with 20° to
+spare."""
 RING_DIRECTIONS = 24
-"""Directions of ridges that are looked at, the longest first: crumpled meshes have thousands."""
+"""Directions of ridges that are looked at, the longest first: parts have a few, crumpled meshes have thousands."""
 RING_SPARE = 1e-3
-"""Share by which a row of flats misses a limit of the above before it is left out at first sight: sums about a middle
-are good to far less."""
-RING_FLAT = 1e-8
-"""Corners whose spread across their length is no more than the root of this share of it are on a line at first sight:
-beyond, sums about their middle keep eight digits."""
-MOST_RINGS = 64
-"""Rings along one direction that are looked at, those of the longest ridges."""
+"""Relative margin by which a row of flats must miss a limit before it is left out at first sight: sums about a common
+middle are exact to far less."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +137,7 @@ def ring_rows(
 ) -> tuple[RingRow, ...]:
     """The rows of flats that may be rings among the planes of a mesh with the table of its surfaces, these shared edges
     (by corner), and surfaces (k, 2) that share some, by direction, sense and lowest facet."""
-    plane = table.kinds == KINDS.index("plane")
+    plane = table.kinds == PLANE
     if plane.sum() < RING_SIDES or not _any_bent(table, borders, plane):
         return ()
     piece, ridges = _ridges(mesh, surfaces, table, edges, plane)
@@ -190,7 +192,7 @@ def _ridges(
     bent = _bent(sine, dot(one, two)).nonzero()[0]
     edges, one, two = edges.where(between.take(bent)), one.take(bent, axis=0), two.take(bent, axis=0)
     along = edges.along(vertices)
-    length, direction = lengths(along), across.take(bent, axis=0) / np.maximum(sine.take(bent), 1e-300)[:, None]
+    length, direction = lengths(along), across.take(bent, axis=0) / np.maximum(sine.take(bent), TINY)[:, None]
     straight = np.abs(dot(along, direction)) > np.cos(RING_ASKEW) * length
     kept = (straight & (length > 0.0)).nonzero()[0]
     convex = edges.convexity(vertices, one, two) > 0.0
@@ -246,7 +248,7 @@ def _rows_of_flats(ridges: _Ridges, family: Ints) -> list[_Row]:
     wide = wide[np.lexsort((-weight[wide], of_family[wide]))]
     # the longest of each family
     first = np.searchsorted(of_family[wide], of_family[wide])
-    wide = np.sort(wide[np.arange(len(wide)) - first < MOST_RINGS])
+    wide = np.sort(wide[np.arange(len(wide)) - first < 64])
     wide = wide[_closed(number, of_edge, len(nodes))[wide]]
     edges, pieces = _members(of_edge, wide), _members(group, wide)
     return [_Row(nodes[p] % count, ridges, e) for e, p in zip(edges, pieces, strict=True)]
@@ -354,7 +356,7 @@ def _may_be_round(sights: _Sights, noise: float) -> Flags:
     few = np.array([len(planes) <= RING_FEW for planes in sights.planes])
     spare = 1.0 + RING_SPARE
     with np.errstate(invalid="ignore"):
-        out = ~(circles.off > spare * (RING_ROUND * circles.radius + RING_NOISES * noise))
+        out = ~(circles.off > spare * (RING_ROUND * circles.radius + SCATTERED * noise))
         out &= ~(low < -RING_SPARE * circles.radius)
         out &= ~(few & (high - low > spare * RING_EVEN * circles.radius))
         out &= ~(sights.open > RING_OPEN + RING_SPARE)
@@ -387,7 +389,7 @@ def _ring(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, row: _Row, labels: In
     (x, y, rest), *_ = np.linalg.lstsq(matrix, dot(flat, flat), rcond=None)
     corner = float(np.sqrt(max(rest + x * x + y * y, 0.0)))
     off = float(np.abs(np.hypot(flat[:, 0] - x, flat[:, 1] - y) - corner).max())
-    if off > RING_ROUND * corner + RING_NOISES * surfaces.noise:
+    if off > RING_ROUND * corner + SCATTERED * surfaces.noise:
         return None
     planes = [surfaces.surfaces[k] for k in labels]
     normals = np.array([plane.axis for plane in planes])
@@ -415,5 +417,5 @@ def _ring(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, row: _Row, labels: In
         surfaces=labels,
         facets=facets,
         turn=median([plane.axis_uncertainty for plane in planes]),
-        shift=max(off / RING_NOISES, median([plane.point_uncertainty for plane in planes])),
+        shift=max(off / SCATTERED, median([plane.point_uncertainty for plane in planes])),
     )

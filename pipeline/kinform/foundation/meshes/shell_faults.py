@@ -10,22 +10,22 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
-from kinform.foundation.meshes.divided import inner_weights
-from kinform.foundation.meshes.parity import RAYS, Ray
+from kinform.foundation.meshes.ray_parity import RAYS, Ray
 from kinform.foundation.meshes.shells import shells_of
+from kinform.foundation.meshes.subdivision import inner_weights
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
 
 SHELL_PROBES = 32
-"""Facets of a shell that are probed, ..."""
-PROBE_PARTS = 3
-"""... each in the middles of the triangles that it is divided into along each side: finds what is as large as a few
-hundredths of a shell."""
+"""Facets of a shell that are probed, each in the middles of nine triangles that it is divided into: they find overlaps
+of a few hundredths of a shell."""
 SHELL_DEPTH = 1e-3
 """How far from a facet it is probed, in the longest side of the shell's facets: fits are shallower, walls thicker."""
 CROSSING_SHARE = 0.02
-"""Share of a shell's area that may lie in others: screws in bores that are too narrow do."""
+"""Share of the area of a shell that may lie in other shells without a fault: screws modelled in bores that are too
+narrow do."""
 
 
 @dataclass(frozen=True)
@@ -87,10 +87,11 @@ def _wrong(mesh: Mesh, shell: Ints, chosen: Ints, volumes: Array) -> Array:
     np.maximum.at(sizes, shell, np.linalg.norm(corners.max(axis=1) - corners.min(axis=1), axis=1))
     cavity = volumes[shell] < 0.0
     depth = np.where(cavity, SHELL_DEPTH, -SHELL_DEPTH) * sizes[shell]
-    points = inner_weights(PROBE_PARTS) @ corners + (depth[:, None] * normals)[:, None]
+    # the middles of nine triangles of each facet
+    points = inner_weights(3) @ corners + (depth[:, None] * normals)[:, None]
     winding = _windings(mesh, points.reshape(-1, 3)).reshape(points.shape[:2])
     bad = np.where(cavity[:, None], winding < -0.5, winding > 1.5).mean(axis=1)
-    whole = np.maximum(np.bincount(shell, areas, len(volumes)), 1e-300)
+    whole = np.maximum(np.bincount(shell, areas, len(volumes)), TINY)
     return np.asarray(np.bincount(shell, areas * bad, len(volumes)) / whole)
 
 

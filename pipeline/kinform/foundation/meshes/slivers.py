@@ -14,8 +14,10 @@ from itertools import accumulate
 
 import numpy as np
 
+from kinform.foundation.constants import MANY, ROWS
 from kinform.foundation.meshes.box_pairs import Boxes, meeting_boxes
 from kinform.foundation.meshes.boxes import meeting_box, triangle_boxes
+from kinform.foundation.rounding import ARITHMETIC, SOLVED
 from kinform.model.arrays import Array, Flags, Ints
 
 CROSSED_FEW = 400_000
@@ -24,22 +26,14 @@ many first that it is this. Of 277 bolts in bores that share nothing, with 150,0
 CROSSED_SOME = 64
 """... and no more than one in this many: where nothing crosses, all are asked after them."""
 CULLED_LEAST = 4000
-"""Pairs of triangles from which on those that are clearly apart are left out first: nearly all."""
-CLEARLY_APART = 1e-9
-"""Share of their coordinates by which they are then apart at least: far more than rounding, ..."""
-CLEARLY_ROUNDED = 1e-12
-"""... also that of the normal of a needle, in powers of its longest edge."""
+"""Pairs of triangles from which on those that are clearly apart are removed first: nearly all are."""
 CLEARLY_STEEP = 0.1
-"""Sine between an edge and a triangle from which on it clearly passes through: where it does depends on rounding by no
-more than ten times that, and no direction in which both are short is left."""
-MET_FEW = 1000
-"""Pairs of triangles up to which all directions but the normals are asked at once."""
+"""Sine between an edge and a triangle from which on the edge clearly passes through: rounding moves the intersection by
+no more than ten times its size, and no separating direction in which both are short is left."""
 MET_MOST = 10
-"""Pairs of triangles, in all triangles, from which on to ask about each takes longer than to make trees of them."""
-TOLD_AT_ONCE = 4096
-"""Pairs of triangles that are looked at in one pass: 2 MB, which stay near the processor."""
+"""Pairs of triangles, per triangle, from which on trees of FCL take less time than asking about each."""
 CROSSED_MOST = 60
-"""The same where it is only asked whether any meet: two trees for it take longer than one of few slivers does."""
+"""The same where only one crossing is asked for: two trees for it take longer than one of few slivers does."""
 
 
 def beside(slivers: Array, low: Array, high: Array) -> Ints:
@@ -139,7 +133,7 @@ def _not_parted(first: Array, second: Array) -> Ints:
     edges = _edges(first), _edges(second)
     normals = [_cross(sides[0], sides[1]) for sides in edges]
     triangles, met = [first, second, *edges, *normals], np.arange(first.shape[2])
-    for directions in _MANY if len(met) > MET_FEW else _FEW:
+    for directions in _MANY if len(met) > MANY else _FEW:
         kept = (~_apart(directions(*triangles[2:]), *triangles[:2])).nonzero()[0]
         met = met[kept]
         if not len(met):
@@ -158,12 +152,12 @@ def _told(first: Array, second: Array, one: Ints, two: Ints, size: Array) -> tup
     plane = np.ascontiguousarray(axes[:, 0]), reach[0], spare[0]
     edges = np.ascontiguousarray(axes[:, 1:]), reach[1:], spare[1:]
     apart, met = np.empty(len(one), bool), np.zeros(len(one), bool)
-    for start in range(0, len(one), TOLD_AT_ONCE):
-        mine, other = one[start : start + TOLD_AT_ONCE], two[start : start + TOLD_AT_ONCE]
+    for start in range(0, len(one), ROWS):
+        mine, other = one[start : start + ROWS], two[start : start + ROWS]
         corners = first.take(mine, axis=2)
-        apart[start : start + TOLD_AT_ONCE], place, rounding = _told_by_plane(corners, *_of(plane, other))
+        apart[start : start + ROWS], place, rounding = _told_by_plane(corners, *_of(plane, other))
         # the plane parts half of them, of which nothing more is asked
-        left = (~apart[start : start + TOLD_AT_ONCE]).nonzero()[0]
+        left = (~apart[start : start + ROWS]).nonzero()[0]
         if len(left):
             other = other.take(left)
             heights = [place[0].take(left), place[1].take(left), rounding.take(left), square.take(other)]
@@ -225,8 +219,8 @@ def sides_of(triangles: Array, size: Array) -> tuple[Array, Array, Array, Array]
     reach += axes[1] * corners[:, 1]
     reach += axes[2] * corners[:, 2]
     long = np.abs(edges).max(axis=(0, 1))
-    rounded = size * CLEARLY_ROUNDED * long * long
-    spare = size * CLEARLY_APART * np.abs(axes).max(axis=0)
+    rounded = size * ARITHMETIC * long * long
+    spare = size * SOLVED * np.abs(axes).max(axis=0)
     spare[0] += rounded
     spare[1:] += rounded * long
     square = CLEARLY_STEEP**2 * (normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2])
@@ -259,7 +253,7 @@ def _beyond_plane(triangles: Array, size: float, owner: Ints, corners: list[Arra
     `size` bounds all coordinates."""
     edges = _edges(triangles)
     normal, long = _cross(edges[0], edges[1]), np.abs(edges).max(axis=(0, 1))
-    spare = size * (CLEARLY_APART * np.abs(normal).max(axis=0) + CLEARLY_ROUNDED * long**2)
+    spare = size * (SOLVED * np.abs(normal).max(axis=0) + ARITHMETIC * long**2)
     x, y, z = normal
     offset = _along(x, y, z, triangles[0])
     x, y, z = normal.take(owner, axis=1)
@@ -275,7 +269,7 @@ def _beyond_border(triangles: Array, size: float, owner: Ints, corners: list[Arr
     normal, long = _cross(edges[0], edges[1]), np.abs(edges).max(axis=(0, 1))
     for edge, corner in zip(edges, triangles, strict=True):
         x, y, z = across = _cross(edge, normal)
-        spare = size * (CLEARLY_APART * np.abs(across).max(axis=0) + CLEARLY_ROUNDED * long**3)
+        spare = size * (SOLVED * np.abs(across).max(axis=0) + ARITHMETIC * long**3)
         reach = _along(x, y, z, corner) + spare
         x, y, z = across.take(owner, axis=1)
         one, two, three = (_along(x, y, z, place) for place in corners)

@@ -13,6 +13,8 @@ from kinform.model.arrays import Array, Ints
 from kinform.model.surfaces import KINDS, MeshSurfaces
 
 _NUMBER = {kind: number for number, kind in enumerate(KINDS)}
+PLANE, CYLINDER, CONE, SPHERE, TORUS = (_NUMBER[kind] for kind in ("plane", "cylinder", "cone", "sphere", "torus"))
+"""Numbers of kinds in `SurfaceTable.kinds`."""
 
 _SCALARS = (
     "radius", "minor_radius", "half_angle", "pitch", "side", "axis_uncertainty", "point_uncertainty", "chord",

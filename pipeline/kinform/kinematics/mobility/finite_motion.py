@@ -17,7 +17,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import UnionFind, blocks
-from kinform.foundation.in_step import in_step
+from kinform.foundation.lockstep import run_in_lockstep
 from kinform.foundation.words import counted, listed
 from kinform.frozen import dataclass
 from kinform.kinematics.mobility.local_dimension import LocalMotions, local_motions_of_each
@@ -81,7 +81,7 @@ def finite_mobility(
     looped = [block for block in of_graph if len(block) > 1]
     certificates = []
     for batch in _batches(looped, [sum(joints[k].freedoms for k in block) for block in looped]):
-        found = in_step([_block(edges, joints, block, size, ties) for block in batch], local_motions_of_each)
+        found = run_in_lockstep([_block(edges, joints, block, size, ties) for block in batch], local_motions_of_each)
         certificates += [certificate for certificate in found if certificate is not None]
     first = [c.instantaneous for c in certificates if c.instantaneous is not None]
     last = [c.finite for c in certificates if c.finite is not None]

@@ -22,7 +22,7 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import bracket
 from kinform.foundation.algebra.vectors import norm
-from kinform.foundation.in_step import in_step
+from kinform.foundation.lockstep import run_in_lockstep
 from kinform.frozen import dataclass
 from kinform.kinematics.mobility.gauss_newton import Ends, Walk, ends, solve
 from kinform.kinematics.mobility.second_order import (
@@ -120,7 +120,7 @@ def local_motions(system: LoopSystem) -> LocalMotions:
 
 def local_motions_of_each(systems: Sequence[LoopSystem]) -> list[LocalMotions]:
     """Motions of each of several blocks at its reference pose: as if it were alone, to the last bit."""
-    return in_step([_local_motions(pose) for pose in reference_poses(systems)], ends)
+    return run_in_lockstep([_local_motions(pose) for pose in reference_poses(systems)], ends)
 
 
 def _local_motions(pose: Pose) -> Steps[LocalMotions]:
@@ -297,7 +297,7 @@ def _dimension(pose: Pose, step: float, rng: np.random.Generator) -> int | None:
     if count == 0:
         return 0
     mixes = units(rng.normal(size=(BRANCH_MIXES, count))) @ pose.free
-    if in_step([_regular(pose, mixes, step, step)], ends)[0] is not None:
+    if run_in_lockstep([_regular(pose, mixes, step, step)], ends)[0] is not None:
         return count
     more = units(rng.normal(size=(count + 3, count))) @ pose.free
     cone = _spread(pose, more, step).cone

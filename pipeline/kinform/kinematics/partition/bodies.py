@@ -9,7 +9,7 @@ import fcl
 import numpy as np
 
 from kinform.foundation.algebra.vectors import norm
-from kinform.foundation.at_work import at_work_on
+from kinform.foundation.current_work import working_on
 from kinform.foundation.graphs.graph import UnionFind, shortest_path
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_model, fcl_pose
 from kinform.foundation.words import counted, quoted
@@ -229,7 +229,7 @@ def _nearest(
     best: tuple[float, PartName] | None = None
     for gap, _, other in sorted(apart)[:NEAREST_TRIED]:
         if best is None or gap <= best[0]:
-            with at_work_on(name, other):
+            with working_on(name, other):
                 distance = fcl_distance(own, _object(assembly, other, models))
             best = min(best or (np.inf, other), (distance, other))
     return best

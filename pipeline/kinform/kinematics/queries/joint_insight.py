@@ -11,7 +11,7 @@ from typing import Literal
 
 import numpy as np
 
-from kinform.foundation.meant import did_you_mean
+from kinform.foundation.name_hints import did_you_mean
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.bodies.classification import evidence_between
 from kinform.kinematics.joints.bodies.extents import Extents

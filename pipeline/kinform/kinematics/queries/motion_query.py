@@ -8,7 +8,7 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, rows, scaled, span
 from kinform.foundation.algebra.vectors import cross, norm
-from kinform.foundation.meant import did_you_mean
+from kinform.foundation.name_hints import did_you_mean
 from kinform.foundation.rounding import ARITHMETIC, SOLVED
 from kinform.foundation.words import counted
 from kinform.frozen import dataclass

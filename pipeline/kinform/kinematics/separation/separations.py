@@ -21,7 +21,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, scaled, twist_at_origin
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.graphs.graph import UnionFind, blocks
-from kinform.foundation.in_step import in_step
+from kinform.foundation.lockstep import run_in_lockstep
 from kinform.frozen import dataclass
 from kinform.kinematics.constants import MOST_IN_STEP
 from kinform.kinematics.separation.cone import nothing_opens_in_each, rows_beside, split_directions, unit_rows
@@ -138,7 +138,7 @@ def _opened(of_each: Sequence[Sequence[Link]], cache: StepCache | None) -> Seque
         out: list[Opened] = []
         for first in range(0, len(asked), MOST_IN_STEP):
             ways = [_links_that_open(links[id(question)]) for question in asked[first : first + MOST_IN_STEP]]
-            out += in_step(ways, nothing_opens_in_each)
+            out += run_in_lockstep(ways, nothing_opens_in_each)
         return out
 
     return cached_each(cache, "opened", questions, solved)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from kinform.contacts.overlap.solids import ScaledSolid, bounds_volume, overlap_of, scaled_solid
 from kinform.design import Design
 from kinform.foundation.algebra.displacements import inverse
-from kinform.foundation.at_work import at_work_on
+from kinform.foundation.current_work import working_on
 from kinform.model.assembly import Part
 from kinform.reports.page.meshes import Shape, shape_of_facets
 
@@ -20,7 +20,7 @@ def overlap_shapes(design: Design) -> list[Shape | None]:
     shapes: list[Shape | None] = []
     for item in found[:MOST_OVERLAPS]:
         first, second = map(design.assembly.part, item.parts)
-        with at_work_on(*item.parts):
+        with working_on(*item.parts):
             shapes.append(_common(first, second, solids))
     return shapes + [None] * (len(found) - len(shapes))
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from kinform.foundation.meant import first_names
+from kinform.foundation.name_hints import first_names
 from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints

@@ -10,13 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.rounding import TINY
 from kinform.model.arrays import Array
 from kinform.surfaces.groups import repeated
 from kinform.surfaces.kinds.batch import Batch, Params
-
-ON_AXIS = 1e-3
-"""Distance from the axis, in radii, within which a corner has no azimuth."""
-
 
 OF_AXIS = 6
 """The first so many columns of `Params` are those of the axis."""
@@ -66,7 +63,7 @@ def cylindrical(params: Params, points: Array) -> Cylindrical:
     rho = each[0] + each[1]
     rho += each[2]
     np.sqrt(rho, out=rho)
-    away *= 1.0 / np.maximum(rho, 1e-300)
+    away *= 1.0 / np.maximum(rho, TINY)
     return Cylindrical(t, rho, away.T)
 
 
@@ -85,7 +82,8 @@ def angular_widths(batch: Batch, params: Params) -> Array:
     many = batch.many
     cos = dot(radial, repeated(middle, many))
     sin = dot(radial, repeated(cross(repeated(params[:, :3], batch.size), middle), many))
-    least = (ON_AXIS * np.abs(params[:, 6])).take(group[count:])
+    # a corner this close to the axis has no azimuth
+    least = (1e-3 * np.abs(params[:, 6])).take(group[count:])
     angle = np.where(rho[count:] > least, np.arctan2(sin, cos), 0.0)
     high, low = np.zeros(len(batch.polygon)), np.zeros(len(batch.polygon))
     np.maximum.at(high, owner, angle)

@@ -13,13 +13,9 @@ import numpy as np
 
 from kinform.foundation.sorting import occurrences
 from kinform.model.arrays import Array, Flags, Ints
+from kinform.surfaces.constants import ROWS
 from kinform.surfaces.groups import parted, repeated
 from kinform.surfaces.polygons.patchwork import Patchwork
-
-RUN_OF_PAIRS = 1 << 13
-"""Pairs of region and polygon that are worked on at a time, so that what is computed of their corners stays in the
-processor's cache."""
-
 
 Params = Array
 """(R, 8): axis, point, radius, half-angle."""
@@ -56,10 +52,10 @@ class Batch:
 
     def parts(self) -> list[Batch]:
         """The batch cut into runs of pairs, so that what is computed for every corner stays small."""
-        if len(self.region) <= RUN_OF_PAIRS:
+        if len(self.region) <= ROWS:
             return [self]
         if self._parts is None:
-            runs = [slice(k, k + RUN_OF_PAIRS) for k in range(0, len(self.region), RUN_OF_PAIRS)]
+            runs = [slice(k, k + ROWS) for k in range(0, len(self.region), ROWS)]
             self._parts = [Batch(self.patchwork, self.region[run], self.polygon[run], self.count) for run in runs]
         return self._parts
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.constants import ROWS
 from kinform.surfaces.groups import (
@@ -21,14 +22,13 @@ from kinform.surfaces.groups import (
 )
 from kinform.surfaces.kinds.axial import frames
 from kinform.surfaces.kinds.batch import Batch, Params
-from kinform.surfaces.kinds.constants import LARGEST, LEAST_POINTS, LEAST_RADIUS, SAGITTA
+from kinform.surfaces.kinds.constants import LARGEST, LEAST_POINTS, SAGITTA
 from kinform.surfaces.kinds.ruled import Ruled
 from kinform.surfaces.polygons.noise import Scales
 
 CIRCLE_OF_NORMALS = 1e-2
-"""Variance of the normals along the axis, as a share of the next, below which they lie on the circle of a cone."""
-LEAST_TAPER = 2
-"""Fits by which the ends of a cone differ in radius, at least: less is a cylinder."""
+"""Variance of the normals along the axis, as a share of the next, below which they lie on the circle of a cone. Chosen,
+not measured."""
 
 
 class Cone(Ruled):
@@ -66,7 +66,8 @@ class Cone(Ruled):
         largest = np.maximum(params[:, 6] + high * slope, params[:, 6] + low * slope)
         sagitta = largest * (1 - np.cos(sweep / 2)) * np.cos(params[:, 7])
         taper = (high - low) * np.abs(np.sin(params[:, 7]))
-        return np.asarray((lines >= 5) & even & (sagitta > SAGITTA * scale.fit) & (taper > LEAST_TAPER * scale.fit))
+        # ends that differ in radius by less are those of a cylinder
+        return np.asarray((lines >= 5) & even & (sagitta > SAGITTA * scale.fit) & (taper > 2 * scale.fit))
 
 
 def _taper(batch: Batch, axis: Array, region: Ints, edge: Ints) -> tuple[Params, Flags]:
@@ -93,7 +94,7 @@ def _taper(batch: Batch, axis: Array, region: Ints, edge: Ints) -> tuple[Params,
     params = np.zeros((count, 8))
     params[:, :3] = axis
     params[:, 3:6] = middle + centre[:, :1] * x + centre[:, 1:] * y
-    params[:, 6] = np.maximum(line[:, 0], LEAST_RADIUS)
+    params[:, 6] = np.maximum(line[:, 0], SOLVED)
     params[:, 7] = np.arctan(line[:, 1])
     enough = np.bincount(group, minlength=count) >= LEAST_POINTS
     return params, enough & (line[:, 0] > 0) & (line[:, 0] < LARGEST) & np.isfinite(params).all(axis=1)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import among, ascending, occurrences
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.groups import group_mean, group_moments, group_range, repeated, spheres_of
@@ -15,9 +16,11 @@ from kinform.surfaces.kinds.ruled import Ruled, generators
 from kinform.surfaces.polygons.noise import Scales
 
 RIDGES_AGREE = 0.98
-"""Share of the squared lengths of inner edges along one direction, above which they are the ridges of a cylinder."""
+"""Share of the squared lengths of the inner edges that lies along one direction, above which these edges are the ridges
+of a cylinder. Chosen, not measured."""
 EQUAL_STEPS = 1.02
-"""Ratio of the angles of strips and ridges up to which their steps are equal."""
+"""Ratio of the angles of strips and ridges up to which their steps are equal: 2 % is far above rounding. Chosen, not
+measured."""
 
 
 class Cylinder(Ruled):
@@ -76,7 +79,7 @@ def _axis_of_edges(batch: Batch) -> tuple[Array, Array]:
     rows = inner.nonzero()[0]
     matrix = group_moments(region.take(rows), work.along(edge.take(rows)).T, batch.count)
     values, vectors = np.linalg.eigh(np.nan_to_num(matrix))
-    total = np.maximum(values.sum(axis=1), 1e-300)
+    total = np.maximum(values.sum(axis=1), TINY)
     return np.ascontiguousarray(vectors[:, :, 2]), values[:, 2] / total
 
 

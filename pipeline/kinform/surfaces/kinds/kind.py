@@ -13,14 +13,17 @@ import numpy as np
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
+from kinform.model.surfaces import SurfaceKind
 from kinform.surfaces.groups import columns_of, in_order, normal_equations, solve_normal, sums_of
 from kinform.surfaces.kinds.batch import Batch, Params
 from kinform.surfaces.polygons.noise import Scales
 
 DAMPING = 1e-11
-"""Share of the scaled diagonal that is added to normal equations: nothing to a regular fit, a bound for a vague one."""
+"""Share of the scaled diagonal that is added to normal equations: it changes nothing in a regular fit, and bounds the
+step of a vague one."""
 NEAR = 4
-"""Tolerances within which shared vertices of spheres and tori define them: beyond, they lie on chords."""
+"""Tolerances within which shared vertices of spheres and tori define them: beyond, they lie on chords. Chosen, not
+measured."""
 
 
 class Probe(NamedTuple):
@@ -72,7 +75,7 @@ class Moving:
 class Kind(Protocol):
     """One kind of curved surface."""
 
-    name: str
+    name: SurfaceKind
     least: int
     """Polygons that a region of this kind has at least."""
     bends: tuple[float, float]

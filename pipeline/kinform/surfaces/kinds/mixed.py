@@ -22,7 +22,7 @@ from kinform.surfaces.polygons.noise import Scales
 class Mixed(Ruled):
     """Regions of cylinders, and after them those of cones."""
 
-    name = "cylinder or cone"
+    name = "cylinder or cone"  # type: ignore[assignment]  # of no surface: each is described by its own kind
     least = Cylinder.least
     bends = Cone.bends
     saddle = False

@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.rounding import TINY
 from kinform.model.arrays import Array, Ints
 from kinform.surfaces.groups import Sums, columns_of, group_mean, group_moments, sums_of
 
@@ -43,7 +44,7 @@ def distance_from_second(group: Ints, points: Array, centre: Array, radius: Arra
     matrix += (1 + np.trace(matrix, axis1=1, axis2=2))[:, None, None] * sphere[:, :, None] * sphere[:, None, :]
     found, quadric = np.linalg.eigh(matrix)
     steepness = _steepness(quadric[:, :, 0], w, spread, group, sums) / size
-    return np.asarray(np.sqrt(np.maximum(found[:, 0], 0.0) / np.maximum(steepness, 1e-300)))
+    return np.asarray(np.sqrt(np.maximum(found[:, 0], 0.0) / np.maximum(steepness, TINY)))
 
 
 def _moments(columns: Array, sums: Sums) -> Array:

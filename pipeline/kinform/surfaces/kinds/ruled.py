@@ -12,6 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED, TINY
 from kinform.foundation.sorting import among, distinct
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.constants import NORMAL_SLACK, ROWS
@@ -28,7 +29,7 @@ from kinform.surfaces.groups import (
 )
 from kinform.surfaces.kinds.axial import OF_AXIS, Cylindrical, angular_widths, azimuths, cylindrical, frames
 from kinform.surfaces.kinds.batch import Batch, Params
-from kinform.surfaces.kinds.constants import CONVERGED, LEAST_RADIUS, RING_APART, TILT_LIMIT
+from kinform.surfaces.kinds.constants import CONVERGED, RING_APART, TILT_LIMIT
 from kinform.surfaces.kinds.kind import DAMPING, Kind, Moving, Probe, distinct_angles
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
@@ -47,13 +48,11 @@ BOW = 1e-5
 """Depth (spans) to which a generator that leans may dip below the surface: the ends of slanted ridges lie on it,
 but a cut between them does not."""
 APEX = 0.05
-"""Distance from the axis, in radii, within which a vertex of a cone is its apex."""
+"""Distance from the axis, in radii, within which a vertex of a cone is its apex. Chosen, not measured."""
 SECOND_STRIP = 0.4
-"""A strip counts as like the widest when it subtends at least this share of its angle."""
-SHIFT_LIMIT = 1e-6
-"""Shift in one step of a fit that is allowed besides the radius."""
+"""Least angle of a strip that counts as like the widest, as a share of it. Chosen, not measured."""
 STEEPEST_CONE = 1.567
-"""Half-angle that a cone has at most: 0.2° short of a plane."""
+"""rad: largest half-angle of a cone, 0.2° short of a plane. Chosen, not measured."""
 
 
 class _Kept:
@@ -318,7 +317,7 @@ class Ruled(Kind, Protocol):
         `frame` is that of their axes."""
         (x, y), radius = frame, params[:, 6]
         most = np.full(change.shape, TILT_LIMIT)
-        most[:, 4] = np.abs(radius) + SHIFT_LIMIT
+        most[:, 4] = np.abs(radius) + SINGLE
         most[:, :2] = most[:, 4:5]
         least = -most
         least[:, 4] /= 2
@@ -328,8 +327,8 @@ class Ruled(Kind, Protocol):
         axis = params[:, :3] + change[:, 2:3] * x + change[:, 3:4] * y
         square = axis * axis
         length = np.sqrt(square[:, 0] + square[:, 1] + square[:, 2])
-        out[:, :3] = axis / np.maximum(length, 1e-300)[:, None]
-        out[:, 6] = np.maximum(radius + change[:, 4], LEAST_RADIUS)
+        out[:, :3] = axis / np.maximum(length, TINY)[:, None]
+        out[:, 6] = np.maximum(radius + change[:, 4], SOLVED)
         if self.tapers:
             taper = params[:, 7] + change[:, 5]
             out[:, 7] = np.minimum(np.maximum(taper, -STEEPEST_CONE), STEEPEST_CONE)
@@ -371,7 +370,7 @@ def generators(batch: Batch, params: Params) -> tuple[Ints, Ints, Flags]:
 def _along(work: Patchwork, params: Params, region: Ints, edge: Ints) -> Flags:
     """Whether each edge runs along a generator of its region's surface."""
     sizes = np.bincount(region, minlength=len(params))
-    bow = 8 * BOW * np.maximum(np.abs(params[:, 6]), 1e-12)
+    bow = 8 * BOW * np.maximum(np.abs(params[:, 6]), ARITHMETIC)
     mine = repeated(np.array([*params.T[:3], bow]).T, sizes)
     direction = mine[:, :3]
     cones = params[:, 7].nonzero()[0]

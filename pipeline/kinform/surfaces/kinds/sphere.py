@@ -5,17 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import among, distinct
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.groups import columns_of, group_mean, group_moments, group_sum, parted, spheres_through
 from kinform.surfaces.kinds.batch import Batch, Params
-from kinform.surfaces.kinds.constants import LEAST_POINTS, SAGITTA
+from kinform.surfaces.kinds.constants import LARGEST_DOUBLE, LEAST_POINTS, SAGITTA
 from kinform.surfaces.kinds.kind import DoublyCurved, Probe
 from kinform.surfaces.kinds.quadrics import distance_from_second
 from kinform.surfaces.polygons.noise import Scales
 
-LARGEST_SPHERE = 5.0
-"""Radius, in spans, beyond which a face is no sphere that a joint could use."""
 SECOND_QUADRIC = 0.5
 """Fits by which the vertices of a sphere are off every other quadric in the mean, at least: two rings lie on one to
 the last digits, to a fifth of a fit where vertices scatter; three rings of a cap whose sagitta is just enough are half
@@ -48,7 +47,7 @@ class Sphere(DoublyCurved):
         params[:, 3:6] = middle + centre
         params[:, 6] = np.sqrt(np.maximum(square, 0.0))
         usable = (np.bincount(region, minlength=count) >= LEAST_POINTS) & (square > 0)
-        return params, usable & (params[:, 6] < LARGEST_SPHERE) & np.isfinite(params).all(axis=1)
+        return params, usable & (params[:, 6] < LARGEST_DOUBLE) & np.isfinite(params).all(axis=1)
 
     def defining(self, batch: Batch, params: Params, tolerance: Array) -> tuple[Ints, Ints]:
         """Those that three polygons share, near the surface; where these are one ring, also those on it that two
@@ -75,7 +74,7 @@ class Sphere(DoublyCurved):
         """Distance, normal and radius."""
         offset = points - params[:, 3:6]
         rho = np.sqrt(dot(offset, offset))
-        return Probe(rho - params[:, 6], offset / np.maximum(rho, 1e-300)[:, None], params[:, 6])
+        return Probe(rho - params[:, 6], offset / np.maximum(rho, TINY)[:, None], params[:, 6])
 
     def equations(self, params: Params, points: Array) -> tuple[Array, Array]:
         """By centre (3) and radius."""
@@ -89,7 +88,7 @@ class Sphere(DoublyCurved):
         surrounded = np.bincount(region, minlength=batch.count)
         each = work.area.take(batch.polygon)
         total = group_sum(batch.region, work.normals(batch.polygon) * each[:, None], batch.count)
-        area = np.maximum(np.bincount(batch.region, each, batch.count), 1e-300)
+        area = np.maximum(np.bincount(batch.region, each, batch.count), TINY)
         # a cap of half-angle φ has the mean normal (1 + cos φ) / 2
         cos = np.clip(2 * np.linalg.norm(total, axis=1) / area - 1, -1.0, 1.0)
         credible = (surrounded >= 4) & (params[:, 6] * (1 - cos) > SAGITTA * scale.fit)

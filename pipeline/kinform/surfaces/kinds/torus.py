@@ -9,33 +9,20 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.rounding import ARITHMETIC, SOLVED, TINY
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.groups import columns_of, group_range, quantile, spheres_through
 from kinform.surfaces.kinds.axial import azimuths, cylindrical, frames
 from kinform.surfaces.kinds.batch import Batch, Params
-from kinform.surfaces.kinds.constants import CONVERGED, LEAST_RADIUS, RING_APART, SAGITTA, TILT_LIMIT
+from kinform.surfaces.kinds.constants import CONVERGED, LARGEST_DOUBLE, RING_APART, SAGITTA, TILT_LIMIT
 from kinform.surfaces.kinds.kind import DoublyCurved, Probe, distinct_angles
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.slippage import slippage
 
-LARGEST_TORUS = 5.0
-"""The same for both radii of a torus."""
-LEAST_TURNING = 0.05
-"""Share of turning in the motion of a torus (patch of radius 1), at least."""
 TORUS_PITCH = 0.05
-"""Advance of that motion, per arm and one, below which it is a turn."""
-LEAST_PROFILE = 9
-"""Vertices of a profile that suggest its circle, at least."""
-RINGS = 5
-"""Rings of vertices that a profile has at least: three lie on a circle anyway, and four that are symmetric."""
-STEPS = 3
-"""Places around the axis that a torus is known at, at least."""
-STEP_APART = 0.3
-"""Share of what tells rings apart that tells places around the axis apart, where facets are narrower."""
+"""Advance of the motion of a torus, per arm and one, below which it is a rotation. Chosen, not measured."""
 LEAST_MAJOR = 0.02
-"""Radius of the circle in the tube's middle, in radii of the tube, at least: less is a sphere."""
-LEAST_MAJOR_FITS = 10
-"""The same in fits."""
+"""Least radius of the middle circle, in radii of the tube: less is a sphere. Chosen, not measured."""
 
 
 class Torus(DoublyCurved):
@@ -63,8 +50,9 @@ class Torus(DoublyCurved):
         centre, square = spheres_through(region, np.stack([rho - rho0[region], t - t0[region]], axis=1), count)
         params[:, 3:6] += (t0 + centre[:, 1])[:, None] * axis
         params[:, 6], params[:, 7] = rho0 + centre[:, 0], np.sqrt(np.maximum(square, 0.0))
-        small = (params[:, 6] > 0) & (params[:, 6:] < LARGEST_TORUS).all(axis=1)
-        return params, usable & small & (size >= LEAST_PROFILE) & (square > 0) & np.isfinite(params).all(axis=1)
+        small = (params[:, 6] > 0) & (params[:, 6:] < LARGEST_DOUBLE).all(axis=1)
+        # fewer vertices suggest no circle of the profile: three determine it
+        return params, usable & small & (size >= 9) & (square > 0) & np.isfinite(params).all(axis=1)
 
     def step(self, params: Params, change: Array) -> Params:
         """By offset across the axis (2), tilt (2), offset along the axis and both radii, by no more than the tube's."""
@@ -75,8 +63,8 @@ class Torus(DoublyCurved):
         stepped = params.copy()
         stepped[:, 3:6] += shift[:, :1] * x + shift[:, 1:2] * y + shift[:, 2:] * params[:, :3]
         leaning = params[:, :3] + tilt[:, :1] * x + tilt[:, 1:] * y
-        stepped[:, :3] = leaning / np.maximum(np.linalg.norm(leaning, axis=1), 1e-300)[:, None]
-        stepped[:, 6:] = np.maximum(params[:, 6:] + np.clip(change[:, 5:], -bound / 2, bound), LEAST_RADIUS)
+        stepped[:, :3] = leaning / np.maximum(np.linalg.norm(leaning, axis=1), TINY)[:, None]
+        stepped[:, 6:] = np.maximum(params[:, 6:] + np.clip(change[:, 5:], -bound / 2, bound), SOLVED)
         return stepped
 
     def probe(self, params: Params, points: Array) -> Probe:
@@ -84,7 +72,7 @@ class Torus(DoublyCurved):
         t, rho, radial = cylindrical(params, points)
         across = rho - params[:, 6]
         q = np.sqrt(across * across + t * t)
-        scale = 1.0 / np.maximum(q, 1e-300)
+        scale = 1.0 / np.maximum(q, TINY)
         normal = (across * scale)[:, None] * radial + (t * scale)[:, None] * params[:, :3]
         return Probe(q - params[:, 7], normal, params[:, 6] + params[:, 7])
 
@@ -93,7 +81,7 @@ class Torus(DoublyCurved):
         t, rho, radial = cylindrical(params, points)
         across = rho - params[:, 6]
         q = np.sqrt(across * across + t * t)
-        scale = 1.0 / np.maximum(q, 1e-300)
+        scale = 1.0 / np.maximum(q, TINY)
         x, y = frames(params[:, :3])
         rx, ry = dot(radial, x), dot(radial, y)
         out, up = across * scale, t * scale
@@ -113,30 +101,32 @@ class Torus(DoublyCurved):
         tube = np.arctan2(t, rho - mine[:, 6])
         step = RING_APART * quantile(batch.region, self.widths(batch, params), count, 0.75)
         rings = distinct_angles(region, tube, step, count)
-        places = distinct_angles(region, azimuths(mine, radial), STEP_APART * step, count)
+        # facets are narrower around the axis than along the profile
+        places = distinct_angles(region, azimuths(mine, radial), 0.3 * step, count)
         low, high = group_range(
             region, np.angle(np.exp(1j * (tube - _mean_angles(region, tube, count)[region]))), count
         )
         sweep = np.where(high > low, np.minimum(high - low, np.pi), 0.0)
         bow = params[:, 7] * (1 - np.cos(sweep / 2))
-        bent = (rings >= RINGS) & (places >= STEPS) & (bow > SAGITTA * scale.fit)
-        return np.asarray(
-            bent & (params[:, 6] > LEAST_MAJOR_FITS * scale.fit) & (params[:, 6] > LEAST_MAJOR * params[:, 7])
-        )
+        # three rings of vertices lie on a circle anyway, and four that are symmetric; three places around the axis
+        bent = (rings >= 5) & (places >= 3) & (bow > SAGITTA * scale.fit)
+        # a middle circle of less than ten fits is that of a sphere
+        return np.asarray(bent & (params[:, 6] > 10 * scale.fit) & (params[:, 6] > LEAST_MAJOR * params[:, 7]))
 
 
 def _rotation_axes(batch: Batch) -> tuple[Array, Array, Flags]:
     """(axis, point, whether there is one) about which each region's polygons turn into themselves."""
     motion = slippage(batch.patchwork, batch.region, batch.polygon, batch.count)
     turn = np.linalg.norm(motion.angular, axis=1)
-    scale = np.maximum(turn, 1e-12)[:, None]
+    scale = np.maximum(turn, ARITHMETIC)[:, None]
     axis, moment = motion.angular / scale, motion.linear / scale
     pitch = np.abs(dot(axis, moment))
     point = motion.middle + cross(axis, moment) * motion.size[:, None]
+    # the motion of a torus (patch of radius 1) rotates
     return (
         axis,
         point,
-        (turn > LEAST_TURNING) & (pitch < TORUS_PITCH + TORUS_PITCH * np.linalg.norm(moment, axis=1)),
+        (turn > 0.05) & (pitch < TORUS_PITCH + TORUS_PITCH * np.linalg.norm(moment, axis=1)),
     )
 
 

@@ -11,45 +11,33 @@ from typing import TypeAlias
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot, normalised
+from kinform.foundation.constants import COVERAGE, SCATTERED
 from kinform.foundation.graphs.components import components
+from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
-from kinform.surfaces.constants import ROWS
+from kinform.surfaces.constants import FLAT_NOISES, ROWS
 from kinform.surfaces.groups import columns_of, group_mean, group_moments, slices, sums_of
 from kinform.surfaces.polygons.facets import Facets, angles
 from kinform.surfaces.polygons.noise import Scale, departures
 
-THIN_NOISES = 2
-"""Facets of less altitude than this many noises have meaningless normals; polygons that are less flat are cut."""
 COPLANAR_ANGLE = 0.06
-"""Angle up to which facets that differ in height by no more than the noise are coplanar."""
-COPLANAR_SIGMAS = 3
-"""Standard deviations by which the four vertices of an edge in a plane may leave one."""
+"""rad up to which facets whose heights differ by no more than the noise are coplanar: 3.4°, above what noise turns
+short facets by and below the steps of round strips. Chosen, not measured."""
 COPLANAR_ROUNDINGS = 0.75
 """The same for vertices that are only rounded, in roundings: half of one in each direction, √3 times."""
-TURNED_SIGMAS = 4
-"""Standard deviations, over the altitudes of two facets, by which scatter may turn their normals."""
 MOST_TURNED = 0.5
-"""Angle beyond which facets are never coplanar, whatever the scatter."""
-SLIVER_PASSES = 8
-"""Passes in which slivers join their neighbours: a fan of slivers halves in each."""
-JOININGS = 2
-"""Passes in which polygons that are coplanar by their means are joined."""
+"""rad beyond which facets are never coplanar, whatever the scatter. Chosen, not measured."""
 PEELS = 60
-"""Planes taken off a cluster before the rest of it falls into its facets."""
-PEELS_SEEN = 8
-"""Planes of a cluster after which it is asked whether planes make it up."""
+"""Planes that are taken off a cluster before the rest of it falls into its facets: a limit of the work on crumpled
+meshes. Chosen, not measured."""
 PEELED = 0.1
 """Share of a cluster that the rest of the planes would take if all were as large as the largest of those, at least:
 what is less is curved."""
-PEEL_STEPS = 3
-"""Fits of each plane: to the facet, then to what lies in its plane."""
-FACING = 0.5
-"""Cosine of the angle between a facet and the plane that it is taken off with, at least."""
 OUTWARD = 0.99
-"""Cosine between the plane through the vertices and the mean normal of the facets, below which the vertices (of a
-sliver) determine no plane."""
+"""Least cosine between the plane through the vertices and the mean normal of the facets: below, the vertices of a
+sliver determine no plane. Chosen, not measured."""
 
 
 Moments: TypeAlias = tuple[Array, Array, Array]
@@ -61,14 +49,14 @@ def coplanar_facets(mesh: Facets, scale: Scale, tolerances: Tolerances) -> tuple
     inner = np.flatnonzero(mesh.inner)
     f0, f1, length = mesh.f0.take(inner), mesh.f1.take(inner), mesh.length.take(inner)
     base = mesh.at(mesh.starts(inner))
-    thin = mesh.altitude < THIN_NOISES * scale.noise
+    thin = mesh.altitude < FLAT_NOISES * scale.noise
     strict, flat = _flat_edges(mesh, inner, thin, scale, tolerances)
     label = _linked(f0, f1, flat, len(mesh.faces))
     if scale.scatter > 0:
         label = _peel(mesh, label, f0[flat], f1[flat], scale)
         flat = flat & (label[f0] == label[f1])
     found = moments(mesh, label)
-    for stricter, limit in ((strict, THIN_NOISES * scale.noise), (np.zeros_like(strict), scale.fit)):
+    for stricter, limit in ((strict, FLAT_NOISES * scale.noise), (np.zeros_like(strict), scale.fit)):
         bent = _flatness(mesh, label, found) > limit
         if not bent.any():
             break
@@ -77,7 +65,8 @@ def coplanar_facets(mesh: Facets, scale: Scale, tolerances: Tolerances) -> tuple
         found = moments_again(mesh, label, before, found)
     before, label = label, _with_slivers(label, thin, f0, f1, length)
     found = moments_again(mesh, label, before, found)
-    for _ in range(JOININGS):
+    # what the first pass joined has better means for the second
+    for _ in range(2):
         join = _joined(label.take(f0), label.take(f1), base, found, tolerances.coplanar, scale.noise)
         if not len(join):
             break
@@ -118,9 +107,9 @@ def _flat_edges(
     solid = ~(thin.take(f0) | thin.take(f1))
     strict = solid & (angle < tolerances.coplanar) & (height < scale.fit)
     flat = strict | (solid & (height < scale.noise) & (angle < COPLANAR_ANGLE))
-    lost = max(COPLANAR_SIGMAS * scale.scatter, COPLANAR_ROUNDINGS * scale.rounding)
-    narrow0, narrow1 = (1 / np.maximum(mesh.altitude.take(f), 1e-300) for f in (f0, f1))
-    turned = COPLANAR_ANGLE + TURNED_SIGMAS * lost / COPLANAR_SIGMAS * (narrow0 + narrow1)
+    lost = max(COVERAGE * scale.scatter, COPLANAR_ROUNDINGS * scale.rounding)
+    narrow0, narrow1 = (1 / np.maximum(mesh.altitude.take(f), TINY) for f in (f0, f1))
+    turned = COPLANAR_ANGLE + SCATTERED * lost / COVERAGE * (narrow0 + narrow1)
     open_ = np.flatnonzero(solid & ~flat & (angle < np.minimum(turned, MOST_TURNED)))
     flat[open_] = np.abs(departures(mesh, inner.take(open_))) < lost
     return strict, flat
@@ -128,7 +117,8 @@ def _flat_edges(
 
 def _with_slivers(label: Ints, thin: Flags, f0: Ints, f1: Ints, length: Array) -> Ints:
     """The labels of facets, with every polygon of slivers given to a neighbour across its longest edge."""
-    for _ in range(SLIVER_PASSES):
+    # slivers join their neighbours: a fan of them halves in each pass
+    for _ in range(8):
         count = int(label.max()) + 1 if len(label) else 0
         solid = np.bincount(label, ~thin, count) > 0
         a, b = label[f0], label[f1]
@@ -176,7 +166,7 @@ def _moments(polygon: Ints, area: Array, normal: Array, middle: Array) -> Moment
     sums = sums_of(polygon, count)
     mean = np.ascontiguousarray(sums(normal.T * area).T)
     weight = np.where((total <= 0)[polygon], 1.0, area)
-    centre = sums(middle.T * weight) / np.maximum(sums(weight), 1e-300)
+    centre = sums(middle.T * weight) / np.maximum(sums(weight), TINY)
     return total, normalised(mean), np.ascontiguousarray(centre.T)
 
 
@@ -231,7 +221,8 @@ def _peel(mesh: Facets, label: Ints, f0: Ints, f1: Ints, scale: Scale) -> Ints:
         done = np.ones(len(member), bool)
         done[open_] = False
         whole[label[done]] = True
-        if number % PEELS_SEEN == 0:
+        # every eighth plane it is checked whether planes make up the cluster
+        if number % 8 == 0:
             vain = most * (PEELS - number) < PEELED * size[label]
             whole[label[vain]] = True
             most[:] = 0
@@ -241,9 +232,10 @@ def _peel(mesh: Facets, label: Ints, f0: Ints, f1: Ints, scale: Scale) -> Ints:
 def _in_planes(mesh: Facets, first: Ints, facets: Ints, group: Ints, scale: Scale) -> Flags:
     """Which of the facets are in the plane of their group, fitted to what is in that of the facet `first` of each."""
     normal, point = mesh.normal[first], mesh.vertices[mesh.faces[first]].mean(axis=1)
-    reach = np.maximum(mesh.altitude[first], 1e-300)
+    reach = np.maximum(mesh.altitude[first], TINY)
     on: Flags = np.empty(len(facets), bool)
-    for step in range(PEEL_STEPS):
+    # fitted to the facet first, then to what lies in its plane
+    for step in range(3):
         for rows in slices(len(facets), ROWS):
             mine, faces = group[rows], facets[rows]
             offset = mesh.vertices[mesh.faces[faces]] - point[mine][:, None, :]
@@ -252,7 +244,8 @@ def _in_planes(mesh: Facets, first: Ints, facets: Ints, group: Ints, scale: Scal
             if step == 0:
                 far = np.sqrt(np.einsum("ijk,ijk->ij", offset, offset))
                 allowed = scale.noise * (1 + far / reach[mine][:, None])
-            facing = dot(mesh.normal[faces], normal[mine]) > FACING
+            # facets of a plane are within 60° of it, however their vertices scatter
+            facing = dot(mesh.normal[faces], normal[mine]) > 0.5
             on[rows] = (height < allowed).all(axis=1) & facing
         fitting = group[on]
         corners = mesh.vertices[mesh.faces[facets[on]]].reshape(-1, 3)

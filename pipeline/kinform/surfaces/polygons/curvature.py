@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import ascending
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
@@ -21,18 +22,17 @@ from kinform.surfaces.groups import columns_of
 from kinform.surfaces.polygons.patchwork import Patchwork
 
 ALIKE_WIDTHS = 3.0
-"""Ratio of widths up to which neighbours look like facets of one surface."""
+"""Ratio of widths up to which neighbours look like facets of one surface. Chosen, not measured."""
 ALIKE_STRONG = 0.35
 """Difference of the larger principal curvatures of neighbours on one surface, as a share of the largest: what coarse
 facets of unequal width make of equal ones."""
 ALIKE_WEAK = 0.3
-"""The same of the smaller principal curvatures."""
+"""The same of the smaller principal curvatures. Chosen, not measured."""
 SIMPLE_RATIO = 0.12
-"""Ratio of the two curvatures below which a polygon bends one way only."""
-GOING_ALONG = 0.7
-"""Cosine between a step to the neighbour and the generators, above which it goes along them."""
+"""Ratio of the two curvatures below which a polygon bends one way only. Chosen, not measured."""
 TURNED_ALONG = 0.03
-"""Angle between the generators of neighbours on one surface that bends one way, besides that of their normals."""
+"""rad between the generators of neighbours on one surface that bends one way, besides that of their normals. Chosen,
+not measured."""
 
 
 _PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
@@ -63,7 +63,7 @@ class Curvature:
     def ratio(self) -> Array:
         """|weak| / |strong|: 0 on cylinders and cones, 1 on spheres; 1 where nothing bends."""
         strong = np.abs(self.strong)
-        return np.where(strong > 0, np.abs(self.weak) / np.maximum(strong, 1e-300), 1.0)
+        return np.where(strong > 0, np.abs(self.weak) / np.maximum(strong, TINY), 1.0)
 
 
 def links(work: Patchwork, free: Flags) -> Links:
@@ -76,7 +76,7 @@ def links(work: Patchwork, free: Flags) -> Links:
     first = np.r_[True, np.diff(key[order]) != 0] if len(key) else np.zeros(0, bool)
     number = np.empty(len(key), np.int64)
     number[order] = np.cumsum(first) - 1
-    shared = np.maximum(np.bincount(number, work.length[edge])[number] if len(key) else np.zeros(0), 1e-300)
+    shared = np.maximum(np.bincount(number, work.length[edge])[number] if len(key) else np.zeros(0), TINY)
     wide = np.maximum(work.area[a], work.area[b]) / shared
     narrow = np.minimum(work.area[a], work.area[b]) / shared
     return Links(edge, a, b, wide < ALIKE_WIDTHS * narrow)
@@ -86,7 +86,7 @@ def curvature(work: Patchwork, link: Links) -> Curvature:
     """Curvature of every polygon, averaged over it and its neighbours of like width."""
     edge, a, b = link.edge, link.a, link.b
     along = work.along(edge).T
-    amount = work.angle[edge] * work.sign[edge] / np.maximum(work.length[edge], 1e-300) / 2
+    amount = work.angle[edge] * work.sign[edge] / np.maximum(work.length[edge], TINY) / 2
     rows = np.flatnonzero(link.alike)
     near_a, near_b = a.take(rows), b.take(rows)
 
@@ -94,7 +94,7 @@ def curvature(work: Patchwork, link: Links) -> Curvature:
         of_b = np.bincount(near_a, value[near_b], work.count)
         return np.asarray(value + of_b + np.bincount(near_b, value[near_a], work.count))
 
-    area = np.maximum(with_neighbours(work.area.astype(float)), 1e-300)
+    area = np.maximum(with_neighbours(work.area.astype(float)), TINY)
     tensor = []
     for i, j in _PAIRS:
         term = amount * along[i] * along[j]
@@ -116,7 +116,7 @@ def principal(tensor: Sequence[Array]) -> tuple[Array, Array, Array]:
     x, y, z = xx - mean, yy - mean, zz - mean
     size = np.sqrt((x * x + y * y + z * z + 2 * (xy * xy + xz * xz + yz * yz)) / 6)
     determinant = x * (y * z - yz * yz) - xy * (xy * z - yz * xz) + xz * (xy * yz - y * xz)
-    angle = np.arccos(np.clip(determinant / np.maximum(2 * size**3, 1e-300), -1.0, 1.0)) / 3
+    angle = np.arccos(np.clip(determinant / np.maximum(2 * size**3, TINY), -1.0, 1.0)) / 3
     high, low = mean + 2 * size * np.cos(angle), mean + 2 * size * np.cos(angle + 2 * np.pi / 3)
     middle = 3 * mean - high - low
     above = np.abs(high) > np.abs(low)
@@ -153,8 +153,9 @@ def continues(work: Patchwork, bent: Curvature, link: Links) -> Flags:
     cosine = dot(along_a, along_b)
     step = work.middles(b) - work.middles(a)
     square = step * step
-    size = np.maximum(np.sqrt(square[:, 0] + (square[:, 1] + square[:, 2])), 1e-300)
+    size = np.maximum(np.sqrt(square[:, 0] + (square[:, 1] + square[:, 2])), TINY)
     going = np.abs(dot(step, along_a + along_b * np.sign(cosine)[:, None])) / 2 / size
     turn = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
-    allowed = np.where(going > GOING_ALONG, TURNED_ALONG, TURNED_ALONG + work.angle[link.edge])
+    # a step to the neighbour within 45° of the generators goes along them
+    allowed = np.where(going > 0.7, TURNED_ALONG, TURNED_ALONG + work.angle[link.edge])
     return np.asarray(~simple | (turn <= allowed))

@@ -8,6 +8,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross_columns, dot
 from kinform.foundation.meshes.edges import edge_table
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 
@@ -59,9 +60,9 @@ class Facets:
             vertices=vertices,
             faces=faces,
             area=twice / 2,
-            normal=across / np.maximum(twice, 1e-300)[:, None],
+            normal=across / np.maximum(twice, TINY)[:, None],
             middle=middle,
-            altitude=twice / np.maximum(longest, 1e-300),
+            altitude=twice / np.maximum(longest, TINY),
             f0=leading // 3,
             f1=np.concatenate([other // 3, np.full(len(leading) - len(one), -1)]),
             ends=ends,

@@ -14,25 +14,25 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross_columns, dot
+from kinform.foundation.constants import SCATTERED
 from kinform.foundation.graphs.components import components
+from kinform.foundation.rounding import SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
+from kinform.surfaces.constants import ROWS
 from kinform.surfaces.groups import columns_of
 from kinform.surfaces.polygons.facets import Facets
 
-PLAINLY = 1e-9
-"""Share by which a sum is beyond doubt, in whatever order it was made."""
 FITS_PER_NOISE = 10
-"""The tolerance of fits in noises that are expected of vertices, and the noise as such a part of the tolerance."""
+"""The tolerance of fits, in noises that are expected of vertices, and the noise as such a part of the tolerance.
+Chosen, not measured."""
 NOISE_ROUNDINGS = 1.5
 """Noise in roundings of the largest coordinate: a vertex is off by half of one in each of three directions."""
 SCATTER_SHOWS = 2
 """Vertices scatter where twice the standard deviation that is read exceeds the expected noise."""
-NOISE_SIGMAS = 4
-"""Standard deviations of scattered vertices that are noise: one vertex in 16,000 is beyond."""
 FIT_SIGMAS = 5
-"""Standard deviations of scattered vertices that a fit allows."""
+"""Standard deviations of scattered vertices that a fit allows: one more than those that count as scatter."""
 CALM_SHARE = 0.25
 """Share of the area, from the calmest vertices up, at which the scatter is read: saddles are rarely more
 than the rest."""
@@ -43,17 +43,8 @@ RIPPLE = 0.05
 (0.12 to 0.4 against 0.01 to 0.02 where tried)."""
 MIXED_PER_SIGMA = 1.2
 """What is read there, in standard deviations of one coordinate (tried on noisy copies of robots' parts)."""
-LEAST_EDGES = 4
-"""Edges that show something at a vertex, at least, so that it can mix signs."""
-LEAST_SPOKES = 3
-"""Edges that end at a vertex, at least, so that it has neighbours to differ from."""
 REPEATED = 1e-2
-"""Relative difference of what neighbours show that is no accident in a long row of them."""
-REPEATED_ROW = 12
-"""Vertices in a row that is long."""
-RUN_OF_EDGES = 1 << 14
-"""Edges that are worked on at a time, so that what is computed of them stays in the processor's cache. It changes no
-bit."""
+"""Relative difference of what neighbours show that is no accident in a long row of them. Chosen, not measured."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +71,7 @@ class Scale:
             return cls(
                 max(rounding, sigma),
                 sigma,
-                noise=NOISE_SIGMAS * sigma,
+                noise=SCATTERED * sigma,
                 fit=max(fit, FIT_SIGMAS * sigma),
             )
         return cls(rounding, 0.0, noise=noise, fit=fit)
@@ -116,15 +107,15 @@ def departures(mesh: Facets, edges: Ints) -> Array:
     scatter it by σ, whatever the shape of the two facets.
     """
     out = np.empty(len(edges))
-    for start in range(0, len(edges), RUN_OF_EDGES):
-        run = slice(start, start + RUN_OF_EDGES)
+    for start in range(0, len(edges), ROWS):
+        run = slice(start, start + ROWS)
         a, b, c, d = (mesh.at(corner) for corner in _corners(mesh, edges[run]))
         u, v, w = b - a, c - a, d - a
         uv = cross_columns(u, v)
         squares = np.zeros(len(a))
         for minor in (uv, cross_columns(u, w), cross_columns(v, w), cross_columns(c - b, d - b)):
             squares += dot(minor, minor)
-        out[run] = -dot(uv, w) / np.sqrt(np.maximum(squares, 1e-300))
+        out[run] = -dot(uv, w) / np.sqrt(np.maximum(squares, TINY))
     return out
 
 
@@ -150,7 +141,8 @@ def scatter(mesh: Facets, smooth_edge: float, least: float = 0.0) -> float:
         np.maximum.at(above, row, off)
         np.maximum.at(below, row, -off)
         seen += np.bincount(row, minlength=count)
-    mixing, readable = np.minimum(above, below), seen >= LEAST_EDGES
+    # a vertex mixes signs where at least four edges show something
+    mixing, readable = np.minimum(above, below), seen >= 4
     # what is left of it at the end, in standard deviations, is no more than what there is here
     if _is_calm(mesh, mixing, readable, CALM_SHARE, MIXED_PER_SIGMA * least):
         return 0.0
@@ -159,7 +151,8 @@ def scatter(mesh: Facets, smooth_edge: float, least: float = 0.0) -> float:
     spokes = np.maximum(np.bincount(a, minlength=count) + np.bincount(b, minlength=count), 1)
     mean = (np.bincount(a, off, count) + np.bincount(b, off, count)) / spokes
     around = (np.bincount(a, mean[b], count) + np.bincount(b, mean[a], count)) / spokes
-    ripple = _calmest(mesh, np.abs(mean - around), spokes >= LEAST_SPOKES, CALM_SHARE_OF_RIPPLE)
+    # a vertex differs from its neighbours where it has at least three
+    ripple = _calmest(mesh, np.abs(mean - around), spokes >= 3, CALM_SHARE_OF_RIPPLE)
     if mixed <= 0.0 or ripple <= RIPPLE * mixed:
         return 0.0
     irregular = _irregular(mesh, inner, above, below)
@@ -175,7 +168,8 @@ def _irregular(mesh: Facets, inner: Ints, above: Array, below: Array) -> Array:
         alike &= np.abs(value[a] - value[b]) <= REPEATED * np.maximum(value[a], value[b])
     # an edge shows at its four vertices: so few are alike anyway
     label = components(a[alike], b[alike], len(above))
-    return np.where(np.bincount(label)[label] >= REPEATED_ROW, 0.0, np.minimum(above, below))
+    # a row of a dozen equal values is no accident
+    return np.where(np.bincount(label)[label] >= 12, 0.0, np.minimum(above, below))
 
 
 def _calmest(mesh: Facets, value: Array, readable: Flags, share: float) -> float:
@@ -189,7 +183,7 @@ def _calmest(mesh: Facets, value: Array, readable: Flags, share: float) -> float
 def _is_calm(mesh: Facets, value: Array, readable: Flags, share: float, limit: float) -> bool:
     """Whether `_calmest` is plainly within the limit, without an order."""
     each, weight = _of_facets(mesh, value, readable)
-    return bool(weight[each <= limit].sum() >= (1.0 + PLAINLY) * share * weight.sum())
+    return bool(weight[each <= limit].sum() >= (1.0 + SOLVED) * share * weight.sum())
 
 
 def _of_facets(mesh: Facets, value: Array, readable: Flags) -> tuple[Array, Array]:

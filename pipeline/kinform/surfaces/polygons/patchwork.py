@@ -14,21 +14,21 @@ from typing import Any
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross_columns, dot
+from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import distinct
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
+from kinform.surfaces.constants import FLAT_NOISES
 from kinform.surfaces.groups import Ragged, columns_of, parted
 from kinform.surfaces.polygons.coplanar import coplanar_facets
 from kinform.surfaces.polygons.facets import Facets, angles
 from kinform.surfaces.polygons.noise import Scale
 
 SLACK_ROUNDINGS = 2
-"""Roundings, over the altitude, by which the normal of a polygon may be turned."""
+"""Roundings, over the altitude, by which the normal of a polygon may be turned: one at either end."""
 MOST_SLACK = 0.3
-"""Angle by which rounding may turn a normal, at most."""
-FLAT_NOISES = 2
-"""Height, in noises, that a polygon gains over its neighbour below which their edge is neither convex nor concave."""
+"""rad by which rounding may turn a normal, at most: beyond, the normal means nothing. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +132,7 @@ class Patchwork:
         count = len(area)
         widest = np.zeros(count)
         np.maximum.at(widest, polygon, mesh.altitude)
-        slack = np.minimum(SLACK_ROUNDINGS * scale.rounding / np.maximum(widest, 1e-300), MOST_SLACK)
+        slack = np.minimum(SLACK_ROUNDINGS * scale.rounding / np.maximum(widest, TINY), MOST_SLACK)
         a = polygon[mesh.f0]
         b = np.where(mesh.inner, polygon[mesh.f1], -1)
         keep = np.flatnonzero(a != b)
@@ -141,7 +141,7 @@ class Patchwork:
         mean_a, mean_b = columns_of(mean, a), columns_of(mean, b)
         angle = np.where(inner, angles(mean_a, mean_b), np.pi)
         turn = dot(cross_columns(mean_a, mean_b), mesh.at(ends[:, 1]) - mesh.at(ends[:, 0]))
-        width = np.minimum(area[a], area[b]) / np.maximum(length, 1e-300)
+        width = np.minimum(area[a], area[b]) / np.maximum(length, TINY)
         flat = inner & ((angle < 2 * tolerances.coplanar) | (width * angle < FLAT_NOISES * scale.noise))
         sign = np.where(flat | ~inner, 0, np.where(turn > 0, 1, -1)).astype(np.int64)
         allowed = tolerances.smooth_edge + np.minimum(np.where(inner, slack[a] + slack[b], 0.0), MOST_SLACK)

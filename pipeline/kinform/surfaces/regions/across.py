@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import distinct
 from kinform.model.arrays import Flags, Ints
 from kinform.surfaces.groups import Ragged
@@ -27,15 +28,14 @@ TURNS_ON = (0.03, 0.56)
 than a smooth edge."""
 GOES_ON = 2.05
 """Ratio of lengths up to which the next edge goes on with a ridge: a fillet is longer than the edges of its corners."""
-OPEN = 3.1
-"""Angle that strips subtend together, at most, that may run across bands round another axis."""
 
 
 def along(territory: Territory, kind: Cylinder, growth: Growth) -> tuple[Growth, Ints]:
     """The cylinders but those across bands, and the edges (n,) which are ridges of these or go on with them."""
     work, batch, params = territory.patchwork, growth.batch, growth.surfaces.params
     sweep = np.bincount(batch.region, kind.widths(batch, params), batch.count)
-    open_ = batch.where(sweep < OPEN)
+    # strips across bands round another axis subtend less than half a turn
+    open_ = batch.where(sweep < 3.1)
     if not len(open_.region):
         return growth, np.zeros(0, np.int64)
     region, edge, inner = generators(open_, params)
@@ -68,7 +68,7 @@ def _onward(work: Patchwork, ridges: Ints) -> tuple[Flags, tuple[Ints, Ints]]:
     place, following, ridge = place[apart], following[apart], ridge[apart]
     length, longer = work.length[ridge], work.length[following]
     alike = (longer <= GOES_ON * length) & (length <= GOES_ON * longer)
-    cosine = np.abs(dot(work.along(ridge), work.along(following))) / np.maximum(length * longer, 1e-300)
+    cosine = np.abs(dot(work.along(ridge), work.along(following))) / np.maximum(length * longer, TINY)
     least, most = TURNS_ON
     on = alike & (cosine >= np.cos(most)) & (cosine <= np.cos(least))
     found = np.zeros(2 * len(ridges), bool)

@@ -17,9 +17,8 @@ from kinform.surfaces.regions.constants import WIDEST
 FACET_ROUNDING = 1e-3
 """Angle that is added to the greatest that a facet may subtend: what rounding makes of equal facets."""
 WIDER = 1.6
-"""A polygon this much wider than the next narrower one of a region is a flat on it, not a facet of it."""
-TYPICAL_WIDTH = 0.75
-"""Share of a region's polygons that are narrower than a typical one: cuts leave narrow pieces of facets."""
+"""A polygon this much wider than the next narrower one of a region is a flat on it, not one of its facets. Chosen, not
+measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +55,8 @@ class Candidates:
         width = self.kind.widths(batch, self.params)
         # regions are in order already
         region, ascending = batch.region, width.take(in_order(batch.region, width, batch.count))
-        typical = ordered_quantile(batch.size, ascending, TYPICAL_WIDTH)
+        # three quarters are narrower than a typical polygon: cuts leave narrow pieces of facets
+        typical = ordered_quantile(batch.size, ascending, 0.75)
         last = heads(region[::-1])[::-1].nonzero()[0]
         gap = ascending >= typical.take(region)
         gap[:-1] &= ascending[1:] > WIDER * ascending[:-1]

@@ -24,15 +24,11 @@ from kinform.surfaces.regions.constants import WIDEST
 from kinform.surfaces.regions.growth import Growth, whole
 from kinform.surfaces.regions.territory import Territory
 
-LEAST_CHORDS = 8
-"""Polygons of such a round, at least."""
 ROUND_CHORDS: float = float(np.radians(170.0))
 """Angle about its axis that it covers at least: arcs of less are flanks of teeth as well."""
 TURNED_CHORDS: float = (ROUND_CHORDS - WIDEST) / 2
 """Angle to the middle normal of a piece that one of its normals makes at least where a round is in it: they are those
 of the middles of strips, the outermost of which are no wider than WIDEST."""
-ON_CHORD = 1.0
-"""Chord errors of its middle facet by which its vertices are off, at most."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +42,8 @@ class Rounds:
     @classmethod
     def of(cls, kind: Cylinder, batch: Batch, side: Ints) -> Rounds:
         """Those of the pieces that have polygons enough, and normals that differ enough."""
-        large, number = batch.where((batch.size >= LEAST_CHORDS) & _turns(batch)).compact()
+        # fewer strips are flats as well. Chosen, not measured
+        large, number = batch.where((batch.size >= 8) & _turns(batch)).compact()
         return cls(large, side[number], kind.propose(large))
 
 
@@ -80,4 +77,5 @@ def _round(kind: Cylinder, growth: Growth, scale: Scales) -> Flags:
     off = np.zeros(batch.count)
     region = batch.region[owner]
     np.maximum.at(off, region, np.abs(kind.probe(columns_of(params, region), batch.points).distance))
-    return np.asarray(even & (sweep >= ROUND_CHORDS) & (off <= ON_CHORD * chord))
+    # vertices are off by no more than the chordal deviation of the middle facet
+    return np.asarray(even & (sweep >= ROUND_CHORDS) & (off <= chord))

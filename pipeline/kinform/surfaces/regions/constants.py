@@ -3,4 +3,4 @@
 from __future__ import annotations
 
 WIDEST = 1.2
-"""Greatest angle that a facet may subtend (rad)."""
+"""rad: largest angle that a facet may subtend: strips of prisms with six sides and more, with room for rounding."""

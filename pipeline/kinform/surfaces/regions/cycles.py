@@ -13,10 +13,11 @@ from kinform.model.arrays import Flags, Ints
 from kinform.surfaces.groups import parted
 from kinform.surfaces.kinds.batch import Batch, Params
 
+STEADY = 1e-8
+"""Largest change of the parameters (rad, spans) of a region over a period: a two hundredth of the least noise."""
+
 PERIODS = (2, 3)
 """Rounds after which regions are what they were, where they gain and lose the same polygons without end."""
-STEADY = 1e-8
-"""Change of such a region's parameters over a period (rad, spans), at most: a two hundredth of the least noise."""
 
 
 class Cycles:

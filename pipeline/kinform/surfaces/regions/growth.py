@@ -24,21 +24,12 @@ from kinform.surfaces.regions.cycles import Cycles
 from kinform.surfaces.regions.territory import Territory
 
 LOOSE = 2.5
-"""Fits within which a first guess is held to its region."""
+"""Fits within which a first guess is held to its region: it comes from few polygons. Chosen, not measured."""
 MAJORITY = 0.6
-"""Share of a piece that must conform at the first look."""
-FIRST_LAYERS = 2
-"""Layers of polygons that a region gains in its first round, and twice as many in each."""
-MOST_LAYERS = 512
-"""Layers that it gains in a round at most."""
-LAYERS_OF_WHOLE = 64
-"""Layers of polygons beside a piece that is whole already."""
-ABSORPTIONS = 6
-"""Rounds in which whole pieces grow."""
-STAGES = 14
-"""Rounds in which seeds grow: with doubled layers enough for 4,000 facets in a row."""
+"""Share of a piece that must conform at the first look. Chosen, not measured."""
 UNSHARED = 0.4
-"""Share of a region's polygons that belong to no larger one, above which it stays."""
+"""Least share of the polygons of a region that belong to no larger one: with less it is dropped. Chosen, not
+measured."""
 TOLERANCE_MEDIANS = 6
 """Tolerance of a region in middle distances of its vertices: four standard deviations."""
 
@@ -95,10 +86,12 @@ def absorb(territory: Territory, growth: Growth) -> Growth:
     batch, kept = batch.where(hopeful).compact()
     number = number[kept]
     surfaces = growth.surfaces.of(number)
-    for _ in range(ABSORPTIONS):
+    # rounds in which whole pieces grow. Chosen, not measured
+    for _ in range(6):
         if not len(batch.region):
             break
-        larger = territory.spread(surfaces, batch, surfaces.reach(batch), LAYERS_OF_WHOLE)
+        # a piece that is whole already gains few layers
+        larger = territory.spread(surfaces, batch, surfaces.reach(batch), 64)
         gained = larger.size > batch.size
         finished.append(_keys(batch.where(~gained), number))
         batch, kept = larger.where(gained).compact()
@@ -141,7 +134,8 @@ def _grow(territory: Territory, surfaces: Candidates, batch: Batch) -> tuple[Bat
     cycles = Cycles(count)
     batch, number = batch.compact()
     growing = surfaces.of(number)
-    for stage in range(STAGES):
+    # with doubled layers 14 rounds are enough for 4,000 facets in a row
+    for stage in range(14):
         if not len(batch.region):
             break
         before = batch.size
@@ -149,7 +143,8 @@ def _grow(territory: Territory, surfaces: Candidates, batch: Batch) -> tuple[Bat
         ahead = cycles.ahead(number, growing.params)
         if ahead is None:
             batch = _drop_shared(growing.kind, _settle(territory, growing, batch))
-            layers = min(FIRST_LAYERS << stage, MOST_LAYERS)
+            # layers of polygons that a region gains: twice as many in each round, up to 512
+            layers = min(2 << stage, 512)
             batch = territory.spread(growing, batch, growing.reach(batch), layers)
         else:
             batch = ahead

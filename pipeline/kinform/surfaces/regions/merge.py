@@ -9,7 +9,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.graphs.components import components
-from kinform.foundation.meshes.near import Near
+from kinform.foundation.meshes.near_points import Near
 from kinform.foundation.sorting import coarse
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.groups import columns_of, members
@@ -19,19 +19,19 @@ from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.candidates import FACET_ROUNDING, Candidates
 
 PARALLEL_PLANES = 5e-3
-"""Distance in normal (rad) and offset (spans) of planes that may be one."""
+"""Difference of normals (rad) and offsets (spans) of planes that may be one: a first sieve, the fit decides. Chosen,
+not measured."""
 MERGED_SHAPE = 2e-3
-"""Difference of radii (spans) and half-angles (rad) of surfaces that may be one."""
+"""Difference of radii (spans) and half-angles (rad) of surfaces that may be one: a first sieve, the fit decides.
+Chosen, not measured."""
 MERGED_SHAPE_FITS = 10
-"""The same in fits, where that is more."""
+"""The same in fits, where that is more. Chosen, not measured."""
 MERGING_FITS = 20
-"""Fits within which the vertices of the smaller surface lie on the larger, before both are fitted as one."""
-MERGED_REACH = 1.05
-"""Angle of the widest facet of merged surfaces that one may have, as a multiple."""
-PARTNERS = 2
-"""Larger surfaces, the nearest ones, that each is tried to be a piece of."""
+"""Fits within which the vertices of the smaller surface lie on the larger, before both are fitted as one. Chosen, not
+measured."""
 SAMPLES = 24
-"""Vertices of the smaller surface that are held against the larger before all of them are."""
+"""Vertices of the smaller surface that are held against the larger before all of them are: it saves work and decides
+nothing."""
 
 
 def coincident_planes(work: Patchwork, number: Ints, scale: Scale) -> Ints:
@@ -147,7 +147,8 @@ def _partners(surfaces: Candidates, batch: Batch, size: Array | Ints, scale: Sca
     distance = np.where(distance < near, distance, np.inf)
     order = np.lexsort((larger, distance, smaller))
     place = np.arange(len(order)) - np.searchsorted(smaller[order], smaller[order])
-    close = order[(place < PARTNERS) & np.isfinite(distance[order])]
+    # only the two nearest larger surfaces are tried
+    close = order[(place < 2) & np.isfinite(distance[order])]
     return larger[close], smaller[close]
 
 
@@ -165,5 +166,6 @@ def _one_fit(work: Patchwork, surfaces: Candidates, families: list[Ints]) -> Fla
     fitted = surfaces.within(MERGING_FITS * fit).refine(batch, 2).within(fit).refine(batch, 3)
     reach = np.zeros(batch.count)
     np.maximum.at(reach, batch.region, fitted.kind.widths(batch, fitted.params))
-    good = fitted.conforms(batch, MERGED_REACH * reach + FACET_ROUNDING)
+    # 5 % wider facets than those of the parts
+    good = fitted.conforms(batch, 1.05 * reach + FACET_ROUNDING)
     return np.asarray(np.bincount(batch.region, ~good, batch.count) == 0)

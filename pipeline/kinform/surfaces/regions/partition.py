@@ -33,35 +33,27 @@ from kinform.surfaces.regions.growth import Growth, absorb, pursue, whole
 from kinform.surfaces.regions.territory import Territory
 
 ROUNDS = 8
-"""Rounds of searching from seeds, at most."""
-LAST_ROUNDS = 2
-"""Rounds of searching among what may be generators, without regard to how it bends, at least: the longest come first,
-and hide those beside them until the second. More follow as long as they find what is worth it."""
-MOST_LINKS = 32
-"""Smooth edges of a polygon between two generators, at most."""
-LEAST_TURNING_POLYGONS = 3
-"""Polygons of a piece beside edges that turn one way, at least."""
-LEAST_BLEND = 8
-"""Polygons of a piece that may bend both ways."""
+"""Most rounds of searching from seeds: each must explain something, and typical meshes need three. Chosen, not
+measured."""
 EXPLAINED = 0.98
-"""Share of a piece that one kind explains, above which the others are not tried."""
+"""Share of a piece that one kind explains, above which the others are not tried: it saves work. Chosen, not
+measured."""
 FRESH = 0.9
-"""Share of a region that no larger one has taken, at least."""
+"""Least share of a region that no larger one has taken. Chosen, not measured."""
 STRAIGHT = {"cylinder": 0.985, "cone": 0.85, "sphere": 0.0}
 """Cosine between a seed and the edges across which its surroundings lie, at least, for each kind."""
 BEND_SLACK = 0.2
-"""What the ratio of curvatures at a seed may be beyond the range of a kind."""
+"""Amount by which the ratio of curvatures at a seed may leave the range of a kind: curvatures of coarse facets are
+rough. Chosen, not measured."""
 WORTH = 2e-3
-"""Share of the mesh's area that a round of searching must explain for another one to follow."""
+"""Share of the area of the mesh that a round of searching must explain for another one to follow. Chosen, not
+measured."""
 GRAIN = 1e-4
 """Share of the mesh's area that the two polygons at a seed have at least: finer detail that is no piece of its
 own stays freeform."""
 BROAD = 2e-2
-"""Share of the mesh's area above which a polygon is a plane of its own, whatever is beside it."""
-DOMINANT = 3
-"""Areas of its mean neighbour above which a polygon is a plane of its own."""
-LEAST_FREEFORM = 4
-"""Polygons that hang together in a freeform patch, at least: fewer are planes."""
+"""Share of the area of the mesh above which a polygon is a plane of its own, whatever is beside it. Chosen, not
+measured."""
 CHORD_FITS = (10.0, 100.0)
 """Fits, in multiples, to which closed rounds of strips are held once nothing else explains them. A shaft of 9 mm in a
 decimated mesh of 78 mm has vertices 2 µm off its mean radius, where a fit is 1.6 µm."""
@@ -133,7 +125,8 @@ def partition(work: Patchwork, scales: Scales) -> Partition:
     for number in range(1, ROUNDS):
         chosen = _choose(_search(territory, last, partial(_unasked, work, bent, asked)), territory)
         regions += chosen
-        if number < LAST_ROUNDS:
+        # two rounds at least: the longest generators come first, and hide those beside them until the second
+        if number < 2:
             continue
         if not chosen:
             break
@@ -162,7 +155,8 @@ def _pieces(territory: Territory, link: Links, joined: Flags) -> tuple[Batch, In
         turning = np.zeros(work.count, bool)
         mark = np.flatnonzero(sign.take(use) == side)
         turning[a.take(mark)] = turning[b.take(mark)] = True
-        several = np.bincount(label, turning, work.count) >= LEAST_TURNING_POLYGONS
+        # a piece has at least three polygons beside edges that turn one way
+        several = np.bincount(label, turning, work.count) >= 3
         present = np.flatnonzero(free & several[label])
         number, names = renumbered(label[present], work.count)
         keys.append((number + count) * np.int64(work.count) + present)
@@ -177,7 +171,8 @@ def _blends(territory: Territory, link: Links, joined: Flags, bent: Curvature) -
     use = np.flatnonzero(joined & free[link.a] & free[link.b])
     label = components(link.a.take(use), link.b.take(use), work.count)
     size = np.bincount(label[free], minlength=work.count)
-    present = np.flatnonzero(free & (size[label] >= LEAST_BLEND))
+    # fewer polygons that bend both ways determine no surface
+    present = np.flatnonzero(free & (size[label] >= 8))
     number, names = renumbered(label[present], work.count)
     lean = np.bincount(number, work.area[present] * np.sign(bent.strong[present]), names)
     keys = np.sort(number * np.int64(work.count) + present)
@@ -330,7 +325,8 @@ def _ruled(territory: Territory, edges: Ints) -> Ints:
     work, links = territory.patchwork, territory.links
     for polygons in (work.a, work.b):
         polygon = polygons.take(edges)
-        few = (links.lengths(polygon) <= MOST_LINKS).nonzero()[0]
+        # a polygon between two generators has few smooth edges
+        few = (links.lengths(polygon) <= 32).nonzero()[0]
         owner, edge = links.expand(polygon.take(few))
         mine = few.take(owner)
         other = (edge != edges.take(mine)) & territory.free.take(work.other(edge, polygon.take(mine)))
@@ -370,11 +366,13 @@ def _remainder(territory: Territory) -> tuple[Ints, Ints]:
     a, b = work.a[edges], work.b[edges]
     neighbours = np.bincount(np.r_[a, b], minlength=work.count)
     nearby = np.bincount(np.r_[a, b], np.r_[work.area[b], work.area[a]], work.count)
-    dominant = work.area > DOMINANT * nearby / np.maximum(neighbours, 1)
+    # a polygon much larger than its neighbours is a plane of its own
+    dominant = work.area > 3 * nearby / np.maximum(neighbours, 1)
     dominant |= work.area > BROAD * work.total[work.mesh]
     label = components(a, b, work.count)
     size = np.bincount(label[left], minlength=work.count)[label]
-    loose = left & (size >= LEAST_FREEFORM) & (neighbours >= 1) & ~dominant
+    # fewer than four connected polygons are planes
+    loose = left & (size >= 4) & (neighbours >= 1) & ~dominant
     planes = np.full(work.count, -1)
     planes[left & ~loose] = np.arange(int((left & ~loose).sum()))
     inside = loose[a] & loose[b]

@@ -10,6 +10,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, cross_columns, dot
 from kinform.foundation.graphs.components import components
+from kinform.foundation.rounding import ARITHMETIC, SINGLE
 from kinform.foundation.sorting import median
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.describe import Description
@@ -17,17 +18,12 @@ from kinform.surfaces.groups import members, repeated, starts_of
 from kinform.surfaces.polygons.patchwork import Patchwork
 
 THREAD_POLYGONS = 24
-"""Polygons of a thread, at least."""
+"""Fewest polygons of a thread: a turn has eight vertices at least, on two helices and both flanks. Chosen, not
+measured."""
 MOST_LINES = 6
-"""Axes tried, the best supported first."""
-MOST_PIECES = 4
-"""Pieces of what no surface explains that suggest an axis."""
-PIECE_TURNS = 0.1
-"""Share of turning in the motion of such a piece (radius 1), at least."""
-REWEIGHINGS = 6
-"""Rounds of reweighing, until what is no thread counts little."""
+"""Axes that are tried, the best supported first. Chosen, not measured."""
 SAME_LINE = 1e-3
-"""Lines (rad, and of the mesh's span) that are one axis."""
+"""Difference of lines (rad, and of the span of the mesh) that are one axis. Chosen, not measured."""
 
 
 Line: TypeAlias = tuple[Array, Array]
@@ -78,23 +74,25 @@ def turning_lines(work: Patchwork, free: Flags) -> list[list[Line]]:
     area, normal, centre = work.area.take(polygon), work.normals(polygon), work.middles(polygon)
     weight, placed, rows = area, np.ascontiguousarray(centre), np.empty((len(polygon), 6))
     rows[:, 3:] = normal
-    for _ in range(REWEIGHINGS):
+    # reweighed until what is no thread counts little
+    for _ in range(6):
         total = [weight[run].sum() for run in runs]
         middle = np.array([weight[run] @ placed[run] / size for run, size in zip(runs, total, strict=True)])
         arm = centre - repeated(middle, sizes)
         square = dot(arm, arm)
         spread = [float(np.sqrt(weight[run] @ square[run] / size)) for run, size in zip(runs, total, strict=True)]
-        reach = np.maximum(spread, 1e-12)
+        reach = np.maximum(spread, ARITHMETIC)
         rows[:, :3] = cross_columns(arm / reach.repeat(sizes)[:, None], normal)
         weighed = rows * weight.repeat(6).reshape(-1, 6)
         matrix = np.stack([weighed[run].T @ rows[run] / size for run, size in zip(runs, total, strict=True)])
         twist = np.linalg.eigh(matrix)[1][:, :, 0]
         speed = np.abs(np.concatenate([rows[run] @ motion for run, motion in zip(runs, twist, strict=True)]))
-        typical = np.maximum([median(speed[run]) for run in runs], 1e-6)
+        typical = np.maximum([median(speed[run]) for run in runs], SINGLE)
         weight = area / (1 + (speed / typical.repeat(sizes)) ** 2)
     for run, motion, about, size in zip(runs, twist, middle, reach.tolist(), strict=True):
         turn = float(np.linalg.norm(motion[:3]))
-        if turn > PIECE_TURNS:
+        # the motion of the piece (radius 1) rotates
+        if turn > 0.1:
             axis = motion[:3] / turn
             out[int(work.mesh[polygon[run.start]])].append((axis, about + cross(axis, motion[3:] / turn) * size))
     return out
@@ -110,7 +108,8 @@ def _pieces(work: Patchwork, free: Flags) -> list[Ints]:
     first = [*label[starts_of(work.mesh, len(work.total))[:-1]].tolist(), len(area)]
     number, count = np.full(len(area), -1), 0
     for low, high in zip(first, first[1:], strict=False):
-        for piece in low + np.argsort(-area[low:high], kind="stable")[:MOST_PIECES]:
+        # the four largest pieces that no surface explains
+        for piece in low + np.argsort(-area[low:high], kind="stable")[:4]:
             if size[piece] >= THREAD_POLYGONS:
                 number[piece] = count
                 count += 1

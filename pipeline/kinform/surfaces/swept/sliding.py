@@ -9,36 +9,35 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical_sign, cross, dot
+from kinform.foundation.constants import COVERAGE
 from kinform.foundation.graphs.components import components
+from kinform.foundation.rounding import ARITHMETIC, TINY
 from kinform.model.arrays import Array, Ints
-from kinform.surfaces.constants import COVERAGE
 from kinform.surfaces.describe import Description
 from kinform.surfaces.groups import group_moments, members, sums_of
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.slippage import Slippage, slippage
 
-SLIDING_POLYGONS = 12
-"""Polygons that show a motion, at least."""
 STILL = 6e-3
-"""Root mean square of the normals' share of the motion's speed (patch of radius 1) below which it slides."""
+"""Root mean square of the normals' share of the speed of a motion (patch of radius 1) below which the patch slides
+along itself: 0.3°, which the normals of facets scatter by. Chosen, not measured."""
 ACROSS = 0.1
-"""Spread of the normals of an extrusion about its direction, at least: less is flat."""
+"""Least spread of the normals of an extrusion about its direction: less is flat. Chosen, not measured."""
 UNIQUE = 5.0
-"""Ratio to the next motion, at least: what slides in two ways nearly is too flat to tell."""
+"""Least ratio to the next motion: what nearly slides in two ways is too flat to tell. Chosen, not measured."""
 TURNS = 0.15
-"""Share of turning in a motion (patch of radius 1) above which it is a turn."""
-BOXES_AGREE = 0.6
-"""Share of their common box, along each axis, that two patches of one thread share."""
+"""Share of rotation in a motion (patch of radius 1) above which it is a rotation. Chosen, not measured."""
 SCREW_ADVANCE = 0.01
-"""Advance a radian, in radii of the patch about the axis, below which a turn is no screw."""
+"""Advance a radian, in radii of the patch about the axis, below which a rotation is no screw. Chosen, not measured."""
 
 
 def sliding(work: Patchwork, number: Ints, scales: Scales) -> list[Description]:
     """Patches of polygons (P,) of one or more meshes, -1 for none, that slide on themselves in one way; the others are
     left out."""
     rounding = scales.rounding[work.mesh]
-    large = [patch for patch in members(number) if len(patch) >= SLIDING_POLYGONS]
+    # fewer polygons show no motion
+    large = [patch for patch in members(number) if len(patch) >= 12]
     extrusions = _extrusions(work, large, rounding)
     out = [extrusion for extrusion in extrusions if extrusion]
     left = [patch for patch, extrusion in zip(large, extrusions, strict=True) if not extrusion]
@@ -81,7 +80,7 @@ def _extrusion(
     middle = weight @ work.centre[polygons] / weight.sum()
     _, vertex = work.corners.expand(polygons)
     span = (work.vertices[vertex] - middle) @ axis
-    length = max(float(np.ptp(span)), 1e-12)
+    length = max(float(np.ptp(span)), ARITHMETIC)
     angular = float(min(COVERAGE * (speed + rounding / length) / spread, np.pi / 2))
     return Description(
         "extrusion", polygons, axis, middle, extent=(float(span.min()), float(span.max())),
@@ -116,7 +115,8 @@ def _agreeing(work: Patchwork, patches: list[Ints]) -> list[Ints]:
     high = np.array([work.centre[polygons].max(axis=0) for polygons in patches])
     shared = np.minimum(high[:, None], high[None]) - np.maximum(low[:, None], low[None])
     joint = np.maximum(high[:, None], high[None]) - np.minimum(low[:, None], low[None])
-    agree = (shared > BOXES_AGREE * joint).all(axis=2)
+    # two patches of one thread share most of their box along each axis
+    agree = (shared > 0.6 * joint).all(axis=2)
     a, b = np.nonzero(np.triu(agree, 1))
     return [group for group in members(components(a, b, len(patches))) if len(group) > 1]
 
@@ -126,7 +126,7 @@ def _surface_of_turn(work: Patchwork, polygons: Ints, motion: Slippage, k: int, 
     turning, size = float(np.linalg.norm(motion.angular[k])), float(motion.size[k])
     if turning < TURNS:
         return None
-    gained = max(float(motion.next_speed[k]), 1e-12)
+    gained = max(float(motion.next_speed[k]), ARITHMETIC)
     angular = float(min(COVERAGE * (motion.speed[k] + rounding / size) / gained, np.pi / 2))
     axis, moment = motion.angular[k] / turning, motion.linear[k] / turning
     point = motion.middle[k] + cross(axis, moment) * size
@@ -137,7 +137,7 @@ def _surface_of_turn(work: Patchwork, polygons: Ints, motion: Slippage, k: int, 
     radial = arm - span[:, None] * axis
     rho = np.linalg.norm(radial, axis=1)
     radius = float(np.average(rho, weights=work.area[polygons]))
-    outward = np.average(dot(work.normal[polygons], radial) / np.maximum(rho, 1e-300), weights=work.area[polygons])
+    outward = np.average(dot(work.normal[polygons], radial) / np.maximum(rho, TINY), weights=work.area[polygons])
     screws = abs(advance) > SCREW_ADVANCE * radius
     return Description(
         "helicoid" if screws else "revolution", polygons, axis, point, radius=radius, side=1 if outward >= 0 else -1,

@@ -15,66 +15,47 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical_sign, cross, dot, perpendicular
+from kinform.foundation.constants import COVERAGE
 from kinform.foundation.graphs.components import components
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED, TINY
 from kinform.foundation.sorting import among, distinct, median
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces.constants import COVERAGE, ROWS
+from kinform.surfaces.constants import ROWS
 from kinform.surfaces.describe import ROUNDED_SCATTER, Description, standoffs
 from kinform.surfaces.groups import columns_of, slices
-from kinform.surfaces.polygons.noise import PLAINLY, Scale
+from kinform.surfaces.polygons.noise import Scale
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.swept.lines import THREAD_POLYGONS, Line
 
 LEVEL = 2e-3
-"""Share of its length by which an edge along a helix may change its distance from the axis."""
+"""Share of its length by which an edge along a helix may change its distance from the axis. Chosen, not measured."""
 LEVEL_NOISES = 4
-"""The same in noises, for short edges."""
+"""The same in noises, for short edges: that of both ends, twice."""
 WIDE = (8.0, 4.0, 2.0, 1.0, 1.0)
-"""How much wider helices are looked for while axis and advance are refined."""
+"""Multiples of the width in which helices are looked for while axis and advance are refined. Chosen, not measured."""
 HELIX_STEP = 0.85
 """rad: greatest angle of an edge about the axis: a thread has eight vertices a turn, at least."""
 ARC = 1.1
 """Length of such an edge along its helix, in its own lengths, at most: 1.031, with room."""
-LEAST_ARC = 0.05
-"""Arc of an edge along a helix, in rises, at least."""
 STEEP = (2e-3, 4.0)
-"""Range of the advance a radian, in radii, of what is a thread."""
+"""Range of the advance a radian, in radii, of a thread: lead angles from 0.1° to 76°."""
 ADVANCE_NOISES = 3
-"""Noises, over its angle, by which the advance of an edge is uncertain."""
+"""Noises, over its angle, by which the advance of an edge is uncertain: of both ends, with room."""
 ADVANCE_SHOWS = 0.3
-"""Uncertainty of the advance of an edge, as a share of it, with which it suggests one, at most."""
-MOST_ADVANCES = 4
-"""Advances tried about one axis."""
+"""Largest relative uncertainty of the advance of an edge that suggests one. Chosen, not measured."""
 ALIKE_ADVANCE = 5e-3
-"""Relative spread of the advance along edges of one thread, besides what rounding makes of each."""
-ADVANCE_STEP = 0.1
-"""Relative change of the advance in one step of a fit, beyond which it is another thread."""
+"""Relative spread of the advance along the edges of one thread, besides the rounding of each. Chosen, not measured."""
 TURNED = 0.7
-"""Turns of helix, counted along all polylines of a thread, at least."""
-LONGEST = 0.4
-"""Turns of the longest of them, at least."""
-SHORTEST = 0.02
-"""Turns of the shortest polyline that counts, in those of the longest."""
-HELIX_SIGMAS = 3
-"""Standard deviations up to which residuals of a helix count fully."""
+"""Fewest turns of helix, counted along all polylines of a thread. Chosen, not measured."""
 HELIX_MEDIANS = 1.5
-"""A standard deviation in median sizes of a normal distribution."""
-VAGUE_HELIX = 1e-12
-"""Ratio of eigenvalues below which axis and advance of a thread are undetermined."""
+"""A standard deviation in median magnitudes of a normal distribution: 1.4826, rounded up."""
 TILT = 0.12
-"""Root mean square of the normals' share of the screw's speed, of facets that belong to a thread."""
-TILTS = 3
-"""The same of a single facet that may be one of them, in multiples."""
-LOPSIDED = 0.6
-"""The same of a single facet between two helices: skew triangles lean far to either side in turn."""
+"""Largest root mean square of the normals' share of the speed of the screw, over the facets of a thread. Chosen, not
+measured."""
 LEAN = 0.3
 """Mean of that, as a share of the slope of the helix: beyond, the facets are as well a ring, or a helix of another
-pitch."""
-TOUCHING = 3
-"""Corners of a piece of flank on helices, at least."""
-BENT = 1.0
-"""rad: facets of one flank make no greater angle."""
+pitch. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +81,7 @@ class _Screw:
         """Share (n,) of the screw's speed along the normals there, and the slope (n,) of the helices."""
         turning = cross(np.broadcast_to(self.axis, centres.shape), centres - self.point)
         velocity = turning + self.advance * self.axis
-        size = np.maximum(np.linalg.norm(velocity, axis=1), 1e-300)
+        size = np.maximum(np.linalg.norm(velocity, axis=1), TINY)
         return dot(normals, velocity) / size, np.abs(self.advance) / size
 
 
@@ -168,8 +149,8 @@ def _with_helices(work: Patchwork, edges: Ints, about: Sequence[Line], scale: Sc
     """Those of the lines about which edges may turn enough for `_advances`, each with edges that may be level there:
     bounds from lengths need no angles, are had of all lines at once, and leave few."""
     out: list[tuple[Line, Ints]] = []
-    enough = (1.0 - PLAINLY) * 2 * np.pi * TURNED
-    shown = (1.0 - PLAINLY) * ADVANCE_NOISES / ADVANCE_SHOWS * scale.noise
+    enough = (1.0 - SOLVED) * 2 * np.pi * TURNED
+    shown = (1.0 - SOLVED) * ADVANCE_NOISES / ADVANCE_SHOWS * scale.noise
     for run in slices(len(about), max(ROWS // len(work.vertices), 1)):
         some = about[run]
         distance = _distances(work, some)
@@ -179,8 +160,8 @@ def _with_helices(work: Patchwork, edges: Ints, about: Sequence[Line], scale: Sc
         length = work.length.take(edge)
         rise = np.abs(dot(work.along(edge), columns_of(np.array([axis for axis, _ in some]), line)))
         across = np.sqrt(np.maximum(length * length - rise * rise, 0.0))
-        turn = np.minimum(ARC * across / np.maximum(np.sqrt(one * other), 1e-300), HELIX_STEP)
-        flat = (1.0 - PLAINLY) * rise < STEEP[1] * turn * (one + other) / 2
+        turn = np.minimum(ARC * across / np.maximum(np.sqrt(one * other), TINY), HELIX_STEP)
+        flat = (1.0 - SOLVED) * rise < STEEP[1] * turn * (one + other) / 2
         turned = np.bincount(line, np.where(flat & (rise > shown), turn, 0.0), len(some))
         out += [(some[k], edge[line == k]) for k in np.flatnonzero(turned >= enough).tolist()]
     return out
@@ -217,7 +198,8 @@ def _slopes(
     turn -= 2 * np.pi * np.round(turn / (2 * np.pi))
     length = np.hypot(rise, mean * turn)
     level = np.abs(widening) <= wide * LEVEL * length + LEVEL_NOISES * scale.noise
-    turning = (np.abs(turn) < HELIX_STEP) & (np.abs(turn) * mean > LEAST_ARC * np.abs(rise)) & (np.abs(turn) > 1e-6)
+    # an edge along a helix has an arc of at least a twentieth of its rise
+    turning = (np.abs(turn) < HELIX_STEP) & (np.abs(turn) * mean > 0.05 * np.abs(rise)) & (np.abs(turn) > SINGLE)
     advance = np.where(turning, rise / np.where(turning, turn, 1.0), 0.0)
     doubt = ADVANCE_NOISES * scale.noise / np.maximum(np.abs(turn), 1e-9)
     steep = (np.abs(advance) > STEEP[0] * mean + doubt) & (np.abs(advance) < STEEP[1] * mean)
@@ -229,9 +211,10 @@ def _advances(work: Patchwork, edges: Ints, start: _Screw, scale: Scale) -> list
     advance, doubt, turn, usable = _slopes(work, work.ends.take(edges, axis=0), start, scale, WIDE[0])
     rows = np.flatnonzero(usable & (doubt < ADVANCE_SHOWS * np.abs(advance)))
     out: list[float] = []
-    if np.abs(turn[rows]).sum() < (1.0 - PLAINLY) * 2 * np.pi * TURNED:
+    if np.abs(turn[rows]).sum() < (1.0 - SOLVED) * 2 * np.pi * TURNED:
         return out
-    for _ in range(MOST_ADVANCES):
+    # a thread of several starts and its diagonals suggest a few advances about one axis
+    for _ in range(4):
         if len(rows) < THREAD_POLYGONS // 2:
             break
         order = rows[np.argsort(advance[rows], kind="stable")]
@@ -261,9 +244,11 @@ def _helices(work: Patchwork, edges: Ints, screw: _Screw, scale: Scale, wide: fl
     polyline = components(ends[:, 0], ends[:, 1], len(work.vertices))[ends[:, 0]]
     _, polyline = np.unique(polyline, return_inverse=True)
     turned = np.bincount(polyline, turn)
-    if turned.sum() < 2 * np.pi * TURNED or turned.max() < 2 * np.pi * LONGEST:
+    # at least one polyline makes 0.4 turns
+    if turned.sum() < 2 * np.pi * TURNED or turned.max() < 2 * np.pi * 0.4:
         return None
-    keep = (np.bincount(polyline)[polyline] >= 2) & (turned[polyline] > SHORTEST * turned.max())
+    # polylines below 2 % of the longest do not count
+    keep = (np.bincount(polyline)[polyline] >= 2) & (turned[polyline] > 0.02 * turned.max())
     return _Helices(ends[keep], np.unique(polyline[keep], return_inverse=True)[1], turn[keep])
 
 
@@ -302,10 +287,10 @@ def _solve(work: Patchwork, helices: _Helices, screw: _Screw, scale: Scale) -> t
         [(_residuals(work, helices, _step(screw, step * e), vertex, group) - base) / step for e in np.eye(5)], axis=1
     )
     scatter = max(HELIX_MEDIANS * median(np.abs(base)), scale.rounding)
-    weight = 1.0 / np.maximum(np.abs(base) / (HELIX_SIGMAS * scatter), 1.0) ** 2
+    weight = 1.0 / np.maximum(np.abs(base) / (COVERAGE * scatter), 1.0) ** 2
     matrix = (columns * weight[:, None]).T @ columns
-    size = np.sqrt(np.maximum(np.diag(matrix), 1e-300))
-    inverse = np.linalg.pinv(matrix / np.outer(size, size), hermitian=True, rcond=VAGUE_HELIX) / np.outer(size, size)
+    size = np.sqrt(np.maximum(np.diag(matrix), TINY))
+    inverse = np.linalg.pinv(matrix / np.outer(size, size), hermitian=True, rcond=ARITHMETIC) / np.outer(size, size)
     change = -inverse @ (columns.T @ (weight * base))
     return _step(screw, change), inverse, scatter, float(np.ptp(height))
 
@@ -317,7 +302,8 @@ def _refine(work: Patchwork, edges: Ints, screw: _Screw, scale: Scale) -> _Screw
         if helices is None:
             return None
         moved = _solve(work, helices, screw, scale)[0]
-        if not np.isfinite(moved.advance) or abs(moved.advance - screw.advance) > ADVANCE_STEP * abs(screw.advance):
+        # an advance that changes by more in one step is that of another thread
+        if not np.isfinite(moved.advance) or abs(moved.advance - screw.advance) > 0.1 * abs(screw.advance):
             return None
         screw = moved
     return screw
@@ -337,17 +323,20 @@ def _members(work: Patchwork, free: Flags, helices: _Helices, screw: _Screw) -> 
     off = np.bincount(owner, line[vertex] < 0, work.count)
     along = _are_edges(work, helices)
     sided = np.bincount(np.r_[work.a[along], work.b[along & (work.b >= 0)]], minlength=work.count) > 0
-    between = free & sided & (lines <= 2) & (((off == 0) & (np.abs(share) < LOPSIDED)) | (np.abs(share) < TILT))
-    fitting = free & (np.abs(share) < TILTS * TILT)
+    # skew triangles between two helices lean far to either side in turn
+    between = free & sided & (lines <= 2) & (((off == 0) & (np.abs(share) < 0.6)) | (np.abs(share) < TILT))
+    # a single facet may lean three times as far as all of them in the mean
+    fitting = free & (np.abs(share) < 3 * TILT)
     use = work.smooth & fitting[work.a] & (work.b >= 0)
     use[use] &= fitting[work.b[use]]
     label = components(work.a[use], work.b[use], work.count)
     area = np.where(fitting, work.area, 0.0)
-    whole = np.maximum(np.bincount(label, area, work.count), 1e-300)
+    whole = np.maximum(np.bincount(label, area, work.count), TINY)
     mean = np.bincount(label, area * share, work.count) / whole
     square = np.sqrt(np.bincount(label, area * share**2, work.count) / whole)
     steep = np.bincount(label, area * slope, work.count) / whole
-    touched = np.bincount(label[owner], (line[vertex] >= 0) & fitting[owner], work.count) >= TOUCHING
+    # a piece of flank touches helices with at least three corners
+    touched = np.bincount(label[owner], (line[vertex] >= 0) & fitting[owner], work.count) >= 3
     good = touched & (square < TILT) & (np.abs(mean) < LEAN * steep)
     return np.flatnonzero(between | (fitting & good[label]))
 
@@ -363,7 +352,8 @@ def _chord(work: Patchwork, helices: _Helices, members: Ints) -> float:
     """How far facets may stand off the thread, from the angles between them where they are not its corners."""
     inside = np.zeros(work.count, bool)
     inside[members] = True
-    use = (work.b >= 0) & inside[work.a] & (work.angle < BENT)
+    # edges of more than 1 rad are crests and roots
+    use = (work.b >= 0) & inside[work.a] & (work.angle < 1.0)
     use[use] &= inside[work.b[use]]
     use &= ~_are_edges(work, helices)
     return float(standoffs(work, np.flatnonzero(use)).max(initial=0.0))
@@ -384,7 +374,7 @@ def _description(work: Patchwork, edges: Ints, screw: _Screw, members: Ints, sca
     arm = work.centre[members] - point
     radial = arm - (arm @ axis)[:, None] * axis
     distance = np.linalg.norm(radial, axis=1)
-    outward = float(dot(normal, radial) / np.maximum(distance, 1e-300) @ weight)
+    outward = float(dot(normal, radial) / np.maximum(distance, TINY) @ weight)
     _, vertex = work.corners.expand(members)
     span = (work.vertices[vertex] - point) @ axis
     return Description(

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from support.patches import Z, cone, cylinder, plane, ring, sphere
 
-from kinform.foundation.in_step import in_step
+from kinform.foundation.lockstep import run_in_lockstep
 from kinform.kinematics.joints.pair.in_step import Remainder, remains
 from kinform.kinematics.joints.pair.question import Question, answer_each
 from kinform.model.tolerances import Tolerances
@@ -108,5 +108,5 @@ def test_ways_of_different_lengths_each_get_their_own_answers():
             got.append(basis.shape[1])
         return [question.basis.shape[1] for question in asked], got
 
-    for wanted, got in in_step([way(length) for length in (0, 3, 1, 5)], remains):
+    for wanted, got in run_in_lockstep([way(length) for length in (0, 3, 1, 5)], remains):
         assert got == wanted

@@ -22,8 +22,8 @@ from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate, pr
 from kinform.form.scenes.scene import EXPORT, Node, Scene
 from kinform.form.sources import AS_IT_IS, Reading
 from kinform.foundation.colours import of_light
-from kinform.foundation.meant import in_quotes
-from kinform.foundation.regular import not_a_file
+from kinform.foundation.name_hints import in_quotes
+from kinform.foundation.regular_files import not_a_file
 from kinform.foundation.words import counted
 from kinform.model.arrays import Array, Ints
 

@@ -17,7 +17,7 @@ from kinform.formats.description.elements import Element, Xml
 from kinform.formats.description.mesh_files import MeshFiles
 from kinform.formats.description.robot import Link, Ratio, RobotJoint, Shape
 from kinform.foundation.algebra.displacements import inverse
-from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.name_hints import did_you_mean, in_quotes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 

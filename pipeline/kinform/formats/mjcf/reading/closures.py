@@ -12,7 +12,7 @@ from kinform.formats.description.poses import place, pose, quaternion
 from kinform.formats.description.robot import Link, Ratio, RobotJoint
 from kinform.formats.description.tree import Count
 from kinform.formats.mjcf.reading.defaults import Defaults
-from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.name_hints import did_you_mean, in_quotes
 from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
 

@@ -14,7 +14,7 @@ from kinform.formats.description.elements import FILE, Element, Xml, parse_xml, 
 from kinform.formats.description.mesh_files import MeshFiles
 from kinform.formats.description.poses import about, pose, quaternion, turn
 from kinform.formats.mjcf.reading.fits import INERTIAS
-from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.name_hints import did_you_mean, in_quotes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 

@@ -26,7 +26,7 @@ from kinform.formats.mjcf.reading.closures import closures, ratios
 from kinform.formats.mjcf.reading.defaults import Compiler, Defaults, Includes
 from kinform.formats.mjcf.reading.replicas import Replicas
 from kinform.formats.mjcf.reading.shapes import Shapes
-from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.name_hints import did_you_mean, in_quotes
 from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
 

@@ -17,7 +17,7 @@ from kinform.formats.description.robot import Inertial, Shape, Solid, Stated
 from kinform.formats.description.tree import Count
 from kinform.formats.mjcf.reading.defaults import Compiler, Defaults, from_z, mesh_assets
 from kinform.formats.mjcf.reading.fits import FITTED, fitted
-from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.name_hints import did_you_mean, in_quotes
 from kinform.model.arrays import Array
 
 _UNCOLOURED: tuple[list[str], ...] = ([], ["0.5", "0.5", "0.5", "1"], [".5", ".5", ".5", "1"])

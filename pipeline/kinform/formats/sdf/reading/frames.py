@@ -10,7 +10,7 @@ import numpy as np
 
 from kinform.formats.description.elements import Element, Xml
 from kinform.foundation.algebra.displacements import inverse
-from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.name_hints import did_you_mean, in_quotes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 

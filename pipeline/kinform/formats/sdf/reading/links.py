@@ -13,7 +13,7 @@ from kinform.formats.description.tree import Count
 from kinform.formats.sdf.reading.frames import Frames
 from kinform.formats.sdf.reading.models import Model
 from kinform.formats.sdf.reading.values import Values
-from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.name_hints import did_you_mean, in_quotes
 from kinform.model.arrays import Array
 
 _LINK = ("pose", "visual", "collision", "inertial", "gravity", "self_collide", "kinematic", "enable_wind",

@@ -20,7 +20,7 @@ from kinform.formats.description.tree import Count
 from kinform.formats.sdf.reading.frames import MODEL, WORLD, Frame, Frames
 from kinform.formats.sdf.reading.text import Included
 from kinform.formats.sdf.reading.values import Values
-from kinform.foundation.meant import in_quotes
+from kinform.foundation.name_hints import in_quotes
 from kinform.frozen import dataclass
 
 SDF_MODELS = 2000

@@ -24,7 +24,7 @@ from kinform.formats.sdf.reading.links import Links
 from kinform.formats.sdf.reading.models import Model, Models, version_of
 from kinform.formats.sdf.reading.text import whole_text
 from kinform.formats.sdf.reading.values import Values
-from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.name_hints import did_you_mean, in_quotes
 from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
 

@@ -9,7 +9,7 @@ import numpy as np
 from kinform.form.constants import LARGEST_NUMBER
 from kinform.formats.description.elements import Element, Xml, tag_of
 from kinform.formats.description.poses import pose, quaternion, rpy
-from kinform.foundation.meant import in_quotes
+from kinform.foundation.name_hints import in_quotes
 from kinform.model.arrays import Array
 
 

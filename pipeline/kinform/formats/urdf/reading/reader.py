@@ -31,7 +31,7 @@ from kinform.formats.description.robot import (
     bounded,
 )
 from kinform.formats.description.tree import Count, Edge, Tree, refuse_circle, tree_of
-from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.name_hints import did_you_mean, in_quotes
 from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
 

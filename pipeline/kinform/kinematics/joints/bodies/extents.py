@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.foundation.algebra.vectors import norm
-from kinform.foundation.levelled import levelled
+from kinform.foundation.tied_sizes import tied_sizes
 from kinform.model.assembly import Assembly
 from kinform.model.names import PartName
 
@@ -46,4 +46,4 @@ def part_volumes(assembly: Assembly) -> dict[PartName, float]:
         if part.mesh is not None:
             own = part.mesh.health.volume
             out[part.name] = abs(own) if own else float(np.prod(np.subtract(*part.mesh.placed_box(part.X_WP)[::-1])))
-    return levelled(out)
+    return tied_sizes(out)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 
 from kinform.foundation.graphs.graph import UnionFind
-from kinform.foundation.levelled import largest
+from kinform.foundation.tied_sizes import largest
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Body
 from kinform.model.names import BodyName, PartName

@@ -17,7 +17,7 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.algebra.vectors import norm, sine
-from kinform.foundation.in_step import in_step
+from kinform.foundation.lockstep import run_in_lockstep
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.pair.certainty import Certainty, certainty, momentary
 from kinform.kinematics.joints.pair.evidence import COAXIAL, GUIDES, Evidence, Item
@@ -87,7 +87,9 @@ def decide_each(pairs: Sequence[tuple[Evidence, Tolerances]]) -> list[Decision]:
     twists = [np.array([m.twist for m in of_pair]).reshape(-1, 6).T for of_pair in candidates]
     preserved = preserved_by_each([(evidence, of_pair) for (evidence, _), of_pair in zip(pairs, twists, strict=True)])
     of_each = zip(pairs, candidates, twists, preserved, strict=True)
-    return in_step([_decide(*pair, motions, of_pair, flags) for pair, motions, of_pair, flags in of_each], remains)
+    return run_in_lockstep(
+        [_decide(*pair, motions, of_pair, flags) for pair, motions, of_pair, flags in of_each], remains
+    )
 
 
 def _decide(

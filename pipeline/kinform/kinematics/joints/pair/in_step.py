@@ -1,7 +1,7 @@
 """What decisions of pairs ask of linear algebra, answered for many at once.
 
 A decision is a generator. Where it needs to know what rows leave free it yields a `Remainder`, and is sent the answer:
-many are decided in step (`foundation.in_step`), and `remains` stacks their questions of one shape. The matrices of a
+many are decided in step (`foundation.lockstep`), and `remains` stacks their questions of one shape. The matrices of a
 stack are decomposed one by one: an answer is the same to the last bit whatever it is stacked with.
 """
 
