@@ -23,8 +23,8 @@ from kinform.exports.motors import left_out
 from kinform.exports.tree import Closing, Tree, grow
 from kinform.foundation.algebra.vectors import perpendicular
 from kinform.frozen import dataclass
+from kinform.mechanism.rank import rank_of
 from kinform.model.arrays import Array, Ints
-from kinform.simulation.mechanism.closure import rank_of
 
 LEAST_MOTION = 1e-9
 """rad or m: what counts as motion of a joint along our run. Far above rounding; a choice, not a measurement."""

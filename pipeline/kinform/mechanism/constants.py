@@ -4,9 +4,6 @@ from __future__ import annotations
 
 SIGMAS = 3.0
 """Standard uncertainties by which fitted axes, centres and normals may be off: beyond it chance is below 1 %."""
-LEAST_FRAME = 0.05
-"""Share of the assembly's size that the scaling length of a block is at least: axes that meet have no size of their
-own."""
 CLOSED = 1e-7
 """Relative singular value below which a combination of joint rates closes its loops; the axes have been made exactly
 parallel and coaxial before, so true zeros are rounding."""

@@ -21,6 +21,7 @@ from kinform.foundation.algebra.screws import Frame, bracket, scaled
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import forest
 from kinform.foundation.records import altered
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.mechanism.constants import FAR_AXIS
 from kinform.model.arrays import Array, Flags
@@ -30,14 +31,14 @@ Form = tuple[bytes, ...]
 
 
 @dataclass(frozen=True, eq=False)
-class Closed:
-    """How far the loops are from closing at a batch of D configurations, and how that changes."""
+class Equations:
+    """The closure equations of the loops at a batch of D configurations, to first order."""
 
     residual: Array
-    """(D, 6 loops + ties) rotation and shift of what each loop comes back with, then what ties miss: zero where it
-    closes."""
+    """(D, m) rotation (rad) and shift (shares of the length) of what each loop comes back with, then what ties miss;
+    m = 6 loops + ties. Zero where all loops close."""
     jacobian: Array
-    """(D, 6 loops + ties, n)."""
+    """(D, m, n) its derivative by the coordinates, where the loops are nearly closed."""
     columns: Array
     """(D, n, 6) twist of each coordinate where it is now."""
 
@@ -66,6 +67,8 @@ class LoopSystem:
     """(N, n) rates that add up to the twist of each body."""
     ties: Array
     """(k, n) combinations of coordinates that stay zero: ratios that gears keep. They count as rows of the closure."""
+    turns: Flags
+    """(n,) coordinates that are angles (rad); the others are slides, in shares of the frame's length."""
     rounding: float = 0.0
     """Share of a unit screw that coordinates of the world leave unknown where the block is."""
 
@@ -80,11 +83,20 @@ class LoopSystem:
         parts = (self.joint, self.first, *self.chords, *(part for layer in self.depths for part in layer), self.ties)
         return tuple(part.tobytes() for part in parts)
 
-    def at(self, rows: Index) -> LoopSystem:
+    def rows(self, which: Index) -> LoopSystem:
         """The systems of these configurations, where each has its own."""
-        return self if self.screws.ndim == 2 else altered(self, screws=self.screws[rows])
+        return self if self.screws.ndim == 2 else altered(self, screws=self.screws[which])
 
-    def close(self, q: Array) -> Closed:
+    def advance(self, q: Array, change: Array) -> Array:
+        """Configurations (D, n) after a change (D, n)."""
+        return q + change
+
+    @property
+    def start(self) -> Array:
+        """(1, n) the reference pose: that of the meshes."""
+        return np.zeros((1, self.coordinates))
+
+    def equations(self, q: Array) -> Equations:
         """Residual and Jacobian of the loops at configurations (D, n)."""
         bodies, inside, across = self._displacements(q)
         batch = len(q)
@@ -101,10 +113,11 @@ class LoopSystem:
         if len(self.ties):
             missed = np.concatenate([missed, q @ self.ties.T], axis=1)
             rows = np.concatenate([rows, np.broadcast_to(self.ties, (batch, *self.ties.shape))], axis=1)
-        return Closed(missed, rows, columns)
+        return Equations(missed, rows, columns)
 
     def bodies(self, q: Array) -> Array:
-        """(D, N, 4, 4) displacement of each body from the reference pose, at configurations (D, n)."""
+        """(D, N, 4, 4) displacement of each body from the reference pose, at configurations (D, n), seen from the root,
+        in the frame's units about its centre."""
         return self._displacements(q)[0]
 
     def _displacements(self, q: Array) -> tuple[Array, Array, Array]:
@@ -141,12 +154,17 @@ def loop_system(
     spaces: Sequence[Array],
     frame: Frame,
     ties: Sequence[tuple[int, int, float]] = (),
+    root: int | None = None,
 ) -> LoopSystem:
-    """The loops of a connected block: `edges` between bodies of any numbers, `spaces[k]` the (f, 6) twists
-    of joint k (ω; v at the world's origin) of its second body relative to its first, in the order of the
-    product of exponentials; `frame` centre and size (m) of the block. `ties` (a, b, ratio): joints of one freedom,
-    of which the first moves by ratio (SI) when the second moves by one, along their twists."""
-    number = {body: i for i, body in enumerate(sorted({n for edge in edges for n in edge}))}
+    """The loops of joints between bodies.
+
+    `edges` (bodies of any numbers) and `spaces[k]`, the (f, 6) twists of joint k (ω; v at the world's origin) of its
+    second body relative to its first, in the order of the product of exponentials. `frame`: centre and length (m) that
+    scale it. `ties` (a, b, ratio): joints of one freedom, of which the first moves by ratio (SI) when the second moves
+    by one, along their twists. Bodies are numbered in their order, and the tree grows from `root`, or the first.
+    """
+    present = {n for edge in edges for n in edge} | ({root} if root is not None else set())
+    number = {body: i for i, body in enumerate(sorted(present))}
     inner = [(number[a], number[b]) for a, b in edges]
     sizes = [len(space) for space in spaces]
     start = np.cumsum([0, *sizes])
@@ -160,12 +178,14 @@ def loop_system(
             length = 1.0 if turning else frame.length
             line[start[k]] = factor * length / norm(twist[:3] if turning else twist[3:])
         line /= np.abs(line).max()
-    tree = forest(len(number), inner, 0)
+    tree = forest(len(number), inner, 0 if root is None else number[root])
     depth = tree.depths()
     reach = np.zeros((len(number), total))
     layers: dict[int, list[tuple[int, int, int, bool]]] = {}
-    for node in tree.order[1:]:
+    for node in tree.order:
         k, parent = tree.edge[node], tree.parent[node]
+        if parent < 0:
+            continue
         backward = inner[k][1] != node
         reach[node] = reach[parent]
         reach[node, start[k] : start[k + 1]] = -1.0 if backward else 1.0
@@ -190,6 +210,7 @@ def loop_system(
         ahead=reach[first[joint]] + earlier,
         reach=reach,
         ties=held,
+        turns=turns,
         rounding=frame.rounding,
     )
 
@@ -206,7 +227,7 @@ def _unit_screws(twists: Array, frame: Frame) -> tuple[Array, Flags]:
     turning = np.linalg.norm(local[:, :3], axis=1)
     sliding = np.linalg.norm(local[:, 3:], axis=1)
     turns = turning > FAR_AXIS * sliding
-    local = local / np.maximum(np.where(turns, turning, sliding), 1e-300)[:, None]
+    local = local / np.maximum(np.where(turns, turning, sliding), TINY)[:, None]
     local[~turns, :3] = 0.0
     return local, turns
 

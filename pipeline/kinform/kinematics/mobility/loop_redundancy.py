@@ -17,9 +17,10 @@ from kinform.foundation.algebra.vectors import cross, cross_matrix
 from kinform.foundation.graphs.cycles import Cycle
 from kinform.kinematics.mobility.joint_redundancy import redundancy
 from kinform.kinematics.wording import EXACT_WRENCH, Locked, axis_word, locked_text, locked_wrenches, rows_too_many
-from kinform.mechanism.block_rates import FEW_RATES, Block, axes_frame, loop_matrix
+from kinform.mechanism.block_rates import FEW_RATES, Block, loop_matrix
 from kinform.mechanism.constants import CLOSED
 from kinform.mechanism.first_order import Closure
+from kinform.mechanism.frame import axes_frame
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Redundancy
 

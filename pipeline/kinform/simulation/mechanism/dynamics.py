@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.behaviour.components import RigidBody, System
+from kinform.mechanism.rank import factor
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.kernel import choice, equations, layout, masses, motion
 from kinform.simulation.kernel.calls import plainly
 from kinform.simulation.kernel.layout import Nums, Row, Work
 from kinform.simulation.kernel.tables import Tables
 from kinform.simulation.mechanism.actuation import Actuation
-from kinform.simulation.mechanism.closure import factor
 from kinform.simulation.mechanism.kernel_tables import tabulate
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.states import States
