@@ -249,8 +249,7 @@ def _together(tasks: Sequence[Task]) -> list[Closing]:
     found = close(
         system, np.concatenate([t.start for t in tasks]), rank=first.rank, limit=first.limit, until=first.until
     )
-    parts = (np.split(part, np.cumsum(counts)[:-1]) for part in (found.q, found.residual, found.jacobian, found.change))
-    return [
-        Closing(q, residual, jacobian, change, found.accepted)
-        for q, residual, jacobian, change in zip(*parts, strict=True)
-    ]
+    of_each = (
+        np.split(part, np.cumsum(counts)[:-1]) for part in (found.q, found.residual, found.jacobian, found.change)
+    )
+    return [Closing(q, *rest, accepted=found.accepted) for q, *rest in zip(*of_each, strict=True)]

@@ -17,13 +17,13 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import norm, perpendicular
 from kinform.foundation.graphs.graph import blocks
-from kinform.foundation.rounding import SOLVED, TINY
+from kinform.foundation.rounding import ARITHMETIC, SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.axes.snapping import LINES
 from kinform.kinematics.joints.pair.joint import twists_of
 from kinform.kinematics.mobility.finite_motion import MOVING_JOINT
 from kinform.kinematics.mobility.local_dimension import local_motions
-from kinform.mechanism.closing import FirstOrder, StepLimit, close
+from kinform.mechanism.closing import FirstOrder, StepLimit, Termination, close
 from kinform.mechanism.constants import CLOSED
 from kinform.mechanism.frame import joint_frame
 from kinform.mechanism.joint_graph import JointGraph
@@ -52,6 +52,8 @@ NEAR_DIFFERENCE = 1e-5
 """Half the difference of a correction by which its effect is found."""
 NEAR_RANK = Rank(share=SOLVED)
 """Motions and corrections are of different sizes: whatever is more than rounding counts."""
+EXACTLY = Termination(accepted=ARITHMETIC)
+"""Corrections are as small as what axes usually miss each other by: loops have to close but for rounding."""
 NEAR_LIMIT = StepLimit(4.0)
 """Poses at all steps change together, by twice as much as one does."""
 
@@ -242,5 +244,5 @@ class _Bordered:
 def _solved(system_with: Callable[[Array], LoopSystem], way: Array, count: int) -> Array | None:
     """(count,) amounts at which all loops close at steps along the way; None where they do not."""
     start = np.concatenate([np.outer(NEAR_STEPS, way).ravel(), np.zeros(count)])
-    q = close(_Bordered(system_with, way), start[None], rank=NEAR_RANK, limit=NEAR_LIMIT).one()
+    q = close(_Bordered(system_with, way), start[None], rank=NEAR_RANK, limit=NEAR_LIMIT, until=EXACTLY).one()
     return None if q is None else q[len(start) - count :]
