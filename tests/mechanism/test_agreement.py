@@ -45,9 +45,7 @@ def simulated(design, values):
     slots = {slot.name: slot for slot in mechanism.slots}
     q, v = (np.array([getattr(slots[name], of).start for name in values]) for of in ("q", "v"))
     target = np.array(list(values.values()))
-    follower = Follower(
-        mechanism, Led(q, v, lambda s: s * target, lambda s: target), mechanism.start, SolverSettings()
-    )
+    follower = Follower(mechanism, Led(q, v, lambda s: s * target, lambda s: target), mechanism.start, SolverSettings())
     assert follower.go(0.0, 1.0) is None
     to, back = np.eye(4), np.eye(4)
     to[:3, 3], back[:3, 3] = mechanism.centre, -mechanism.centre
