@@ -19,11 +19,11 @@ from numpy.typing import NDArray
 from kinform.foundation.algebra.displacements import carry, exponentials, identities, inverse
 from kinform.foundation.algebra.screws import Frame, bracket, scaled
 from kinform.foundation.algebra.vectors import norm
-from kinform.foundation.graphs.graph import forest
 from kinform.foundation.records import altered
 from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.mechanism.constants import FAR_AXIS
+from kinform.mechanism.spanning_tree import spanning_tree
 from kinform.model.arrays import Array, Flags
 
 Index = NDArray[np.intp]
@@ -178,20 +178,15 @@ def loop_system(
             length = 1.0 if turning else frame.length
             line[start[k]] = factor * length / norm(twist[:3] if turning else twist[3:])
         line /= np.abs(line).max()
-    tree = forest(len(number), inner, 0 if root is None else number[root])
-    depth = tree.depths()
+    tree = spanning_tree(len(number), inner, 0 if root is None else number[root])
     reach = np.zeros((len(number), total))
     layers: dict[int, list[tuple[int, int, int, bool]]] = {}
-    for node in tree.order:
-        k, parent = tree.edge[node], tree.parent[node]
-        if parent < 0:
-            continue
-        backward = inner[k][1] != node
-        reach[node] = reach[parent]
-        reach[node, start[k] : start[k + 1]] = -1.0 if backward else 1.0
-        layers.setdefault(depth[node], []).append((node, parent, k, backward))
-    used = set(tree.edge)
-    chords = [k for k in range(len(inner)) if k not in used]
+    for step in tree.carried:
+        of_joint = slice(start[step.joint], start[step.joint + 1])
+        reach[step.body] = reach[step.parent]
+        reach[step.body, of_joint] = 1.0 if step.forward else -1.0
+        layers.setdefault(step.depth, []).append((step.body, step.parent, step.joint, not step.forward))
+    chords = tree.closing
     loops = np.array([reach[inner[k][0]] - reach[inner[k][1]] for k in chords]).reshape(len(chords), total)
     for row, k in enumerate(chords):
         loops[row, start[k] : start[k + 1]] += 1.0

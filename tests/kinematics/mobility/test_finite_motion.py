@@ -92,7 +92,10 @@ def test_turned_shifted_and_scaled_mechanisms_move_alike(name, scale):
     assert figures(elsewhere, size=5.0 * scale) == tuple(expected)
 
 
-@pytest.mark.parametrize("name", ["Watt six-bar", "flat parallelogram", "shaky truss with balls", "Bennett"])
+@pytest.mark.parametrize(
+    "name",
+    ["Watt six-bar", "flat parallelogram", pytest.param("shaky truss with balls", marks=pytest.mark.sweep), "Bennett"],
+)
 def test_ground_and_order_do_not_matter(name):
     mechanism, *expected = KNOWN[name]
     order = np.random.default_rng(5).permutation(len(mechanism))
@@ -107,7 +110,7 @@ def test_a_flat_parallelogram_goes_on_in_two_ways():
     (certificate,) = found.certificates
     assert certificate.branches == (1, 1)
     assert certificate.stepped == 1
-    assert "bifurcation" in found.reason
+    assert found.singular
 
 
 def test_certificates_are_residuals_of_closed_loops():
@@ -126,7 +129,7 @@ def test_a_shaky_truss_is_obstructed_at_second_order_and_says_where():
     assert found.count == 1
     assert certificate.second_order == "obstructed"
     assert certificate.moves == ("base~link1", "link1~link2", "link2~base")
-    assert found.reason.startswith("1 of 1 freedom is only infinitesimal: base~link1")
+    assert (found.infinitesimal, certificate.finite) == (1, 0)
 
 
 def test_a_mechanism_near_its_singular_pose_is_not_singular():
@@ -210,7 +213,8 @@ def test_a_loop_that_moves_a_general_joint_is_not_known():
     first, found = count([*joints[:3], as_general(joints[3])])
     assert first == 1
     assert found.count is None
-    assert "link3~base is known by its velocities only" in found.reason
+    (certificate,) = found.certificates
+    assert (certificate.instantaneous, certificate.finite) == (1, None)
 
 
 def test_a_loop_in_which_a_general_joint_rests_is_known_from_the_others():
@@ -266,7 +270,6 @@ def test_a_loop_with_an_ambiguous_joint_is_not_known_and_others_are():
     joints[1] = replace(joints[1], status="ambiguous")
     _, found = count(joints)
     assert found.count is None
-    assert "link1~link2 is ambiguous" in found.reason
     assert sorted(c.finite for c in found.certificates if c.finite is not None) == [1]
 
 
@@ -274,7 +277,8 @@ def test_a_block_beyond_the_limit_is_said_to_be(monkeypatch):
     monkeypatch.setattr("kinform.kinematics.mobility.finite_motion.MOST_BLOCK_WORK", 50)
     _, found = count(build(four_bar()))
     assert found.count is None
-    assert "too many to be tried" in found.reason
+    (certificate,) = found.certificates
+    assert (certificate.instantaneous, certificate.finite) == (None, None)
 
 
 @pytest.mark.parametrize("empty", [0, 20])
