@@ -19,7 +19,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Literal, Protocol, Self
 
 import numpy as np
@@ -156,12 +155,12 @@ def close(
 ) -> Closing:
     """Where the loops of the system close near the configurations q (D, …), each by itself; coordinates that are `held`
     (n,) stay as they are."""
-    every = np.arange(len(q))
     at = system.equations(q)
     n = at.jacobian.shape[2]
-    free = np.arange(n) if held is None else np.flatnonzero(~held)
+    free = slice(None) if held is None or not held.any() else np.flatnonzero(~held)
     state = _State(q.copy(), np.zeros((len(q), n)), at.residual, at.jacobian, _greatest(at.residual))
-    before, previous, active, stale = np.full(len(q), np.inf), state, every, np.zeros(len(q), dtype=np.bool_)
+    before, active, stale = np.full(len(q), np.inf), np.arange(len(q)), np.zeros(len(q), dtype=np.bool_)
+    last_q, last_change = state.q, state.change
     for count in range(until.iterations + 1):
         if count:
             state.evaluate(system, active)
@@ -169,13 +168,13 @@ def close(
         ended = until.reached(state.left[active], before[active])
         if ended.any():
             worse = active[ended & (state.left[active] > before[active])]
-            state.q[worse], state.change[worse], stale[worse] = previous.q[worse], previous.change[worse], True
+            state.q[worse], state.change[worse], stale[worse] = last_q[worse], last_change[worse], True
             active = active[~ended]
         if not len(active) or count == until.iterations:
             break
         jacobian, residual = state.jacobian[active], state.residual[active]
-        step, size = limit.cut(-least_change(jacobian if held is None else jacobian[:, :, free], residual, rank))
-        before[active], previous = state.left[active], replace(state, q=state.q.copy(), change=state.change.copy())
+        step, size = limit.cut(-least_change(jacobian[:, :, free], residual, rank))
+        before[active], last_q, last_change = state.left[active], state.q.copy(), state.change.copy()
         change = np.zeros((len(active), n))
         change[:, free] = step
         state.q[active] = system.advance(state.q[active], change)

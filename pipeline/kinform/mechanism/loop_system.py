@@ -12,11 +12,12 @@ Leading axes of arrays are batches of configurations. No forces, no names, no de
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.algebra.displacements import carry, exponentials, identities, inverse
+from kinform.foundation.algebra.displacements import carry, exponential_terms, exponentials, identities, inverse
 from kinform.foundation.algebra.screws import Frame, bracket, scaled
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.records import altered
@@ -103,12 +104,12 @@ class LoopSystem:
         columns = carry(bodies[:, self.first[self.joint]] @ inside, self.screws)
         members, a, b = self.chords
         gap = bodies[:, a] @ across[:, members] @ inverse(bodies[:, b])
-        turn = 0.5 * (gap[..., :3, :3] - np.swapaxes(gap[..., :3, :3], -1, -2))
-        residual = np.stack(
-            [turn[..., 2, 1], turn[..., 0, 2], turn[..., 1, 0], gap[..., 0, 3], gap[..., 1, 3], gap[..., 2, 3]], -1
-        )
+        open_by = np.empty((batch, len(members), 6))
+        for row, (i, j) in enumerate(((2, 1), (0, 2), (1, 0))):
+            open_by[..., row] = 0.5 * (gap[..., i, j] - gap[..., j, i])
+        open_by[..., 3:] = gap[..., :3, 3]
         jacobian = self.loops[:, None, :] * np.swapaxes(columns, -1, -2)[:, None]
-        missed = residual.reshape(batch, 6 * len(members))
+        missed = open_by.reshape(batch, 6 * len(members))
         rows = jacobian.reshape(batch, 6 * len(members), self.coordinates)
         if len(self.ties):
             missed = np.concatenate([missed, q @ self.ties.T], axis=1)
@@ -120,10 +121,15 @@ class LoopSystem:
         in the frame's units about its centre."""
         return self._displacements(q)[0]
 
+    @cached_property
+    def _terms(self) -> tuple[Array, ...]:
+        """Of the exponentials of screws that all configurations share."""
+        return exponential_terms(self.screws)
+
     def _displacements(self, q: Array) -> tuple[Array, Array, Array]:
         """Displacements of bodies, of coordinates within their joints, and across joints."""
         batch, joints = len(q), len(self.first)
-        steps = exponentials(self.screws, q)
+        steps = exponentials(self.screws, q, self._terms if self.screws.ndim == 2 else None)
         inside, across = identities(batch, self.coordinates), identities(batch, joints)
         for level, (coordinates, members) in enumerate(self.levels):
             if level:

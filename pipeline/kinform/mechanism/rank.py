@@ -121,9 +121,10 @@ def counted(values: Array, share: float = RANK_SHARE) -> Ints:
     """(…) how many of the singular values (…, k), descending, count: those above `share` times the largest; and where
     they go on evenly below that, as those of a long row of loops do, all before they fall to nothing."""
     found = np.asarray(np.count_nonzero(values > share * values[..., :1], axis=-1))
-    for place in np.argwhere((found > 0) & (found < values.shape[-1])):
-        at = tuple(place)
-        found[at] = _evenly(values[at].tolist(), int(found[at]))
+    each, rows = found.reshape(-1), values.reshape(found.size, -1)
+    for k, number in enumerate(each.tolist()):
+        if 0 < number < rows.shape[1]:
+            each[k] = _evenly(rows[k].tolist(), number)
     return found
 
 
