@@ -13,6 +13,7 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, scaled
 from kinform.foundation.graphs.cycles import Cycle, short_cycles
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.mechanism.constants import CLOSED, SIGMAS
 from kinform.mechanism.frame import axes_frame
@@ -117,7 +118,7 @@ def _decompose(matrix: Array, prefer: Array, closed: float, nothing: float) -> l
     """Solutions from the singular values of all equations at once; shares of the largest singular value and of the
     largest rate of a solution that are zero."""
     _, values, right = np.linalg.svd(matrix)
-    rank = int(np.count_nonzero(values > closed * max(values[0], 1e-300))) if len(values) else 0
+    rank = int(np.count_nonzero(values > closed * max(values[0], TINY))) if len(values) else 0
     null: Array = right[rank:]
     drivers, _ = _pivots(null, -prefer)
     # the preferred column that is well conditioned drives; all others follow from these

@@ -248,7 +248,6 @@ def _together(tasks: Sequence[Task]) -> list[Closing]:
     found = close(
         system, np.concatenate([t.start for t in tasks]), rank=first.rank, limit=first.limit, until=first.until
     )
-    of_each = (
-        np.split(part, np.cumsum(counts)[:-1]) for part in (found.q, found.residual, found.jacobian, found.change)
-    )
-    return [Closing(q, *rest, accepted=found.accepted) for q, *rest in zip(*of_each, strict=True)]
+    ends = np.cumsum(counts).tolist()
+    of_each = [slice(end - count, end) for count, end in zip(counts, ends, strict=True)]
+    return [Closing(found.q[k], found.residual[k], found.jacobian[k], found.change[k], found.accepted) for k in of_each]

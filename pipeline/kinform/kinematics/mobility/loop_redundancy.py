@@ -15,6 +15,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, scaled, span
 from kinform.foundation.algebra.vectors import cross, cross_matrix
 from kinform.foundation.graphs.cycles import Cycle
+from kinform.foundation.rounding import TINY
 from kinform.kinematics.mobility.joint_redundancy import redundancy
 from kinform.kinematics.wording import EXACT_WRENCH, Locked, axis_word, locked_text, locked_wrenches, rows_too_many
 from kinform.mechanism.block_rates import FEW_RATES, Block, loop_matrix
@@ -60,7 +61,7 @@ def _of_loop(joints: Sequence[Joint], cycle: Cycle, block: Block, size: float) -
     spaces = [joint.twists for joint in members]
     frame = axes_frame(spaces, size) if len(block.cycles) > 1 else block.frame
     columns = np.hstack([scaled(s.T, frame) for s in spaces])
-    columns = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    columns = columns / np.maximum(np.linalg.norm(columns, axis=0), TINY)
     if columns.shape[1] > 6:
         columns = np.asarray(np.linalg.qr(columns.T, mode="r")).T
     left, values, _ = np.linalg.svd(columns, full_matrices=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.behaviour.components import RigidBody, System
+from kinform.foundation.rounding import TINY
 from kinform.mechanism.rank import factor
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.kernel import choice, equations, layout, masses, motion
@@ -73,7 +74,7 @@ class Dynamics:
             return ()
         inner = null.T @ self.mass_matrix(q)[np.ix_(free, free)] @ null
         values, vectors = np.linalg.eigh(inner)
-        empty = null @ vectors[:, values <= NO_MASS * max(float(values.max()), 1e-300)]
+        empty = null @ vectors[:, values <= NO_MASS * max(float(values.max()), TINY)]
         moving = free[np.abs(empty / scale[:, None]).max(axis=1, initial=0.0) > MOVES_WITHOUT_MASS]
         return mechanism.joints_of(moving)
 

@@ -21,6 +21,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, norm, perpendicular
 from kinform.foundation.graphs.graph import blocks
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.axes.bounds import MoveBounds
 from kinform.kinematics.joints.axes.constants import EXACTLY_PARALLEL, FITTED_RANK, FITTING_ROUNDS, MET
@@ -198,7 +199,7 @@ def _shifts(pins: Sequence[_Pin], equalities: Sequence[_Equality], size: float) 
         if np.abs(_unequal(start, rest)).max() <= EQUAL_SIDES * size:
             break
         shifts = _solve(start, np.array([pin.sigma for pin in pins]), rest)
-        excess = np.linalg.norm(shifts, axis=1) / np.maximum(most, 1e-300)
+        excess = np.linalg.norm(shifts, axis=1) / np.maximum(most, TINY)
         worst = int(np.argmax(excess))
         if excess[worst] <= 1.0:
             closed = np.abs(_unequal(start + shifts, rest)).max() <= EQUAL_SIDES * size
