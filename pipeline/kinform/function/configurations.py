@@ -19,6 +19,7 @@ from kinform.foundation.graphs.graph import blocks
 from kinform.frozen import dataclass
 from kinform.function.joint_names import stated_ranges
 from kinform.kinematics.joints.bodies.extents import Extents
+from kinform.mechanism.constants import FREE
 from kinform.mechanism.joint_graph import JointGraph
 from kinform.mechanism.linkage import Linkage, linkage
 from kinform.mechanism.loop_system import LoopSystem
@@ -26,8 +27,6 @@ from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Kinematics
 
-DEPENDENT = 1e-7
-"""Relative singular value below which constraints depend on each other, as in the count of freedoms."""
 RATE_MOVES = 1e-6
 """Rate of a coordinate in a unit motion above which it takes part."""
 BODY_MOVES = 1e-9
@@ -79,7 +78,7 @@ class Chain:
     @property
     def freedoms(self) -> int:
         """Freedoms of first order in the pose of the meshes."""
-        return len(null_space(self._rows, DEPENDENT))
+        return len(null_space(self._rows, FREE))
 
     @property
     def _rows(self) -> Array:
@@ -108,7 +107,7 @@ class Chain:
         tip = self.system.reach[self.index(body)]
         moved = [
             [c.joint for c, rate in zip(self.coordinates, loose, strict=True) if abs(rate) > RATE_MOVES]
-            for loose in null_space(np.concatenate([self._rows, held]), DEPENDENT)
+            for loose in null_space(np.concatenate([self._rows, held]), FREE)
             if np.abs((tip * loose) @ self.system.screws).max() > BODY_MOVES
         ]
         return tuple(dict.fromkeys(name for names in moved for name in names))

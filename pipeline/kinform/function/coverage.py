@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.algebra.vectors import cross
 from kinform.frozen import dataclass
-from kinform.function.configurations import DEPENDENT, Chain
+from kinform.function.configurations import Chain
 from kinform.mechanism.closing import close
+from kinform.mechanism.constants import FREE
 from kinform.model.arrays import Array, Flags
 
 SAMPLES = 4000
@@ -122,7 +123,7 @@ def _sampled(chain: Chain) -> Array:
     while len(closed) < WALK and tries < WALK_TRIES * WALK:
         base = closed[int(rng.integers(len(closed)))]
         tries += 1
-        loose = null_space(chain.system.equations(base[None]).jacobian[0], DEPENDENT)
+        loose = null_space(chain.system.equations(base[None]).jacobian[0], FREE)
         if not len(loose):
             break
         way = rng.normal(size=len(loose)) @ loose

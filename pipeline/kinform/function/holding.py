@@ -14,8 +14,9 @@ import numpy as np
 from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.rounding import SOLVED
-from kinform.function.configurations import DEPENDENT, Chain
+from kinform.function.configurations import Chain
 from kinform.mechanism.closing import close
+from kinform.mechanism.constants import FREE
 from kinform.model.arrays import Array
 
 STILL = 1e-9
@@ -83,7 +84,7 @@ def holding_effort(
     work = _work(power, motion)
     if isinstance(work, str):
         return work
-    for loose in null_space(matrix, DEPENDENT):
+    for loose in null_space(matrix, FREE):
         left = _work(power, loose)
         if isinstance(left, str):
             return left

@@ -15,7 +15,7 @@ from kinform.foundation.algebra.screws import Frame, scaled
 from kinform.foundation.graphs.cycles import Cycle, short_cycles
 from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
-from kinform.mechanism.constants import CLOSED, SIGMAS
+from kinform.mechanism.constants import FREE, SIGMAS
 from kinform.mechanism.frame import axes_frame
 from kinform.model.arrays import Array, Ints
 
@@ -90,7 +90,7 @@ def close_block(
     if count > few:
         solutions, sure = _eliminate(members, cycles, norms, prefer, size)
     if solutions is None or (not sure and count <= MOST_RATES):
-        closed = max(CLOSED, frame.rounding)
+        closed = max(FREE, frame.rounding)
         if doubts is not None:
             blur = doubts[list(block)]
             closed = max(
@@ -199,7 +199,7 @@ def _pivots(matrix: Array, prefer: Array) -> tuple[list[int], bool]:
         norms[pivots] = 0.0
         largest = float(norms.max())
         clear &= largest < SURE_DROPPED or largest > SURE_KEPT
-        if largest < CLOSED:
+        if largest < FREE:
             break
         good = np.flatnonzero(norms >= PIVOT_SHARE * largest)
         best = int(good[np.argmax(prefer[good])])

@@ -9,7 +9,7 @@ import numpy as np
 
 from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
-from kinform.mechanism.constants import CLOSED
+from kinform.mechanism.constants import FREE
 from kinform.mechanism.loop_system import Form, LoopSystem, stacked
 from kinform.mechanism.rank import Rank
 from kinform.model.arrays import Array
@@ -32,7 +32,7 @@ class Pose:
     system: LoopSystem
 
     @staticmethod
-    def at(system: LoopSystem, q: Array, tolerance: float = CLOSED) -> Pose:
+    def at(system: LoopSystem, q: Array, tolerance: float = FREE) -> Pose:
         """The pose at the closed configuration q (n,); relative `tolerance` of its rank."""
         return _poses([system], system, q[None], tolerance)[0]
 
@@ -62,7 +62,7 @@ def reference_poses(systems: Sequence[LoopSystem]) -> list[Pose]:
     for members in alike.values():
         of_form = [systems[k] for k in members]
         q = np.zeros((len(of_form), of_form[0].coordinates))
-        out |= zip(members, _poses(of_form, stacked(of_form, [1] * len(of_form)), q, CLOSED), strict=True)
+        out |= zip(members, _poses(of_form, stacked(of_form, [1] * len(of_form)), q, FREE), strict=True)
     return [out[k] for k in range(len(systems))]
 
 

@@ -24,7 +24,7 @@ from kinform.kinematics.joints.pair.joint import twists_of
 from kinform.kinematics.mobility.finite_motion import MOVING_JOINT
 from kinform.kinematics.mobility.local_dimension import local_motions
 from kinform.mechanism.closing import FirstOrder, StepLimit, Termination, close
-from kinform.mechanism.constants import CLOSED
+from kinform.mechanism.constants import FREE
 from kinform.mechanism.frame import joint_frame
 from kinform.mechanism.joint_graph import JointGraph
 from kinform.mechanism.loop_system import Index, LoopSystem, loop_system
@@ -147,7 +147,7 @@ def _of_block(edges: Sequence[tuple[int, int]], joints: Sequence[Joint], kinemat
 def _nearly_free(system: LoopSystem) -> Array | None:
     """(n,) the motion that one singular value far below all others forbids; None where there is none."""
     _, values, right = np.linalg.svd(system.equations(system.start).jacobian[0])
-    rank = int(np.count_nonzero(values > CLOSED * values.max(initial=TINY)))
+    rank = int(np.count_nonzero(values > FREE * values.max(initial=TINY)))
     if rank < 2 or values[rank - 1] > NEARLY * min(values[0], NEARLY_APART * values[rank - 2]):
         return None
     return np.asarray(right[rank - 1])

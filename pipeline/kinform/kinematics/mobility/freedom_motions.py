@@ -12,19 +12,17 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.foundation.algebra.displacements import displacement
-from kinform.foundation.rounding import SOLVED, TINY
+from kinform.foundation.rounding import SINGLE, SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.mechanism.closing import close
+from kinform.mechanism.constants import FREE
 from kinform.mechanism.joint_graph import JointGraph
 from kinform.mechanism.linkage import Coordinate, Linkage, linkage
 from kinform.model.arrays import Array, Flags
 from kinform.model.kinematics import Freedom, Kinematics
 
-FREEDOM_RANK = 1e-7
-"""Pivots of joint rates below this share of the greatest count as zero, as in the count of freedoms
-(`mechanism.constants.CLOSED`)."""
-LEAST_MOVE = 1e-6
-"""Share of the size by which a body moves that is said to move: the rounding of single precision."""
+LEAST_MOVE = SINGLE
+"""Share of the size by which a body moves that is said to move."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +116,7 @@ class _Rates:
         turning = np.linalg.norm(screws[:, :3], axis=1) > 0.0
         _, triangle, order = qr(rates * np.where(turning, 1.0, 1.0 / size), mode="economic", pivoting=True)
         diagonal = np.abs(np.diag(triangle))
-        rank = int(np.count_nonzero(diagonal > FREEDOM_RANK * max(float(diagonal.max(initial=0.0)), TINY)))
+        rank = int(np.count_nonzero(diagonal > FREE * max(float(diagonal.max(initial=0.0)), TINY)))
         columns = np.sort(order[:rank])
         mixes = np.asarray(np.linalg.pinv(rates[:, columns]), dtype=np.float64)
         return [(mix @ rates, int(column)) for mix, column in zip(mixes, columns, strict=True)]

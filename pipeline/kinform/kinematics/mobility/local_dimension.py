@@ -27,7 +27,7 @@ from kinform.foundation.rounding import SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.mobility.second_order import complement, independent, second_order, units
 from kinform.mechanism.closing import Closing, StepLimit, Task, Termination, close, close_each
-from kinform.mechanism.constants import CLOSED
+from kinform.mechanism.constants import FREE
 from kinform.mechanism.least_change import FINEST_VALUE
 from kinform.mechanism.loop_system import LoopSystem
 from kinform.mechanism.pose import Pose, reference_poses
@@ -166,7 +166,7 @@ def _regular(pose: Pose, mixes: Array, stride: float, step: float) -> Steps[tupl
     """(least share kept of a stride, greatest residual) if walks of length `step` along mixes (D, n) close with
     the rank of the pose and find that rank again; else None. However short the strides, the walk goes on to the
     full step: obstructions of third and higher order cannot be told from rounding nearby."""
-    q, kept, closed = pose.q, 1.0, max(CLOSED, pose.system.rounding)
+    q, kept, closed = pose.q, 1.0, max(FREE, pose.system.rounding)
     for _ in range(round(step / stride)):
         ahead = q + stride * mixes
         closing = yield _beside(pose, ahead, stride)
@@ -219,7 +219,7 @@ def _spread(pose: Pose, directions: Array, step: float) -> _Spread:
     q, residual = found.q, found.residual
     moved = (q - pose.q) @ pose.free.T / step
     kept = np.linalg.norm(moved, axis=1)
-    closed = residual < max(CLOSED, pose.system.rounding) * step
+    closed = residual < max(FREE, pose.system.rounding) * step
     stays = closed & (kept > STEP_LOST) & (np.linalg.norm(q - start, axis=1) < STEP_ASTRAY * step)
     _, values, right = np.linalg.svd(moved[stays], full_matrices=False)
     cone = right[: int(np.count_nonzero(values > CONE_SHARE * values.max(initial=0.0)))] @ pose.free
@@ -242,9 +242,7 @@ def _smooth(pose: Pose, cone: Array, step: float, rng: np.random.Generator) -> b
     kept = ((q - pose.q) * mixes).sum(axis=1) / step
     aside = np.linalg.norm((q - pose.q) @ pose.free.T / step - kept[:, None] * (mixes @ pose.free.T), axis=1)
     return bool(
-        residual.max() < max(CLOSED, pose.system.rounding) * step
-        and kept.min() > STEP_KEPT
-        and aside.max() < STEP_ASIDE
+        residual.max() < max(FREE, pose.system.rounding) * step and kept.min() > STEP_KEPT and aside.max() < STEP_ASIDE
     )
 
 

@@ -19,7 +19,7 @@ from kinform.foundation.rounding import TINY
 from kinform.kinematics.mobility.joint_redundancy import redundancy
 from kinform.kinematics.wording import EXACT_WRENCH, Locked, axis_word, locked_text, locked_wrenches, rows_too_many
 from kinform.mechanism.block_rates import FEW_RATES, Block, loop_matrix
-from kinform.mechanism.constants import CLOSED
+from kinform.mechanism.constants import FREE
 from kinform.mechanism.first_order import Closure
 from kinform.mechanism.frame import axes_frame
 from kinform.model.arrays import Array
@@ -65,7 +65,7 @@ def _of_loop(joints: Sequence[Joint], cycle: Cycle, block: Block, size: float) -
     if columns.shape[1] > 6:
         columns = np.asarray(np.linalg.qr(columns.T, mode="r")).T
     left, values, _ = np.linalg.svd(columns, full_matrices=True)
-    rank = int(np.count_nonzero(values > max(CLOSED, frame.rounding) * values[0])) if len(values) else 0
+    rank = int(np.count_nonzero(values > max(FREE, frame.rounding) * values[0])) if len(values) else 0
     if rank == 6:
         return None
     space = locked_wrenches(left[:, rank:].T)

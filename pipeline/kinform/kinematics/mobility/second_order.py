@@ -11,7 +11,7 @@ import numpy as np
 
 from kinform.foundation.rounding import TINY
 from kinform.kinematics.constants import RCOND
-from kinform.mechanism.constants import CLOSED
+from kinform.mechanism.constants import FREE
 from kinform.mechanism.pose import Pose
 from kinform.model.arrays import Array
 
@@ -72,7 +72,7 @@ def second_order(pose: Pose, rng: np.random.Generator) -> tuple[str, Array]:
 def independent(twists: Array) -> Array:
     """Orthonormal basis (r, m) of what the rows (n, m) span."""
     _, values, right = np.linalg.svd(twists, full_matrices=False)
-    return right[: int(np.count_nonzero(values > CLOSED * values.max(initial=0.0)))]
+    return right[: int(np.count_nonzero(values > FREE * values.max(initial=0.0)))]
 
 
 def complement(space: Array, part: Array) -> Array:

@@ -25,7 +25,7 @@ from kinform.foundation.rounding import ARITHMETIC, SINGLE, TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.constants import RCOND
 from kinform.kinematics.joints.axes.bounds import MoveBounds
-from kinform.kinematics.joints.axes.constants import EXACTLY_PARALLEL, FITTED_RANK, FITTING_ROUNDS, MET
+from kinform.kinematics.joints.axes.constants import EXACTLY_PARALLEL, FITTING_ROUNDS, MET
 from kinform.kinematics.joints.pair.joint import twists_of
 from kinform.mechanism.closing import Closing, Termination, close
 from kinform.mechanism.frame import joint_frame
@@ -110,7 +110,7 @@ def _fit_axes(loops: _Loops) -> Sequence[Joint]:
         return joints
     system = loops.system
     values = np.linalg.svd(system.equations(system.start).jacobian[0], compute_uv=False)
-    rank = int(np.count_nonzero(values > FITTED_RANK * max(values.max(initial=0.0), TINY)))
+    rank = int(np.count_nonzero(values > SINGLE * max(values.max(initial=0.0), TINY)))
     freedoms = system.coordinates - rank
     if rank == (3 if _planar(joints) else 6) * len(system.loops) or not 0 < freedoms <= MOST_FITTED_FREEDOMS:
         return joints
