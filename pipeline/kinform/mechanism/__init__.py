@@ -69,5 +69,5 @@ product of exponentials formula, 1984.
 
 __all__ = ["CODE_VERSION"]
 
-CODE_VERSION: int = 1
+CODE_VERSION: int = 2
 """Bumped when results of stages that use this package change for the same input."""

@@ -19,7 +19,7 @@ def oval(long, short, sides):
     return np.stack([long * np.cos(turn), short * np.sin(turn)], axis=1)
 
 
-@pytest.mark.parametrize(("long", "sides"), diagonal([12.12, 12.3, 13.2], [48, 96, 256]))
+@pytest.mark.parametrize(("long", "sides"), list(diagonal([12.12, 12.3, 13.2], [48, 96, 256])))
 def test_an_oval_peg_fills_its_hole_though_arcs_of_other_radii_meet(long, sides):
     """Its pieces are cut elsewhere on either side, so that arcs touch from within, whose centres differ. Where they are
     cut hangs on the attitude, and one in thirty leaves so little on either side that it is in doubt."""

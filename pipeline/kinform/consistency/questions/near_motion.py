@@ -52,8 +52,9 @@ NEAR_DIFFERENCE = 1e-5
 """Half the difference of a correction by which its effect is found."""
 NEAR_RANK = Rank(share=SOLVED)
 """Motions and corrections are of different sizes: whatever is more than rounding counts."""
-EXACTLY = Termination(accepted=ARITHMETIC)
-"""Corrections are as small as what axes usually miss each other by: loops have to close but for rounding."""
+EXACTLY = Termination(accepted=ARITHMETIC, iterations=12)
+"""Corrections are as small as what axes usually miss each other by: loops have to close but for
+rounding. Four or five steps are usual."""
 NEAR_LIMIT = StepLimit(4.0)
 """Poses at all steps change together, by twice as much as one does."""
 
