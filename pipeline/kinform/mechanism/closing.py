@@ -9,7 +9,7 @@ composed of three parts, each an argument of `close` with one default:
 - how far one step may go: `StepLimit`,
 - when to end, and what counts as closed: `Termination`.
 
-What does not close is no error: a `Closing` says how far each configuration is open, and why it ended.
+What does not close is no error: a `Closing` says which configurations are closed, and how far the others are open.
 
 Source: Nocedal and Wright, Numerical Optimization, 10.3 (Gauss–Newton); Golub and Van Loan, Matrix Computations, 5.5
 (least solutions of equations without full rank).
@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
-from typing import Literal, Protocol, Self
+from typing import Protocol, Self
 
 import numpy as np
 
@@ -43,8 +43,6 @@ ITERATIONS = 20
 LONGEST_STEP = 0.5
 """rad, and shares of the length: greatest change, as a whole, of one step. Beyond half a radian the linear equations
 say little of where loops close. Chosen, not measured."""
-
-Outcome = Literal["closed", "open"]
 
 
 class Equations(Protocol):
@@ -134,11 +132,6 @@ class Closing:
     def closed(self) -> Flags:
         """(D,) whether the loops close."""
         return np.asarray(self.residual <= self.accepted)
-
-    @property
-    def outcome(self) -> tuple[Outcome, ...]:
-        """How each configuration ended."""
-        return tuple("closed" if closed else "open" for closed in self.closed)
 
     def one(self) -> Array | None:
         """The first configuration (…), where its loops close."""
