@@ -69,7 +69,7 @@ def test_a_chain_puts_its_bodies_where_closed_formulas_do(seed):
     X, chain, _ = crane(rng)
     for _ in range(5):
         yaw, out, tilt = rng.uniform([-1, -0.01, -1], [1, 0.02, 1])
-        poses = chain.world(chain.system.bodies(coordinates(chain, yaw, out, tilt)[None])[0])
+        poses = chain.linkage.world(chain.system.bodies(coordinates(chain, yaw, out, tilt)[None])[0])
         assert poses[chain.index("tool")] == pytest.approx(displaced(X, yaw, out, tilt), abs=1e-12)
 
 
@@ -88,7 +88,7 @@ def test_what_is_certified_over_ranges_no_sample_contradicts(seed):
     # corners of the box of ranges too
     for k in range(8):
         samples[k] = [(chain.lower, chain.upper)[(k >> d) & 1][d] for d in range(3)]
-    poses = [chain.world(chain.system.bodies(q[None])[0])[chain.index("tool")] for q in samples]
+    poses = [chain.linkage.world(chain.system.bodies(q[None])[0])[chain.index("tool")] for q in samples]
     least = min(groups.at(pose).distance for pose in poses)
     assert least > 0.005
     sure = over(groups, chain, "base", "tool", chain.lower, chain.upper, 0.9 * least)

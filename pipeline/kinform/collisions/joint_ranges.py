@@ -12,10 +12,11 @@ from dataclasses import replace
 from kinform.collisions.driving.alone import drive_alone
 from kinform.collisions.driving.loops import drive_loops, is_followed
 from kinform.collisions.parts.shapes import Shapes
-from kinform.foundation.graphs.graph import UnionFind, blocks
+from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.processes import map_in_processes
 from kinform.foundation.progress import Progress
 from kinform.foundation.words import counted
+from kinform.mechanism.joint_graph import JointGraph
 from kinform.model.assembly import Assembly
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.contacts import Contacts
@@ -48,17 +49,15 @@ def ranges(
     """The range of each joint that is not fixed, in the order of the joints; `jobs` processes share those of many
     facets, and `meanwhile` is called while they do."""
     shapes = shapes_of(assembly, surfaces, contacts, kinematics)
-    index = {body.name: n for n, body in enumerate(kinematics.bodies)}
-    joints = kinematics.joints
-    edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in joints]
-    looped = {k: block for block in blocks(len(index), edges) if len(block) > 1 for k in block}
+    joints, graph = kinematics.joints, JointGraph(kinematics.bodies, kinematics.joints)
+    looped = {k: block for block in graph.loops for k in block}
     driven = [k for k, joint in enumerate(joints) if joint.type != "fixed"]
     out = {k: unknown(joints[k], reason) for k in driven if (reason := _refused(joints[k], kinematics, shapes))}
 
     def of_some(some: Sequence[int]) -> dict[int, JointRange]:
         if some[0] not in looped:
-            return {some[0]: drive_alone(shapes, joints[some[0]], *_sides(kinematics, edges, some[0], shapes))}
-        of_block = drive_loops(shapes, kinematics, edges, looped[some[0]])
+            return {some[0]: drive_alone(shapes, joints[some[0]], *_sides(kinematics, graph.edges, some[0], shapes))}
+        of_block = drive_loops(shapes, kinematics, graph, looped[some[0]])
         return {n: unknown(joints[n], of_block) if isinstance(of_block, str) else of_block[n] for n in some}
 
     # those of a block of loops together, where its first is
@@ -82,13 +81,12 @@ def too_large(assembly: Assembly, kinematics: Kinematics) -> str:
     numbers of joints, parts and facets alone, and on which loops move in one way."""
     parts = [part for part in assembly.parts if part.mesh is not None]
     facets = sum(len(part.mesh.faces) for part in parts if part.mesh is not None)
-    index = {body.name: n for n, body in enumerate(kinematics.bodies)}
-    edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in kinematics.joints]
-    together = [block for block in blocks(len(index), edges) if len(block) > 1]
+    graph = JointGraph(kinematics.bodies, kinematics.joints)
+    together = graph.loops
     driven = {k for k, joint in enumerate(kinematics.joints) if joint.type in ONE_FREEDOM}
     if UNASKED_LOOPS * len(driven) * len(parts) > UNASKED_PAIRS:
         # joints of loops that have more than one freedom are not followed, and take no time
-        driven -= {k for block in together if not is_followed(kinematics, edges, block) for k in block}
+        driven -= {k for block in together if not is_followed(kinematics, graph, block) for k in block}
     looped = {k for block in together for k in block}
     weight = sum(UNASKED_LOOPS if k in looped else 1 for k in driven)
     if weight * len(parts) <= UNASKED_PAIRS and len(driven) * facets <= UNASKED_FACETS:

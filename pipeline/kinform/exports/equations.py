@@ -24,8 +24,8 @@ from kinform.exports.tree import Closing, Tree, grow
 from kinform.foundation.algebra.vectors import perpendicular
 from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
+from kinform.mechanism.rank import rank_of
 from kinform.model.arrays import Array, Ints
-from kinform.simulation.mechanism.closure import rank_of
 
 POSES_OF_RUN = 24
 """Poses of our run at which the free coordinates must be good: a turn is seen every 15°. Chosen, not measured."""

@@ -8,37 +8,29 @@ chain through one is refused with the reason. Ranges are those of the function a
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import Frame, scaled
+from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.graphs.graph import blocks
 from kinform.frozen import dataclass
 from kinform.function.joint_names import stated_ranges
-from kinform.mechanism.loop_system import LoopSystem, loop_system
-from kinform.model.arrays import Array, Flags
+from kinform.kinematics.joints.bodies.extents import Extents
+from kinform.mechanism.constants import FREE
+from kinform.mechanism.joint_graph import JointGraph
+from kinform.mechanism.linkage import Linkage, linkage
+from kinform.mechanism.loop_system import LoopSystem
+from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
-from kinform.model.kinematics import Joint, Kinematics
+from kinform.model.kinematics import Kinematics
 
-LOOPS_CLOSED = 1e-9
-"""Residual (rad, share of the size) at which loops count as closed."""
-CLOSING_STEPS = 40
-"""Newton's steps to close loops, after which they cannot be closed."""
-CLOSING_STEP = 0.3
-"""rad, or share of the size, that one of these steps changes a coordinate at most."""
-DEPENDENT = 1e-7
-"""Relative singular value below which constraints depend on each other, as in the count of freedoms."""
-SOLVED = 1e-9
-"""The same in least squares."""
 RATE_MOVES = 1e-6
 """Rate of a coordinate in a unit motion above which it takes part."""
 BODY_MOVES = 1e-9
 """Twist of a body in a unit motion above which it moves."""
-ONE_POINT = 1e-9
-"""Share of the largest part's size within which the joints of a chain are at one point; rounding."""
 
 
 @dataclass(frozen=True)
@@ -58,28 +50,40 @@ class Coordinate:
 
 @dataclass(frozen=True, eq=False)
 class Chain:
-    """Bodies, and the coordinates that decide where they are."""
+    """Bodies, and the coordinates that decide where they are, with their ranges."""
 
-    system: LoopSystem
-    frame: Frame
-    bodies: tuple[str, ...]
-    """In the order of the system's bodies; the first is the root."""
+    linkage: Linkage
     coordinates: tuple[Coordinate, ...]
+
+    @property
+    def system(self) -> LoopSystem:
+        """The loops of the chain."""
+        return self.linkage.system
+
+    @property
+    def frame(self) -> Frame:
+        """That scales it."""
+        return self.linkage.frame
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """In the order of the system's bodies."""
+        return tuple(str(self.linkage.bodies[k].name) for k in self.linkage.members)
 
     @property
     def looped(self) -> bool:
         """Whether there are loops to close, or ratios to keep."""
-        return len(self.system.chords[0]) + len(self.system.ties) > 0
+        return self.linkage.looped
 
     @property
     def freedoms(self) -> int:
         """Freedoms of first order in the pose of the meshes."""
-        return len(null_space(self._rows, DEPENDENT))
+        return len(null_space(self._rows, FREE))
 
     @property
     def _rows(self) -> Array:
         """(6 loops + ties, n) Jacobian of the loops in the pose of the meshes."""
-        return np.asarray(self.system.close(np.zeros((1, len(self.coordinates)))).jacobian[0])
+        return np.asarray(self.system.equations(self.system.start).jacobian[0])
 
     @property
     def lower(self) -> Array:
@@ -103,25 +107,14 @@ class Chain:
         tip = self.system.reach[self.index(body)]
         moved = [
             [c.joint for c, rate in zip(self.coordinates, loose, strict=True) if abs(rate) > RATE_MOVES]
-            for loose in null_space(np.concatenate([self._rows, held]), DEPENDENT)
+            for loose in null_space(np.concatenate([self._rows, held]), FREE)
             if np.abs((tip * loose) @ self.system.screws).max() > BODY_MOVES
         ]
         return tuple(dict.fromkeys(name for names in moved for name in names))
 
-    def local(self, points: Array) -> Array:
-        """World points (…, 3) m in the system's coordinates."""
-        return np.asarray((points - self.frame.centre) / self.frame.length)
-
-    def world(self, poses: Array) -> Array:
-        """Displacements (…, 4, 4) of the system as displacements in the world (m)."""
-        out = poses.copy()
-        turned = (poses[..., :3, :3] @ self.frame.centre[:, None])[..., 0]
-        out[..., :3, 3] = poses[..., :3, 3] * self.frame.length + self.frame.centre - turned
-        return np.asarray(out)
-
     def index(self, body: str) -> int:
         """Number of a body in the system."""
-        return self.bodies.index(body)
+        return self.linkage.index(body)
 
 
 def chain_between(
@@ -131,68 +124,53 @@ def chain_between(
 
     `prefer`: the narrower of stated and found ranges ("both"), or the stated where there is one ("stated").
     """
-    names: list[str] = [body.name for body in kinematics.bodies]
-    edges = [(names.index(j.bodies[0]), names.index(j.bodies[1])) for j in kinematics.joints]
-    extra = len(edges)
-    every = blocks(len(names), [*edges, (names.index(root), names.index(tip))])
+    graph = JointGraph(kinematics.bodies, kinematics.joints)
+    extra = len(graph.edges)
+    every = blocks(len(graph.bodies), [*graph.edges, (graph.node[root], graph.node[tip])])
     used = [k for k in next(block for block in every if extra in block) if k != extra]
     if not used:
         return f"no joints connect '{root}' and '{tip}'"
-    return _chain(assembly, kinematics, [kinematics.joints[k] for k in used], root, prefer)
+    return _chain(assembly, kinematics, graph, used, root, prefer)
 
 
 def mechanism_of(assembly: Assembly, kinematics: Kinematics) -> Chain | str:
     """Everything that joints connect with the ground."""
-    root = next((body.name for body in kinematics.bodies if body.ground), None)
-    if root is None:
+    if not any(body.ground for body in kinematics.bodies):
         return "there is no ground"
-    reached, joints = {root}, list(kinematics.joints)
-    grown = True
-    while grown:
-        more = {name for j in joints for name in j.bodies if reached & set(j.bodies)}
-        grown = not more <= reached
-        reached |= more
-    used = [j for j in joints if set(j.bodies) <= reached]
-    return _chain(assembly, kinematics, used, root, "both") if used else "nothing is joined to the ground"
+    graph = JointGraph(kinematics.bodies, kinematics.joints)
+    reached = [root == graph.ground for root in graph.tree.root]
+    used = [k for k, (a, _) in enumerate(graph.edges) if reached[a]]
+    if not used:
+        return "nothing is joined to the ground"
+    return _chain(assembly, kinematics, graph, used, str(graph.bodies[graph.ground].name), "both")
 
 
-def _chain(assembly: Assembly, kinematics: Kinematics, joints: Sequence[Joint], root: str, prefer: str) -> Chain | str:
+def _chain(
+    assembly: Assembly, kinematics: Kinematics, graph: JointGraph, used: Sequence[int], root: str, prefer: str
+) -> Chain | str:
     """The chain of these joints, or why it has no poses; what gears tie are coordinates with a fixed ratio."""
     teeth = {coupling.through: coupling for coupling in kinematics.couplings if coupling.meshing is not None}
+    joints = [graph.joints[k] for k in used]
     for joint in joints:
         if joint.status == "ambiguous":
             return f"joint '{joint.name}' is ambiguous: {joint.reason}"
         if joint.type == "general" and joint.freedoms and joint.name not in teeth:
             return f"joint '{joint.name}' is known by its velocities only"
     geared = [teeth[joint.name] for joint in joints if joint.type == "general" and joint.name in teeth]
-    joints = [joint for joint in joints if joint.type != "general" or joint.name not in teeth]
-    index = {joint.name: k for k, joint in enumerate(joints)}
+    kept = [k for k in used if graph.joints[k].type != "general" or graph.joints[k].name not in teeth]
+    index = {graph.joints[k].name: n for n, k in enumerate(kept)}
     if not all(name in index for coupling in geared for name in coupling.joints):
         return f"the teeth of '{geared[0].through}' couple joints beside the chain"
-    bodies = [root, *sorted({name for j in joints for name in j.bodies} - {root})]
-    points = np.array([j.point for j in joints if j.point is not None]).reshape(-1, 3)
-    frame = Frame.of(points) if len(points) else Frame(np.zeros(3), 1.0)
-    half = max((0.5 * part.mesh.diagonal for part in assembly.parts if part.mesh is not None), default=0.0)
-    if frame.length <= ONE_POINT * half or len(points) < 2:
-        frame = Frame(frame.centre, half or 1.0)
-    edges = [(bodies.index(j.bodies[0]), bodies.index(j.bodies[1])) for j in joints]
     ties = [(index[c.joints[0]], index[c.joints[1]], c.meshing.ratio) for c in geared if c.meshing is not None]
-    system = loop_system(edges, [j.twists for j in joints], frame, ties)
+    made = linkage(graph, kept, Extents(assembly).assembly, graph.node[root], ties)
     ranges = _ranges(assembly, kinematics, prefer)
-    coordinates = [c for joint in joints for c in _coordinates(joint, frame, ranges)]
-    return Chain(system, frame, tuple(bodies), tuple(coordinates))
-
-
-def _coordinates(joint: Joint, frame: Frame, ranges: dict[str, tuple[float, float]]) -> Iterator[Coordinate]:
-    for twist in joint.twists:
-        beside = scaled(twist[:, None], frame)[:, 0]
-        turns = float(np.linalg.norm(beside[:3])) > 1e-9 * float(np.linalg.norm(beside[3:]))
-        vector = twist[:3] if turns else twist[3:]
-        sign = -1.0 if joint.axis is not None and float(vector @ joint.axis) < 0.0 else 1.0
-        unit = sign if turns else sign / frame.length
-        single = joint.freedoms == 1 and joint.name in ranges
-        low, high = ranges[joint.name] if single else (-math.inf, math.inf)
-        yield Coordinate(joint.name, turns, unit, low, high, single)
+    freedoms = {joint.name: joint.freedoms for joint in made.joints}
+    coordinates = []
+    for c in made.coordinates:
+        single = freedoms[c.joint] == 1 and c.joint in ranges
+        low, high = ranges[c.joint] if single else (-math.inf, math.inf)
+        coordinates.append(Coordinate(c.joint, c.turns, c.unit, low, high, single))
+    return Chain(made, tuple(coordinates))
 
 
 def _ranges(assembly: Assembly, kinematics: Kinematics, prefer: str) -> dict[str, tuple[float, float]]:
@@ -208,19 +186,3 @@ def _ranges(assembly: Assembly, kinematics: Kinematics, prefer: str) -> dict[str
             low, high = max(low, out[name][0]), min(high, out[name][1])
         out[name] = (low, high)
     return out
-
-
-def close(chain: Chain, q: Array, held: Flags) -> Array | None:
-    """The closed configuration (n,) near q that leaves the `held` coordinates as they are; None where Newton's
-    steps of least size find none."""
-    q = q.copy()
-    free = ~held
-    for _ in range(CLOSING_STEPS):
-        state = chain.system.close(q[None])
-        residual = state.residual[0]
-        if float(np.abs(residual).max(initial=0.0)) < LOOPS_CLOSED:
-            return q
-        step = np.linalg.lstsq(state.jacobian[0][:, free], -residual, rcond=SOLVED)[0]
-        size = float(np.abs(step).max(initial=0.0))
-        q[free] += step * min(1.0, CLOSING_STEP / max(size, 1e-300))
-    return None

@@ -14,7 +14,10 @@ from numpy.typing import NDArray
 from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.rounding import ARITHMETIC, SOLVED, TINY
-from kinform.function.configurations import DEPENDENT, Chain, close
+from kinform.frozen import dataclass
+from kinform.function.configurations import Chain
+from kinform.mechanism.closing import close
+from kinform.mechanism.constants import FREE
 from kinform.model.arrays import Array, Flags
 from kinform.requirements.evidence import Coverage
 
@@ -63,8 +66,8 @@ def cover(chain: Chain, body: str, carried: Array, targets: Array, *, directions
     Those of the farthest targets that stay beyond `near` (m or rad) are approached again from many more samples.
     """
     tip = chain.index(body)
-    image_of = carried if directions else chain.local(carried)
-    aims = targets if directions else chain.local(targets)
+    image_of = carried if directions else chain.linkage.local(carried)
+    aims = targets if directions else chain.linkage.local(targets)
     enough = near if directions else near / chain.frame.length
     q = _sampled(chain)
     images = _images(chain, tip, image_of, q, directions)
@@ -103,16 +106,15 @@ def _sampled(chain: Chain) -> Array:
     start = np.zeros(len(low))
     if not chain.looped:
         return np.vstack([np.clip(start, low, high), rng.uniform(low, high, (SAMPLES, len(low)))])
-    free = np.zeros(len(low), dtype=np.bool_)
     closed, tries = [start], 0
     while len(closed) < WALK and tries < WALK_TRIES * WALK:
         base = closed[int(rng.integers(len(closed)))]
         tries += 1
-        loose = null_space(chain.system.close(base[None]).jacobian[0], DEPENDENT)
+        loose = null_space(chain.system.equations(base[None]).jacobian[0], FREE)
         if not len(loose):
             break
         way = rng.normal(size=len(loose)) @ loose
-        stepped = close(chain, base + APPROACH_STEP / 2.0 * way / np.abs(way).max(), free)
+        stepped = close(chain.system, (base + APPROACH_STEP / 2.0 * way / np.abs(way).max())[None]).one()
         slack = SOLVED
         if stepped is not None and ((stepped >= low - slack) & (stepped <= high + slack)).all():
             closed.append(stepped)
@@ -185,7 +187,7 @@ def _linear(
     """Images (d, 3), squared misses (d,), derivatives (d, 3 + loops, n) and residuals (d, 3 + loops)."""
     system = chain.system
     image = _images(chain, tip, image_of, q, directions)
-    state = system.close(q)
+    state = system.equations(q)
     columns = state.columns * system.reach[tip][None, :, None]
     turn = cross(columns[..., :3], image[:, None, :])
     moves = turn if directions else turn + columns[..., 3:]

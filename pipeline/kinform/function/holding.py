@@ -14,7 +14,9 @@ import numpy as np
 from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.rounding import SINGLE, SOLVED
-from kinform.function.configurations import DEPENDENT, Chain, close
+from kinform.function.configurations import Chain
+from kinform.mechanism.closing import close
+from kinform.mechanism.constants import FREE
 from kinform.model.arrays import Array
 
 POSE_STEPS = 20
@@ -40,7 +42,7 @@ def configuration_at(chain: Chain, values: Mapping[str, float]) -> Array | str:
     target, pose = q, np.zeros(len(q))
     for share in np.linspace(1.0 / POSE_STEPS, 1.0, POSE_STEPS):
         pose[held] = share * target[held]
-        closed = close(chain, pose, held)
+        closed = close(chain.system, pose[None], held).one()
         if closed is None:
             return "the loops cannot be closed in this pose"
         pose = closed
@@ -58,7 +60,7 @@ def holding_effort(
     if len(columns) != 1:
         return f"joint '{joint}' is not in the mechanism"
     own = columns[0]
-    state = chain.system.close(q[None])
+    state = chain.system.equations(q[None])
     rows = [state.jacobian[0]]
     single = [k for k, c in enumerate(chain.coordinates) if sum(c.joint == o.joint for o in chain.coordinates) == 1]
     alone = {chain.coordinates[k].joint for k in single} & _open_ended(chain)
@@ -75,7 +77,7 @@ def holding_effort(
     work = _work(power, motion)
     if isinstance(work, str):
         return work
-    for loose in null_space(matrix, DEPENDENT):
+    for loose in null_space(matrix, FREE):
         left = _work(power, loose)
         if isinstance(left, str):
             return left
@@ -95,7 +97,7 @@ def _powers(
     chain: Chain, q: Array, columns: Array, springs: Mapping[str, float], force: Force
 ) -> Callable[[Array], tuple[float, list[str]]]:
     """Rates (n,) → power of all forces, and bodies that move with unknown ones."""
-    poses = chain.world(chain.system.bodies(q[None])[0])
+    poses = chain.linkage.world(chain.system.bodies(q[None])[0])
     wrenches = [force(name, poses[k]) for k, name in enumerate(chain.bodies)]
     length, centre = chain.frame.length, chain.frame.centre
 

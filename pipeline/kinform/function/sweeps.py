@@ -78,7 +78,7 @@ def over(groups: Apart, chain: Chain, first: str, second: str, low: Array, high:
     number = count = 0
 
     def nearest(q: Array, reach: float) -> Nearest:
-        poses = chain.world(chain.system.bodies(q[None])[0])
+        poses = chain.linkage.world(chain.system.bodies(q[None])[0])
         return groups.at(np.linalg.inv(poses[a]) @ poses[b], enough=required + reach)
 
     while cells:
@@ -167,7 +167,7 @@ def _speed(twist: Array, groups: Apart) -> float:
 
 def _levers(chain: Chain, groups: Apart, tip: int, low: Array, high: Array) -> Array:
     """(n,) m: how far a point of the second group moves at most when a coordinate of the chain changes by one."""
-    centre, length = chain.local(groups.centre), chain.frame.length
+    centre, length = chain.linkage.local(groups.centre), chain.frame.length
     order = np.flatnonzero(np.abs(chain.system.reach[tip]) > 0.0)
     # from the tip to the root: what moves fewer bodies comes first
     path = sorted(order, key=lambda k: int(np.count_nonzero(chain.system.reach[:, k])))

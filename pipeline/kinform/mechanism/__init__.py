@@ -18,15 +18,20 @@ turns and slides compare, and each column is divided by its length. What the nul
 dimension is the block's part of the mobility. Up to 160 rates all equations are solved at once by singular values,
 where values below 1e-7 of the largest are zero; larger blocks are reduced loop by loop (`block_rates`). The
 solutions are readable: each is driven by one joint at rate 1 while the other drivers rest, and joints near ground are
-rather chosen. `closure` puts the blocks together, and adds six freedoms for each tree that hangs on nothing.
+rather chosen. `first_order` puts the blocks together, and adds six freedoms for each tree that hangs on nothing.
 
 Redundancy. Six equations a loop seldom are independent. Those that depend on the others are what the joints hold more
 than once: stress that assembly may lock in.
 
 Configurations. Rates that close the loops at this pose need not be the beginning of a motion. `loop_system` has
 the same loops in joint coordinates q: a product of exponentials exp(S q) round a loop must be the identity (Brockett
-1984). Its residual, its Jacobian (the equations above, at q) and its curvature are what
-`kinematics.mobility.local_dimension` steps along with.
+1984). It gives the residual and the Jacobian (the equations above, at q) of its closure
+equations, and their curvature. `linkage` adds the bodies that hang on the loops, and values of joints: it is the one
+model of a mechanism for the page, the ranges, reach and mobility, as `spanning_tree` is the one graph.
+
+Closing. `closing.close` finds the configuration near a given one at which all loops close, by Gauss and Newton. Its
+parts are arguments: how many equations are independent (`rank`), the least change that meets these (`least_change`),
+how far a step may go, and when to end. `pose` has the freedoms of first order at a closed configuration.
 
 A four-bar
 ----------
@@ -64,5 +69,5 @@ product of exponentials formula, 1984.
 
 __all__ = ["CODE_VERSION"]
 
-CODE_VERSION: int = 1
+CODE_VERSION: int = 2
 """Bumped when results of stages that use this package change for the same input."""

@@ -12,14 +12,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, scaled
-from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.graphs.cycles import Cycle, short_cycles
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
-from kinform.mechanism.constants import CLOSED, FAR_AXIS, LEAST_FRAME, SIGMAS
+from kinform.mechanism.constants import FREE, SIGMAS
+from kinform.mechanism.frame import axes_frame
 from kinform.model.arrays import Array, Ints
 
-PART_OF_TURN = 1e-3
-"""Share of the fastest turn of a joint's freedoms below which a combination of them is a slide."""
 LOOSEST_CLOSED = 1e-4
 """Loops whose axes are in no relation that snapping knows (Bennett's) close to `SIGMAS` times the uncertainty of the
 axes, but to no more than this relative singular value."""
@@ -39,8 +38,6 @@ FACTOR_ROUNDING = 1e-13
 """Factors of an elimination below this are zero, ..."""
 SUM_ROUNDING = 1e-14
 """... and sums of products of them below this."""
-AXES_RANK = 1e-6
-"""Relative singular value below which axes are parallel where the point nearest to all of them is looked for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +90,7 @@ def close_block(
     if count > few:
         solutions, sure = _eliminate(members, cycles, norms, prefer, size)
     if solutions is None or (not sure and count <= MOST_RATES):
-        closed = max(CLOSED, frame.rounding)
+        closed = max(FREE, frame.rounding)
         if doubts is not None:
             blur = doubts[list(block)]
             closed = max(
@@ -117,60 +114,11 @@ def loop_matrix(spaces: Sequence[Array], cycles: Sequence[Cycle], frame: Frame, 
     return matrix
 
 
-def axes_frame(spaces: Sequence[Array], size: float) -> Frame:
-    """Centre and size of the axes of some joints, so that turns and slides compare. Axes that meet have
-    no size of their own: then a share of the assembly's counts."""
-    middle = _slowest(spaces)
-    turns = np.array([t for space in spaces for t in _by_turn(space) if _turns(t, middle, size)]).reshape(-1, 6)
-    if not len(turns):
-        return Frame(np.zeros(3), size)
-    # the point of an axis nearest to the origin may be far away: take those nearest to the middle of all axes
-    feet = _feet(turns, np.zeros(3))
-    axes = turns[:, :3] / np.linalg.norm(turns[:, :3], axis=1)[:, None]
-    across = np.eye(3) - axes[:, :, None] * axes[:, None, :]
-    start = feet.mean(axis=0)
-    missing = np.einsum("nij,nj->i", across, feet - start)
-    centre = start + np.linalg.lstsq(across.sum(axis=0), missing, rcond=AXES_RANK)[0]
-    frame = Frame.of(np.vstack([_feet(turns, centre), centre]))
-    return Frame(frame.centre, max(frame.length, LEAST_FRAME * size))
-
-
-def _by_turn(space: Array) -> Array:
-    """The same twists (f, 6) combined so that what turns and what slides are apart: of a turn and a slide, each with a
-    part of the other, the axis may be anywhere, and so may that of a slide that turns by rounding."""
-    if len(space) < 2:
-        return space
-    left, values, _ = np.linalg.svd(space[:, :3])
-    turning = int(np.count_nonzero(values > PART_OF_TURN * values[0])) if values[0] > 0.0 else 0
-    return np.asarray(left.T[:turning] @ space) if 0 < turning < len(space) else space
-
-
-def _slowest(spaces: Sequence[Array]) -> Array:
-    """(3,) the point that all the twists together move least: beside their axes, wherever in the world these are."""
-    twists = np.concatenate([np.zeros((0, 6)), *spaces])
-    omega, velocity = twists[:, :3], twists[:, 3:]
-    across = (omega**2).sum() * np.eye(3) - omega.T @ omega
-    return np.asarray(np.linalg.lstsq(across, cross(omega, velocity).sum(axis=0), rcond=AXES_RANK)[0])
-
-
-def _turns(twist: Array, middle: Array, size: float) -> bool:
-    """Whether a twist turns, beyond the rounding of a slide, seen from the `middle` (3,) of all."""
-    return norm(twist[:3]) * size > FAR_AXIS * norm(twist[3:] + cross(twist[:3], middle))
-
-
-def _feet(turns: Array, centre: Array) -> Array:
-    """(n, 3) points of the axes of the twists (n, 6) nearest to `centre`."""
-    omega = turns[:, :3]
-    velocity = turns[:, 3:] + cross(omega, centre)
-    feet: Array = centre + cross(omega, velocity) / (omega**2).sum(axis=1)[:, None]
-    return feet
-
-
 def _decompose(matrix: Array, prefer: Array, closed: float, nothing: float) -> list[Solution]:
     """Solutions from the singular values of all equations at once; shares of the largest singular value and of the
     largest rate of a solution that are zero."""
     _, values, right = np.linalg.svd(matrix)
-    rank = int(np.count_nonzero(values > closed * max(values[0], 1e-300))) if len(values) else 0
+    rank = int(np.count_nonzero(values > closed * max(values[0], TINY))) if len(values) else 0
     null: Array = right[rank:]
     drivers, _ = _pivots(null, -prefer)
     # the preferred column that is well conditioned drives; all others follow from these
@@ -251,7 +199,7 @@ def _pivots(matrix: Array, prefer: Array) -> tuple[list[int], bool]:
         norms[pivots] = 0.0
         largest = float(norms.max())
         clear &= largest < SURE_DROPPED or largest > SURE_KEPT
-        if largest < CLOSED:
+        if largest < FREE:
             break
         good = np.flatnonzero(norms >= PIVOT_SHARE * largest)
         best = int(good[np.argmax(prefer[good])])

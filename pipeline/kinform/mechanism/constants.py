@@ -4,11 +4,9 @@ from __future__ import annotations
 
 SIGMAS = 3.0
 """Standard uncertainties by which fitted axes, centres and normals may be off: beyond it chance is below 1 %."""
-LEAST_FRAME = 0.05
-"""Share of the assembly's size that the scaling length of a block is at least: axes that meet have no size of their
-own."""
-CLOSED = 1e-7
-"""Relative singular value below which a combination of joint rates closes its loops; the axes have been made exactly
-parallel and coaxial before, so true zeros are rounding."""
+FREE = 1e-7
+"""Relative singular value below which a combination of joint rates closes its loops at the pose of the meshes: the
+square root of rounding, 1e-16, at singular poses, above the 1e-8 that snapping leaves of axes that were made parallel
+and coaxial. All along a motion loops are open by more (`rank.RANK_SHARE`)."""
 FAR_AXIS = 1e-9
 """A twist whose axis is farther away than the size of the assembly over this is a slide."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 
+from kinform.foundation.graphs.graph import Forest, blocks, forest
 from kinform.frozen import dataclass
 from kinform.mechanism.first_order import Closure, close
 from kinform.model.arrays import Array
@@ -37,6 +38,21 @@ class JointGraph:
     def ground(self) -> int:
         """Number of the body that is ground; of the first where none is."""
         return next((k for k, body in enumerate(self.bodies) if body.ground), 0)
+
+    @cached_property
+    def tree(self) -> Forest:
+        """Breadth-first spanning trees of the bodies; the first grows from ground."""
+        return forest(len(self.bodies), self.edges, self.ground)
+
+    @cached_property
+    def blocks(self) -> list[list[int]]:
+        """Joints of each biconnected block: those of one close no loop."""
+        return blocks(len(self.bodies), self.edges)
+
+    @property
+    def loops(self) -> list[list[int]]:
+        """Joints of each block that has loops."""
+        return [block for block in self.blocks if len(block) > 1]
 
     def close(self, size: float, doubts: Array | None = None, spaces: Sequence[Array] | None = None) -> Closure:
         """Closure of all loops (`closure.close`), with other `spaces` of the joints where they are given."""

@@ -12,17 +12,19 @@ Leading axes of arrays are batches of configurations. No forces, no names, no de
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.algebra.displacements import carry, exponentials, identities, inverse
+from kinform.foundation.algebra.displacements import carry, exponential_terms, exponentials, identities, inverse
 from kinform.foundation.algebra.screws import Frame, bracket, scaled
 from kinform.foundation.algebra.vectors import norm
-from kinform.foundation.graphs.graph import forest
 from kinform.foundation.records import altered
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.mechanism.constants import FAR_AXIS
+from kinform.mechanism.spanning_tree import spanning_tree
 from kinform.model.arrays import Array, Flags
 
 Index = NDArray[np.intp]
@@ -30,14 +32,14 @@ Form = tuple[bytes, ...]
 
 
 @dataclass(frozen=True, eq=False)
-class Closed:
-    """How far the loops are from closing at a batch of D configurations, and how that changes."""
+class Equations:
+    """The closure equations of the loops at a batch of D configurations, to first order."""
 
     residual: Array
-    """(D, 6 loops + ties) rotation and shift of what each loop comes back with, then what ties miss: zero where it
-    closes."""
+    """(D, m) rotation (rad) and shift (shares of the length) of what each loop comes back with, then what ties miss;
+    m = 6 loops + ties. Zero where all loops close."""
     jacobian: Array
-    """(D, 6 loops + ties, n)."""
+    """(D, m, n) its derivative by the coordinates, where the loops are nearly closed."""
     columns: Array
     """(D, n, 6) twist of each coordinate where it is now."""
 
@@ -66,6 +68,8 @@ class LoopSystem:
     """(N, n) rates that add up to the twist of each body."""
     ties: Array
     """(k, n) combinations of coordinates that stay zero: ratios that gears keep. They count as rows of the closure."""
+    turns: Flags
+    """(n,) coordinates that are angles (rad); the others are slides, in shares of the frame's length."""
     rounding: float = 0.0
     """Share of a unit screw that coordinates of the world leave unknown where the block is."""
 
@@ -80,37 +84,52 @@ class LoopSystem:
         parts = (self.joint, self.first, *self.chords, *(part for layer in self.depths for part in layer), self.ties)
         return tuple(part.tobytes() for part in parts)
 
-    def at(self, rows: Index) -> LoopSystem:
+    def rows(self, which: Index) -> LoopSystem:
         """The systems of these configurations, where each has its own."""
-        return self if self.screws.ndim == 2 else altered(self, screws=self.screws[rows])
+        return self if self.screws.ndim == 2 else altered(self, screws=self.screws[which])
 
-    def close(self, q: Array) -> Closed:
+    def advance(self, q: Array, change: Array) -> Array:
+        """Configurations (D, n) after a change (D, n)."""
+        return q + change
+
+    @property
+    def start(self) -> Array:
+        """(1, n) the reference pose: that of the meshes."""
+        return np.zeros((1, self.coordinates))
+
+    def equations(self, q: Array) -> Equations:
         """Residual and Jacobian of the loops at configurations (D, n)."""
         bodies, inside, across = self._displacements(q)
         batch = len(q)
         columns = carry(bodies[:, self.first[self.joint]] @ inside, self.screws)
         members, a, b = self.chords
         gap = bodies[:, a] @ across[:, members] @ inverse(bodies[:, b])
-        turn = 0.5 * (gap[..., :3, :3] - np.swapaxes(gap[..., :3, :3], -1, -2))
-        residual = np.stack(
-            [turn[..., 2, 1], turn[..., 0, 2], turn[..., 1, 0], gap[..., 0, 3], gap[..., 1, 3], gap[..., 2, 3]], -1
-        )
+        open_by = np.empty((batch, len(members), 6))
+        for row, (i, j) in enumerate(((2, 1), (0, 2), (1, 0))):
+            open_by[..., row] = 0.5 * (gap[..., i, j] - gap[..., j, i])
+        open_by[..., 3:] = gap[..., :3, 3]
         jacobian = self.loops[:, None, :] * np.swapaxes(columns, -1, -2)[:, None]
-        missed = residual.reshape(batch, 6 * len(members))
+        missed = open_by.reshape(batch, 6 * len(members))
         rows = jacobian.reshape(batch, 6 * len(members), self.coordinates)
         if len(self.ties):
             missed = np.concatenate([missed, q @ self.ties.T], axis=1)
             rows = np.concatenate([rows, np.broadcast_to(self.ties, (batch, *self.ties.shape))], axis=1)
-        return Closed(missed, rows, columns)
+        return Equations(missed, rows, columns)
 
     def bodies(self, q: Array) -> Array:
-        """(D, N, 4, 4) displacement of each body from the reference pose, at configurations (D, n)."""
+        """(D, N, 4, 4) displacement of each body from the reference pose, at configurations (D, n), seen from the root,
+        in the frame's units about its centre."""
         return self._displacements(q)[0]
+
+    @cached_property
+    def _terms(self) -> tuple[Array, ...]:
+        """Of the exponentials of screws that all configurations share."""
+        return exponential_terms(self.screws)
 
     def _displacements(self, q: Array) -> tuple[Array, Array, Array]:
         """Displacements of bodies, of coordinates within their joints, and across joints."""
         batch, joints = len(q), len(self.first)
-        steps = exponentials(self.screws, q)
+        steps = exponentials(self.screws, q, self._terms if self.screws.ndim == 2 else None)
         inside, across = identities(batch, self.coordinates), identities(batch, joints)
         for level, (coordinates, members) in enumerate(self.levels):
             if level:
@@ -141,12 +160,17 @@ def loop_system(
     spaces: Sequence[Array],
     frame: Frame,
     ties: Sequence[tuple[int, int, float]] = (),
+    root: int | None = None,
 ) -> LoopSystem:
-    """The loops of a connected block: `edges` between bodies of any numbers, `spaces[k]` the (f, 6) twists
-    of joint k (ω; v at the world's origin) of its second body relative to its first, in the order of the
-    product of exponentials; `frame` centre and size (m) of the block. `ties` (a, b, ratio): joints of one freedom,
-    of which the first moves by ratio (SI) when the second moves by one, along their twists."""
-    number = {body: i for i, body in enumerate(sorted({n for edge in edges for n in edge}))}
+    """The loops of joints between bodies.
+
+    `edges` (bodies of any numbers) and `spaces[k]`, the (f, 6) twists of joint k (ω; v at the world's origin) of its
+    second body relative to its first, in the order of the product of exponentials. `frame`: centre and length (m) that
+    scale it. `ties` (a, b, ratio): joints of one freedom, of which the first moves by ratio (SI) when the second moves
+    by one, along their twists. Bodies are numbered in their order, and the tree grows from `root`, or the first.
+    """
+    present = {n for edge in edges for n in edge} | ({root} if root is not None else set())
+    number = {body: i for i, body in enumerate(sorted(present))}
     inner = [(number[a], number[b]) for a, b in edges]
     sizes = [len(space) for space in spaces]
     start = np.cumsum([0, *sizes])
@@ -160,18 +184,15 @@ def loop_system(
             length = 1.0 if turning else frame.length
             line[start[k]] = factor * length / norm(twist[:3] if turning else twist[3:])
         line /= np.abs(line).max()
-    tree = forest(len(number), inner, 0)
-    depth = tree.depths()
+    tree = spanning_tree(len(number), inner, 0 if root is None else number[root])
     reach = np.zeros((len(number), total))
     layers: dict[int, list[tuple[int, int, int, bool]]] = {}
-    for node in tree.order[1:]:
-        k, parent = tree.edge[node], tree.parent[node]
-        backward = inner[k][1] != node
-        reach[node] = reach[parent]
-        reach[node, start[k] : start[k + 1]] = -1.0 if backward else 1.0
-        layers.setdefault(depth[node], []).append((node, parent, k, backward))
-    used = set(tree.edge)
-    chords = [k for k in range(len(inner)) if k not in used]
+    for step in tree.carried:
+        of_joint = slice(start[step.joint], start[step.joint + 1])
+        reach[step.body] = reach[step.parent]
+        reach[step.body, of_joint] = 1.0 if step.forward else -1.0
+        layers.setdefault(step.depth, []).append((step.body, step.parent, step.joint, not step.forward))
+    chords = tree.closing
     loops = np.array([reach[inner[k][0]] - reach[inner[k][1]] for k in chords]).reshape(len(chords), total)
     for row, k in enumerate(chords):
         loops[row, start[k] : start[k + 1]] += 1.0
@@ -190,6 +211,7 @@ def loop_system(
         ahead=reach[first[joint]] + earlier,
         reach=reach,
         ties=held,
+        turns=turns,
         rounding=frame.rounding,
     )
 
@@ -206,7 +228,7 @@ def _unit_screws(twists: Array, frame: Frame) -> tuple[Array, Flags]:
     turning = np.linalg.norm(local[:, :3], axis=1)
     sliding = np.linalg.norm(local[:, 3:], axis=1)
     turns = turning > FAR_AXIS * sliding
-    local = local / np.maximum(np.where(turns, turning, sliding), 1e-300)[:, None]
+    local = local / np.maximum(np.where(turns, turning, sliding), TINY)[:, None]
     local[~turns, :3] = 0.0
     return local, turns
 

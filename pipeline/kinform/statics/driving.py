@@ -17,11 +17,11 @@ from kinform.behaviour.signals import Constant
 from kinform.design import Design
 from kinform.foundation.rounding import ARITHMETIC, SINGLE
 from kinform.frozen import dataclass
+from kinform.mechanism.rank import factor, rank_of
 from kinform.model.arrays import Array
 from kinform.model.function import SimulationRequest
 from kinform.simulation import SolverSettings, port_model
 from kinform.simulation.mechanism.actuation import Actuation, Stop
-from kinform.simulation.mechanism.closure import factor, rank_of
 from kinform.simulation.mechanism.construction import assemble
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.mechanism import Mechanism

@@ -20,6 +20,7 @@ from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.displacements import displacements_along
 from kinform.foundation.rounding import SOLVED
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.mobility.guides import preserved
 from kinform.model.arrays import Array, Flags, Ints
@@ -90,7 +91,7 @@ class Candidate:
     @property
     def beyond(self) -> float:
         """rad or m behind where another pair is too deep that it is followed to see whether it met before."""
-        return SEEN_BEYOND * self._size / max(self.course(1).travel(1.0), 1e-300)
+        return SEEN_BEYOND * self._size / max(self.course(1).travel(1.0), TINY)
 
     def wholes(self) -> Wholes:
         """The parts with all their facets."""

@@ -15,7 +15,7 @@ import numpy as np
 
 from kinform.collisions.driving.alone import drive_alone
 from kinform.collisions.driving.apart_for_good import that_can_meet
-from kinform.collisions.driving.loop_motion import CLOSED, RETURNED, Between, Linkage, Path, follow
+from kinform.collisions.driving.loop_motion import RETURNED, Between, Driven, Path, driven_block, follow
 from kinform.collisions.driving.overlaps import Overlap, Pair, overlap_words
 from kinform.collisions.pair.advancement import First, Near, first_crossing
 from kinform.collisions.pair.posed_pairs import Moving, Nodes, moving_pairs
@@ -23,6 +23,8 @@ from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.displacements import inverse
 from kinform.frozen import dataclass
 from kinform.kinematics.mobility.guides import guide
+from kinform.mechanism.closing import ACCEPTED
+from kinform.mechanism.joint_graph import JointGraph
 from kinform.model.arrays import Array
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.kinematics import Freedom, Joint, Kinematics
@@ -34,54 +36,53 @@ LOOP_STOP = 1e-3
 """Share of a step to which a contact along a motion of loops is found."""
 
 
-Edge = tuple[int, int]
-
 LEAVES = "leaves its guide"
 STILL = "the loops do not move"
 
 
 def drive_loops(
-    shapes: Shapes, kinematics: Kinematics, edges: Sequence[Edge], block: Sequence[int]
+    shapes: Shapes, kinematics: Kinematics, graph: JointGraph, block: Sequence[int]
 ) -> dict[int, JointRange] | str:
     """The ranges of the joints of one block; or why they are not known."""
-    linkage, idle = _linkage(kinematics, edges, block, shapes.size), _idle(kinematics, block)
-    if linkage == STILL and idle:
+    driven, idle = _driven(kinematics, graph, block, shapes.size), _idle(kinematics, block)
+    if driven == STILL and idle:
         return _spinning_alone(shapes, kinematics, block, idle)
-    if isinstance(linkage, str):
-        return linkage
-    ends = [_travelled(shapes, kinematics, linkage, follow(linkage, -1.0))]
+    if isinstance(driven, str):
+        return driven
+    ends = [_travelled(shapes, kinematics, driven, follow(driven, -1.0))]
     # a motion that comes back to where it began, and meets nothing, is the same the other way round
     free = ends[0].why == RETURNED and not ends[0].left_out
-    ends.append(ends[0] if free else _travelled(shapes, kinematics, linkage, follow(linkage, 1.0)))
+    ends.append(ends[0] if free else _travelled(shapes, kinematics, driven, follow(driven, 1.0)))
     out = {}
     for k in block:
         joint = kinematics.joints[k]
-        columns = [n for n, owner in enumerate(linkage.owner) if owner == k]
+        columns = driven.linkage.columns(joint.name)
         spinning = [freedom.body for freedom in idle if freedom.body in joint.bodies]
         if len(columns) == 1:
             out[k] = (
-                _spun(shapes, kinematics, joint, spinning[0]) if spinning else _range(joint, linkage, columns[0], ends)
+                _spun(shapes, kinematics, joint, spinning[0]) if spinning else _range(joint, driven, columns[0], ends)
             )
     return out
 
 
-def is_followed(kinematics: Kinematics, edges: Sequence[Edge], block: Sequence[int]) -> bool:
+def is_followed(kinematics: Kinematics, graph: JointGraph, block: Sequence[int]) -> bool:
     """Whether the motion of the joints of one block is followed, which takes long."""
-    return not isinstance(_linkage(kinematics, edges, block, 1.0), str)
+    return not isinstance(_driven(kinematics, graph, block, 1.0), str)
 
 
-def _linkage(kinematics: Kinematics, edges: Sequence[Edge], block: Sequence[int], size: float) -> Linkage | str:
+def _driven(kinematics: Kinematics, graph: JointGraph, block: Sequence[int], size: float) -> Driven | str:
     """The joints of one block with their one motion; or why they have none that is followed."""
     doubtful = [
         k for k in block if kinematics.joints[k].type == "general" or kinematics.joints[k].status == "ambiguous"
     ]
     if doubtful:
         return f"its loops run through {kinematics.joints[doubtful[0]].name}, whose motion is not known"
-    linkage = Linkage(kinematics, edges, block, _idle(kinematics, block), size)
-    first = linkage.tangent(np.zeros(linkage.system.coordinates))
+    driven = driven_block(graph, block, _idle(kinematics, block), size)
+    system = driven.linkage.system
+    first = driven.tangent(system.equations(system.start).jacobian[0])
     if first is None:
         return STILL
-    return linkage if first[1] else "its loops have more than one freedom, or a singular pose"
+    return driven if first[1] else "its loops have more than one freedom, or a singular pose"
 
 
 def _idle(kinematics: Kinematics, block: Sequence[int]) -> list[Freedom]:
@@ -132,15 +133,15 @@ class _Travelled:
     """Why these are left out."""
 
 
-def _travelled(shapes: Shapes, kinematics: Kinematics, linkage: Linkage, path: Path) -> _Travelled:
+def _travelled(shapes: Shapes, kinematics: Kinematics, driven: Driven, path: Path) -> _Travelled:
     """The path until parts meet."""
     names = [str(body.name) for body in kinematics.bodies]
-    path = _guided(shapes, kinematics, linkage, path) if path.even else path
+    path = _guided(shapes, kinematics, driven, path) if path.even else path
     s = path.s
-    at = Between(linkage, path.q, s)
+    at = Between(driven, path.q, s)
     # pairs halve the same steps: most poses are asked for by several
-    between = lru_cache(maxsize=None)(lambda x: linkage.poses(at(x)[None])[0])
-    nodes = Nodes(s, linkage.poses(path.q), between)
+    between = lru_cache(maxsize=None)(lambda x: driven.linkage.poses(at(x)[None])[0])
+    nodes = Nodes(s, driven.linkage.poses(path.q), between)
     end, why, place = float(s[-1]), path.why, None
     parts: tuple[PartName, ...] = ()
     left_out = set()
@@ -185,14 +186,14 @@ def _placed(nodes: Nodes, body: int, first: First) -> Array | None:
     return np.asarray((nodes.between(first.at or float(nodes.s[0]))[body] @ np.append(first.place, 1.0))[:3])
 
 
-def _guided(shapes: Shapes, kinematics: Kinematics, linkage: Linkage, path: Path) -> Path:
+def _guided(shapes: Shapes, kinematics: Kinematics, driven: Driven, path: Path) -> Path:
     """The path until the first of its slides and screws has left its guide."""
     end, why = float(path.s[-1]), path.why
-    for n, k in enumerate(linkage.owner):
-        joint = kinematics.joints[k]
+    for joint in driven.linkage.joints:
         if joint.type not in ("prismatic", "screw") or joint.axis is None:
             continue
-        values = path.q[:, n] * linkage.unit[n] * _sense(joint, linkage.twists[n])
+        (n,) = driven.linkage.columns(joint.name)
+        values = path.q[:, n] / driven.linkage.coordinates[n].unit
         low, high = guide(*shapes.design(), joint, shapes.body_parts[joint.bodies[1]])
         limit = high if values[-1] > 0.0 else low
         if abs(values[-1]) > abs(limit):
@@ -204,20 +205,19 @@ def _guided(shapes: Shapes, kinematics: Kinematics, linkage: Linkage, path: Path
     return Path(np.vstack([path.q[kept], last]), np.append(path.s[kept], end), why, True)
 
 
-def _range(joint: Joint, linkage: Linkage, column: int, ends: Sequence[_Travelled]) -> JointRange:
+def _range(joint: Joint, driven: Driven, column: int, ends: Sequence[_Travelled]) -> JointRange:
     """The values that one joint takes along what is free to both sides."""
-    unit = linkage.unit[column] * _sense(joint, linkage.twists[column])
-    values = [end.q[:, column] * unit for end in ends]
+    values = [end.q[:, column] / driven.linkage.coordinates[column].unit for end in ends]
     low, high = (
         min(_least(sign * v, end.s) for v, end in zip(values, ends, strict=True)) * sign for sign in (1.0, -1.0)
     )
     left_out = tuple(sorted({pair for end in ends for pair in end.left_out}))
     overlap = next((end.overlap for end in ends if end.overlap), "")
-    if high - low < CLOSED and any(np.ptp(end.s) > 1.0 for end in ends):
+    if high - low < ACCEPTED and any(np.ptp(end.s) > 1.0 for end in ends):
         still = RangeEnd("unknown", reason="its loops move, and it does not")
         return JointRange(joint.name, still, still, left_out)
     returned = any(end.why == RETURNED for end in ends)
-    if returned and linkage.turns[column] and high - low > TURNED_ROUND:
+    if returned and driven.linkage.turns[column] and high - low > TURNED_ROUND:
         free = RangeEnd("unknown", reason=overlap) if left_out else RangeEnd("unbounded")
         return JointRange(joint.name, free, free, left_out)
     sides = []
@@ -245,11 +245,3 @@ def _least(values: Array, s: Array) -> float:
         return float(values[n])
     bend, slope, least = (float(c) for c in np.polyfit(s[n - 1 : n + 2] - s[n], values[n - 1 : n + 2], 2))
     return least - slope * slope / (4.0 * bend) if bend > 0.0 else least
-
-
-def _sense(joint: Joint, twist: Array) -> float:
-    """1 where the twist goes with the joint's axis, −1 where against it."""
-    if joint.axis is None:
-        return 1.0
-    direction = twist[3:] if joint.type == "prismatic" else twist[:3]
-    return 1.0 if float(direction @ joint.axis) >= 0.0 else -1.0

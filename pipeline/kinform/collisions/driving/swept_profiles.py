@@ -14,6 +14,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross, perpendicular
 from kinform.foundation.meshes.boxes import along_curve, bounds, facet_boxes
 from kinform.foundation.meshes.near_facets import near_boxes
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
@@ -280,7 +281,7 @@ def spanned(flat: Array, radius: Array, margin: float) -> Sides:
     for angle in others:
         apart = (angle - first + math.pi) % TURN - math.pi
         low, high = np.minimum(low, apart), np.maximum(high, apart)
-    wide = margin / np.maximum(radius, 1e-300)
+    wide = margin / np.maximum(radius, TINY)
     start, stop = first + low - wide, first + high + wide
     whole = (stop - start >= math.pi) | (wide > 1.0)
     return np.where(whole, 0.0, start % TURN), np.where(whole, TURN, start % TURN + stop - start)
@@ -295,7 +296,7 @@ def nearest(flat: Array) -> Array:
     left, right = np.ones(len(flat), dtype=bool), np.ones(len(flat), dtype=bool)
     for (x, y), (next_x, next_y) in zip(corners, corners[1:] + corners[:1], strict=True):
         u, v = next_x - x, next_y - y
-        share = np.clip(-(u * x + v * y) / np.maximum(u * u + v * v, 1e-300), 0.0, 1.0)
+        share = np.clip(-(u * x + v * y) / np.maximum(u * u + v * v, TINY), 0.0, 1.0)
         square = np.minimum(square, (x + share * u) ** 2 + (y + share * v) ** 2)
         turn = x * v - y * u
         left &= turn > 0.0

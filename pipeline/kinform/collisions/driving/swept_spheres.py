@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from kinform.foundation.rounding import TINY
 from kinform.model.arrays import Array
 
 TURN = 2.0 * math.pi
@@ -20,7 +21,7 @@ def first_touch(first: Array, second: Array, turning: bool, sign: int, start: fl
         # the law of cosines between middles at distances p and q from the axis
         p, q = np.hypot(a, b), np.hypot(c, d)
         with np.errstate(over="ignore"):  # on the axis nothing turns towards anything: beyond any cosine
-            cosine = (p * p + q * q + (h - k) ** 2 - (r + t) ** 2) / np.maximum(2.0 * p * q, 1e-300)
+            cosine = (p * p + q * q + (h - k) ** 2 - (r + t) ** 2) / np.maximum(2.0 * p * q, TINY)
         half = np.arccos(np.clip(cosine, -1.0, 1.0))
         begin = (sign * (np.arctan2(b, a) - np.arctan2(d, c)) - half - start) % TURN
         return np.where(cosine > 1.0, np.inf, np.where(begin + 2.0 * half >= TURN, start, start + begin))

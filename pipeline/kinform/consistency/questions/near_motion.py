@@ -17,15 +17,19 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import norm, perpendicular
 from kinform.foundation.graphs.graph import blocks
+from kinform.foundation.rounding import ARITHMETIC, SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.axes.snapping import LINES
 from kinform.kinematics.joints.pair.joint import twists_of
-from kinform.kinematics.mobility.finite_motion import MOVING_JOINT, block_frame
+from kinform.kinematics.mobility.finite_motion import MOVING_JOINT
 from kinform.kinematics.mobility.local_dimension import local_motions
-from kinform.kinematics.mobility.second_order import Pose
-from kinform.mechanism.constants import CLOSED
+from kinform.mechanism.closing import FirstOrder, StepLimit, Termination, close
+from kinform.mechanism.constants import FREE
+from kinform.mechanism.frame import joint_frame
 from kinform.mechanism.joint_graph import JointGraph
-from kinform.mechanism.loop_system import LoopSystem, loop_system
+from kinform.mechanism.loop_system import Index, LoopSystem, loop_system
+from kinform.mechanism.pose import Pose
+from kinform.mechanism.rank import Rank
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.names import JointName
@@ -44,18 +48,15 @@ MOST_NEAR_RATES = 40
 """Joint rates of a block that is asked: each joint takes some hundred poses of it."""
 NEAR_STEPS = (-0.6, -0.3, 0.3, 0.6)
 """Steps along the motion, of its rates together (rad, or shares of the size), at which loops have to close."""
-NEAR_ROUNDS = 12
-"""Rounds of Gauss and Newton; four or five are usual."""
 NEAR_DIFFERENCE = 1e-5
 """Half the difference of a correction by which its effect is found."""
-NEAR_RANK = 1e-9
-"""Relative singular value below which unknowns are left as they are."""
-NEAR_STRAYED = 1.0
-"""Correction at which the search is given up."""
-NEAR_SETTLED = 1e-13
-"""Change of a round after which nothing more is gained."""
-NEAR_CLOSED = 1e-12
-"""rad, and shares of the size, by which loops may be open that close."""
+NEAR_RANK = Rank(share=SOLVED)
+"""Motions and corrections are of different sizes: whatever is more than rounding counts."""
+EXACTLY = Termination(accepted=ARITHMETIC, iterations=12)
+"""Corrections are as small as what axes usually miss each other by: loops have to close but for
+rounding. Four or five steps are usual."""
+NEAR_LIMIT = StepLimit(4.0)
+"""Poses at all steps change together, by twice as much as one does."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +109,7 @@ class _Block:
 
     def system(self, joints: Sequence[Joint]) -> LoopSystem:
         """The loops with these joints, in the frame of the block as it is."""
-        return loop_system(self.edges, [joint.twists for joint in joints], block_frame(self.joints, self.size))
+        return loop_system(self.edges, [joint.twists for joint in joints], joint_frame(self.joints, self.size))
 
     def freedoms(self, joints: Sequence[Joint]) -> int:
         """Of motions over a distance; 0 where that is not known."""
@@ -118,7 +119,7 @@ class _Block:
 def _of_block(edges: Sequence[tuple[int, int]], joints: Sequence[Joint], kinematics: Kinematics) -> NearMotion | None:
     """The motion that a block of loops nearly makes, where a joint can be corrected so that it does."""
     size = _size(kinematics)
-    frame = block_frame(joints, size)
+    frame = joint_frame(joints, size)
     system = loop_system(edges, [joint.twists for joint in joints], frame)
     motions, way = local_motions(system), _nearly_free(system)
     if way is None and len(motions.lost):
@@ -126,7 +127,7 @@ def _of_block(edges: Sequence[tuple[int, int]], joints: Sequence[Joint], kinemat
         way = motions.lost[0]
     elif way is None and motions.dimension is None and motions.freedoms == 1:
         # Perhaps they do: by so little that no step shows it.
-        way = Pose.at(system, np.zeros(system.coordinates)).free[0]
+        way = Pose.at(system, system.start[0]).free[0]
     if way is None:
         return None
     block, now = _Block(edges, joints, size, way), motions.dimension or 0
@@ -146,8 +147,8 @@ def _of_block(edges: Sequence[tuple[int, int]], joints: Sequence[Joint], kinemat
 
 def _nearly_free(system: LoopSystem) -> Array | None:
     """(n,) the motion that one singular value far below all others forbids; None where there is none."""
-    _, values, right = np.linalg.svd(system.close(np.zeros((1, system.coordinates))).jacobian[0])
-    rank = int(np.count_nonzero(values > CLOSED * values.max(initial=1e-300)))
+    _, values, right = np.linalg.svd(system.equations(system.start).jacobian[0])
+    rank = int(np.count_nonzero(values > FREE * values.max(initial=TINY)))
     if rank < 2 or values[rank - 1] > NEARLY * min(values[0], NEARLY_APART * values[rank - 2]):
         return None
     return np.asarray(right[rank - 1])
@@ -184,7 +185,7 @@ def _correction(block: _Block, k: int, ways: Sequence[Array], now: int, tilts: b
     """The least correction of joint k of the block in these ways after which it has more freedoms than `now`."""
     if not ways:
         return None
-    joint, length = block.joints[k], block_frame(block.joints, block.size).length
+    joint, length = block.joints[k], joint_frame(block.joints, block.size).length
     unit = 1.0 if tilts else length
 
     def corrected(amounts: Array) -> list[Joint]:
@@ -202,35 +203,47 @@ def _correction(block: _Block, k: int, ways: Sequence[Array], now: int, tilts: b
     return Correction(joint.name, np.zeros(3) if tilts else length * change, norm(amounts) if tilts else 0.0, effect)
 
 
+@dataclass(frozen=True, eq=False)
+class _Bordered:
+    """Poses at steps along a way together with the correction of a joint, as one system of equations.
+
+    Its one configuration are the S poses, n coordinates each, and then the amounts: all loops close at all poses, each
+    of which is as far along the way as its step says.
+    """
+
+    system_with: Callable[[Array], LoopSystem]
+    way: Array
+
+    def equations(self, q: Array) -> FirstOrder:
+        """At configurations (1, S n + amounts)."""
+        steps, n = np.array(NEAR_STEPS), len(self.way)
+        poses, amounts = q[0, : len(steps) * n].reshape(len(steps), n), q[0, len(steps) * n :]
+        closed = self.system_with(amounts).equations(poses)
+        beside = [self._beside(poses, amounts, h) for h in NEAR_DIFFERENCE * np.eye(len(amounts))]
+        rows = closed.residual.shape[1] + 1
+        missed, matrix = np.zeros((len(steps), rows)), np.zeros((len(steps), rows, q.shape[1]))
+        missed[:, :-1], missed[:, -1] = closed.residual, poses @ self.way - steps
+        for s in range(len(steps)):
+            matrix[s, :-1, s * n : (s + 1) * n], matrix[s, -1, s * n : (s + 1) * n] = closed.jacobian[s], self.way
+        matrix[:, :-1, len(steps) * n :] = np.stack(beside, axis=2)
+        return FirstOrder(missed.reshape(1, -1), matrix.reshape(1, -1, q.shape[1]))
+
+    def _beside(self, poses: Array, amounts: Array, h: Array) -> Array:
+        """(S, m) derivative of the residuals by one of the amounts."""
+        up, down = (self.system_with(amounts + sign * h).equations(poses).residual for sign in (1.0, -1.0))
+        return np.asarray((up - down) / (2.0 * NEAR_DIFFERENCE))
+
+    def advance(self, q: Array, change: Array) -> Array:
+        """See `mechanism.closing.System`."""
+        return q + change
+
+    def rows(self, which: Index) -> _Bordered:
+        """See `mechanism.closing.System`."""
+        return self
+
+
 def _solved(system_with: Callable[[Array], LoopSystem], way: Array, count: int) -> Array | None:
     """(count,) amounts at which all loops close at steps along the way; None where they do not."""
-    n = len(way)
-    steps = np.array(NEAR_STEPS)
-    q, amounts = steps[:, None] * way, np.zeros(count)
-    for _ in range(NEAR_ROUNDS):
-        closed = system_with(amounts).close(q)
-        rows = closed.residual.shape[1] + 1
-        matrix = np.zeros((len(steps) * rows, len(steps) * n + count))
-        missed = np.zeros(len(steps) * rows)
-        beside = []
-        for c in range(count):
-            h = np.zeros(count)
-            h[c] = NEAR_DIFFERENCE
-            up, down = (system_with(amounts + sign * h).close(q).residual for sign in (1.0, -1.0))
-            beside.append((up - down) / (2.0 * NEAR_DIFFERENCE))
-        for s in range(len(steps)):
-            at = slice(s * rows, (s + 1) * rows - 1)
-            matrix[at, s * n : (s + 1) * n] = closed.jacobian[s]
-            matrix[at, len(steps) * n :] = np.stack([column[s] for column in beside], axis=1)
-            # As far along the way as the step says.
-            matrix[(s + 1) * rows - 1, s * n : (s + 1) * n] = way
-            missed[at], missed[(s + 1) * rows - 1] = closed.residual[s], way @ q[s] - steps[s]
-        change = -np.linalg.lstsq(matrix, missed, rcond=NEAR_RANK)[0]
-        q += change[: len(steps) * n].reshape(q.shape)
-        amounts = amounts + change[len(steps) * n :]
-        if not np.all(np.isfinite(change)) or norm(amounts) > NEAR_STRAYED:
-            return None
-        if np.abs(change).max() < NEAR_SETTLED:
-            break
-    closed = system_with(amounts).close(q)
-    return amounts if np.abs(closed.residual).max() < NEAR_CLOSED else None
+    start = np.concatenate([np.outer(NEAR_STEPS, way).ravel(), np.zeros(count)])
+    q = close(_Bordered(system_with, way), start[None], rank=NEAR_RANK, limit=NEAR_LIMIT, until=EXACTLY).one()
+    return None if q is None else q[len(start) - count :]

@@ -11,6 +11,8 @@ from kinform.foundation.algebra.rotations import matrices, rotation_vectors, tur
 from kinform.foundation.algebra.vectors import cross, cross_matrix
 from kinform.model.arrays import Array
 
+UNMOVED = np.eye(4)
+
 
 def displacement(twist: Array) -> Array:
     """(…, 4, 4) exponentials of twists (…, 6) (ω; v at the origin) over unit time."""
@@ -50,21 +52,27 @@ def displacements_along(twist: Array) -> Callable[[float], Array]:
 def identities(*shape: int) -> Array:
     """(*shape, 4, 4) displacements that move nothing."""
     out = np.empty((*shape, 4, 4))
-    out[:] = np.eye(4)
+    out[:] = UNMOVED
     return out
 
 
-def exponentials(screws: Array, q: Array) -> Array:
-    """(D, n, 4, 4) exp(S q) of unit screws (n, 6), or (D, n, 6), |ω| 1 or 0, for coordinates q (D, n); a slide has no ω
-    and falls out of the same terms."""
+def exponential_terms(screws: Array) -> tuple[Array, ...]:
+    """[ω], [ω]², v, [ω] v and [ω]² v of unit screws (…, 6), of which `exponentials` are made."""
     spin = cross_matrix(screws[..., :3])
     twice = spin @ spin
     v = screws[..., 3:]
+    return spin, twice, v, (spin @ v[..., None])[..., 0], (twice @ v[..., None])[..., 0]
+
+
+def exponentials(screws: Array, q: Array, terms: tuple[Array, ...] | None = None) -> Array:
+    """(D, n, 4, 4) exp(S q) of unit screws (n, 6), or (D, n, 6), |ω| 1 or 0, for coordinates q (D, n); a slide has no ω
+    and falls out of the same terms (`exponential_terms`, where they are known)."""
+    spin, twice, v, once, again = exponential_terms(screws) if terms is None else terms
     s, c = np.sin(q)[..., None], 1.0 - np.cos(q)[..., None]
     out = np.zeros((*q.shape, 4, 4))
-    out[..., :3, :3] = np.eye(3) + s[..., None] * spin + c[..., None] * twice
+    out[..., :3, :3] = UNMOVED[:3, :3] + s[..., None] * spin + c[..., None] * twice
     along = q[..., None]
-    out[..., :3, 3] = along * v + c * (spin @ v[..., None])[..., 0] + (along - s) * (twice @ v[..., None])[..., 0]
+    out[..., :3, 3] = along * v + c * once + (along - s) * again
     out[..., 3, 3] = 1.0
     return out
 

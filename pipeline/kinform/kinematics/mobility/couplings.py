@@ -12,6 +12,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.meshes.edges import shared_edges
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.axes.higher_pairs import is_higher
 from kinform.kinematics.joints.pair.touches import TOUCHING
@@ -76,7 +77,7 @@ def _ratio(a: Array, b: Array) -> float | None:
     if not len(a):
         return None
     size = np.array([np.abs(a).max(), np.abs(b).max()])
-    if (size <= FIXED_RATIO * max(np.abs(a).max(initial=0.0), np.abs(b).max(initial=0.0), 1e-300)).any():
+    if (size <= FIXED_RATIO * max(np.abs(a).max(initial=0.0), np.abs(b).max(initial=0.0), TINY)).any():
         return None
     _, values, right = np.linalg.svd(np.stack([a / size[0], b / size[1]], axis=1))
     if len(values) > 1 and values[1] > FIXED_RATIO * values[0]:
@@ -197,7 +198,7 @@ class _Tie:
                 along = abs(float(velocity @ normal))
                 aside = norm(velocity - normal * float(velocity @ normal))
                 off = patch.uncertainty[0] * aside + patch.uncertainty[1] * norm(twist[:3])
-                total += off / max(along, 1e-300)
+                total += off / max(along, TINY)
             best = np.nanmin([best, abs(self.ratio) * total])
         return float(best)
 
@@ -226,7 +227,7 @@ def convex_turns(mesh: Mesh, X_WP: Array, axis: Array, point: Array) -> float:
     faces = faces[side.any(axis=1) & ~side.all(axis=1)]
     corners = mesh.vertices[faces]
     normals = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
+    normals /= np.maximum(np.linalg.norm(normals, axis=1), TINY)[:, None]
     edges = shared_edges(faces, len(height), by_corner=True)
     above = height[edges.ends] > 0.0
     edges = edges.where(edges.opposed & (above[:, 0] != above[:, 1]))

@@ -14,16 +14,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import Frame
-from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.graphs.graph import UnionFind, blocks
 from kinform.foundation.lockstep import run_in_lockstep
 from kinform.foundation.words import counted, listed
 from kinform.frozen import dataclass
 from kinform.kinematics.mobility.local_dimension import LocalMotions, local_motions_of_each
-from kinform.kinematics.mobility.second_order import first_order
-from kinform.mechanism.constants import LEAST_FRAME
+from kinform.mechanism.frame import joint_frame
 from kinform.mechanism.loop_system import LoopSystem, loop_system
+from kinform.mechanism.pose import Pose
 from kinform.model.kinematics import Coupling, FiniteCertificate, Joint
 from kinform.model.names import JointName
 
@@ -37,10 +35,6 @@ MOVING_JOINT = 1e-3
 """Share of the fastest rate from which on a joint is named as moving."""
 MOST_STATEMENTS = 4
 """Blocks whose statements are told one by one."""
-
-
-PLACED = ("revolute", "screw", "cylindrical", "spherical", "universal")
-"""Joints whose point says where the mechanism is."""
 
 
 Certified = Generator[LoopSystem, LocalMotions, FiniteCertificate | None]
@@ -133,10 +127,10 @@ def _block(
     if geared is not None:
         kept, ratios = geared
         members = [joints[k] for k in kept]
-        system = loop_system([edges[k] for k in kept], [j.twists for j in members], block_frame(members, size), ratios)
+        system = loop_system([edges[k] for k in kept], [j.twists for j in members], joint_frame(members, size), ratios)
         certificate = _certificate([joint.name for joint in members], system, (yield system))
         return certificate and replace(certificate, joints=names)
-    frame = block_frame(joints, size)
+    frame = joint_frame(joints, size)
     system = loop_system(edges, [joint.twists for joint in joints], frame)
     rows, columns = 6 * len(system.loops), system.coordinates
     if rows * columns * min(rows, columns) > MOST_BLOCK_WORK:
@@ -146,7 +140,7 @@ def _block(
     general = [joint.name for joint in joints if joint.type == "general"]
     if not doubtful and not general:
         return _certificate(names, system, (yield system))
-    count = first_order(system)
+    count = Pose.at(system, system.start[0]).freedoms
     if count == 0:
         return None
     if not doubtful:
@@ -176,17 +170,6 @@ def _without_gears(
     if not all(name in place for names, _ in gears for name in names):
         return None
     return kept, [(place[a], place[b], ratio) for (a, b), ratio in gears]
-
-
-def block_frame(joints: Sequence[Joint], size: float) -> Frame:
-    """Centre and size (m) of a block of loops; `size` (m) of the assembly. Points of joints that meet have no size of
-    their own: then a share of the assembly's counts, as for the first-order count."""
-    placed = [j.point for j in joints if j.point is not None and j.type in PLACED]
-    placed = placed or [j.point for j in joints if j.point is not None]
-    if not placed:
-        return Frame(np.zeros(3), size)
-    low, high = np.min(placed, axis=0), np.max(placed, axis=0)
-    return Frame(0.5 * (low + high), max(0.5 * norm(high - low), LEAST_FRAME * size))
 
 
 def _certificate(names: Sequence[JointName], system: LoopSystem, motions: LocalMotions) -> FiniteCertificate | None:

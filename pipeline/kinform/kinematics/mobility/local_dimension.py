@@ -23,19 +23,15 @@ import numpy as np
 from kinform.foundation.algebra.screws import bracket
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.lockstep import run_in_lockstep
+from kinform.foundation.rounding import SOLVED, TINY
 from kinform.frozen import dataclass
-from kinform.kinematics.mobility.gauss_newton import Ends, Walk, ends, solve
-from kinform.kinematics.mobility.second_order import (
-    SLOW_ITERATIONS,
-    Pose,
-    complement,
-    independent,
-    reference_poses,
-    second_order,
-    units,
-)
-from kinform.mechanism.constants import CLOSED
+from kinform.kinematics.mobility.second_order import complement, independent, second_order, units
+from kinform.mechanism.closing import Closing, StepLimit, Task, Termination, close, close_each
+from kinform.mechanism.constants import FREE
+from kinform.mechanism.least_change import FINEST_VALUE
 from kinform.mechanism.loop_system import LoopSystem
+from kinform.mechanism.pose import Pose, reference_poses
+from kinform.mechanism.rank import Rank
 from kinform.model.arrays import Array
 from kinform.model.kinematics import CurvatureVerdict
 
@@ -79,6 +75,15 @@ BRANCH_STEP = 0.1
 """Share of the distance from the pose by which a branch is stepped along."""
 MOST_STEP_WORK = 2e10
 """Multiplications that the steps at a singular pose may take; a block that needs more stays undecided."""
+FULL_RANK = Rank(share=FINEST_VALUE)
+"""At singular poses: whatever is more than rounding counts."""
+QUADRATIC = Termination(accepted=0.0, iterations=12, change=SOLVED)
+"""Where convergence is quadratic, or there is none: a change by 1e-9 leaves a residual of 1e-18."""
+LINEAR = Termination(accepted=0.0, iterations=60, change=1e-11)
+"""Where convergence is linear: halving, at a simple singularity, from steps of 0.05 to 1e-11 in 32, and in twice as
+many where the singularity is of higher order."""
+CUT = 0.5
+"""Share of a step that one iteration may change at most: it may not leave for another branch."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +114,7 @@ class LocalMotions:
 
 Result = TypeVar("Result")
 
-Steps = Generator[Walk, Ends, Result]
+Steps = Generator[Task, Closing, Result]
 """A way to a result, with steps on it that others may go at the same time."""
 
 
@@ -120,7 +125,7 @@ def local_motions(system: LoopSystem) -> LocalMotions:
 
 def local_motions_of_each(systems: Sequence[LoopSystem]) -> list[LocalMotions]:
     """Motions of each of several blocks at its reference pose: as if it were alone, to the last bit."""
-    return run_in_lockstep([_local_motions(pose) for pose in reference_poses(systems)], ends)
+    return run_in_lockstep([_local_motions(pose) for pose in reference_poses(systems)], close_each)
 
 
 def _local_motions(pose: Pose) -> Steps[LocalMotions]:
@@ -162,10 +167,11 @@ def _regular(pose: Pose, mixes: Array, stride: float, step: float) -> Steps[tupl
     """(least share kept of a stride, greatest residual) if walks of length `step` along mixes (D, n) close with
     the rank of the pose and find that rank again; else None. However short the strides, the walk goes on to the
     full step: obstructions of third and higher order cannot be told from rounding nearby."""
-    q, kept, closed = pose.q, 1.0, max(CLOSED, pose.system.rounding)
+    q, kept, closed = pose.q, 1.0, max(FREE, pose.system.rounding)
     for _ in range(round(step / stride)):
         ahead = q + stride * mixes
-        q, residual, jacobian = yield Walk(pose, ahead, stride)
+        closing = yield _beside(pose, ahead, stride)
+        q, residual, jacobian = closing.q, closing.residual, closing.jacobian
         kept = min(kept, 1.0 - float(np.abs(((ahead - q) * mixes).sum(axis=1)).max()) / stride)
         if residual.max() > closed * step or kept < STEP_KEPT:
             return None
@@ -174,13 +180,23 @@ def _regular(pose: Pose, mixes: Array, stride: float, step: float) -> Steps[tupl
     misfit = worst > max(CLOSURE_ROUNDING, pose.system.rounding * step)
     if misfit:
         # it grows with the step where axes are off, an obstruction of third or higher order with its powers
-        _, half, _ = yield Walk(pose, pose.q + 0.5 * stride * mixes, stride)
-        if float(half.max()) < HIGHER_ORDER * worst * stride / step:
+        half = yield _beside(pose, pose.q + 0.5 * stride * mixes, stride)
+        if float(half.residual.max()) < HIGHER_ORDER * worst * stride / step:
             return None
     values = np.linalg.svd(jacobian, compute_uv=False)
-    beyond = values[:, pose.rank :].max(initial=0.0) / max(values.max(), 1e-300)
+    beyond = values[:, pose.rank :].max(initial=0.0) / max(values.max(), TINY)
     zero = STEPPED_RANK if misfit else STEPPED_RANK_EXACT
     return (kept, worst) if beyond < max(zero, pose.system.rounding) else None
+
+
+def _beside(pose: Pose, start: Array, stride: float) -> Task:
+    """Close the loops near `start` (D, n), strides beside a pose that is taken to be regular."""
+    return Task(pose.system, start, pose.regular, StepLimit(CUT * stride), QUADRATIC)
+
+
+def _closed(pose: Pose, start: Array, step: float) -> Closing:
+    """Close the loops near `start` (D, n), steps beside a pose that may be singular."""
+    return close(pose.system, start, rank=FULL_RANK, limit=StepLimit(CUT * step), until=LINEAR)
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,10 +216,11 @@ class _Spread:
 def _spread(pose: Pose, directions: Array, step: float) -> _Spread:
     """Steps both ways along directions (D, n), solved in full."""
     start = pose.q + step * np.concatenate([directions, -directions])
-    q, residual, _ = solve(pose.system, start, step)
+    found = _closed(pose, start, step)
+    q, residual = found.q, found.residual
     moved = (q - pose.q) @ pose.free.T / step
     kept = np.linalg.norm(moved, axis=1)
-    closed = residual < max(CLOSED, pose.system.rounding) * step
+    closed = residual < max(FREE, pose.system.rounding) * step
     stays = closed & (kept > STEP_LOST) & (np.linalg.norm(q - start, axis=1) < STEP_ASTRAY * step)
     _, values, right = np.linalg.svd(moved[stays], full_matrices=False)
     cone = right[: int(np.count_nonzero(values > CONE_SHARE * values.max(initial=0.0)))] @ pose.free
@@ -221,13 +238,12 @@ def _smooth(pose: Pose, cone: Array, step: float, rng: np.random.Generator) -> b
     if not len(cone):
         return True
     mixes = units(rng.normal(size=(MIXES, len(cone)))) @ cone
-    q, residual, _ = solve(pose.system, pose.q + step * mixes, step)
+    found = _closed(pose, pose.q + step * mixes, step)
+    q, residual = found.q, found.residual
     kept = ((q - pose.q) * mixes).sum(axis=1) / step
     aside = np.linalg.norm((q - pose.q) @ pose.free.T / step - kept[:, None] * (mixes @ pose.free.T), axis=1)
     return bool(
-        residual.max() < max(CLOSED, pose.system.rounding) * step
-        and kept.min() > STEP_KEPT
-        and aside.max() < STEP_ASIDE
+        residual.max() < max(FREE, pose.system.rounding) * step and kept.min() > STEP_KEPT and aside.max() < STEP_ASIDE
     )
 
 
@@ -238,7 +254,7 @@ def _singular(pose: Pose, rng: np.random.Generator) -> LocalMotions:
     directions = np.concatenate([along, pose.free, units(rng.normal(size=(MANY_MIXES, pose.freedoms))) @ pose.free])
     none = np.zeros((0, pose.system.coordinates))
     rows, columns = 6 * len(pose.system.loops), pose.system.coordinates
-    if 2.0 * len(directions) * SLOW_ITERATIONS * rows * columns * min(rows, columns) > MOST_STEP_WORK:
+    if 2.0 * len(directions) * LINEAR.iterations * rows * columns * min(rows, columns) > MOST_STEP_WORK:
         why = "the pose is singular, and the block too large for the steps that would tell its branches"
         return LocalMotions(pose.freedoms, None, none, order=order, reason=why)
     wide, narrow = STEP_SIZES[:2]
@@ -297,7 +313,7 @@ def _dimension(pose: Pose, step: float, rng: np.random.Generator) -> int | None:
     if count == 0:
         return 0
     mixes = units(rng.normal(size=(BRANCH_MIXES, count))) @ pose.free
-    if run_in_lockstep([_regular(pose, mixes, step, step)], ends)[0] is not None:
+    if run_in_lockstep([_regular(pose, mixes, step, step)], close_each)[0] is not None:
         return count
     more = units(rng.normal(size=(count + 3, count))) @ pose.free
     cone = _spread(pose, more, step).cone

@@ -15,6 +15,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, scaled, span
 from kinform.foundation.algebra.vectors import cross, cross_matrix
 from kinform.foundation.graphs.cycles import Cycle
+from kinform.foundation.rounding import TINY
 from kinform.kinematics.mobility.joint_redundancy import redundancy
 from kinform.kinematics.screws.wording import (
     EXACT_WRENCH,
@@ -24,9 +25,10 @@ from kinform.kinematics.screws.wording import (
     locked_wrenches,
     rows_too_many,
 )
-from kinform.mechanism.block_rates import FEW_RATES, Block, axes_frame, loop_matrix
-from kinform.mechanism.constants import CLOSED
+from kinform.mechanism.block_rates import FEW_RATES, Block, loop_matrix
+from kinform.mechanism.constants import FREE
 from kinform.mechanism.first_order import Closure
+from kinform.mechanism.frame import axes_frame
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Redundancy
 
@@ -66,11 +68,11 @@ def _of_loop(joints: Sequence[Joint], cycle: Cycle, block: Block, size: float) -
     spaces = [joint.twists for joint in members]
     frame = axes_frame(spaces, size) if len(block.cycles) > 1 else block.frame
     columns = np.hstack([scaled(s.T, frame) for s in spaces])
-    columns = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    columns = columns / np.maximum(np.linalg.norm(columns, axis=0), TINY)
     if columns.shape[1] > 6:
         columns = np.asarray(np.linalg.qr(columns.T, mode="r")).T
     left, values, _ = np.linalg.svd(columns, full_matrices=True)
-    rank = int(np.count_nonzero(values > max(CLOSED, frame.rounding) * values[0])) if len(values) else 0
+    rank = int(np.count_nonzero(values > max(FREE, frame.rounding) * values[0])) if len(values) else 0
     if rank == 6:
         return None
     space = locked_wrenches(left[:, rank:].T)

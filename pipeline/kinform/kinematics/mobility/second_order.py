@@ -1,4 +1,4 @@
-"""A closed pose of a block of loops: its freedoms of first order, and which of them pass the second-order test.
+"""Which freedoms of first order pass the second-order test at a closed pose of loops.
 
 A freedom u is the beginning of a motion only if the curvature of the closure along u can be balanced,
 wᵀ F''(u, u) = 0 for every w with wᵀ J = 0 (Connelly and Whiteley 1996 for frameworks; Rico, Gallardo and
@@ -7,15 +7,12 @@ Duffy 1999 and Müller 2014 for joints, by Lie brackets).
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Sequence
-
 import numpy as np
 
-from kinform.frozen import dataclass
+from kinform.foundation.rounding import TINY
 from kinform.kinematics.constants import RCOND
-from kinform.mechanism.constants import CLOSED
-from kinform.mechanism.loop_system import Form, LoopSystem, stacked
+from kinform.mechanism.constants import FREE
+from kinform.mechanism.pose import Pose
 from kinform.model.arrays import Array
 from kinform.model.kinematics import CurvatureVerdict
 
@@ -23,76 +20,14 @@ BALANCED = 1e-6
 """Curvature (of unit freedoms) that is rounding."""
 MOST_TESTED_FREEDOMS = 40
 """Freedoms of a block up to which directions that pass the second-order test are looked for."""
-SLOW_ITERATIONS = 60
-"""Gauss–Newton iterations where convergence is linear: halving, at a simple singularity."""
+TEST_ITERATIONS = 60
+"""Gauss–Newton iterations for a common zero of the forms: where it is double they converge by halving."""
 MOST_PASSING = 12
 """Directions that pass the second-order test that are followed."""
 SAME_LINE = 0.999
 """Cosine above which two of them are one."""
 COMPLEMENT = 1e-6
 """Singular value below which a direction has no part in a space."""
-
-
-@dataclass(frozen=True, eq=False)
-class Pose:
-    """A closed configuration with its first-order freedoms."""
-
-    q: Array
-    columns: Array
-    rank: int
-    free: Array
-    """(freedoms, n) orthonormal rates that close the loops."""
-    reach: Array
-    """(rows, rank) orthonormal: what rates change in the closure."""
-    system: LoopSystem
-
-    @staticmethod
-    def at(system: LoopSystem, q: Array, tolerance: float = CLOSED) -> Pose:
-        """The pose at the closed configuration q (n,); relative `tolerance` of its rank."""
-        return _poses([system], system, q[None], tolerance)[0]
-
-    @property
-    def freedoms(self) -> int:
-        """Of first order."""
-        return len(self.free)
-
-    def obstruction(self, rates: Array) -> Array:
-        """(D, rows) curvature of the closure along rates (D, n) that no further rates balance."""
-        bent = self.system.curvature(self.columns, rates)
-        left: Array = bent - (bent @ self.reach) @ self.reach.T
-        return left
-
-
-def reference_poses(systems: Sequence[LoopSystem]) -> list[Pose]:
-    """The reference pose of each system: as if it were alone, to the last bit."""
-    alike: dict[Form, list[int]] = defaultdict(list)
-    for k, system in enumerate(systems):
-        alike[system.form].append(k)
-    out: dict[int, Pose] = {}
-    for members in alike.values():
-        of_form = [systems[k] for k in members]
-        q = np.zeros((len(of_form), of_form[0].coordinates))
-        out |= zip(members, _poses(of_form, stacked(of_form, [1] * len(of_form)), q, CLOSED), strict=True)
-    return [out[k] for k in range(len(systems))]
-
-
-def _poses(systems: Sequence[LoopSystem], together: LoopSystem, q: Array, tolerance: float) -> list[Pose]:
-    """The poses of systems that are stacked `together`, each at its own closed configuration of q (D, n)."""
-    closed = together.close(q)
-    rows, columns = closed.jacobian.shape[1:]
-    # all right vectors, and no left ones without need
-    left, values, right = np.linalg.svd(closed.jacobian, full_matrices=rows < columns)
-    out = []
-    for k, system in enumerate(systems):
-        share = max(tolerance, system.rounding)
-        rank = int(np.count_nonzero(values[k] > share * max(values[k].max(initial=0.0), 1e-300)))
-        out.append(Pose(q[k], closed.columns[k], rank, right[k, rank:], left[k, :, :rank], system))
-    return out
-
-
-def first_order(system: LoopSystem) -> int:
-    """Freedoms of first order at the reference pose."""
-    return Pose.at(system, np.zeros(system.coordinates)).freedoms
 
 
 def second_order(pose: Pose, rng: np.random.Generator) -> tuple[CurvatureVerdict, Array]:
@@ -120,7 +55,7 @@ def second_order(pose: Pose, rng: np.random.Generator) -> tuple[CurvatureVerdict
         if values[0] > BALANCED or values[-1] < -BALANCED:
             return "obstructed", none
     u = units(rng.normal(size=(8 + 4 * count, count)))
-    for _ in range(SLOW_ITERATIONS):
+    for _ in range(TEST_ITERATIONS):
         value = np.einsum("pij,di,dj->dp", forms, u, u)
         slope = 2.0 * np.einsum("pij,dj->dpi", forms, u)
         u = units(u - np.einsum("dip,dp->di", np.linalg.pinv(slope, rcond=RCOND), value))
@@ -138,7 +73,7 @@ def second_order(pose: Pose, rng: np.random.Generator) -> tuple[CurvatureVerdict
 def independent(twists: Array) -> Array:
     """Orthonormal basis (r, m) of what the rows (n, m) span."""
     _, values, right = np.linalg.svd(twists, full_matrices=False)
-    return right[: int(np.count_nonzero(values > CLOSED * values.max(initial=0.0)))]
+    return right[: int(np.count_nonzero(values > FREE * values.max(initial=0.0)))]
 
 
 def complement(space: Array, part: Array) -> Array:
@@ -151,5 +86,5 @@ def complement(space: Array, part: Array) -> Array:
 
 def units(vectors: Array) -> Array:
     """The vectors (…, n) at length one."""
-    out: Array = vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-300)
+    out: Array = vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), TINY)
     return out

@@ -14,6 +14,7 @@ import math
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, norm, perpendicular
+from kinform.foundation.rounding import TINY
 from kinform.foundation.sorting import heads, median
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
@@ -114,7 +115,7 @@ class _Outline:
             across = np.array([-self.along[1], self.along[0]])
             ends = np.stack([first @ across, (first + step) @ across])
             return ends.min(axis=0), ends.max(axis=0)
-        long = np.maximum(np.einsum("ij,ij->i", step, step), 1e-300)
+        long = np.maximum(np.einsum("ij,ij->i", step, step), TINY)
         foot = first - np.clip(np.einsum("ij,ij->i", first, step) / long, -1.0, 0.0)[:, None] * step
         ends = np.stack([np.hypot(*first.T), np.hypot(*(first + step).T)])
         return np.hypot(*foot.T), ends.max(axis=0)
@@ -344,9 +345,9 @@ def _mirror_normal(first: _Outline, second: _Outline, plane: Array, normal: Arra
     """The normal of the other flank: the mirror image across the line of centres, or across the way of a slide."""
     if first.turns and second.turns:
         line = second.centre - first.centre
-        across = np.array([-line[1], line[0]]) / max(norm(line), 1e-300)
+        across = np.array([-line[1], line[0]]) / max(norm(line), TINY)
     else:
         across = first.along + second.along
-        across /= max(norm(across), 1e-300)
+        across /= max(norm(across), TINY)
     t = across @ plane
     return np.asarray(normal - 2.0 * float(normal @ t) * t)

@@ -17,7 +17,8 @@ from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.graphs.cycles import Cycle, short_cycles
 from kinform.foundation.graphs.graph import blocks
 from kinform.frozen import dataclass
-from kinform.mechanism.block_rates import axes_frame, loop_matrix
+from kinform.mechanism.block_rates import loop_matrix
+from kinform.mechanism.frame import axes_frame
 from kinform.model.arrays import Array
 
 CLOSED_SHARE = 1e-3

@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.behaviour.components import RigidBody, System
+from kinform.foundation.rounding import TINY
+from kinform.mechanism.rank import factor
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.kernel import equations, layout, masses, motion, pivoting
 from kinform.simulation.kernel.calls import plainly
 from kinform.simulation.kernel.layout import Nums, Row, Work
 from kinform.simulation.kernel.tables import Tables
 from kinform.simulation.mechanism.actuation import Actuation
-from kinform.simulation.mechanism.closure import factor
 from kinform.simulation.mechanism.kernel_tables import tabulate
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.states import States
@@ -73,7 +74,7 @@ class Dynamics:
             return ()
         inner = null.T @ self.mass_matrix(q)[np.ix_(free, free)] @ null
         values, vectors = np.linalg.eigh(inner)
-        empty = null @ vectors[:, values <= NO_MASS * max(float(values.max()), 1e-300)]
+        empty = null @ vectors[:, values <= NO_MASS * max(float(values.max()), TINY)]
         moving = free[np.abs(empty / scale[:, None]).max(axis=1, initial=0.0) > MOVES_WITHOUT_MASS]
         return mechanism.joints_of(moving)
 

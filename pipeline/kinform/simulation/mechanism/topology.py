@@ -1,15 +1,15 @@
 """Which joints carry the bodies, and which close loops. Graph questions only, no physics.
 
-Bodies joined by rigid joints are one node; a breadth-first tree from the ground takes each remaining
-node up by one joint; the joints left over close loops.
+Bodies joined by rigid joints are one node; the nodes make a mechanism (`mechanism.spanning_tree`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from kinform.foundation.graphs.graph import UnionFind, forest
+from kinform.foundation.graphs.graph import UnionFind
 from kinform.frozen import dataclass
+from kinform.mechanism.spanning_tree import spanning_tree
 
 
 @dataclass(frozen=True)
@@ -45,18 +45,14 @@ def arrange(bodies: int, joints: Sequence[tuple[int, int]], rigid: Sequence[bool
     moving = [k for k, stiff in enumerate(rigid) if not stiff]
     edges = [(merged.find(joints[k][0]), merged.find(joints[k][1])) for k in moving]
     root = merged.find(ground)
-    tree = forest(bodies, edges, root)
+    tree = spanning_tree(bodies, edges, root)
     node = {root: 0}
     carried: list[Carried] = []
-    for member in tree.order:
-        if tree.root[member] != root or member == root:
-            continue
-        node[member] = len(node)
-        k = moving[tree.edge[member]]
-        parent = tree.parent[member]
-        carried.append(Carried(node[member], node[parent], k, merged.find(joints[k][0]) == parent))
-    used = {step.joint for step in carried}
+    for step in tree.carried:
+        if tree.root[step.body] == root:
+            node[step.body] = len(node)
+            carried.append(Carried(node[step.body], node[step.parent], moving[step.joint], step.forward))
     node_of = tuple(node.get(merged.find(body), -1) for body in range(bodies))
-    closing = tuple(k for k in moving if k not in used and node_of[joints[k][0]] >= 0)
+    closing = tuple(moving[k] for k in tree.closing if node_of[joints[moving[k]][0]] >= 0)
     adrift = tuple(body for body in range(bodies) if node_of[body] < 0)
     return Topology(node_of, tuple(carried), closing, adrift)

@@ -16,9 +16,9 @@ import numpy as np
 
 from kinform.foundation.algebra.spatial import cross_force
 from kinform.frozen import dataclass
+from kinform.mechanism.rank import rank_of
 from kinform.model.arrays import Array, Flags
 from kinform.simulation.constants import CHUNK
-from kinform.simulation.mechanism.closure import rank_of
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.states import States
 from kinform.simulation.mechanism.topology import arrange

@@ -13,7 +13,7 @@ from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED
 from kinform.model.arrays import Array, Ints
 from kinform.model.simulation import Simulation, SimulationLevel
 from kinform.simulation.constants import CHUNK
-from kinform.simulation.mechanism.closure import counted
+from kinform.mechanism.rank import counted
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.loop_systems import loop_values
 from kinform.simulation.mechanism.mechanism import Mechanism

@@ -14,8 +14,9 @@ import numpy as np
 
 from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
+from kinform.mechanism.rank import factor, rank_of
 from kinform.model.arrays import Array, Ints
-from kinform.simulation.mechanism.closure import factor, rank_of, settle
+from kinform.simulation.mechanism.closure import closed
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.states import states_at
 from kinform.simulation.settings import SolverSettings
@@ -126,10 +127,11 @@ class Follower:
             return "the driven joints move too fast to follow"
         q = mechanism.advance(self.q, step * self.rates(place))
         q[led.q] = target
-        q, gap, moved = settle(mechanism, q, self.unknown, self.rank, self.settings)
+        found = closed(mechanism, q, self.unknown, self.rank)
+        q, gap = found.q[0], float(found.residual[0])
         if not gap < self.settings.open:
             return f"the loop cannot be closed: a gap of {self._words(gap)} remains"
-        if moved > self.settings.correction or self._turned_over(q):
+        if np.abs(found.change).max(initial=0.0) > self.settings.correction or self._turned_over(q):
             return self._singular()
         self.q = q
         return None

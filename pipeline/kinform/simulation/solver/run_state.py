@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.mechanism.rank import rank_of
 from kinform.model.arrays import Array, Ints
 from kinform.model.simulation import Damping
 from kinform.simulation.kernel import layout
 from kinform.simulation.kernel.calls import Engine, engine
-from kinform.simulation.mechanism.closure import rank_of
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.record import Record
 from kinform.simulation.settings import SolverSettings

@@ -10,9 +10,10 @@ import numpy as np
 from kinform.foundation.name_hints import first_names
 from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED
 from kinform.frozen import dataclass
+from kinform.mechanism.rank import Factor, factor, rank_of
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.simulation.mechanism.actuation import Actuation
-from kinform.simulation.mechanism.closure import Factor, factor, rank_of, settle
+from kinform.simulation.mechanism.closure import closed
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.states import gaps_at, poses_at
 from kinform.simulation.settings import SolverSettings
@@ -205,8 +206,7 @@ def torn_at_start(mechanism: Mechanism, actuation: Actuation, start: Start, rank
     most = START_GAP * START_SHARE**2
     for k in np.flatnonzero(~_bear(mechanism, moved, free, held, most, settings.newton)):
         motion = motions[k]
-        _, gap, _ = settle(mechanism, moved[k], free, rank, settings)
-        if gap > most:
+        if closed(mechanism, moved[k], free, rank).residual[0] > most:
             moving = free[np.abs(motion) > SINGLE * np.abs(motion).max()]
             return first_names(mechanism.joints_of(moving))
     return ""

@@ -15,9 +15,9 @@ import numpy as np
 from kinform.behaviour.signals import Constant
 from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED
 from kinform.frozen import dataclass
+from kinform.mechanism.rank import factor, rank_of
 from kinform.model.arrays import Array
 from kinform.simulation.mechanism.actuation import Actuation, Stop
-from kinform.simulation.mechanism.closure import factor, rank_of
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.rubbing import Rubbing
 from kinform.simulation.solver.friction_forces import Answer, NotDeterminedError, Rub, friction_efforts

@@ -14,11 +14,11 @@ import numpy as np
 
 from kinform.behaviour.signals import Constant, Sine
 from kinform.foundation.rounding import SINGLE, SOLVED
+from kinform.mechanism.rank import factor
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.constants import HALVINGS, STEP_PARTS
 from kinform.simulation.kernel import layout
 from kinform.simulation.mechanism.actuation import Actuation, Stop
-from kinform.simulation.mechanism.closure import factor
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.solver.constants import LAW_PARTS, MOST_EVENTS
 from kinform.simulation.solver.run_state import Run

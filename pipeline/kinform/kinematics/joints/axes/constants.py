@@ -4,9 +4,7 @@ from __future__ import annotations
 
 MET = 1e-15
 """Relative to the coordinates: what agrees within this agrees as well as numbers can say."""
-FITTED_RANK = 1e-6
-"""Relative singular value below which rows depend on the others."""
 EXACTLY_PARALLEL = 1e-14
 """Sine below which axes are exactly parallel: snapping makes them so."""
 FITTING_ROUNDS = 8
-"""Rounds of Gauss and Newton, of the axes and of each pose: they converge in three."""
+"""Rounds of Gauss and Newton: axes converge in three."""

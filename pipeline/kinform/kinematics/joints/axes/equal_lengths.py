@@ -21,9 +21,10 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, norm, perpendicular
 from kinform.foundation.graphs.graph import blocks
+from kinform.foundation.rounding import SINGLE, TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.axes.bounds import MoveBounds
-from kinform.kinematics.joints.axes.constants import EXACTLY_PARALLEL, FITTED_RANK, FITTING_ROUNDS, MET
+from kinform.kinematics.joints.axes.constants import EXACTLY_PARALLEL, FITTING_ROUNDS, MET
 from kinform.kinematics.joints.axes.snapping import LINES
 from kinform.kinematics.joints.pair.joint import twists_of
 from kinform.mechanism.joint_graph import JointGraph
@@ -198,7 +199,7 @@ def _shifts(pins: Sequence[_Pin], equalities: Sequence[_Equality], size: float) 
         if np.abs(_unequal(start, rest)).max() <= EQUAL_SIDES * size:
             break
         shifts = _solve(start, np.array([pin.sigma for pin in pins]), rest)
-        excess = np.linalg.norm(shifts, axis=1) / np.maximum(most, 1e-300)
+        excess = np.linalg.norm(shifts, axis=1) / np.maximum(most, TINY)
         worst = int(np.argmax(excess))
         if excess[worst] <= 1.0:
             closed = np.abs(_unequal(start + shifts, rest)).max() <= EQUAL_SIDES * size
@@ -214,7 +215,7 @@ def _solve(start: Array, sigma: Array, equalities: Sequence[_Equality]) -> Array
     for _ in range(FITTING_ROUNDS):
         places = start + shifts
         rows, missing = _rows(places, equalities), _unequal(places, equalities)
-        step = np.linalg.lstsq(rows * weigh, -missing, rcond=FITTED_RANK)[0] * weigh
+        step = np.linalg.lstsq(rows * weigh, -missing, rcond=SINGLE)[0] * weigh
         shifts = shifts + step.reshape(-1, 2)
         if np.abs(step).max() <= MET * float(np.abs(start).max()):
             break

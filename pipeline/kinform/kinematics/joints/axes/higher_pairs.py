@@ -16,6 +16,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, scaled, span
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.graphs.graph import UnionFind
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.constants import AT_REST
 from kinform.kinematics.joints.pair.certainty import meets
@@ -113,7 +114,7 @@ def _groups(pairs: Sequence[_Pair], count: int) -> list[tuple[list[int], list[in
         speed = np.linalg.norm(pair.slip, axis=2).max(axis=0) if len(pair.slip) else np.zeros(count)
         turn = pair.frame.length * np.linalg.norm(pair.relative[:, :3], axis=1)
         size = speed + turn
-        for motion in np.flatnonzero(size > AT_REST * max(float(size.max(initial=0.0)), 1e-300)).tolist():
+        for motion in np.flatnonzero(size > AT_REST * max(float(size.max(initial=0.0)), TINY)).tolist():
             sets.union(g, len(pairs) + motion)
     out: dict[int, tuple[list[int], list[int]]] = {}
     for g in range(len(pairs)):
@@ -133,7 +134,7 @@ def _preserved_motions(pairs: Sequence[_Pair], motions: list[int]) -> tuple[Arra
     """
     rows = np.concatenate([pair.rows[:, motions] for pair in pairs])
     slip = np.concatenate([pair.slip[:, motions] for pair in pairs])
-    speed = np.maximum(np.linalg.norm(slip, axis=2).max(axis=0), 1e-300)
+    speed = np.maximum(np.linalg.norm(slip, axis=2).max(axis=0), TINY)
     _, values, right = np.linalg.svd(rows / speed)
     misses = np.concatenate([values, np.zeros(len(motions) - len(values))])
     kept = np.zeros((0, len(motions)))
@@ -144,7 +145,7 @@ def _preserved_motions(pairs: Sequence[_Pair], motions: list[int]) -> tuple[Arra
             velocity = np.linalg.norm(combination @ pair.slip[:, motions], axis=1)
             allowed = pair.angle * velocity + pair.position * norm(relative[:3])
             missed = np.abs(pair.rows[:, motions] @ combination)
-            share = max(share, float((missed / np.maximum(allowed, 1e-300)).max()) if missed.max() > 0.0 else 0.0)
+            share = max(share, float((missed / np.maximum(allowed, TINY)).max()) if missed.max() > 0.0 else 0.0)
         if share > 1.0:
             if share < DOUBTFUL_MOTION:
                 return kept, "teeth or cams hold a motion by hardly more than their uncertainty"

@@ -21,18 +21,21 @@ from kinform.foundation.algebra.displacements import adjoint, displacement
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import cross, cross_matrix, norm
 from kinform.foundation.graphs.graph import blocks
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.constants import RCOND
 from kinform.kinematics.joints.axes.bounds import MoveBounds
-from kinform.kinematics.joints.axes.constants import EXACTLY_PARALLEL, FITTED_RANK, FITTING_ROUNDS
+from kinform.kinematics.joints.axes.constants import EXACTLY_PARALLEL, FITTING_ROUNDS, MET
 from kinform.kinematics.joints.pair.joint import twists_of
-from kinform.mechanism.constants import LEAST_FRAME
+from kinform.mechanism.closing import Closing, Termination, close
+from kinform.mechanism.frame import joint_frame
 from kinform.mechanism.joint_graph import JointGraph
 from kinform.mechanism.loop_system import LoopSystem, loop_system
-from kinform.model.arrays import Array
+from kinform.mechanism.rank import Rank
+from kinform.model.arrays import Array, Flags
 from kinform.model.kinematics import Joint
 
-CLOSED_GAP = 1e-12
+CLOSED_GAP = ARITHMETIC
 """rad, and shares of the size: loops that stay closed to this need nothing."""
 GLANCE = 0.1
 """Share of that gap below which one look ahead is enough."""
@@ -48,10 +51,8 @@ MOST_FITTED_RATES = 48
 """So are blocks with more joint rates."""
 SOUND_POSE = 0.01
 """Relative singular value that must be left: nearer to singular poses gaps say more of the pose than of the axes."""
-POSE_CLOSED = 1e-13
-"""Change of a pose (rad, shares of the size) after which it is closed."""
-POSE_LOST = 1e-9
-"""Change after the last round beyond which it is not."""
+POSES = Termination(closed=MET, accepted=SINGLE)
+"""Poses are closed as far as numbers go: what is left open is what axes have to be moved for."""
 WAY_LOST = 1e-3
 """Share of a direction that must be left among the freedoms of the next pose."""
 
@@ -67,7 +68,7 @@ def fit_proportions(graph: JointGraph, bounds: MoveBounds, size: float) -> tuple
         if len(block) < 2 or any(joint.type == "general" or joint.status == "ambiguous" for joint in joints):
             continue
         edges, of_block = [graph.edges[k] for k in block], list(block)
-        loops = _Loops(edges, joints, bounds.sigma[of_block], bounds.most[of_block], _frame(joints, size))
+        loops = _Loops(edges, joints, bounds.sigma[of_block], bounds.most[of_block], joint_frame(joints, size))
         for k, joint in zip(block, _fit_axes(loops), strict=True):
             out[k] = joint
     return tuple(out)
@@ -108,8 +109,8 @@ def _fit_axes(loops: _Loops) -> Sequence[Joint]:
     if sum(joint.freedoms for joint in joints) > MOST_FITTED_RATES:
         return joints
     system = loops.system
-    values = np.linalg.svd(system.close(np.zeros((1, system.coordinates))).jacobian[0], compute_uv=False)
-    rank = int(np.count_nonzero(values > FITTED_RANK * max(values.max(initial=0.0), 1e-300)))
+    values = np.linalg.svd(system.equations(system.start).jacobian[0], compute_uv=False)
+    rank = int(np.count_nonzero(values > SINGLE * max(values.max(initial=0.0), TINY)))
     freedoms = system.coordinates - rank
     if rank == (3 if _planar(joints) else 6) * len(system.loops) or not 0 < freedoms <= MOST_FITTED_FREEDOMS:
         return joints
@@ -149,58 +150,41 @@ def _planar(joints: Sequence[Joint]) -> bool:
     return bool(max([float(crossed), *tilted]) < EXACTLY_PARALLEL)
 
 
-def _frame(joints: Sequence[Joint], size: float) -> Frame:
-    points = np.array([joint.point for joint in joints if joint.point is not None]).reshape(-1, 3)
-    frame = Frame.of(points) if len(points) else Frame(np.zeros(3), size)
-    return Frame(frame.centre, max(frame.length, LEAST_FRAME * size))
+def _along(system: LoopSystem, start: Array, ways: Array, rank: int) -> tuple[Closing, Flags, list[Array]]:
+    """Poses one stride from `start` (K, n) along `ways` (K, n), closed as well as their rank allows; which of them (K,)
+    closed and are far from singular ones; and their freedoms (k, n)."""
+    ahead = start + STRIDE * ways / np.abs(ways).max(axis=1, keepdims=True)
+    closing = close(system, ahead, rank=Rank(number=rank), until=POSES)
+    _, values, right = np.linalg.svd(closing.jacobian)
+    sound = (values[:, rank - 1] >= SOUND_POSE * values[:, 0]) & closing.closed
+    return closing, np.asarray(sound), list(right[:, rank:])
 
 
 def _glance(system: LoopSystem, rank: int) -> float:
     """The gap one stride on, along all freedoms together: it tells loops that close exactly, as most do."""
-    start = np.zeros(system.coordinates)
-    _, _, right = np.linalg.svd(system.close(start[None]).jacobian[0])
-    ahead = right[rank:].sum(axis=0)
-    q, sound = _close_pose(system, rank, start + STRIDE * ahead / np.abs(ahead).max())[:2]
-    return float(np.abs(system.close(q[None]).residual).max()) if sound else np.inf
-
-
-def _close_pose(system: LoopSystem, rank: int, q: Array) -> tuple[Array, bool, Array]:
-    """The pose near q (n,) that closes the loops as well as its rank allows, whether it is far from singular ones, and
-    its freedoms (k, n)."""
-    change, values, right = np.ones(1), np.ones(1), np.eye(len(q))
-    for _ in range(FITTING_ROUNDS):
-        closed = system.close(q[None])
-        left, values, right = np.linalg.svd(closed.jacobian[0])
-        change = -(left[:, :rank].T @ closed.residual[0] / values[:rank]) @ right[:rank]
-        q = q + change
-        if np.abs(change).max() < POSE_CLOSED:
-            break
-    return (
-        q,
-        bool(values[rank - 1] >= SOUND_POSE * values[0] and np.abs(change).max() <= POSE_LOST),
-        right[rank:],
-    )
+    _, _, right = np.linalg.svd(system.equations(system.start).jacobian[0])
+    closing, sound, _ = _along(system, system.start, right[rank:].sum(axis=0)[None], rank)
+    return float(closing.residual[0]) if sound[0] else np.inf
 
 
 def _walk(system: LoopSystem, rank: int) -> _Walk:
     """Along each freedom and all of them together, to both sides, until a pose is nearly singular."""
-    start = np.zeros(system.coordinates)
-    _, _, right = np.linalg.svd(system.close(start[None]).jacobian[0])
+    _, _, right = np.linalg.svd(system.equations(system.start).jacobian[0])
     free = right[rank:]
-    ways = [*free, free.sum(axis=0)] if len(free) > 1 else [*free]
+    ways = np.concatenate([free, free.sum(axis=0)[None]] if len(free) > 1 else [free])
+    ways = np.concatenate([ways, -ways])
+    q = np.repeat(system.start, len(ways), axis=0)
     poses, gap = [], 0.0
-    for way in (sign * way for way in ways for sign in (1.0, -1.0)):
-        q, ahead = start, way
-        for _ in range(STRIDES):
-            q, sound, null = _close_pose(system, rank, q + STRIDE * ahead / np.abs(ahead).max())
-            if not sound:
-                break
-            ahead = null.T @ (null @ ahead)
-            if np.abs(ahead).max() < WAY_LOST:
-                break
-            poses.append(q)
-            gap = max(gap, float(np.abs(system.close(q[None]).residual).max()))
-    return _Walk(np.array(poses).reshape(-1, system.coordinates), gap)
+    for _ in range(STRIDES):
+        closing, sound, nulls = _along(system, q, ways, rank)
+        ways = np.array([null.T @ (null @ way) for null, way in zip(nulls, ways, strict=True)])
+        going = sound & (np.abs(ways).max(axis=1) >= WAY_LOST)
+        if not going.any():
+            break
+        q, ways = closing.q[going], ways[going]
+        poses.append(q)
+        gap = max(gap, float(closing.residual[going].max()))
+    return _Walk(np.concatenate([np.zeros((0, system.coordinates)), *poses]), gap)
 
 
 def _moves(loops: _Loops, q: Array, rank: int) -> Array:
@@ -212,7 +196,7 @@ def _moves(loops: _Loops, q: Array, rank: int) -> Array:
     """
     system, frame, sigma = loops.system, loops.frame, loops.sigma
     number = {body: i for i, body in enumerate(sorted({n for edge in loops.edges for n in edge}))}
-    closed, carried = system.close(q), adjoint(system.bodies(q))
+    closed, carried = system.equations(q), adjoint(system.bodies(q))
     count, cycles, size = len(q), len(system.loops), len(loops.joints)
     effect = np.zeros((count, cycles, 6, size, 6))
     weigh = np.zeros((size, 6, 6))

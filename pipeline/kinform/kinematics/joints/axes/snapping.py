@@ -17,6 +17,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical, cross, norm, perpendicular, sine
 from kinform.foundation.records import altered
+from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.constants import RCOND
 from kinform.kinematics.joints.axes.bounds import MoveBounds
@@ -183,7 +184,7 @@ def _coaxial(bundle: Sequence[_Axis], direction: Array) -> list[list[_Axis]]:
 
     def excess(group: Sequence[_Axis]) -> list[float]:
         mean = _mean_foot(group, direction)
-        return [norm(a.foot(direction) - mean) / max(a.most_distance, 1e-300) for a in group]
+        return [norm(a.foot(direction) - mean) / max(a.most_distance, TINY) for a in group]
 
     return _cluster(bundle, coaxial, excess, _within(feet, 2.0 * float(most.max())))
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinform.kinematics.mobility import gauss_newton
-from kinform.kinematics.mobility.gauss_newton import REDUCED_RATES
-from kinform.kinematics.mobility.truncation import regular_solution, truncated_solution
+from kinform.mechanism.least_change import REDUCED_RATES, least_change, regular_solution, truncated_solution
+from kinform.mechanism.rank import Rank
 
 
 def equations(rng, count, left_out, gap):
@@ -77,6 +76,6 @@ def test_steps_of_large_blocks_are_those_by_singular_values():
     jacobian, missed = rng.normal(size=(4, rows, count)), rng.normal(size=(4, rows))
     jacobian[:, ::7] = 0.0
     jacobian[2, :, 3] = jacobian[2, :, 4]
-    found = gauss_newton.solutions(jacobian, missed, None)
+    found = least_change(jacobian, missed, Rank(share=1e-12))
     for one, equation, right in zip(found, jacobian, missed, strict=True):
         np.testing.assert_allclose(one, np.linalg.pinv(equation, rcond=1e-12) @ right, atol=1e-10)

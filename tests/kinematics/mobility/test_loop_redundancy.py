@@ -82,7 +82,6 @@ def test_a_planar_four_bar_has_three_rows_too_many_and_says_which():
     (loop,) = found.mobility.redundancies
     assert (found.mobility.redundant, loop.rows, loop.kind) == (3, 3, "loop")
     assert loop.directions == ("force along z", "moment about x", "moment about y")
-    assert "planar, normal to z" in loop.text
     assert set(loop.joints) == {joint.name for joint in found.joints}
     assert set(loop.patches) == {k for joint in found.joints for k in joint.patches}
     assert keeps_the_count(found)
@@ -111,8 +110,8 @@ def test_redundancy_depends_neither_on_pose_nor_on_scale(scale):
 
 def test_the_order_of_contacts_changes_nothing():
     found = [derived(patches, "base") for patches in (four_bar_contacts(), four_bar_contacts()[::-1])]
-    texts = [[r.text for r in k.mobility.redundancies] for k in found]
-    assert texts[0] == texts[1]
+    held = [[(r.kind, r.joints, r.directions) for r in k.mobility.redundancies] for k in found]
+    assert held[0] == held[1]
     (one,), (two,) = (k.mobility.named for k in found)
     assert [drive[:2] for drive in one.drives] == [drive[:2] for drive in two.drives]
     assert np.allclose([drive[2] for drive in one.drives], [drive[2] for drive in two.drives])
@@ -157,7 +156,6 @@ def test_bennett_has_three_rows_too_many_that_no_plane_explains():
     found = derived(closed_chain(points, axes, ["a", "b", "c", "d"]), "a")
     (loop,) = of_kind(found, "loop")
     assert (found.mobility.instantaneous, loop.rows) == (1, 3)
-    assert "planar" not in loop.text and "spherical" not in loop.text
 
 
 def test_a_spherical_four_bar_says_that_its_axes_meet():
@@ -165,7 +163,8 @@ def test_a_spherical_four_bar_says_that_its_axes_meet():
     points = [0.9 * axis for axis in axes]
     found = derived(closed_chain(points, axes, ["a", "b", "c", "d"]), "a")
     (loop,) = of_kind(found, "loop")
-    assert loop.rows == 3 and "axes meet in one point" in loop.text
+    assert loop.rows == 3 and len(loop.directions) == 3
+    assert all(word.startswith("force") for word in loop.directions)
 
 
 @pytest.mark.parametrize(("count", "excess"), [(1, 0), (2, 5), (4, 15)])
@@ -177,7 +176,6 @@ def test_each_further_hinge_of_a_door_holds_five_rows_too_many(count, excess):
         assert sum(r.rows for r in of_kind(found, "pair")) == excess
         assert found.mobility.redundant == 0 and keeps_the_count(found)
         for one in of_kind(found, "pair"):
-            assert f"{count} coaxial hinges of door~frame" in one.text
             assert len(one.directions) == excess
 
 
@@ -208,7 +206,7 @@ def test_a_table_on_four_flat_feet_holds_nine_rows_too_many():
         for y in (0, 0.5)
     ]
     (pair,) = derived(feet, "floor").mobility.redundancies
-    assert pair.rows == 9 and "4 separate contacts" in pair.text
+    assert pair.rows == 9 and len(pair.patches) == 4
 
 
 def test_a_pin_that_only_spins_is_idle_and_the_arm_keeps_its_turn():

@@ -54,16 +54,16 @@ def gap(joints, angle=1.2):
     edges = [tuple(names.index(body) for body in joint.bodies) for joint in joints]
     system = loop_system(edges, [j.twists for j in joints], Frame.of(np.array([j.point for j in joints])))
     q, rank = np.zeros(len(joints)), len(joints) - 1
-    _, _, right = np.linalg.svd(system.close(q[None]).jacobian[0])
+    _, _, right = np.linalg.svd(system.equations(q[None]).jacobian[0])
     ahead = right[-1]
     for _ in range(24):
         q = q + angle / 24 * ahead / np.abs(ahead).max()
         for _ in range(8):
-            closed = system.close(q[None])
+            closed = system.equations(q[None])
             left, values, right = np.linalg.svd(closed.jacobian[0])
             q = q - ((left[:, :rank].T @ closed.residual[0]) / values[:rank]) @ right[:rank]
         ahead = right[-1] * np.sign(right[-1] @ ahead)
-    return np.abs(system.close(q[None]).residual).max()
+    return np.abs(system.equations(q[None]).residual).max()
 
 
 @pytest.mark.parametrize("name", MECHANISMS)

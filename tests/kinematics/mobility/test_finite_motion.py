@@ -26,8 +26,8 @@ from support.linkages import (
 
 from kinform import stages
 from kinform.foundation.algebra.screws import Frame
-from kinform.kinematics.mobility import gauss_newton
 from kinform.kinematics.mobility.finite_motion import finite_mobility
+from kinform.mechanism import closing, least_change
 from kinform.mechanism.first_order import close
 from kinform.mechanism.loop_system import loop_system
 
@@ -92,7 +92,10 @@ def test_turned_shifted_and_scaled_mechanisms_move_alike(name, scale):
     assert figures(elsewhere, size=5.0 * scale) == tuple(expected)
 
 
-@pytest.mark.parametrize("name", ["Watt six-bar", "flat parallelogram", "shaky truss with balls", "Bennett"])
+@pytest.mark.parametrize(
+    "name",
+    ["Watt six-bar", "flat parallelogram", pytest.param("shaky truss with balls", marks=pytest.mark.sweep), "Bennett"],
+)
 def test_ground_and_order_do_not_matter(name):
     mechanism, *expected = KNOWN[name]
     order = np.random.default_rng(5).permutation(len(mechanism))
@@ -107,7 +110,7 @@ def test_a_flat_parallelogram_goes_on_in_two_ways():
     (certificate,) = found.certificates
     assert certificate.branches == (1, 1)
     assert certificate.stepped == 1
-    assert "bifurcation" in found.reason
+    assert found.singular
 
 
 def test_certificates_are_residuals_of_closed_loops():
@@ -126,7 +129,7 @@ def test_a_shaky_truss_is_obstructed_at_second_order_and_says_where():
     assert found.count == 1
     assert certificate.second_order == "obstructed"
     assert certificate.moves == ("base~link1", "link1~link2", "link2~base")
-    assert found.reason.startswith("1 of 1 freedom is only infinitesimal: base~link1")
+    assert (found.infinitesimal, certificate.finite) == (1, 0)
 
 
 def test_a_mechanism_near_its_singular_pose_is_not_singular():
@@ -210,7 +213,8 @@ def test_a_loop_that_moves_a_general_joint_is_not_known():
     first, found = count([*joints[:3], as_general(joints[3])])
     assert first == 1
     assert found.count is None
-    assert "link3~base is known by its velocities only" in found.reason
+    (certificate,) = found.certificates
+    assert (certificate.instantaneous, certificate.finite) == (1, None)
 
 
 def test_a_loop_in_which_a_general_joint_rests_is_known_from_the_others():
@@ -266,7 +270,6 @@ def test_a_loop_with_an_ambiguous_joint_is_not_known_and_others_are():
     joints[1] = replace(joints[1], status="ambiguous")
     _, found = count(joints)
     assert found.count is None
-    assert "link1~link2 is ambiguous" in found.reason
     assert sorted(c.finite for c in found.certificates if c.finite is not None) == [1]
 
 
@@ -274,7 +277,8 @@ def test_a_block_beyond_the_limit_is_said_to_be(monkeypatch):
     monkeypatch.setattr("kinform.kinematics.mobility.finite_motion.MOST_BLOCK_WORK", 50)
     _, found = count(build(four_bar()))
     assert found.count is None
-    assert "too many to be tried" in found.reason
+    (certificate,) = found.certificates
+    assert (certificate.instantaneous, certificate.finite) == (None, None)
 
 
 @pytest.mark.parametrize("empty", [0, 20])
@@ -283,7 +287,7 @@ def test_equations_of_a_large_block_made_triangular_have_the_same_solution(empty
     jacobian, missed = rng.normal(size=(2, 150, 64)), rng.normal(size=(2, 150))
     jacobian[:, :, 63] = jacobian[:, :, 0] - jacobian[:, :, 1]
     jacobian[:, :empty] = 0.0
-    short, rest = gauss_newton.reduced(jacobian, missed)
+    short, rest = least_change.reduced(jacobian, missed)
     assert short.shape == (2, 64, 64)
     full, less = (np.linalg.svd(a, compute_uv=False) for a in (jacobian, short))
     assert np.abs(full - less).max() < 1e-13 * full.max()
@@ -295,7 +299,8 @@ def test_equations_of_a_large_block_made_triangular_have_the_same_solution(empty
 def test_a_large_block_moves_alike_with_triangular_equations(monkeypatch):
     mechanism, *_ = KNOWN["parallelogram"]
     _, plain = count(build(mechanism))
-    monkeypatch.setattr("kinform.kinematics.mobility.gauss_newton.REDUCED_RATES", 1)
+    for module in (closing, least_change):
+        monkeypatch.setattr(module, "REDUCED_RATES", 1)
     _, reduced = count(build(mechanism))
     assert reduced.count == plain.count == 1 and reduced.certificates == plain.certificates
 
@@ -337,7 +342,7 @@ def test_the_stepped_pose_of_a_crank_is_where_trigonometry_puts_it(angle, length
     end = pin[0] + np.sqrt(10.0 - pin[1] ** 2)
     tilt = np.arctan2(-pin[1], end - pin[0]) - np.arctan2(-1.0, 3.0)
     q = np.array([[angle, tilt - angle, -tilt, (end - 4.0) / length]])
-    assert np.abs(system.close(q).residual).max() < 1e-12
+    assert np.abs(system.equations(q).residual).max() < 1e-12
 
 
 def test_the_jacobian_is_the_change_of_the_residual_and_the_curvature_that_of_the_jacobian():
@@ -350,8 +355,8 @@ def test_the_jacobian_is_the_change_of_the_residual_and_the_curvature_that_of_th
     rng = np.random.default_rng(0)
     u, h = rng.normal(size=(1, system.coordinates)), 1e-5
     origin = np.zeros((1, system.coordinates))
-    here = system.close(origin)
-    ahead, behind = system.close(h * u), system.close(-h * u)
+    here = system.equations(origin)
+    ahead, behind = system.equations(h * u), system.equations(-h * u)
     assert np.allclose((ahead.residual - behind.residual) / (2 * h), here.jacobian[0] @ u[0], atol=1e-8)
     # twists of the bodies away from the pose are those of the columns: differentiate J(t u) u, up to closure
     bent = (ahead.jacobian[0] - behind.jacobian[0]) @ u[0] / (2 * h)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from support.port_models import DOWN, Model, four_bars
 
+from kinform.mechanism.rank import EVEN, FALLEN, counted
 from kinform.simulation import Course, simulate_system
-from kinform.simulation.mechanism.closure import EVEN, FALLEN, counted
 from kinform.simulation.mechanism.construction import assemble
 from kinform.simulation.mechanism.loop_systems import loop_values
 
