@@ -38,7 +38,18 @@ import numpy as np
 
 SOURCES = (".toml", ".urdf", ".xacro", ".sdf", ".xml", ".step", ".stp", ".glb", ".3mf", ".dae", ".obj", ".stl")
 EXPORTS = ("mjcf", "urdf", "sdf", "modelica", "vhdl-ams", "dot", "json", "csv")
-SKIPPED = {"fingerprint", "fingerprints", "lineage", "key", "code_version", "version", "seal", "digest", "decisions"}
+SKIPPED = {
+    "fingerprint",
+    "fingerprints",
+    "lineage",
+    "inputs",
+    "key",
+    "code_version",
+    "version",
+    "seal",
+    "digest",
+    "decisions",
+}
 """Attributes and datasets that name the version of the code and not what it found; `decisions` is a cache that is
 sorted by such names."""
 PROSE = {"message", "remedy", "reason", "why", "note", "words", "statement", "found", "intended", "text", "description"}

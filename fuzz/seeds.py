@@ -377,7 +377,7 @@ def dae() -> list[bytes]:
 
 def step() -> list[bytes]:
     """Boxes and pins in a sub-assembly."""
-    return [(ROOT / "tests" / "form" / "step" / "names.step").read_bytes()]
+    return [(ROOT / "tests" / "form" / "scenes" / "step" / "names.step").read_bytes()]
 
 
 def csv() -> list[bytes]:

@@ -78,7 +78,10 @@ def every_kind():
 def test_every_kind_of_component_runs_and_comes_back_from_a_file():
     system = every_kind()
     found = {kind_of(component) for component in flat(system).components}
-    assert found == set(COMPONENTS) - {"system", "friction"}  # friction: tests/simulation/test_friction_stated.py
+    assert found == set(COMPONENTS) - {
+        "system",
+        "friction",
+    }  # friction: tests/simulation/test_simulation_friction_stated.py
     run = simulate_system(system, Course(0.2, 0.05))
     assert (run.status, run.failures) == ("done", ())
     assert run.balance.max() < 1e-9

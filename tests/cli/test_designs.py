@@ -16,7 +16,7 @@ def kinform(*words):
     return ran_here(*words, cwd=Path.cwd())
 
 
-STEP = ROOT / "tests" / "form" / "step" / "revolute_collars.step"
+STEP = ROOT / "tests" / "form" / "scenes" / "step" / "revolute_collars.step"
 
 
 @pytest.fixture

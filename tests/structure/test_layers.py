@@ -177,16 +177,12 @@ def test_architecture_names_every_package():
     assert len(text.splitlines()) <= 120
 
 
-NOT_YET = ("requirements/kinds/", "formats/registry.py")
-"""What other branches bring; to be emptied where they meet."""
-
-
 @pytest.mark.parametrize("page", ["docs/architecture.md", "CONTRIBUTING.md"])
 def test_pages_about_the_code_name_nothing_that_is_gone(page: str):
     text = (ROOT / page).read_text(encoding="utf-8")
     gone = []
     for path in re.findall(r"`([\w/]+/[\w/]*(?:\.py|/))`", text):
-        if "NNN" in path or path in NOT_YET:  # the first stands for any rule
+        if "NNN" in path:  # stands for any rule
             continue
         places = (ROOT, ROOT / "cli", SOURCES["kinform"] / "kinform")
         gone += [path] if not any((place / path).exists() for place in places) else []

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.rounding import ARITHMETIC, SOLVED, TINY
-from kinform.frozen import dataclass
 from kinform.function.configurations import Chain
 from kinform.mechanism.closing import close
 from kinform.mechanism.constants import FREE

@@ -155,6 +155,8 @@ def close(
     before, active, stale = np.full(len(q), np.inf), np.arange(len(q)), np.zeros(len(q), dtype=np.bool_)
     last_q, last_change = state.q, state.change
     for count in range(until.iterations + 1):
+        if not len(active):
+            break
         if count:
             state.evaluate(system, active)
             stale[active] = False

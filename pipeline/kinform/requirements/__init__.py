@@ -20,7 +20,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from kinform.requirements.kind import Kind
 
-__all__ = ["KINDS", "all_kinds", "kind_of"]
+__all__ = ["CODE_VERSION", "KINDS", "all_kinds", "kind_of"]
+
+CODE_VERSION: int = 1
+"""Bumped when results of stages that use this package change for the same input."""
 
 KINDS = frozenset(module.name for module in iter_modules([f"{path}/kinds" for path in __path__]))
 """Names of all kinds: those of the modules in `kinds`."""

@@ -17,6 +17,7 @@ MOTION = (
     "simulation",
     "behaviour",
     "function",
+    "requirements",
     "mass",
     "kinematics",
     "mechanism",

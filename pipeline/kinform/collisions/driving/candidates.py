@@ -19,8 +19,7 @@ from kinform.collisions.pair.passages import Path
 from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.displacements import displacements_along
-from kinform.foundation.rounding import SOLVED
-from kinform.foundation.rounding import TINY
+from kinform.foundation.rounding import SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.mobility.guides import preserved
 from kinform.model.arrays import Array, Flags, Ints

@@ -10,10 +10,10 @@ import numpy as np
 from kinform.behaviour.components import System
 from kinform.foundation.algebra.spatial import quaternions, rotation_vector
 from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED
+from kinform.mechanism.rank import counted
 from kinform.model.arrays import Array, Ints
 from kinform.model.simulation import Simulation, SimulationLevel
 from kinform.simulation.constants import CHUNK
-from kinform.mechanism.rank import counted
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.loop_systems import loop_values
 from kinform.simulation.mechanism.mechanism import Mechanism

@@ -9,7 +9,7 @@ from support.places import manifests
 from support.port_models import DOWN, bricard, four_bars
 
 from kinform.behaviour import flat
-from kinform.behaviour.of_design import build
+from kinform.behaviour.from_design import build
 from kinform.mechanism.rank import factor, rank_of
 from kinform.simulation.mechanism.actuation import Actuation
 from kinform.simulation.mechanism.closure import Loops, closed

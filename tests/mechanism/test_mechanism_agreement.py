@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from support.places import manifests
 
-from kinform.behaviour.of_design import build
+from kinform.behaviour.from_design import build
 from kinform.collisions.driving import loop_motion
 from kinform.function.configurations import mechanism_of
 from kinform.function.holding import configuration_at
@@ -21,7 +21,7 @@ from kinform.kinematics.mobility.freedom_motions import driven_freedoms
 from kinform.mechanism.joint_graph import JointGraph
 from kinform.simulation.mechanism.construction import assemble
 from kinform.simulation.settings import SolverSettings
-from kinform.simulation.solver.follow import Follower, Led
+from kinform.simulation.solver.continuation import Follower, Led
 
 AGREED = 2e-6
 """rad, and shares of the assembly's size: twice what loops may be open by (`closing.ACCEPTED`)."""

@@ -145,7 +145,7 @@ def test_joints_are_proposed_that_can_be_taken_over(tmp_path):
 def test_a_cad_file_without_function_gets_proposals_as_meshes_do(tmp_path):
     """The joint that is proposed for a STEP file is that of the STL version, and the manifest is one that runs."""
     pytest.importorskip("cascadio")
-    source = FIXTURES.parent / "tests/form/step/revolute_collars.step"
+    source = FIXTURES.parent / "tests/form/scenes/step/revolute_collars.step"
     shutil.copy(source, tmp_path)
     ran = kinform(tmp_path, "init", source.name, "-o", "m.toml")
     assert ran.returncode == 0
