@@ -9,6 +9,7 @@ from support.places import FIXTURES
 import kinform
 from kinform import ahead, stages
 from kinform.collisions import joint_ranges
+from kinform.foundation import processes
 
 FOUR_BAR = FIXTURES / "mechanisms" / "four_bar" / "four_bar.toml"
 
@@ -17,6 +18,7 @@ def test_a_run_gives_the_same_with_something_done_ahead_of_it(tmp_path, monkeypa
     alone, shared = tmp_path / "alone.h5", tmp_path / "shared.h5"
     kinform.run(FOUR_BAR, alone)
     monkeypatch.setattr(ahead, "LARGE", 0)
+    monkeypatch.setattr(processes, "_threaded", False)  # as in a process that has drawn no page before
     monkeypatch.setattr(joint_ranges, "SHARED_FACETS", 0)
     monkeypatch.setattr(sys.modules["kinform.contacts.find"], "LITTLE_PAIRS", -1)
     made = []

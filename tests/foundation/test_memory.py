@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import os
 import subprocess
 import sys
 import weakref
@@ -65,7 +66,9 @@ def test_pages_of_what_comes_and_goes_are_asked_for_once():
     pages = []
     for keeps in (False, True):
         code = COMES_AND_GOES.format(path=[path for path in sys.path if path], keeps=keeps)
-        ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+        # Dask sets how glibc gives memory back, for its workers and whoever else is started
+        plain = {name: value for name, value in os.environ.items() if not name.startswith("MALLOC_")}
+        ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=plain)
         pages.append(int(ran.stdout))
     if pages[0] < 8_000:
         pytest.skip("this C library keeps them anyway")
