@@ -108,6 +108,18 @@ def test_every_folder_named_in_the_architecture_is_there():
 
 
 @pytest.mark.slow
+def test_every_constant_that_a_page_names_is_there():
+    named = {
+        name.rstrip("_")
+        for page in sorted((ROOT / "docs").glob("*.md"))
+        for name in re.findall(r"`([A-Z][A-Z0-9]*_[A-Z0-9_]*)\*?`", page.read_text(encoding="utf-8"))
+    }
+    code = "\n".join(
+        path.read_text(encoding="utf-8") for root in ("pipeline", "cli") for path in sorted((ROOT / root).rglob("*.py"))
+    )
+    assert [name for name in sorted(named) if re.search(rf"\b{name}", code) is None] == []
+
+
 def test_the_gallery_shows_the_mechanisms_as_they_are_judged(generate, derive_design):
     text, pictures = generate.gallery({path.stem: derive_design(path) for path in generate.mechanisms()})
     assert (ROOT / "docs" / "gallery.md").read_text(encoding="utf-8") == text, "write it again: make docs"

@@ -18,13 +18,14 @@ from kinform.function.configurations import mechanism_of
 from kinform.function.holding import configuration_at
 from kinform.kinematics.joints.bodies.extents import Extents
 from kinform.kinematics.mobility.freedom_motions import driven_freedoms
+from kinform.mechanism.closing import ACCEPTED
 from kinform.mechanism.joint_graph import JointGraph
 from kinform.simulation.mechanism.construction import assemble
 from kinform.simulation.settings import SolverSettings
 from kinform.simulation.solver.continuation import Follower, Led
 
-AGREED = 2e-6
-"""rad, and shares of the assembly's size: twice what loops may be open by (`closing.ACCEPTED`)."""
+AGREED = 2 * ACCEPTED
+"""rad, and shares of the assembly's size: twice what loops may be open by."""
 NODES = 4
 """Steps of the ranges along a motion."""
 LOOPED = [

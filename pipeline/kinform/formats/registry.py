@@ -98,7 +98,8 @@ Chosen, not measured."""
 
 
 def reader_of(path: Path, data: bytes) -> Read | None:
-    """`read` of the format that a file has by its suffix and its root element; None where it is none of them."""
+    """`read` of the format that a file has by its suffix and its root element; None where it is none of them. Where one
+    format alone has the suffix it reads the file whatever the root, and says what is wrong with that."""
     match = _ROOT.search(_BEFORE_ROOT.sub(b"", data[:HEAD_BYTES]))
     root = match[1].decode() if match else ""
     fits = [format for format in ROBOT_FORMATS if path.suffix.lower() in format.suffixes]

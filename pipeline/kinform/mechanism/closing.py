@@ -147,7 +147,8 @@ def close(
     until: Termination = BY_RESIDUAL,
 ) -> Closing:
     """Where the loops of the system close near the configurations q (D, …), each by itself; coordinates that are `held`
-    (n,) stay as they are."""
+    (n,) stay as they are. Where steps have stalled, and the last one opened the loops more than it closed them, it is
+    taken back."""
     at = system.equations(q)
     n = at.jacobian.shape[2]
     free = slice(None) if held is None or not held.any() else np.flatnonzero(~held)

@@ -1,7 +1,7 @@
 """Closure of the whole assembly in joint rates, block by block: which rates are left, and how many.
 
 Blocks of the graph of bodies and joints close independently; a bridge adds all its freedoms (Davies 1981 for the
-closure equations). The room's docstring has an example.
+closure equations). The docstring of the package has an example.
 """
 
 from __future__ import annotations

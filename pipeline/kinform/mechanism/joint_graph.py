@@ -55,5 +55,5 @@ class JointGraph:
         return [block for block in self.blocks if len(block) > 1]
 
     def close(self, size: float, doubts: Array | None = None, spaces: Sequence[Array] | None = None) -> Closure:
-        """Closure of all loops (`closure.close`), with other `spaces` of the joints where they are given."""
+        """Closure of all loops (`first_order.close`), with other `spaces` of the joints where they are given."""
         return close(len(self.bodies), self.edges, spaces or self.spaces, self.ground, size, doubts)

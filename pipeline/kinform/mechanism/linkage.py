@@ -33,9 +33,9 @@ class Coordinate:
     turns: bool
     """Whether it is an angle."""
     unit: float
-    """Coordinate for a value of 1 (rad or m) of the joint as kinform signs it."""
+    """Coordinate for a value of 1 rad or 1 m of the joint, with the sign of the joint's axis: what results show."""
     rate: float
-    """Coordinate for 1 of the joint's own twist, whatever the length of this."""
+    """Coordinate for the joint's own twist taken once; a twist is a unit vector only of most joints."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -97,7 +97,7 @@ FINDINGS = Stage(
 )
 STAGES = (CONTACTS, JOINTS, MASS, SIMULATION, FINDINGS)
 """Those after the import, in their order: what a stage made is dropped when one before it makes something new."""
-CODE = {"assembly": ("form", "formats", "foundation")} | {
+CODE = {"assembly": ("form", "formats", "requirements", "foundation")} | {
     kind: packages for stage in STAGES for kind, packages in stage.code.items()
 }
 """Packages whose code decides the results of each kind, the assembly that is read first."""

@@ -1,9 +1,9 @@
 """What a joint's drive must give at rest, or in slow motion, with Coulomb friction in the joints.
 
-The joint is held in a pose, as are the other drives and what closes no loop; gravity, loads and springs act. What holds
-the joint is then the effort that its drive must give. Friction acts against the motion that is about to begin, or goes
-on slowly, and presses on what it follows from: the same problem as in a run (`simulation.solver.slip`), without motion.
-Of a power screw these are the formulas of the handbooks.
+The joint is held in a pose, as are the other drives and what closes no loop; gravity, loads and springs act. What
+holds the joint is then the effort that its drive must give. Friction acts against the motion that is about to begin,
+or goes on slowly, and presses on what it follows from: the same problem as in a run
+(`simulation.solver.friction_forces`), without motion. Of a power screw these are the formulas of the handbooks.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 """What the joints of an assembly let move: how much, which ways, how far, and what they hold too often.
 
-The counts, relative to ground (`loops` tells how they are found, with a four-bar as example):
+The counts, relative to ground (`mechanism` tells how they are found, with a four-bar as example;
+`kinematics.mechanism_results` puts all of them together):
 
 - instantaneous: dimension of the joint rates that close all loops. `named_freedoms` is a readable basis of them.
 - finite: of these, how many are motions over a distance (`finite_motion`, block by block by `local_dimension`, which

@@ -13,8 +13,8 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical, cross, foot, norm
 from kinform.foundation.graphs.graph import Forest, forest
+from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import AT_REST
 from kinform.mechanism.block_rates import RATE_ROUNDING, Solution
 from kinform.mechanism.first_order import Closure
 from kinform.mechanism.joint_graph import JointGraph
@@ -159,7 +159,7 @@ def _rates(turn: Array, node: int, around: Sequence[int], graph: JointGraph, off
         sign = 1.0 if graph.edges[k][1] == node else -1.0
         rates = np.linalg.lstsq(graph.joints[k].twists.T, sign * unit, rcond=None)[0]
         for n, rate in enumerate(rates):
-            if abs(rate) > AT_REST:
+            if abs(rate) > SOLVED:
                 out[offset[k] + n] = float(rate)
     return out
 
@@ -210,7 +210,7 @@ class Motions:
             if relative is not None:
                 forward = self._forward(edge, node)
                 twist = forward * relative if twist is None else twist + forward * relative
-                if float(np.abs(twist).max()) <= AT_REST * float(np.abs(relative).max()):
+                if float(np.abs(twist).max()) <= SOLVED * float(np.abs(relative).max()):
                     twist = None
             if twist is not None:
                 moving[node] = twist

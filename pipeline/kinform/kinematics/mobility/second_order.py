@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.rounding import TINY
-from kinform.kinematics.constants import RCOND
+from kinform.foundation.rounding import SOLVED, TINY
 from kinform.mechanism.constants import FREE
 from kinform.mechanism.pose import Pose
 from kinform.model.arrays import Array
@@ -58,7 +57,7 @@ def second_order(pose: Pose, rng: np.random.Generator) -> tuple[CurvatureVerdict
     for _ in range(TEST_ITERATIONS):
         value = np.einsum("pij,di,dj->dp", forms, u, u)
         slope = 2.0 * np.einsum("pij,dj->dpi", forms, u)
-        u = units(u - np.einsum("dip,dp->di", np.linalg.pinv(slope, rcond=RCOND), value))
+        u = units(u - np.einsum("dip,dp->di", np.linalg.pinv(slope, rcond=SOLVED), value))
     left = np.linalg.norm(np.einsum("pij,di,dj->dp", forms, u, u), axis=1)
     passing = u[left < BALANCED]
     if not len(passing):

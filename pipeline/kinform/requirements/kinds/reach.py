@@ -1,4 +1,7 @@
-"""`reach`: a point, or a pointing direction, of a body covers a region."""
+"""`reach`: a point, or a pointing direction, of a body covers a region.
+
+`function.coverage` computes what is covered; rule KF421 reports what is not.
+"""
 
 from __future__ import annotations
 
@@ -161,7 +164,7 @@ def judge(evidence: Evidence, wanted: ReachRecord) -> Answer:
 
 
 def _tied(evidence: Evidence, chain: Chain) -> tuple[str, ...]:
-    """Names of stated joints of the chain that a stated coupling ties, where no contact of the chain does."""
+    """Names of stated joints of which one is in the chain, and that a coupling of the function ties; () without any."""
     moving = {coordinate.joint for coordinate in chain.coordinates}
     for coupling in evidence.function.couplings:
         ends = [evidence.resolve(name).joint for name in coupling.joints]

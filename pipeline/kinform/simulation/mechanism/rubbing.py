@@ -1,7 +1,7 @@
 """Friction in the mechanism's coordinates: what the wrench in a joint brakes, as `behaviour.shafts.Friction` says it.
 
 The grip of a wrench is a sum of lengths of linear maps of it: convex, doubled by a wrench twice as large, and the same
-for the opposite wrench. `solver.slip` rests on that.
+for the opposite wrench. `solver.friction_forces` rests on that.
 """
 
 from __future__ import annotations

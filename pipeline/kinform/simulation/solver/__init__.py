@@ -37,6 +37,10 @@ step). A run that passes a pose below `doubtful` says so, as the loops could go 
 by ε from those whose branches meet, the margin falls to about √ε and the motion turns there from one branch into the
 other; where ε is within what is known of the lengths, the run ends (TURNED).
 
+Friction. What a joint rubs with is a limit that grows with the loads it carries, and those depend on friction
+(`mechanism.rubbing`: the law; `friction_forces`: all of them at once, or that they have no single answer). Where a
+joint comes to rest it sticks until more is asked of it than the limit (`stick_slip`: when; `sticking`: whether).
+
 What interrupts. Laws are smooth between knots, so a stretch ends at each knot and the next begins with a short step
 (`dynamic`). An end stop that the dense output passes is found by halving, and the step ends there (`stops`): rates
 take the impact (Moreau 1988; Newton's restitution), and the joint is held like a led one until the stop would have to

@@ -142,7 +142,7 @@ def _settled(
     if float(np.abs(np.linalg.eigvals(steep)).max()) >= SLIP_STEEPEST:
         joints = [one.joint for one, _ in pairs]
         raise NotDeterminedError(_doubt(joints, t), joints)
-    for _ in range(MOST_ROUNDS):
+    for _ in range(MOST_ROUNDS):  # below `SLIP_STEEPEST` there is one answer; they reach it at up to 0.98 a round
         after = least + rates * sight.grips(sight.base + sight.slopes @ u)[columns]
         after = after if share is None else share @ after
         moved = float(np.abs(after - u).max())
