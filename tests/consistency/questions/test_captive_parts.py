@@ -120,7 +120,7 @@ def test_what_comes_near_one_side_only_is_a_ball_above_a_table(gap):
 def test_what_its_own_bore_holds_comes_near_the_other_from_one_side():
     """A pin in a bore of one plate that keeps a little from the other is no part between the two."""
     upper = block(WIDE, WIDE, 10)
-    for gap, bottom in ((0.1, -15), (0.3, -15), (0.2, -21)):
+    for gap, bottom in ((0.1, -15), (0.2, -21)):
         lower = block(WIDE, WIDE, 20).translate((0, 0, -10)) - rod(3.0, bottom, 1, 64)
         tip = rod(3.0, -15, 4, 64) + ball(3.0, 64).translate((0, 0, 4))
         assert answer_of({"low": lower, "high": upper.translate((0, 0, 12.0 + gap)), "pin": tip}) == "no contact"
@@ -178,7 +178,7 @@ def test_groups_are_one_and_pairs_that_are_ignored_do_not_count():
     assert "'rollers' keeps 0.1 mm from 'high' and 'low'" in told(design)[1]["KF401"]
 
 
-@pytest.mark.parametrize("lean", [10.0, 30.0, 60.0, 80.0])
+@pytest.mark.parametrize("lean", first_of(2, [10.0, 60.0, 30.0, 80.0]))
 def test_edges_that_come_near_two_sides_face_nothing(lean):
     """A loose plate that stands askew between two others keeps 0.2 mm from each with an edge."""
     askew = block(14, 20, 3).rotate((0, lean, 0))
@@ -212,9 +212,9 @@ def test_bearings_in_a_row_may_carry():
     assert answer_of(solids, assume=(assume("one", "sleeve", None, ignore=True),)) == "no contact"
 
 
-@diagonal(kind=["needles", "balls", "balls, cage", "thrust rollers", "tapers, rib"], complete=[False, True])
+@diagonal(3, kind=["needles", "balls, cage", "thrust rollers", "balls", "tapers, rib"], complete=[False, True])
 def test_no_rule_contradicts_a_bearing_with_clearance(kind, complete):
-    bearing = KINDS[kind](Size(5, 8.0, 2.2, 12.0, 0.035 * 2.2, 96, 40, 70.0))
+    bearing = KINDS[kind](Size(5, 8.0, 2.2, 12.0, 0.035 * 2.2, 64, 32, 70.0))
     mobility = {"revolute": 1, "cylindrical": 2, "planar": 3}[bearing.truth]
     design = design_of(
         bearing.solids, kind=bearing.truth, between=("ring", "shaft"), mobility=mobility, complete=complete
@@ -252,7 +252,7 @@ def test_captive_parts_between_bodies_without_a_function():
     assert finding.subject == ("element", "high", "low")
 
 
-@pytest.mark.parametrize("seed", first_of(2, range(4)))
+@pytest.mark.parametrize("seed", first_of(1, range(4)))
 def test_neither_pose_nor_names_nor_facets_change_it(seed):
     rng = np.random.default_rng(seed)
     X = random_pose(rng, 0.1)

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from support.devices import joint
+from support.diagonal import diagonal
 from support.linkages import (
     KNOWN,
     ball_truss,
@@ -83,8 +84,7 @@ def test_ball_and_stick_manifests_move_as_published(name, tmp_path):
     assert mobility.effective == finite - mobility.idle
 
 
-@pytest.mark.parametrize("name", KNOWN)
-@pytest.mark.parametrize("scale", [1e-3, 30.0])
+@diagonal(name=list(KNOWN), scale=[1e-3, 30.0])
 def test_turned_shifted_and_scaled_mechanisms_move_alike(name, scale):
     mechanism, *expected = KNOWN[name]
     rotation = Rotation.from_rotvec([0.4, -1.1, 0.7]).as_matrix()

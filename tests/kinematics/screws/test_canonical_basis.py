@@ -47,7 +47,7 @@ def mixed(space, seed, noise=1e-16):
 
 
 @pytest.mark.parametrize("name", SPACES)
-@settings(max_examples=30)
+@settings(max_examples=10)
 @given(seeds=st.tuples(st.integers(0, 10**6), st.integers(0, 10**6)))
 def test_it_is_the_same_whatever_basis_it_was_made_from(name, seeds):
     one, other = (mixed(SPACES[name], seed) for seed in seeds)
