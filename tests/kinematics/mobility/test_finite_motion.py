@@ -380,7 +380,7 @@ def test_a_folded_hexagon_is_singular_but_no_crossing_of_branches():
 
 
 def test_a_platform_on_equal_parallel_legs_is_shaky_wherever_it_goes():
-    feet = np.c_[np.random.default_rng(1).normal(size=(6, 2)), np.zeros(6)]
+    feet = np.c_[np.random.default_rng(1).normal(size=(4, 2)), np.zeros(4)]
     legs = []
     for k, foot in enumerate(feet):
         top = foot + (0.3, 0.2, 2.0)
