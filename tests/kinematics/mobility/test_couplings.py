@@ -114,7 +114,7 @@ def test_a_screw_couples_its_turn_to_the_slide_of_its_nut():
 
 
 def test_a_pinion_in_a_ring_has_the_ratio_of_its_teeth():
-    kinematics, _ = derived(**pinion_in_a_ring(20, 50))
+    kinematics, _ = derived(**pinion_in_a_ring(20, 50, points=30))
     (found,) = kinematics.couplings
     assert kinematics.mobility.effective == 1
     assert (found.status, found.meshing.teeth) == ("determined", (20, 50))
