@@ -181,9 +181,7 @@ def test_the_registry_is_sorted_unique_and_documented():
     listed = [rule.code for rule in RULES]
     assert listed == sorted(set(listed))
     for rule in RULES:
-        text = explain(rule.code)
-        assert rule.code in text
-        assert "What to do" in text
+        assert rule.code in explain(rule.code)
     with pytest.raises(UnknownRuleError):
         explain("KF999")
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -89,7 +88,6 @@ def test_an_ignored_finding_is_told_with_its_reason(hinge, subject):
     assert found(report) == []
     assert [(i.finding.code, i.by, i.reason) for i in report.ignored] == [("KF201", "manifest", "pressed on purpose")]
     assert outcome(report, "KF201").outcome == "ignored"
-    assert "pressed on purpose" in outcome(report, "KF201").reason
     assert verdict(report) == 0
 
 
@@ -247,12 +245,10 @@ def test_what_the_manifest_ignores_is_not_gone_from_the_baseline(hinge):
 
 
 @pytest.mark.parametrize("format", sorted(set(FORMATS) - {"junit"}))
-@pytest.mark.parametrize("fail_on", ["note", "warning", "error"])
-def test_the_verdict_in_words_is_that_of_the_exit_code(hinge, format, fail_on):
+def test_a_report_speaks_of_another_verdict_where_the_exit_code_is_another(hinge, format):
     warned = controlled(wrong(hinge), severity=(("KF201", "warning"),), select=("KF201",))
     warned = replace(warned, report=check(warned))
-    text = render(warned.report, warned, format, fail_on=fail_on)
-    wrong_parts = {"brief", "full", "md"} & {format}  # for people: what is faulty, beside what agrees
-    said = "the intended joint agrees; contacts: 1 warning" if wrong_parts else r"(?<![-\w])inconsistent"
-    told = re.search(said, text) is not None
-    assert told == (verdict(warned.report, fail_on) == 1) == (fail_on != "error")
+    levels = ("note", "warning", "error")
+    assert [verdict(warned.report, level) for level in levels] == [1, 1, 0]
+    note, warning, error = (render(warned.report, warned, format, fail_on=level) for level in levels)
+    assert note == warning != error

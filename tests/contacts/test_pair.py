@@ -64,7 +64,7 @@ def scattered(made, sigma, seed):
     return dataclasses.replace(made, mesh=mesh)
 
 
-@settings(max_examples=20, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=12, deadline=None, suppress_health_check=list(HealthCheck))
 @given(
     kinds=st.tuples(KIND, KIND),
     facets=st.tuples(FACETS, FACETS),

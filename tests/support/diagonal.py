@@ -9,10 +9,11 @@ from typing import Any
 import pytest
 
 
-def diagonal(**axes: Sequence[Any]) -> pytest.MarkDecorator:
-    """Parametrizes a test by the product of these axes; combinations off the diagonal are marked `sweep`."""
+def diagonal(most: int | None = None, /, **axes: Sequence[Any]) -> pytest.MarkDecorator:
+    """Parametrizes a test by the product of these axes; combinations off the diagonal are marked `sweep`, and of the
+    diagonal those after the first `most`."""
     values = list(axes.values())
-    chosen = {tuple(k % len(axis) for axis in values) for k in range(max(map(len, values)))}
+    chosen = {tuple(k % len(axis) for axis in values) for k in range(most or max(map(len, values)))}
     params = [
         pytest.param(*(axis[i] for axis, i in zip(values, places, strict=True)), marks=_marks(places in chosen))
         for places in product(*(range(len(axis)) for axis in values))

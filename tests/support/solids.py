@@ -10,7 +10,7 @@ from manifold3d import CrossSection, Manifold
 from random_assemblies import shapes
 from scipy.spatial.transform import Rotation
 
-from kinform import kinematics
+from kinform import kinematics, surfaces
 from kinform.model.assembly import Mesh, MeshHealth, Part
 from support.assemblies import HERE, assembly
 from support.touching import touching as touching_of
@@ -69,6 +69,13 @@ def random_pose(rng, reach=0.1):
     X[:3, :3] = Rotation.random(random_state=rng).as_matrix()
     X[:3, 3] = reach * rng.normal(size=3)
     return X
+
+
+def recovered(X=None, scale=1e-3, **solids):
+    """The named solids, all under one pose, and their surfaces: what contacts are found from."""
+    X = np.eye(4) if X is None else X
+    made = assembly(*(part(name, solid, X, scale) for name, solid in solids.items()))
+    return made, {one.mesh.digest: surfaces.recover(one.mesh, made.tolerances) for one in made.parts}
 
 
 def derived(X=None, scale=1e-3, groups=(), **solids):

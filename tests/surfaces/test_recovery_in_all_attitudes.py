@@ -34,7 +34,7 @@ def uneven(off, turn):
     return mesh_of(vertices @ turn.T, mesh.tri_verts)
 
 
-@pytest.mark.parametrize("off", first(3, [1e-5, 3.8e-5, 4.2e-5, 8e-5, 2e-5, 3e-5, 5e-5, 6e-5]))
+@pytest.mark.parametrize("off", first(2, [3.8e-5, 4.2e-5, 1e-5, 8e-5, 2e-5, 3e-5, 5e-5, 6e-5]))
 def test_a_bore_is_one_in_all_attitudes_or_in_none(off):
     found = [kinds(surfaces.recover(uneven(off, turn), Tolerances())) for turn in ATTITUDES.values()]
     whole = [one == {"plane": 6, "cylinder": 1} for one in found]

@@ -6,6 +6,7 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
+from support.diagonal import first
 from support.meshes import mesh_of, of_manifold
 from support.solids import block, centred_rod
 
@@ -49,7 +50,7 @@ def alone():
     return [(mesh, list(parts_of(recover(mesh, Tolerances())))) for mesh in meshes()]
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", first(2, range(6)))
 def test_neither_company_nor_order_changes_a_bit(alone, seed):
     draw = np.random.default_rng(seed)
     some = draw.permutation(len(alone))[: draw.integers(2, len(alone) + 1)]

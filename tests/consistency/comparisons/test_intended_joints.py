@@ -35,7 +35,7 @@ def answered(kind, base, away, *, complete, names=("base", "disc"), scale=1e-3):
     return answer_of(made, one).answer
 
 
-@diagonal(kind=list(BASES), scale=[1e-4, 1e-3, 1.0], complete=[False, True])
+@diagonal(2, kind=list(BASES), scale=[1e-4, 1e-3, 1.0], complete=[False, True])
 def test_a_disc_that_slides_on_a_plate_up_to_a_round_wall_is_not_denied(kind, scale, complete):
     for names in (("base", "disc"), ("z", "disc")):
         assert answered("planar", *BASES[kind], complete=complete, names=names, scale=scale) == "undecided"

@@ -18,8 +18,8 @@ from support.touching import touching as touching_of
 from kinform import kinematics
 from kinform.consistency import check
 from kinform.consistency.comparisons.answers import answers
+from kinform.consistency.questions.captive_parts import CaptiveParts, may_carry
 from kinform.design import Design
-from kinform.foundation.words import quoted
 from kinform.model.function import Drive
 
 RADIUS = 4.0
@@ -59,10 +59,18 @@ def answer_of(solids, **more):
 
 
 def told(design):
-    """Errors and warnings by code, and why rules are inconclusive."""
+    """Errors and warnings by code, and the rules that are inconclusive."""
     report = check(design)
     found = {finding.code for finding in report.findings if finding.severity != "note"}
-    return found, {rule.code: rule.reason for rule in report.rules if rule.outcome == "inconclusive"}
+    return found, {rule.code for rule in report.rules if rule.outcome == "inconclusive"}
+
+
+def carrier(design):
+    """The part with play between the two plates: its name, and its gaps (mm) to the high and the low one."""
+    parts = CaptiveParts(design.assembly, design.contacts)
+    one = may_carry(parts, design.kinematics, "high", "low", {"high", "low"})
+    assert one.sides == ("high", "low")
+    return one.name, [gap if gap is None else 1e3 * gap for gap in one.gaps]
 
 
 @diagonal(
@@ -78,12 +86,10 @@ def test_the_clearances_of_a_captive_part_are_those_to_its_sides(shape, gaps, sc
     assert [one.answer for one in answers(design)] == ["undecided"]
     found, doubts = told(design)
     assert not found & {"KF203", "KF301", "KF401", "KF402", "KF414"}
-    away = {side: f"{gap * 1e3 * scale:.2g} mm" for side, gap in zip(("low", "high"), gaps, strict=True)}
-    for code in ("KF203", "KF401", "KF402"):
-        if gaps[0] == gaps[1]:
-            assert f"'element' keeps {away['low']} from {quoted(['high', 'low'])}" in doubts[code]
-        else:
-            assert f"'element' keeps {away['high']} from 'high' and {away['low']} from 'low'" in doubts[code]
+    assert doubts >= {"KF203", "KF401", "KF402"}
+    name, away = carrier(design)
+    assert name == "element"
+    assert away == pytest.approx([gap * 1e3 * scale for gap in reversed(gaps)], rel=1e-6)
 
 
 def test_beyond_the_contact_tolerance_of_either_pair_there_is_no_contact():
@@ -114,13 +120,13 @@ def test_what_comes_near_one_side_only_is_a_ball_above_a_table(gap):
         assert [one.answer for one in answers(design)] == ["no contact"]
         found, doubts = told(design)
         assert {"KF203", "KF401"} <= found
-        assert not doubts.keys() & {"KF203", "KF401"}
+        assert not doubts & {"KF203", "KF401"}
 
 
 def test_what_its_own_bore_holds_comes_near_the_other_from_one_side():
     """A pin in a bore of one plate that keeps a little from the other is no part between the two."""
     upper = block(WIDE, WIDE, 10)
-    for gap, bottom in ((0.1, -15), (0.3, -15), (0.2, -21)):
+    for gap, bottom in ((0.1, -15), (0.2, -21)):
         lower = block(WIDE, WIDE, 20).translate((0, 0, -10)) - rod(3.0, bottom, 1, 64)
         tip = rod(3.0, -15, 4, 64) + ball(3.0, 64).translate((0, 0, 4))
         assert answer_of({"low": lower, "high": upper.translate((0, 0, 12.0 + gap)), "pin": tip}) == "no contact"
@@ -148,7 +154,10 @@ def test_a_roller_that_lies_on_one_race_may_carry_the_other():
         assert {patch.parts for patch in design.contacts.patches} == {("element", "low")}
         assert [one.answer for one in answers(design)] == ["undecided"]
         _, doubts = told(design)
-        assert f"'element' touches 'low' and keeps {gap:.2g} mm from 'high'" in doubts["KF401"]
+        assert "KF401" in doubts
+        name, (to_high, to_low) = carrier(design)
+        assert (name, to_low) == ("element", None)
+        assert to_high == pytest.approx(gap, rel=1e-6)
 
 
 def test_a_part_that_hangs_on_a_stated_body_is_not_captive():
@@ -175,10 +184,10 @@ def test_groups_are_one_and_pairs_that_are_ignored_do_not_count():
     both = {**plates(0.1, 0.1), "one": roller().translate((-9, 0, 0)), "two": roller().translate((9, 0, 0))}
     design = design_of(both, groups=(("rollers", ("one", "two")),))
     assert [one.answer for one in answers(design)] == ["undecided"]
-    assert "'rollers' keeps 0.1 mm from 'high' and 'low'" in told(design)[1]["KF401"]
+    assert carrier(design) == ("rollers", pytest.approx([0.1, 0.1], rel=1e-6))
 
 
-@pytest.mark.parametrize("lean", [10.0, 30.0, 60.0, 80.0])
+@pytest.mark.parametrize("lean", first_of(2, [10.0, 60.0, 30.0, 80.0]))
 def test_edges_that_come_near_two_sides_face_nothing(lean):
     """A loose plate that stands askew between two others keeps 0.2 mm from each with an edge."""
     askew = block(14, 20, 3).rotate((0, lean, 0))
@@ -212,9 +221,9 @@ def test_bearings_in_a_row_may_carry():
     assert answer_of(solids, assume=(assume("one", "sleeve", None, ignore=True),)) == "no contact"
 
 
-@diagonal(kind=["needles", "balls", "balls, cage", "thrust rollers", "tapers, rib"], complete=[False, True])
+@diagonal(3, kind=["needles", "balls, cage", "thrust rollers", "balls", "tapers, rib"], complete=[False, True])
 def test_no_rule_contradicts_a_bearing_with_clearance(kind, complete):
-    bearing = KINDS[kind](Size(5, 8.0, 2.2, 12.0, 0.035 * 2.2, 96, 40, 70.0))
+    bearing = KINDS[kind](Size(5, 8.0, 2.2, 12.0, 0.035 * 2.2, 64, 32, 70.0))
     mobility = {"revolute": 1, "cylindrical": 2, "planar": 3}[bearing.truth]
     design = design_of(
         bearing.solids, kind=bearing.truth, between=("ring", "shaft"), mobility=mobility, complete=complete
@@ -227,7 +236,7 @@ def test_no_rule_contradicts_a_bearing_with_clearance(kind, complete):
     found, doubts = told(design)
     assert not found & {"KF203", "KF301", "KF401", "KF402", "KF409", "KF414"}
     assert "KF401" in doubts
-    assert complete or doubts.keys() >= {"KF301", "KF402", "KF409"}
+    assert complete or doubts >= {"KF301", "KF402", "KF409"}
 
 
 def test_elements_left_out_leave_a_missing_joint():
@@ -252,7 +261,7 @@ def test_captive_parts_between_bodies_without_a_function():
     assert finding.subject == ("element", "high", "low")
 
 
-@pytest.mark.parametrize("seed", first_of(2, range(4)))
+@pytest.mark.parametrize("seed", first_of(1, range(4)))
 def test_neither_pose_nor_names_nor_facets_change_it(seed):
     rng = np.random.default_rng(seed)
     X = random_pose(rng, 0.1)

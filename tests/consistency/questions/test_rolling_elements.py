@@ -24,13 +24,13 @@ RADIUS, BALL = 15.0, 3.0
 
 def bearing(groove):
     """Two rings with grooves of a radius (mm), and six balls."""
-    turn = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
+    turn = np.linspace(0.0, 2.0 * np.pi, 32, endpoint=False)
     outline = np.stack([RADIUS + groove * np.cos(turn), groove * np.sin(turn)], axis=1)
-    torus = Manifold.revolve(CrossSection([outline]), 96)
-    inner = rod(13.8, -5, 5, 96) - rod(8, -6, 6, 96) - torus
-    outer = rod(22, -5, 5, 96) - rod(16.2, -6, 6, 96) - torus
+    torus = Manifold.revolve(CrossSection([outline]), 64)
+    inner = rod(13.8, -5, 5, 64) - rod(8, -6, 6, 64) - torus
+    outer = rod(22, -5, 5, 64) - rod(16.2, -6, 6, 64) - torus
     at = [RADIUS * np.array([np.cos(a), np.sin(a), 0.0]) for a in np.linspace(0.0, 2.0 * np.pi, 6, endpoint=False)]
-    return {"inner": inner, "outer": outer} | {f"ball{k}": ball(BALL, 48).translate(p) for k, p in enumerate(at)}
+    return {"inner": inner, "outer": outer} | {f"ball{k}": ball(BALL, 32).translate(p) for k, p in enumerate(at)}
 
 
 def derived(groove, type_, X=None, scale=1e-3):

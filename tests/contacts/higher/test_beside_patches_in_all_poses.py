@@ -90,7 +90,7 @@ def assert_same(solids, seed, wanted):
             assert other[2] == pytest.approx(first[2], abs=near)
 
 
-@pytest.mark.parametrize("lean", first(2, [(0.25, 0.0), (1.33, 0.01), (0.0, 0.0), (0.05, 0.01), (2.8, 0.0)]))
+@pytest.mark.parametrize("lean", first(1, [(0.25, 0.0), (1.33, 0.01), (0.0, 0.0), (0.05, 0.01), (2.8, 0.0)]))
 def test_a_pin_half_let_into_its_plate(lean):
     """Where it leans, and no line of it lies on the walls of its slot, its facets were held against whatever directions
     lie across the plate by the axes of the world: prismatic in some poses, along up to 11° beside the slot, and planar
@@ -98,10 +98,11 @@ def test_a_pin_half_let_into_its_plate(lean):
     assert_same(half_let_in(*lean), 1, ("prismatic", "ambiguous", 1))
 
 
-def test_a_line_above_the_middle_of_the_plate_holds_nothing():
+@pytest.mark.parametrize("seed", first(1, [10, 11, 12]))
+def test_a_line_above_the_middle_of_the_plate_holds_nothing(seed):
     """Its lever is nothing but rounding, beside a way that is none: one of twenty was taken to hold a turn."""
-    rng = np.random.default_rng(10)
-    for _ in range(24):
+    rng = np.random.default_rng(seed)
+    for _ in range(8):
         solids = half_let_in(0.0, rng.choice([0.0, 0.005, 0.01]), 1.0 + 0.8 * rng.random())
         kind, touching, _ = answer(solids, random_pose(rng, 0.0), 10.0 ** rng.uniform(-5, 1))
         assert (kind, touching) == (("prismatic", "ambiguous", 1), ["line", "line", "plane"])
@@ -119,7 +120,7 @@ def test_a_long_pin_in_a_thin_wall(sizes):
     assert_same(tube(*sizes), 3, ("prismatic", "ambiguous", 1))
 
 
-@pytest.mark.parametrize("height", first(2, [9.0, 40.0, 11.0, 20.0]))
+@pytest.mark.parametrize("height", first(1, [40.0, 9.0, 11.0, 20.0]))
 def test_a_pin_at_one_wall_holds_nothing_however_long_it_is(height):
     """Its roundness does not oppose a slide along the wall, in neither sense."""
     assert_same(against_a_wall(height), 4, ("cylindrical", "determined", 2))

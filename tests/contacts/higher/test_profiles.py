@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from support.diagonal import diagonal
 from support.solids import derived, extrusion, random_pose, rod
 
 
@@ -25,8 +26,7 @@ def touching_ellipses(angle, segments, other=48):
     return solids, point * 1e-3, normal
 
 
-@pytest.mark.parametrize("segments", [36, 80])
-@pytest.mark.parametrize("angle", [0.4, 1.3, 2.9])
+@diagonal(angle=[0.4, 1.3, 2.9], segments=[36, 80])
 def test_two_cams_touch_with_the_normal_of_their_curves(segments, angle):
     solids, point, normal = touching_ellipses(angle, segments)
     X = random_pose(np.random.default_rng(segments))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from manifold3d import Manifold
 from support.bearings import KINDS, Size
+from support.diagonal import diagonal
 from support.solids import box, derived, random_pose, rod
 
 SIZE = Size(1)
@@ -18,8 +19,7 @@ def contact(kind, first, second, X=None, scale=1e-3, **changed):
     return joint, touching.patches
 
 
-@pytest.mark.parametrize("scale", [1e-4, 1e-3, 0.1])
-@pytest.mark.parametrize("other", ["ring", "shaft"])
+@diagonal(scale=[1e-4, 1e-3, 0.1], other=["ring", "shaft"])
 def test_a_roller_between_flanges_keeps_its_line(other, scale):
     X = random_pose(np.random.default_rng(1), 100 * scale)
     joint, patches = contact("needles, flanges and collars", "roller0", other, X, scale)
@@ -39,7 +39,6 @@ def test_a_roller_in_a_ring_turns_less_than_its_line_says():
     assert (line.kind, line.bends, line.one_sided) == ("line", True, False)
     assert (joint.status, joint.freedoms) == ("ambiguous", 4)
     assert [(one.cause, one.freedoms) for one in joint.readings] == [("bend", 3)]
-    assert "the ends of the one go into the other" in joint.reason
 
 
 def test_a_tapered_roller_slides_on_the_ball_of_its_end():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from manifold3d import CrossSection, Manifold
 from scipy.spatial.transform import Rotation
-from support.diagonal import diagonal
+from support.diagonal import diagonal, first
 from support.solids import ball, box, derived, random_pose, rod
 
 
@@ -221,7 +221,23 @@ CASES = {
 }
 
 
-@diagonal(name=sorted(CASES), mesh=[(48, False), (64, True)])
+LIKE_OTHERS = {
+    "a small ball in a bowl", "a ball in a bowl not much wider", "a small roller in a ring",
+    "a roller in a ring not much wider", "unequal cones at right angles", "cones at an acute angle",
+    "a leaning tyre on a plane", "tapered rollers side by side", "ball in a wider groove", "tyres side by side",
+}  # fmt: skip
+"""Tried in the sweep."""
+MESHES = [(48, False), (64, True)]
+
+
+@pytest.mark.parametrize(
+    ("name", "mesh"),
+    [
+        pytest.param(name, MESHES[i], marks=() if i == k % 2 and name not in LIKE_OTHERS else pytest.mark.sweep)
+        for k, name in enumerate(sorted(CASES))
+        for i in range(2)
+    ],
+)
 def test_a_higher_pair_holds_what_it_touches(name, mesh):
     segments, swap = mesh
     freedoms, kind, make = CASES[name]
@@ -249,7 +265,7 @@ def test_a_ball_is_seated_in_a_cone_as_far_as_a_line_tells(half, mesh):
     assert np.allclose(joint.point, X[:3, :3] @ middle * 1e-3 + X[:3, 3], atol=1e-6)
 
 
-@pytest.mark.parametrize("apart", [0.5, 2.0])
+@pytest.mark.parametrize("apart", first(1, [0.5, 2.0]))
 def test_what_does_not_touch_is_no_pair(apart):
     for a, b in (
         (ball(5, 48), ball(4, 48).translate((9 + apart, 0, 0))),
@@ -298,9 +314,9 @@ def test_the_line_of_two_tapers_is_the_generator_that_they_share(segments):
     assert 0.079 / cosine < along.max() < 0.08 / cosine
 
 
-@pytest.mark.parametrize("segments", [32, 57])
-@pytest.mark.parametrize(("radius", "gap"), [(3.0, 0.0), (15.0, 0.0), (8.0, 0.02)])
-def test_the_line_of_a_roller_in_a_ring_lies_where_both_are_nearest(segments, radius, gap):
+@diagonal(size=[(3.0, 0.0), (15.0, 0.0), (8.0, 0.02)], segments=[32, 57])
+def test_the_line_of_a_roller_in_a_ring_lies_where_both_are_nearest(size, segments):
+    radius, gap = size
     X = random_pose(np.random.default_rng(segments))
     (patch,) = derived(X, **roller_in_a_ring(segments, radius, gap=gap))[1].patches
     local = (patch.points - X[:3, 3]) @ X[:3, :3] * 1e3
@@ -340,7 +356,7 @@ def test_a_ring_on_a_shaft_is_held_upright_by_more_than_its_line():
     assert (kinematics.joints[0].type, kinematics.joints[0].status) == ("cylindrical", "determined")
 
 
-def test_how_finely_a_barrel_is_meshed_says_nothing_about_how_it_is_held():
-    for rings in (20, 21, 48, 65):
-        kinematics, _ = derived(random_pose(np.random.default_rng(rings)), a=barrel(rings, 20, 5), b=wide_tube(64))
-        assert (kinematics.joints[0].type, kinematics.joints[0].freedoms) == ("general", 4)
+@pytest.mark.parametrize("rings", first(2, [20, 65, 21, 48]))
+def test_how_finely_a_barrel_is_meshed_says_nothing_about_how_it_is_held(rings):
+    kinematics, _ = derived(random_pose(np.random.default_rng(rings)), a=barrel(rings, 20, 5), b=wide_tube(64))
+    assert (kinematics.joints[0].type, kinematics.joints[0].freedoms) == ("general", 4)

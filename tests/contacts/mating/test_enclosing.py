@@ -6,8 +6,9 @@ from itertools import cycle
 
 import numpy as np
 from manifold3d import Manifold
-from support.solids import box, derived, random_pose, rod
+from support.solids import box, derived, random_pose, recovered, rod
 
+from kinform import contacts
 from kinform.contacts.constants import FACING_LEAST
 from kinform.contacts.mating import enclosing
 
@@ -72,13 +73,14 @@ def test_surfaces_that_never_face_each_other_have_no_facets_that_do(monkeypatch)
         return may
 
     monkeypatch.setattr(enclosing, "may_face", watched)
-    for play, pose in zip((0.02, 0.3, 0.48, 0.52, 0.8), cycle((np.eye(4), random_pose(rng))), strict=False):
+    for play, pose in zip((0.02, 0.48, 0.52), cycle((np.eye(4), random_pose(rng))), strict=False):
         shaft = rod(3.0, -6, 9, 24) + rod(4.0, 4, 6, 24)
         block = box(-8, 8, -8, 8, -5, 8) - rod(3.05, -7, 5, 28) - rod(4.0 + play, 4 - play, 9, 24)
-        derived(pose, block=block, shaft=shaft)
+        contacts.find(*recovered(pose, block=block, shaft=shaft))
         pin = rod(3.0, 0, 2.5, 24) + rod(3.05 - play, 2.5, 5, 24)
-        derived(pose, plate=box(-9, 9, -9, 9, 0, 5) - rod(3.05, -1, 6, 24), pin=pin)
+        contacts.find(*recovered(pose, plate=box(-9, 9, -9, 9, 0, 5) - rod(3.05, -1, 6, 24), pin=pin))
         ball = Manifold.sphere(3.0, 32).translate((0.4, 0.2, 3.0 + 0.3 * play))
-        derived(pose, block=box(-8, 8, -8, 8, -5, 4) - rod(3.5 + play, 0, 9, 40), ball=ball)
-        derived(pose, block=block, shaft=crumpled(rod(2.99, -6, 9, 24) + rod(3.9, 4, 6, 24), rng, 0.04))
+        contacts.find(*recovered(pose, block=box(-8, 8, -8, 8, -5, 4) - rod(3.5 + play, 0, 9, 40), ball=ball))
+        worn = crumpled(rod(2.99, -6, 9, 24) + rod(3.9, 4, 6, 24), rng, 0.04)
+        contacts.find(*recovered(pose, block=block, shaft=worn))
     assert {may for may, _ in said} == {True, False}

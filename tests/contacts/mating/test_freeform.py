@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from manifold3d import CrossSection, Manifold
+from support.diagonal import first
 from support.solids import box, derived, random_pose
 
 
@@ -14,7 +15,7 @@ def ring(major, minor, segments=60, around=48):
     return Manifold.revolve(CrossSection([outline]), around)
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", first(1, [1, 2]))
 def test_a_ring_in_its_groove_turns_and_does_nothing_else(seed):
     X = random_pose(np.random.default_rng(seed))
     torus = ring(20, 5)

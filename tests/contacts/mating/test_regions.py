@@ -44,7 +44,7 @@ def union(flat, unit):
     return CrossSection(list(np.ascontiguousarray(turned[area != 0.0])), FillRule.Positive)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(st.integers(0, 10**6))
 def test_a_region_is_the_union_of_its_triangles(seed):
     for flat, unit, region in zip(*sets(seed), regions(*sets(seed)), strict=True):
@@ -55,7 +55,7 @@ def test_a_region_is_the_union_of_its_triangles(seed):
         assert (expected - region).area() <= 1e-6 * size
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(st.integers(0, 10**6), st.integers(1, 100))
 def test_a_region_does_not_hang_on_the_others_nor_on_their_order(seed, together):
     flats, units = sets(seed)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import trimesh
 from generators.solids import bore, box, cut, join, rod
+from support.diagonal import diagonal
 from support.manifests import manifest
 
 from kinform import stages
@@ -39,8 +40,7 @@ def overlaps(folder, block, shaft):
     return [(item.parts, item.depth) for item in design.contacts.interferences]
 
 
-@pytest.mark.parametrize("chosen", [twice, some(0), some(1), some(3)], ids=["twice", "some", "others", "more"])
-@pytest.mark.parametrize("which", ["block", "shaft"])
+@diagonal(chosen=[twice, some(0), some(1), some(3)], which=["block", "shaft"])
 def test_parts_with_clearance_do_not_overlap_for_gaps_or_facets_that_are_there_twice(tmp_path, which, chosen):
     parts = {"block": BLOCK, "shaft": SHAFT}
     parts[which] = Facets(parts[which], chosen)

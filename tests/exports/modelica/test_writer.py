@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support.diagonal import first
-from support.export_models import ALL, LOOPS, design, driven_four_bar, known, swinging
+from support.export_models import ALL, design, driven_four_bar, known, swinging
 from support.other_programs import controlled_by_voltage, solved
 from support.places import FIXTURES
 from support.validators import package
@@ -121,12 +121,6 @@ def test_as_many_rows_are_held_as_are_independent(name, rows):
     (closure,) = found.closures
     assert sum(closure.place) + sum(closure.turn) == rows
     assert len(found.free) == 1
-
-
-@pytest.mark.parametrize("name", sorted(LOOPS))
-def test_redundant_rows_are_named_as_left_out(name):
-    text = next(iter(export(known(name), "modelica").files.values())).decode()
-    assert "redundant constraints of loops are left out" in text
 
 
 def test_the_text_states_each_start_once(tmp_path):

@@ -188,21 +188,21 @@ def test_a_wrong_statement_does_not_hold(old, new):
 
 
 @pytest.mark.parametrize(
-    ("old", "new"),
+    ("old", "new", "sample"),
     [
-        ("kd * e'dot", "kd * value'dot"),
-        ("given == bound", "given == wanted"),
-        ("sum'dot == e", "sum'dot == 2.0 * e"),
-        ("inductance * i'dot", "0.9 * inductance * i'dot"),
-        ("effort == coupling * gear * i", "effort == coupling * i"),
+        ("kd * e'dot", "kd * value'dot", 22),
+        ("given == bound", "given == wanted", 12),
+        ("sum'dot == e", "sum'dot == 2.0 * e", 22),
+        ("inductance * i'dot", "0.9 * inductance * i'dot", 22),
+        ("effort == coupling * gear * i", "effort == coupling * i", 30),
     ],
 )
-def test_a_wrong_statement_of_a_drive_does_not_hold(old, new):
+def test_a_wrong_statement_of_a_drive_does_not_hold(old, new, sample):
     found = known("controlled")
     made = export(found, "vhdl-ams")
     files = {name: data.decode().replace(old, new).encode() for name, data in made.files.items()}
     assert files != made.files
-    largest, _ = worst(found, replace(made, files=files), samples=(12, 22, 30))
+    largest, _ = worst(found, replace(made, files=files), samples=(sample,))
     assert largest.worst > 1e-4
 
 

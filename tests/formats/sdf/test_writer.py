@@ -81,7 +81,6 @@ def test_springs_and_dampers_are_carried_and_loops_named():
     assert float(dynamics.findtext("spring_stiffness")) == 3.0
     assert float(dynamics.findtext("spring_reference")) == pytest.approx(np.radians(20.0), rel=1e-15)
     assert float(dynamics.findtext("damping")) == 0.1
-    assert not [text for text in made.lost if "3 N" in text]
     made = export(known("four_bar"), "sdf")
     assert "coupler~rocker" in [text.partition(":")[0] for text in made.lost]
     assert b"not carried: coupler~rocker" in made.files["device.sdf"]

@@ -217,7 +217,6 @@ def test_a_free_body_of_unknown_mass_is_a_grain_and_named(format):
     ]
     assert masses == [1e-9]
     assert [text.partition(":")[0] for text in made.lost].count("stick") >= 1
-    assert any("1e-09 kg" in text for text in made.lost)
 
 
 def test_limits_of_a_description_are_kept_in_another_format_where_the_parts_leave_more(tmp_path):

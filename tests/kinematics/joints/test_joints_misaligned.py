@@ -4,14 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from support.diagonal import diagonal
 from support.solids import box, derived, extrusion, random_pose, rod
-
-
-def diagonal(first, second):
-    """Pairs in which every value appears once; the other pairs run nightly."""
-    for k, a in enumerate(first):
-        for n, b in enumerate(second):
-            yield pytest.param(a, b, marks=() if k == n else pytest.mark.sweep)
 
 
 def oval(long, short, sides):
@@ -19,7 +13,7 @@ def oval(long, short, sides):
     return np.stack([long * np.cos(turn), short * np.sin(turn)], axis=1)
 
 
-@pytest.mark.parametrize(("long", "sides"), list(diagonal([12.12, 12.3, 13.2], [48, 96, 256])))
+@diagonal(2, long=[12.12, 13.2, 12.3], sides=[48, 96, 256])
 def test_an_oval_peg_fills_its_hole_though_arcs_of_other_radii_meet(long, sides):
     """Its pieces are cut elsewhere on either side, so that arcs touch from within, whose centres differ. Where they are
     cut hangs on the attitude, and one in thirty leaves so little on either side that it is in doubt."""

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from support.assemblies import assembly
 from support.assemblies import part as stick
+from support.diagonal import first
 from support.gear_trains import cam_and_follower, gear_pair, pinion_in_a_ring, rack_and_pinion
 from support.solids import derived, part, random_pose, rod
 
@@ -54,6 +55,8 @@ def test_an_idler_turns_the_sense_and_keeps_the_ratio():
     ratios = {coupling.joints: coupling.ratio for coupling in kinematics.couplings}
     total = ratios["gear0~housing", "gear1~housing"] * ratios["gear1~housing", "gear2~housing"]
     assert total == pytest.approx(1.5, rel=2e-3)
+    teeth = sorted(coupling.meshing.ratio for coupling in kinematics.couplings)
+    assert teeth == pytest.approx([-1.25, -1.2])
 
 
 def test_a_rack_moves_by_the_pitch_radius_a_radian():
@@ -72,7 +75,7 @@ def test_a_rack_moves_by_the_pitch_radius_a_radian():
     assert np.mean(ratios) == pytest.approx(1.0, rel=1e-3)
 
 
-@pytest.mark.parametrize("turn", [0.3, 1.2])
+@pytest.mark.parametrize("turn", first(1, [0.3, 1.2]))
 def test_a_cam_lifts_its_follower_by_its_lever_at_this_pose(turn):
     solids, reach = cam_and_follower(turn)
     coupling = only(derived(random_pose(np.random.default_rng(1)), **solids)[0])
@@ -111,7 +114,7 @@ def test_a_screw_couples_its_turn_to_the_slide_of_its_nut():
 
 
 def test_a_pinion_in_a_ring_has_the_ratio_of_its_teeth():
-    kinematics, _ = derived(**pinion_in_a_ring(20, 50))
+    kinematics, _ = derived(**pinion_in_a_ring(20, 50, points=30))
     (found,) = kinematics.couplings
     assert kinematics.mobility.effective == 1
     assert (found.status, found.meshing.teeth) == ("determined", (20, 50))

@@ -21,9 +21,9 @@ def linkages(rng):
     five-bars, folded ones among them, and spatial ones."""
     out = list(TABLE.values())
     for bars in (4, 4, 4, 5):
-        out += [planar(*rng.normal(size=(bars, 2))) for _ in range(5)]
+        out += [planar(*rng.normal(size=(bars, 2))) for _ in range(3)]
         out.append(planar(*[(x, 0.0) for x in rng.normal(size=bars)]))
-    return out + [generic(bars, seed) for bars in (6, 7, 8) for seed in range(4)]
+    return out + [generic(bars, seed) for bars in (6, 7, 8) for seed in range(2)]
 
 
 def built(mechanism):
@@ -43,7 +43,7 @@ def test_motions_do_not_depend_on_what_is_tried_with_them(seed):
     rng = np.random.default_rng(seed)
     systems = [system(mechanism) for mechanism in linkages(rng)]
     alone = [pack(local_motions(one)) for one in systems]
-    assert len(set(alone)) > 40  # so that none could be taken for another
+    assert len(set(alone)) > 30  # so that none could be taken for another
     chosen = rng.permutation(len(systems))[: int(rng.integers(2, len(systems) + 1))].tolist()
     assert [pack(motions) for motions in local_motions_of_each([systems[k] for k in chosen])] == [
         alone[k] for k in chosen
@@ -64,5 +64,5 @@ def test_of_many_on_one_frame_each_has_the_certificate_that_it_has_alone():
     names = sorted({name for one in joints for name in one.bodies})
     edges = [(names.index(a), names.index(b)) for a, b in (one.bodies for one in joints)]
     together = finite_mobility(edges, joints, len(names), first, 5.0)
-    assert len(alone) > 40
+    assert len(alone) > 30
     assert {certificate.joints: pack(certificate) for certificate in together.certificates} == alone

@@ -146,7 +146,7 @@ def relabelled(edge, now):
     return Edge(edge.ends, table, edge.broken, edge.hint, frozenset(jointed))
 
 
-@settings(max_examples=7, deadline=None)
+@settings(max_examples=5, deadline=None)
 @given(graphs())
 def test_what_is_joined_and_what_it_costs_is_what_cutting_the_whole_graph_tells(graph):
     labels, count, edges, joints, start, loops = graph
@@ -181,7 +181,7 @@ def test_a_cut_that_is_changed_step_by_step_is_the_cut_from_the_start(graph, dat
         assert {body: k for body, k in cut.near.items() if k} == {body: k for body, k in fresh.near.items() if k}
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=10, deadline=None)
 @given(graphs(), st.data())
 def test_the_cost_of_a_merge_stays_until_a_merge_that_concerns_it(graph, data):
     labels, _, edges, joints, start, _ = graph

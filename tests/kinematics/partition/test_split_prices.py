@@ -41,7 +41,7 @@ def at(seed, scale):
     return np.eye(4) if seed is None else random_pose(np.random.default_rng(seed)), scale
 
 
-@diagonal(posed=POSES, thin=[-0.05, 0.0], backwards=[False, True, True])
+@diagonal(2, posed=POSES, thin=[-0.05, 0.0], backwards=[False, True, True])
 def test_a_wheel_in_mesh_belongs_to_the_arm_that_is_screwed_to_it(posed, thin, backwards):
     """The teeth overlap, as they are often drawn, or touch: no joint alone may part them."""
     solids = gear_pair(thin=thin)
@@ -60,7 +60,7 @@ def test_a_wheel_in_mesh_belongs_to_the_arm_that_is_screwed_to_it(posed, thin, b
     assert all(one.type == "revolute" for one in K.joints)
 
 
-@diagonal(posed=POSES, backwards=[False, True])
+@diagonal(2, posed=POSES, backwards=[False, True])
 def test_a_rod_that_touches_a_ball_at_a_point_belongs_to_the_body_that_guides_it(posed, backwards):
     """The joint of the two turns about another centre than the ball's: it would press the rod into the ball."""
     solids = {
@@ -83,7 +83,7 @@ def test_a_rod_that_touches_a_ball_at_a_point_belongs_to_the_body_that_guides_it
     assert [(one.cause, one.freedoms) for one in of_ball.readings] == [("end", 5)]  # the point is left in one sense
 
 
-@diagonal(posed=POSES, kind=["planar", "spherical"])
+@diagonal(2, posed=POSES, kind=["planar", "spherical"])
 def test_a_cradle_that_a_pin_can_leave_sideways_forbids_what_it_does_not_turn_about(posed, kind):
     """An arc of less than half a bore, between collars: that the pin may be lifted out of it makes it no plane."""
     cradle = box(-20, 20, -20, -4, 0, 10) - rod(8, -1, 11, 64)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -47,7 +49,7 @@ def mixed(space, seed, noise=1e-16):
 
 
 @pytest.mark.parametrize("name", SPACES)
-@settings(max_examples=30)
+@settings(max_examples=10)
 @given(seeds=st.tuples(st.integers(0, 10**6), st.integers(0, 10**6)))
 def test_it_is_the_same_whatever_basis_it_was_made_from(name, seeds):
     one, other = (mixed(SPACES[name], seed) for seed in seeds)
@@ -86,4 +88,4 @@ def test_what_hardly_turns_is_left_as_it_was_found():
 def test_rounding_beside_the_origin_is_not_shown(place):
     frame = Frame(np.zeros(3), 0.05)
     basis = rotation(Z, np.array(place), frame)[:, None]
-    assert motions_in_words(basis, frame) == "turns about (0, 0, 1) through (0, 0, 0) mm (revolute)"
+    assert re.findall(r"-?\d[\d.e-]*", motions_in_words(basis, frame)) == ["0", "0", "1", "0", "0", "0"]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from support.assemblies import assembly, assume, between, contacts, part
+from support.diagonal import diagonal
 from support.directions import same_directions, slides
 from support.patches import Z, cylinder, patch, plane, ring
 from support.solids import ball, box, derived, random_pose, rod
@@ -132,8 +133,7 @@ CASES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", CASES)
-@pytest.mark.parametrize("seed", [0, 1])
+@diagonal(name=list(CASES), seed=[0, 1])
 def test_meshes_at_any_pose_and_from_millimetres_to_a_hundred_metres(name, seed):
     first, second, expected = CASES[name]
     rng = np.random.default_rng(seed)
@@ -191,8 +191,7 @@ def loose_cones(rng):
     return out
 
 
-@pytest.mark.parametrize("seed", range(4))
-@pytest.mark.parametrize("turns", [True, False])
+@diagonal(2, seed=range(4), turns=[True, False])
 def test_how_a_pair_comes_apart_does_not_depend_on_the_others(seed, turns):
     found = loose_cones(np.random.default_rng(9))
     cones = [cone for cone, held in zip(found, certainly_held(found), strict=True) if not held]

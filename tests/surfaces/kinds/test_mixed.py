@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from support.diagonal import first
 from support.meshes import of_manifold
 from support.solids import block, centred_rod
 
@@ -67,7 +68,7 @@ def together(territory, batches, sides):
     return pursue(territory, Mixed(*KINDS, batches[0].count), batch, np.concatenate(sides)).each()
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", first(2, range(4)))
 def test_company_of_another_kind_changes_no_bit(territory, seed):
     draw = np.random.default_rng(seed)
     batches, sides = zip(*(regions_of(territory, kind, draw) for kind in KINDS), strict=True)

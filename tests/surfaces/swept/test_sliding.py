@@ -6,6 +6,7 @@ import manifold3d as m3
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from support.diagonal import diagonal
 from support.meshes import kinds, mesh_of, of_manifold
 
 from kinform.model.tolerances import Tolerances
@@ -48,8 +49,7 @@ def thread(pitch, root, crest, turns, segments, hand=1):
     return vertices, faces
 
 
-@pytest.mark.parametrize("segments", [24, 36, 64])
-@pytest.mark.parametrize("hand", [1, -1])
+@diagonal(2, segments=[24, 36, 64], hand=[1, -1])
 def test_a_thread_is_a_helicoid_with_its_pitch_and_hand(segments, hand):
     pose = posed(segments)
     (screw,) = of_kind(

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from manifold3d import CrossSection, Manifold
 from scipy.spatial.transform import Rotation
+from support.diagonal import first
 from support.meshes import mesh_of
 
 from kinform import surfaces
@@ -27,7 +28,7 @@ def known_of(vertices, faces):
     return np.array([found.axis_uncertainty, found.point_uncertainty])
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", first(3, range(12)))
 def test_which_coordinate_is_called_x_changes_nothing(seed):
     vertices, faces = cam()
     vertices = vertices @ Rotation.random(random_state=seed).as_matrix().T

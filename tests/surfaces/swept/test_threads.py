@@ -39,7 +39,7 @@ def assert_is(screw, lead, pose, angle=1e-9, relative=1e-9):
     assert np.linalg.norm(np.cross(screw.point - pose[:3, 3], pose[:3, 2])) < max(1e-2 * angle, 1e-11)
 
 
-@diagonal(thread=[(1.0, 1), (4.0, 1), (-4.0, 1), (10.0, 1), (8.0, 2), (-12.0, 3)], segments=[12, 24, 64])
+@diagonal(4, thread=[(10.0, 1), (-4.0, 1), (8.0, 2), (-12.0, 3), (4.0, 1), (1.0, 1)], segments=[12, 24, 64])
 def test_a_screw_has_one_helicoid_with_its_pitch_and_hand(thread, segments):
     lead, starts = thread
     depth = abs(lead) / starts / 2

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.diagonal import diagonal
 from support.linkages import bennett, bricard, planar, ring
 
 from kinform.foundation.algebra.screws import Frame
@@ -66,8 +67,7 @@ def gap(joints, angle=1.2):
     return np.abs(system.equations(q[None]).residual).max()
 
 
-@pytest.mark.parametrize("name", MECHANISMS)
-@pytest.mark.parametrize("seed", range(3))
+@diagonal(2, name=list(MECHANISMS), seed=range(3))
 def test_roundings_of_a_mesh_file_are_taken_out_of_the_whole_motion(name, seed):
     joints = joints_of(MECHANISMS[name](), 2e-9, seed)
     assert gap(joints) > 1e-10

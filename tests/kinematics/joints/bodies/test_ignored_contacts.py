@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import pytest
 from support.assemblies import HERE, assembly
+from support.diagonal import diagonal
 from support.solids import box, part, random_pose, rod
 from support.touching import touching as touching_of
 
@@ -88,23 +88,22 @@ def told(design):
 POSES = [(None, 1e-3, False), (0, 1e-3, True), (1, 1.0, False)]
 
 
-@pytest.fixture(params=POSES, ids=["as drawn", "turned", "large"])
-def placed(request):
-    seed, scale, backwards = request.param
+def at(seed, scale, backwards):
     X = np.eye(4) if seed is None else random_pose(np.random.default_rng(seed))
     return {"X": X, "scale": scale, "backwards": backwards}
 
 
-@pytest.mark.parametrize(
-    ("name", "type_", "findings"),
-    [
+@diagonal(
+    stated=[
         ("journal", "cylindrical", {("KF406", "error")}),
         ("foot", "planar", {("KF407", "warning")}),
         ("wall", "planar", {("KF407", "warning")}),
     ],
+    pose=POSES,
 )
-def test_contact_beside_the_stated_joints_holds_nothing_and_is_reported(name, type_, findings, placed):
-    design = derived(name, **placed)
+def test_contact_beside_the_stated_joints_holds_nothing_and_is_reported(stated, pose):
+    name, type_, findings = stated
+    design = derived(name, **at(*pose))
     assert [joint.type for joint in design.kinematics.joints] == ["revolute", "revolute"]
     assert design.kinematics.mobility.instantaneous == 2
     (aside,) = design.kinematics.asides
@@ -112,9 +111,9 @@ def test_contact_beside_the_stated_joints_holds_nothing_and_is_reported(name, ty
     assert told(design) == findings
 
 
-@pytest.mark.parametrize("name", ["clear", "one pin"])
-def test_a_joint_that_lies_where_the_motion_is_says_nothing_new(name, placed):
-    design = derived(name, **placed)
+@diagonal(name=["clear", "one pin"], pose=POSES)
+def test_a_joint_that_lies_where_the_motion_is_says_nothing_new(name, pose):
+    design = derived(name, **at(*pose))
     assert design.kinematics.mobility.instantaneous == 2
     assert design.kinematics.asides == ()
     assert told(design) == set()

@@ -6,6 +6,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from support.diagonal import first
 from support.patches import Z, cone, cylinder, plane, ring, sphere
 
 from kinform.foundation.lockstep import run_in_lockstep
@@ -51,7 +52,7 @@ def questions():
     return out
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", first(2, range(6)))
 def test_an_answer_does_not_depend_on_what_is_asked_with_it(seed):
     rng = np.random.default_rng(seed)
     asked = questions()
