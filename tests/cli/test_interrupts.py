@@ -83,7 +83,7 @@ QUICK = ("kinform.stages.contacts",)
 
 
 @pytest.mark.parametrize(
-    "place", [*QUICK, *(pytest.param(place, marks=pytest.mark.slow) for place in WORK if place not in QUICK)]
+    "place", [*QUICK, *(pytest.param(place, marks=pytest.mark.sweep) for place in WORK if place not in QUICK)]
 )
 def test_ctrl_c_is_heard_while_native_code_hears_nothing(place: str, folder: Path) -> None:
     before = (folder / "r.h5").read_bytes()
@@ -161,8 +161,8 @@ def test_workers_in_native_code_end_with_the_command(folder: Path) -> None:
     "deed",
     [
         "os.kill(os.getpid(), signal.SIGSEGV)",
-        pytest.param("os.abort()", marks=pytest.mark.slow),
-        "os.kill(os.getpid(), 9)",
+        pytest.param("os.abort()", marks=pytest.mark.sweep),
+        pytest.param("os.kill(os.getpid(), 9)", marks=pytest.mark.slow),
     ],
 )
 def test_a_crash_of_native_code_is_told_and_never_a_verdict(deed: str, folder: Path) -> None:
@@ -198,7 +198,7 @@ OVERLAPPING = "seeker_gimbal_overlaps"
 
 
 @pytest.mark.parametrize(
-    "place", [pytest.param(p, marks=[] if p.endswith("pair_contacts") else pytest.mark.slow) for p in NATIVE]
+    "place", [pytest.param(p, marks=[] if p.endswith("pair_contacts") else pytest.mark.sweep) for p in NATIVE]
 )
 def test_a_crash_of_native_code_names_the_parts_it_was_at_work_on(place: str, overlapping: Path) -> None:
     (overlapping / "begun").unlink(missing_ok=True)
@@ -221,7 +221,7 @@ def test_ctrl_c_is_heard_within_a_call_of_the_collisions(place: str, overlapping
     assert "interrupted" in errors
 
 
-@pytest.mark.parametrize("signal_", [signal.SIGKILL, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("signal_", [signal.SIGKILL, pytest.param(signal.SIGTERM, marks=pytest.mark.sweep)])
 def test_who_kills_the_command_kills_its_work(signal_: signal.Signals, folder: Path) -> None:
     running = begun(folder, "kinform.stages.check", "check", "r.h5")
     running.send_signal(signal_)

