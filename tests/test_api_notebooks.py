@@ -12,6 +12,8 @@ from support.places import FIXTURES
 import kinform
 from kinform.api import Results
 
+pytestmark = pytest.mark.usefixtures("small_pictures")
+
 
 @pytest.fixture(scope="module")
 def results(derive_design):

@@ -35,11 +35,11 @@ method = "one-at-a-time"
 [[vary]]
 name = "crank"
 value = "function.joint.crank_pin.point.1"
-values = [29.0, 30.0]
+values = [29.0, 30.0, 31.0]
 [[vary]]
 name = "reach"
 value = "function.joint.slider_pin.point.0"
-values = [100.0, 0.0]
+values = [99.0, 100.0, 0.0]
 [[measure]]
 name = "farthest"
 value = "simulation.joints.guide.intended_position.highest"

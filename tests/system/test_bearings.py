@@ -29,18 +29,12 @@ def some(values, often):
 
 
 def each_with_one(kinds, values, often):
-    """Each kind with one of the values, which take turns; every so many are tried each time, as many again are slow
-    tests, and all others are of the sweep. `often` has no factor in common with the number of values, so that each of
-    these is tried."""
+    """Each kind with one of the values, which take turns: every so many each time, the others as slow tests; the other
+    combinations are of the sweep. `often` has no factor in common with the number of values, so that each of these is
+    tried."""
     return [
         pytest.param(
-            kind,
-            value,
-            marks=()
-            if k % len(values) == i and k % often == 0
-            else pytest.mark.slow
-            if k % len(values) == i and k % often == 1
-            else pytest.mark.sweep,
+            kind, value, marks=pytest.mark.sweep if k % len(values) != i else () if k % often == 0 else pytest.mark.slow
         )
         for k, kind in enumerate(kinds)
         for i, value in enumerate(values)

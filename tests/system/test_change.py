@@ -158,7 +158,7 @@ def test_diff_of_a_heavier_part_and_of_nothing(folder, capsys):
     kinds = {change["kind"] for change in json.loads(capsys.readouterr().out)["changes"]}
     assert "mass" in kinds
     assert main(["diff", "before.h5", "r.h5", "-f", "md"]) == 1
-    assert "mass" in capsys.readouterr().out
+    assert "| mass" in capsys.readouterr().out
     assert main(["diff", "before.h5", "absent.h5"]) == 2
     assert main(["diff", "before.h5", "r.h5", "--tolerance", "1 parsec"]) == 2
 

@@ -17,6 +17,8 @@ from kinform import exports, form, results
 from kinform.errors import InputError
 from kinform.foundation.colours import hexed, light, of_light, shares
 
+pytestmark = pytest.mark.usefixtures("small_pictures")
+
 COLLARS = FIXTURES / "pairs" / "revolute_collars" / "revolute_collars.toml"
 RED, BLUE = "#c81e28", "#1450b4"
 

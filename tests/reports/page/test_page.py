@@ -18,6 +18,8 @@ from kinform.reports.page import Scene, facts, page_html, page_summary
 from kinform.reports.page.agreement import ORDER, rows
 from kinform.reports.page.intended import answer_rows
 
+pytestmark = pytest.mark.usefixtures("small_pictures")
+
 SEEKER = FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml"
 AXIS_OFF = FIXTURES / "broken" / "seeker_axis_off" / "seeker_axis_off.toml"
 OVERLAPS = FIXTURES / "broken" / "seeker_gimbal_overlaps" / "seeker_gimbal_overlaps.toml"

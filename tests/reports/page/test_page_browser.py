@@ -14,6 +14,8 @@ from support.places import FIXTURES
 from support.validators import npm
 from support.view import drawn, inside, layer, press
 
+pytestmark = pytest.mark.usefixtures("small_pictures")
+
 
 @pytest.fixture(scope="module")
 def seeker(derive_design, page_of, tmp_path_factory):
@@ -87,6 +89,7 @@ def test_a_click_chooses_the_part_that_is_there(shown):
     assert shown.run("[...document.querySelectorAll('[data-hides]')].every((box) => box.checked)")
 
 
+@pytest.mark.slow
 def test_the_pointer_names_what_it_is_over_turns_and_zooms(shown):
     before = drawn(shown)
     x, y = inside(shown, "#stage")
@@ -102,6 +105,7 @@ def test_the_pointer_names_what_it_is_over_turns_and_zooms(shown):
     assert np.abs(drawn(shown) - turned).mean() > 2
 
 
+@pytest.mark.slow
 def test_keys_turn_choose_explode_and_let_go(shown):
     shown.run("document.getElementById('stage').focus()")
     before = drawn(shown)
@@ -119,6 +123,7 @@ def test_keys_turn_choose_explode_and_let_go(shown):
     assert np.abs(drawn(shown) - turned).mean() > 2
 
 
+@pytest.mark.slow
 def test_the_slider_moves_the_assembly_and_the_cursors_of_the_curves(shown):
     layer(shown, "joints", False)
     assert shown.run("document.getElementById('motion').selectedOptions[0].textContent") == "Simulated motion (dynamic)"
@@ -141,6 +146,7 @@ def test_the_slider_moves_the_assembly_and_the_cursors_of_the_curves(shown):
     assert np.abs(drawn(shown) - before).max() <= 2
 
 
+@pytest.mark.slow
 def test_play_runs_and_stops_and_freedoms_go_to_and_fro(shown):
     press(shown, "#play")
     shown.until("Number(document.getElementById('time').value) > 20")
@@ -160,6 +166,7 @@ def test_play_runs_and_stops_and_freedoms_go_to_and_fro(shown):
     press(shown, "#play")
 
 
+@pytest.mark.slow
 def test_the_graph_and_the_view_are_linked_both_ways(shown):
     press(shown, "#graph .link")
     assert chosen(shown).startswith("Joint ")
@@ -173,6 +180,7 @@ def test_the_graph_and_the_view_are_linked_both_ways(shown):
     assert shown.run("[...document.querySelectorAll('#graph .link[data-chosen]')].map((g) => g.dataset.joint)") == ["1"]
 
 
+@pytest.mark.slow
 def test_contact_patches_are_coloured_by_their_fit(shown):
     layer(shown, "joints", False)
     layer(shown, "xray", True)
@@ -213,6 +221,7 @@ def reds(browser):
     return ((r > 1.35 * g) & (r > 1.35 * b)).sum()
 
 
+@pytest.mark.slow
 def test_collisions_are_marked_on_the_slider_and_in_the_view(browser, collisions, colliding):
     (found,) = colliding.simulation.collisions
     browser.said.clear()
@@ -240,6 +249,7 @@ def test_collisions_are_marked_on_the_slider_and_in_the_view(browser, collisions
     assert browser.said == []
 
 
+@pytest.mark.slow
 def test_a_finding_of_parts_that_meet_is_shown_where_they_do(browser, collisions, colliding):
     browser.open(collisions)
     codes = [finding.code for finding in colliding.report.findings]
@@ -277,6 +287,7 @@ def test_names_that_are_programs_do_nothing(browser, nasty, page_of, tmp_path):
     assert browser.said == []
 
 
+@pytest.mark.slow
 def test_the_page_prints_dark_on_white_without_its_controls(shown):
     dark = [{"name": "prefers-color-scheme", "value": "dark"}]
     shown.ask("Emulation.setEmulatedMedia", media="print", features=dark)
@@ -309,6 +320,7 @@ def test_without_webgl_the_picture_stays_and_the_page_says_why(browser, seeker):
     assert browser.said == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("which", ["overlaps", "collisions"])
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
 def test_the_page_is_accessible(browser, request, which, dark):
@@ -332,6 +344,7 @@ def test_the_page_is_accessible(browser, request, which, dark):
     browser.dark(False)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("width", "height"), first_rows(1, [(390, 844), (1440, 900)]))
 def test_proposed_joints_move_what_they_would_and_their_toml_is_copied(derive_design, page_of, tmp_path, width, height):
     """A collared shaft without function: its slider turns it, to the angle that is said; its table can be read back."""

@@ -11,6 +11,8 @@ from support.places import FIXTURES
 from kinform import method, results, stages
 from kinform_cli.main import main
 
+pytestmark = pytest.mark.usefixtures("small_pictures")
+
 OVERLAPS = FIXTURES / "broken" / "seeker_gimbal_overlaps" / "seeker_gimbal_overlaps.toml"
 
 

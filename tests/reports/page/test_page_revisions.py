@@ -14,6 +14,8 @@ from support.view import drawn
 from kinform import results
 from kinform_cli.main import main
 
+pytestmark = pytest.mark.usefixtures("small_pictures")
+
 STATE = "window.kinformViewer.state"
 
 
@@ -51,6 +53,7 @@ def test_the_page_names_what_was_done_first_and_colours_it(revisions):
     assert len({body["colour"] for body in scene["bodies"]}) == 5
 
 
+@pytest.mark.slow
 def test_the_slider_goes_from_before_to_after(browser, revisions):
     browser.said.clear()
     browser.open(revisions)
@@ -74,6 +77,7 @@ def test_the_slider_goes_from_before_to_after(browser, revisions):
     assert browser.said == []
 
 
+@pytest.mark.slow
 def test_the_page_of_revisions_is_accessible(browser, revisions):
     program = (npm("axe-core") / "axe.min.js").read_text(encoding="utf-8")
     browser.open(revisions)
