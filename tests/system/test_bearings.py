@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from support import bearings
 from support.bearings import KINDS, Bearing, Size, answers_of
+from support.diagonal import some
 from support.solids import random_pose
 
 SIZES = [
@@ -21,11 +22,6 @@ UNDECIDED = ("tapers", "self-aligning balls")
 """Without a rib tapered rollers are wedged out; a ball in a bowl is held to second order, which nobody works out."""
 CAGED = ("needles, cage", "needles, flanges and cage")
 """What a thin cage touches is in doubt in some tessellations."""
-
-
-def some(values, often):
-    """The values, of which every so many are tried each time, and the others nightly."""
-    return [pytest.param(value, marks=() if k % often == 0 else pytest.mark.sweep) for k, value in enumerate(values)]
 
 
 def each_with_one(kinds, values, often):
@@ -76,7 +72,7 @@ def test_elements_that_are_not_quite_in_their_place_make_nothing_certain_that_is
 
 
 @pytest.mark.parametrize(
-    "kind", some(["balls", "needles", "needles, flanges and collars", "tapers, rib", "thrust rollers"], often=5)
+    "kind", some(5, ["balls", "needles", "needles, flanges and collars", "tapers, rib", "thrust rollers"])
 )
 def test_one_or_two_elements_bear_no_shaft(kind):
     for count in (1, 2):
@@ -102,7 +98,7 @@ def test_what_a_bowl_holds_to_second_order_is_not_said_to_be_free():
     assert found.right.answer == "undecided"
 
 
-@pytest.mark.parametrize("kind", some(["needles, flanges and collars", "balls"], often=2))
+@pytest.mark.parametrize("kind", some(2, ["needles, flanges and collars", "balls"]))
 def test_the_order_of_the_parts_does_not_matter(kind):
     bearing = KINDS[kind](SIZES[0])
     names = {name: f"{'zyx'[int(name[-1]) % 3]}{name}" for name in bearing.solids if name[-1].isdigit()}
@@ -123,7 +119,7 @@ def test_a_pose_far_away_does_not_matter(monkeypatch):
     assert found.outcome()[0] == "agrees"
 
 
-@pytest.mark.parametrize("kind", some([kind for kind in KINDS if kind != "tapers"], often=20))
+@pytest.mark.parametrize("kind", some(20, [kind for kind in KINDS if kind != "tapers"]))
 def test_a_function_that_states_all_joints_of_a_bearing_is_not_denied(kind):
     """Balls go with the shaft then, and bear it in the bowl of the ring together."""
     found = answers_of(KINDS[kind](SIZES[1]), np.random.default_rng(3), complete=True)

@@ -6,7 +6,6 @@ import json
 
 import pytest
 from kinematics.partition.test_bodies import stack
-from support.diagonal import some
 from support.solids import save
 
 from kinform_cli.main import main
@@ -80,10 +79,3 @@ def test_a_joint_that_is_taken_as_stated_is_not_asked_to_be_stated(arm, capsys):
     found = {one["code"]: one for one in json.loads(shown(arm, capsys, "findings", "--format", "json"))["findings"]}
     assert found["KF414"]["subject"] == ["turn"]
     assert not {"KF416", "KF401"} & found.keys()
-
-
-@pytest.mark.parametrize("format", some(4, ["urdf", "mjcf", "sdf", "modelica", "vhdl-ams"]))
-def test_exports_say_what_is_as_stated(arm, tmp_path, format):
-    assert main(["export", str(arm), "--to", format, "-o", str(tmp_path), "-q"]) == 0
-    text = "".join(path.read_text() for path in sorted(tmp_path.iterdir()) if path.is_file())
-    assert "as stated" in text
