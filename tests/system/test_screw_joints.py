@@ -72,9 +72,7 @@ DAILY = [((8, 9), 1e-4), ((16, 12), 1e-1)]
 
 @pytest.mark.parametrize(
     ("segments", "scale"),
-    first_rows(
-        2, sorted(product([(8, 9), (12, 16), (16, 12), (64, 24)], [1e-4, 1e-1]), key=lambda row: row not in DAILY)
-    ),
+    first_rows(2, sorted(product(FACETS, [1e-4, 1e-1]), key=lambda row: row not in DAILY)),
 )
 def test_neither_tessellation_nor_size_matters(segments, scale):
     X = random_pose(np.random.default_rng(6), reach=100 * scale)
