@@ -151,7 +151,7 @@ def test_a_disk_that_is_full_at_any_step_is_told_and_nothing_half_written_stays(
 
 
 @pytest.mark.parametrize(
-    "what", [pytest.param(name, marks=_how_often(name, often=("catalog",), slow=("run",))) for name in COMMANDS]
+    "what", [pytest.param(name, marks=_how_often(name, often=(), slow=("catalog", "run"))) for name in COMMANDS]
 )
 def test_two_that_write_the_same_files_at_once_both_succeed_and_leave_them_whole(what, folder) -> None:
     whole = folder.parent / "whole"
