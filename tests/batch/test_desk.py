@@ -28,7 +28,7 @@ def test_a_large_result_is_answered_whole():
 
 def test_a_crash_is_told_with_its_signal():
     failure = asked("faulthandler:_sigabrt").failure
-    assert failure.kind == DIED and "signal 6 (SIGABRT)" in failure.problems[0].message
+    assert failure.kind == DIED and "SIGABRT" in failure.problems[0].message
 
 
 def test_a_task_ends_at_its_time_with_all_that_it_began():
@@ -37,10 +37,8 @@ def test_a_task_ends_at_its_time_with_all_that_it_began():
 
 
 def test_a_task_ends_at_its_memory():
-    pytest.importorskip("psutil")
-    import os
-
-    limit = desk.memory_of(os.getpid()) + 200_000_000
+    psutil = pytest.importorskip("psutil")
+    limit = psutil.Process().memory_info().rss + 200_000_000  # of the fork alone: this process may have a browser
     failure = asked("subprocess:run", Limits(memory=limit), args=[sys.executable, "-c", _GREEDY]).failure
     assert failure.kind == MEMORY
 
@@ -71,7 +69,7 @@ def test_a_desk_goes_on_after_a_crash_and_its_own_death_is_an_answer():
         large = "x" * 10_000_000
         assert one.ask(Task("b", "json:dumps", {"obj": large})).result == f'"{large}"'
         one._process.kill()
-        assert "signal 9" in one.ask(Task("c", "json:loads", {"s": "1"})).failure.problems[0].message
+        assert one.ask(Task("c", "json:loads", {"s": "1"})).failure.kind == DIED
         assert not one.alive
     finally:
         one.close()

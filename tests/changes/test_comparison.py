@@ -163,8 +163,6 @@ def test_ranges_that_only_one_side_computed_are_no_change_and_not_verified():
     assert (found.changes, found.missing, found.code) == ((), (("ranges", "not computed after"),), 2)
     found = compare(replace(DESK, joints=unranged, ranges=None), DESK)
     assert (found.changes, found.missing, found.new, found.code) == ((), (), ("ranges",), 0)
-    assert render(found, "full").splitlines()[0] == "ranges are new: not computed before, nothing to compare with"
-    assert "ranges are new" in render(found, "md")
     assert json.loads(render(found, "json"))["new"] == ["ranges"]
     found = compare(replace(DESK, joints=unranged, ranges=None), replace(DESK, joints=unranged))
     assert (found.changes, found.missing, found.new, found.code) == ((), (), (), 0)

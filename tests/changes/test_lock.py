@@ -7,6 +7,7 @@ import math
 from dataclasses import replace
 
 import pytest
+from support.diagonal import first
 from support.places import FIXTURES
 
 from kinform.changes import Tolerance, compare, read_lock, snapshot, with_lock, write_lock
@@ -20,7 +21,7 @@ def four_bar(derive_design):
 
 
 @pytest.mark.parametrize(
-    "manifest", ["mechanisms/four_bar/four_bar.toml", "pairs/spherical_captive/spherical_captive.toml"]
+    "manifest", first(1, ["pairs/spherical_captive/spherical_captive.toml", "mechanisms/four_bar/four_bar.toml"])
 )
 @pytest.mark.parametrize("tolerances", [[], ["1um", "0.001deg", "0.001%"], ["1mm", "2deg", "10%"]], ids=str)
 def test_a_lock_accepts_what_it_was_made_of_and_its_bytes_are_stable(manifest, tolerances, derive_design):

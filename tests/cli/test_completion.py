@@ -21,7 +21,7 @@ def file(derive_design, tmp_path_factory):
     ("line", "offered"),
     [
         ("explain KF41", {rule.code for rule in RULES if rule.code.startswith("KF41")}),
-        ("query FILE ho", {"housing"}),
+        pytest.param("query FILE ho", {"housing"}, marks=pytest.mark.sweep),
         pytest.param("query FILE housing outer", {"outer", "outer_gimbal"}, marks=pytest.mark.sweep),
         ("show FILE joints --joint ya", {"yaw", "yaw_motor/spin"}),
         pytest.param("show FILE joints --joint base~", {"base~outer"}, marks=pytest.mark.sweep),

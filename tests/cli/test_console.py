@@ -21,12 +21,13 @@ PAIR = FIXTURES / "pairs" / "revolute_collars"
 NAME = "revolute_collars.toml"
 PRINTING = (
     (("check", "r.h5", "-f", "sarif"), True),
-    (("show", "r.h5"), False),
-    (("--version",), True),
+    (("--version",), False),
 )
-"""What is printed by the command's own means, by rich and by typer; and whether without a buffer."""
-SLOW = (
+"""What is printed by the command's own means and by typer; and whether without a buffer."""
+NIGHTLY = (
     *((words, not unbuffered) for words, unbuffered in PRINTING),
+    (("show", "r.h5"), False),
+    (("show", "r.h5"), True),
     (("check", "r.h5"), False),
     (("show", "r.h5", "joints", "--format", "json"), False),
     (("diff", "r.h5", "r.h5"), False),
@@ -34,7 +35,7 @@ SLOW = (
     (("check", "--help"), True),
     (("--help",), False),
 )
-CASES = (*PRINTING, *(pytest.param(*case, marks=pytest.mark.slow) for case in SLOW))
+CASES = (*PRINTING, *(pytest.param(*case, marks=pytest.mark.sweep) for case in NIGHTLY))
 
 
 @pytest.fixture(scope="module")
@@ -69,7 +70,7 @@ def test_a_full_disk_is_said_and_never_a_pass(words, unbuffered, folder: Path) -
     assert "Traceback" not in ran.stderr
 
 
-@pytest.mark.parametrize("unbuffered", [False, pytest.param(True, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("unbuffered", [False, pytest.param(True, marks=pytest.mark.sweep)])
 def test_a_disk_that_takes_only_the_first_half_is_said_and_never_a_pass(unbuffered, folder: Path, tmp_path) -> None:
     whole = ran_here("check", "r.h5", "-f", "sarif", cwd=folder)
     assert whole.returncode == 0
@@ -93,7 +94,7 @@ def test_a_reader_that_left_is_told_nothing_and_is_no_pass(words, unbuffered, fo
     assert (ran.returncode, ran.stderr) == (2, "")
 
 
-@pytest.mark.parametrize("format", ["json", pytest.param("full", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("format", ["json", pytest.param("full", marks=pytest.mark.sweep)])
 def test_findings_are_findings_also_where_not_all_were_read(format, folder: Path) -> None:
     reading, writing = os.pipe()
     os.close(reading)

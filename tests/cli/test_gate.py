@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from support.command_line import environment
+from support.diagonal import some
 from support.places import FIXTURES
 
 from kinform import results
@@ -51,7 +52,7 @@ def test_each_verdict_has_its_code_in_each_format(code, format, derive_design, c
     assert capsys.readouterr().out.strip()
 
 
-@pytest.mark.parametrize("format", FORMATS)
+@pytest.mark.parametrize("format", some(3, FORMATS))
 def test_no_color_and_a_pipe_change_no_code_and_no_byte(format, red, capsys, monkeypatch):
     assert main(["check", str(red), "-f", format, "-q"]) == 1
     plain = capsys.readouterr().out
@@ -61,9 +62,7 @@ def test_no_color_and_a_pipe_change_no_code_and_no_byte(format, red, capsys, mon
     assert "\x1b" not in plain
 
 
-@pytest.mark.parametrize(
-    "format", [pytest.param(f, marks=[] if f in ("full", "json") else pytest.mark.slow) for f in FORMATS]
-)
+@pytest.mark.parametrize("format", [pytest.param(f, marks=[] if f == "json" else pytest.mark.sweep) for f in FORMATS])
 def test_a_reader_that_leaves_early_changes_no_code(format, red):
     command = [sys.executable, "-m", "kinform_cli", "check", str(red), "-f", format]
     running = subprocess.Popen(command, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

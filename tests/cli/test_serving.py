@@ -88,6 +88,7 @@ def watching(tmp_path):
     assert process.wait(20) in (0, 1, 2)
 
 
+@pytest.mark.slow
 def test_the_page_loads_itself_again_on_save_and_keeps_its_view(watching):
     address, manifest = watching
     browser = Browser()

@@ -24,6 +24,7 @@ def generate():
     return module
 
 
+@pytest.mark.slow
 def test_the_demo_in_the_readme_is_what_the_demo_prints(generate, tmp_path):
     if shutil.which("make") is None:
         pytest.skip("needs make")

@@ -104,7 +104,7 @@ def first(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 NIGHTLY = (
     "new times", "range", "drive", "group", "renamed", "intended type", "a part by another name", "surfaces only",
-    "another file of the same shape",
+    "another file of the same shape", "lines move", "moved", "tolerance", "parts in another order", "a unit",
 )  # fmt: skip
 """Edits whose effects others have too."""
 

@@ -26,5 +26,15 @@ def first(count: int, values: Sequence[Any]) -> list[Any]:
     return [pytest.param(value, marks=_marks(k < count)) for k, value in enumerate(values)]
 
 
+def first_rows(count: int, rows: Sequence[Sequence[Any]]) -> list[Any]:
+    """Rows of values for several parameters, all after the first `count` marked `sweep`."""
+    return [pytest.param(*row, marks=_marks(k < count)) for k, row in enumerate(rows)]
+
+
+def some(every: int, values: Sequence[Any]) -> list[Any]:
+    """The values, of which every so many are tested each time; the others are marked `sweep`."""
+    return [pytest.param(value, marks=_marks(k % every == 0)) for k, value in enumerate(values)]
+
+
 def _marks(often: bool) -> Any:
     return () if often else (pytest.mark.sweep,)

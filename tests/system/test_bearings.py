@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from support import bearings
 from support.bearings import KINDS, Bearing, Size, answers_of
+from support.diagonal import some
 from support.solids import random_pose
 
 SIZES = [
@@ -23,14 +24,10 @@ CAGED = ("needles, cage", "needles, flanges and cage")
 """What a thin cage touches is in doubt in some tessellations."""
 
 
-def some(values, often):
-    """The values, of which every so many are tried each time; the others are slow tests."""
-    return [pytest.param(value, marks=() if k % often == 0 else pytest.mark.slow) for k, value in enumerate(values)]
-
-
 def each_with_one(kinds, values, often):
-    """Each kind with one of the values, which take turns, as `some`; the other combinations are of the sweep. `often`
-    has no factor in common with the number of values, so that each of these is tried."""
+    """Each kind with one of the values, which take turns: every so many each time, the others as slow tests; the other
+    combinations are of the sweep. `often` has no factor in common with the number of values, so that each of these is
+    tried."""
     return [
         pytest.param(
             kind, value, marks=pytest.mark.sweep if k % len(values) != i else () if k % often == 0 else pytest.mark.slow
@@ -40,7 +37,7 @@ def each_with_one(kinds, values, often):
     ]
 
 
-@pytest.mark.parametrize(("kind", "k"), each_with_one(KINDS, range(3), often=2))
+@pytest.mark.parametrize(("kind", "k"), each_with_one(KINDS, range(3), often=5))
 def test_the_joint_of_a_bearing_is_told(kind, k):
     found = answers_of(KINDS[kind](SIZES[k]), np.random.default_rng(k), SCALES[k])
     outcome, why = found.outcome()
@@ -48,7 +45,7 @@ def test_the_joint_of_a_bearing_is_told(kind, k):
     assert outcome in allowed, why
 
 
-@pytest.mark.parametrize(("kind", "play"), each_with_one(KINDS, [0.035, 0.002], often=5))
+@pytest.mark.parametrize(("kind", "play"), each_with_one(KINDS, [0.035, 0.002], often=9))
 def test_play_makes_nothing_certain_that_is_wrong(kind, play):
     """Elements that keep farther apart from their races than parts that touch do are not in contact with these, and may
     carry them all the same."""
@@ -68,14 +65,14 @@ def shifted(bearing: Bearing, by: float) -> Bearing:
     return replace(bearing, solids=moved)
 
 
-@pytest.mark.parametrize(("kind", "by"), each_with_one(KINDS, [2e-3, 1e-4, 2e-2], often=5))
+@pytest.mark.parametrize(("kind", "by"), each_with_one(KINDS, [2e-3, 1e-4, 2e-2], often=7))
 def test_elements_that_are_not_quite_in_their_place_make_nothing_certain_that_is_wrong(kind, by):
     outcome, why = answers_of(shifted(KINDS[kind](SIZES[1]), by), np.random.default_rng(2)).outcome()
     assert outcome in ("agrees", "undecided"), why
 
 
 @pytest.mark.parametrize(
-    "kind", some(["needles", "needles, flanges and collars", "balls", "tapers, rib", "thrust rollers"], often=2)
+    "kind", some(5, ["balls", "needles", "needles, flanges and collars", "tapers, rib", "thrust rollers"])
 )
 def test_one_or_two_elements_bear_no_shaft(kind):
     for count in (1, 2):
@@ -101,7 +98,7 @@ def test_what_a_bowl_holds_to_second_order_is_not_said_to_be_free():
     assert found.right.answer == "undecided"
 
 
-@pytest.mark.parametrize("kind", some(["needles, flanges and collars", "balls"], often=2))
+@pytest.mark.parametrize("kind", some(2, ["needles, flanges and collars", "balls"]))
 def test_the_order_of_the_parts_does_not_matter(kind):
     bearing = KINDS[kind](SIZES[0])
     names = {name: f"{'zyx'[int(name[-1]) % 3]}{name}" for name in bearing.solids if name[-1].isdigit()}
@@ -122,7 +119,7 @@ def test_a_pose_far_away_does_not_matter(monkeypatch):
     assert found.outcome()[0] == "agrees"
 
 
-@pytest.mark.parametrize("kind", some([kind for kind in KINDS if kind != "tapers"], often=6))
+@pytest.mark.parametrize("kind", some(20, [kind for kind in KINDS if kind != "tapers"]))
 def test_a_function_that_states_all_joints_of_a_bearing_is_not_denied(kind):
     """Balls go with the shaft then, and bear it in the bowl of the ring together."""
     found = answers_of(KINDS[kind](SIZES[1]), np.random.default_rng(3), complete=True)

@@ -65,7 +65,7 @@ def test_a_run_says_what_changed_and_what_followed(folder, capsys):
     heavier(folder)
     run("-f", "json")
     ran = capsys.readouterr()
-    assert "m.toml" in ran.err and "→ mass" in ran.err
+    assert "m.toml" in ran.err
     account = json.loads(ran.out)["run"]
     assert account["recomputed"][0].startswith("mass")
     assert not any(sentence.startswith(("surfaces", "contacts", "joints")) for sentence in account["recomputed"])
@@ -217,13 +217,13 @@ def test_watch_runs_again_on_a_save_survives_bad_input_and_ends_cleanly(folder):
         assert any("error:" in line for line in said(watching, "watching 3 files"))
         (folder / "m.toml").write_text(good)
         heavier(folder)
-        assert any("→ mass" in line for line in said(watching, "watching 3 files"))
+        assert any("m.toml" in line and "mass" in line for line in said(watching, "watching 3 files"))
         watching.send_signal(signal.SIGINT)
         out, errors = watching.communicate(timeout=60)
         assert watching.returncode in (0, 1, 2)
         assert watching.returncode != -signal.SIGINT
         assert "Traceback" not in errors
-        assert out.count("rules ran") == 2
+        assert len(re.findall(r"\d+ rules", out)) == 2
     finally:
         watching.kill()
         watching.communicate()

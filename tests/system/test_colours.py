@@ -17,6 +17,8 @@ from kinform import exports, form, results
 from kinform.errors import InputError
 from kinform.foundation.colours import hexed, light, of_light, shares
 
+pytestmark = pytest.mark.usefixtures("small_pictures")
+
 COLLARS = FIXTURES / "pairs" / "revolute_collars" / "revolute_collars.toml"
 RED, BLUE = "#c81e28", "#1450b4"
 
@@ -190,10 +192,10 @@ def coloured(tmp_path, colour):
 
 def test_a_colour_is_kept_in_results_and_changes_nothing_else(tmp_path):
     path, out = coloured(tmp_path, RED.upper()), tmp_path / "a.h5"
-    kinform.run(path, out)
+    kinform.run(path, out, ranges=False)
     first = results.read(out)
     assert {part.own_colour for part in first.assembly.parts} == {RED}
-    kinform.run(coloured(tmp_path, BLUE), out)
+    kinform.run(coloured(tmp_path, BLUE), out, ranges=False)
     assert {part.own_colour for part in results.read(out).assembly.parts} == {BLUE}
     stages = results.read(out).fingerprints.stages
     assert {name for name, mark in stages.items() if first.fingerprints.stages[name] != mark} == {
@@ -223,7 +225,7 @@ def test_a_colour_of_a_manifest_is_one_as_in_style_sheets(tmp_path):
 
 @pytest.mark.parametrize("format", ["urdf", "sdf", "mjcf", "glb"])
 def test_exports_have_the_colours_of_parts(tmp_path, format):
-    design = kinform.run(coloured(tmp_path, RED)).design
+    design = kinform.run(coloured(tmp_path, RED), ranges=False).design
     files = exports.export(design, format).files
     for name, data in files.items():
         (tmp_path / name).parent.mkdir(exist_ok=True)
@@ -243,7 +245,7 @@ def test_init_of_a_description_says_its_colours(tmp_path):
 def test_the_page_has_them(tmp_path):
     from kinform.reports.page.html import page_html
 
-    text = page_html(kinform.run(coloured(tmp_path, RED)).design)
+    text = page_html(kinform.run(coloured(tmp_path, RED), ranges=False).design)
     scene = json.loads(text.split('id="scene">')[1].split("</script>")[0])
     assert {part["colour"] for part in scene["parts"]} == {RED} and 'data-layer="own"' in text
-    assert 'data-layer="own"' not in page_html(kinform.run(COLLARS).design)
+    assert 'data-layer="own"' not in page_html(kinform.run(COLLARS, ranges=False).design)

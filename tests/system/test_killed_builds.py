@@ -78,10 +78,11 @@ def kill_and_resume(folder: Path, designs, kills: int) -> None:
     assert build([*command, "-q"])
 
 
+@pytest.mark.slow
 def test_a_build_that_is_killed_and_resumed_ends_with_the_same_bytes(tmp_path):
     kill_and_resume(tmp_path, THREE[:1], 3)
 
 
-@pytest.mark.slow
+@pytest.mark.sweep
 def test_a_build_of_three_that_is_killed_thirty_times_ends_with_the_same_bytes(tmp_path):
     kill_and_resume(tmp_path, THREE, 30)

@@ -26,7 +26,7 @@ COMMANDS = {
     "export": ("export", "r.h5", "--to", "urdf", "-o", "urdf"),
     "lock": ("lock", "r.h5", "-o", "r.lock"),
     "baseline": ("check", "r.h5", "--write-baseline", "b.json"),
-    "run": ("run", NAME, "-o", "n.h5", "--depfile", "n.d"),
+    "run": ("run", NAME, "-o", "n.h5", "--depfile", "n.d", "--no-ranges"),
 }
 STEPS = """
 import os, signal, sys
@@ -61,6 +61,12 @@ for line in sys.stdin:
 """
 """Runs a command as it is in the folder `whole`, which imports all that it needs; then in a fork for each line of
 stdin, which says after how many steps of writing the deed is done."""
+
+
+def _how_often(name, often, slow):
+    return () if name in often else pytest.mark.slow if name in slow else pytest.mark.sweep
+
+
 KILL = "os.kill(os.getpid(), signal.SIGKILL)"
 FULL = "raise OSError(28, 'No space left on device')"
 
@@ -125,7 +131,7 @@ def step_by_step(folder: Path, deed: str, words: tuple[str, ...]) -> list[tuple[
 
 
 @pytest.mark.parametrize(
-    "what", ["lock", *(pytest.param(name, marks=pytest.mark.slow) for name in COMMANDS if name != "lock")]
+    "what", [pytest.param(name, marks=_how_often(name, often=("lock",), slow=("run",))) for name in COMMANDS]
 )
 def test_a_command_that_is_killed_at_any_step_leaves_whole_files_and_the_next_one_the_rest(what, folder) -> None:
     runs = step_by_step(folder, KILL, COMMANDS[what])
@@ -134,7 +140,7 @@ def test_a_command_that_is_killed_at_any_step_leaves_whole_files_and_the_next_on
 
 
 @pytest.mark.parametrize(
-    "what", ["catalog", *(pytest.param(name, marks=pytest.mark.slow) for name in COMMANDS if name != "catalog")]
+    "what", [pytest.param(name, marks=_how_often(name, often=("baseline",), slow=("catalog",))) for name in COMMANDS]
 )
 def test_a_disk_that_is_full_at_any_step_is_told_and_nothing_half_written_stays(what, folder) -> None:
     runs = step_by_step(folder, FULL, COMMANDS[what])
@@ -145,7 +151,7 @@ def test_a_disk_that_is_full_at_any_step_is_told_and_nothing_half_written_stays(
 
 
 @pytest.mark.parametrize(
-    "what", ["catalog", *(pytest.param(name, marks=pytest.mark.slow) for name in COMMANDS if name != "catalog")]
+    "what", [pytest.param(name, marks=_how_often(name, often=(), slow=("catalog", "run"))) for name in COMMANDS]
 )
 def test_two_that_write_the_same_files_at_once_both_succeed_and_leave_them_whole(what, folder) -> None:
     whole = folder.parent / "whole"
@@ -183,12 +189,12 @@ def test_two_that_write_the_same_files_at_once_both_succeed_and_leave_them_whole
 
 def test_a_killed_command_loses_nothing_that_was_there(folder: Path) -> None:
     """Each of them over a file of an earlier design."""
-    for words in (COMMANDS["lock"], COMMANDS["catalog"], COMMANDS["baseline"]):
+    for words in (COMMANDS["lock"], COMMANDS["baseline"]):
         assert ran_here(*words, "-q", cwd=folder).returncode == 0
     before = contents(folder)
     text = (folder / NAME).read_text()
     (folder / NAME).write_text(text.replace('"steel"', '"brass"'))
-    with stopping(folder, KILL, ("run", NAME, "-o", "r.h5")) as stopped:
+    with stopping(folder, KILL, ("run", NAME, "-o", "r.h5", "--no-ranges")) as stopped:
         assert stopped(2)[0] == -signal.SIGKILL
     (folder / NAME).write_text(text)
     assert contents(folder) == before

@@ -42,7 +42,7 @@ def test_the_ratio_of_mimic_is_that_of_the_teeth(gears, ratio, axis, scale, wron
     links = "".join(LINK.format(name=name, scale=scale) for name in ("housing", "gear0", "gear1"))
     robot = gears / "robot.urdf"
     robot.write_text(ROBOT.format(links=links, apart=25 * scale, axis=axis, ratio=repr(ratio)))
-    done = kinform.run(robot)
+    done = kinform.run(robot, ranges=False)
     found = [(f.code, f.found) for f in done.findings if f.code in ("KF411", "KF903")]
     assert [code for code, _ in found] == (["KF411"] if wrong else []), found
     # contact of teeth still constrains nothing where all joints are stated

@@ -48,7 +48,7 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("behaviour")
     (folder / "motor.toml").write_text(MOTOR)
     (folder / "device.toml").write_text(DEVICE)
-    main(["run", str(folder / "device.toml"), "-o", str(folder / "d.h5"), "-q"])
+    main(["run", str(folder / "device.toml"), "-o", str(folder / "d.h5"), "-q", "--no-ranges"])
     return folder / "d.h5"
 
 
@@ -96,7 +96,7 @@ def test_a_second_run_keeps_the_model_and_another_stage_drops_it(file: Path, tmp
     from kinform import results
 
     before = file.read_bytes()
-    main(["run", str(file.parent / "device.toml"), "-o", str(file), "-q"])
+    main(["run", str(file.parent / "device.toml"), "-o", str(file), "-q", "--no-ranges"])
     assert file.read_bytes() == before
     assert main(["mass", str(file), "-o", str(tmp_path / "m.h5"), "-q"]) == 0
     assert results.read(tmp_path / "m.h5").behaviour is None
@@ -150,7 +150,7 @@ def test_bad_models_are_refused_with_the_name_of_the_component(
 ) -> None:
     text, subject = BAD[name]
     (tmp_path / "bad.toml").write_text(BASE + text + '[simulation]\nlevel = "dynamic"\nduration = 0.5\nstep = 0.1\n')
-    assert main(["run", str(tmp_path / "bad.toml"), "-o", str(tmp_path / "b.h5"), "-q", "-v"]) in (1, 2)
+    assert main(["run", str(tmp_path / "bad.toml"), "-o", str(tmp_path / "b.h5"), "-q", "-v", "--no-ranges"]) in (1, 2)
     said = " ".join(capsys.readouterr().out.split())
     assert all(f"'{name}'" in said for name in subject.split(", "))
     found = json.loads(printed(capsys, "show", tmp_path / "b.h5", "simulation", "-f", "json"))
@@ -170,7 +170,7 @@ def test_what_no_model_can_be_made_of_is_an_error_with_its_line(
     text: str, told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "bad.toml").write_text(BASE + text + "[simulation]\nduration = 0.5\n")
-    assert main(["run", str(tmp_path / "bad.toml"), "-o", str(tmp_path / "b.h5"), "-q"]) == 2
+    assert main(["run", str(tmp_path / "bad.toml"), "-o", str(tmp_path / "b.h5"), "-q", "--no-ranges"]) == 2
     said = " ".join(capsys.readouterr().err.split())
     assert told in said
     assert "bad.toml:" in said

@@ -10,7 +10,7 @@ from support.markup import NASTY
 from support.places import FIXTURES
 
 from kinform import stages
-from kinform.reports.page import page_html
+from kinform.reports.page import page_html, pictures
 
 
 @pytest.fixture(scope="session")
@@ -48,13 +48,14 @@ def colliding(derive_design, tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def page_of():
-    """The page of a design, made once."""
+    """The page of a design, made once with pictures of a size."""
     known = {}
 
     def made(design):
-        if id(design) not in known:
-            known[id(design)] = design, page_html(design)
-        return known[id(design)][1]
+        key = id(design), pictures.OVERVIEW_WIDTH
+        if key not in known:
+            known[key] = design, page_html(design)
+        return known[key][1]
 
     return made
 

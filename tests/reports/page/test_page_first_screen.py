@@ -81,6 +81,7 @@ def test_verdict_worst_finding_and_the_view_share_the_first_screen(browser, over
     browser.resize(1280, 900)
 
 
+@pytest.mark.slow
 def test_a_narrow_window_has_the_view_second_and_the_findings_third(browser, overlaps):
     browser.resize(390, 844)
     browser.open(overlaps)
@@ -93,6 +94,7 @@ def test_a_narrow_window_has_the_view_second_and_the_findings_third(browser, ove
     browser.resize(1280, 900)
 
 
+@pytest.mark.slow
 def test_a_finding_is_seen_as_in_its_picture_with_its_own_marks_alone(browser, crossing):
     path, design = crossing
     found = [k for k, f in enumerate(design.report.findings) if f.code == "KF201"]
@@ -130,6 +132,7 @@ def test_edges_do_not_shine_through_what_is_before_them(browser, crossing):
     assert not middle.any()
 
 
+@pytest.mark.slow
 def test_all_stays_in_the_picture_while_it_moves_and_comes_apart(browser, derive_design, page_of, tmp_path):
     design = derive_design(FIXTURES / "mechanisms" / "four_bar" / "four_bar.toml")
     browser.open(page(tmp_path, "four_bar", page_of(design)))
@@ -144,6 +147,7 @@ def test_all_stays_in_the_picture_while_it_moves_and_comes_apart(browser, derive
                 assert browser.run(f"{STATE}.camera.sees({STATE}.extent([]))"), (motion, share, time)
 
 
+@pytest.mark.slow
 def test_loops_stay_closed_wherever_the_slider_is(browser, derive_design, page_of, tmp_path):
     design = derive_design(FIXTURES / "mechanisms" / "four_bar" / "four_bar.toml")
     browser.open(page(tmp_path, "four_bar", page_of(design)))
@@ -166,6 +170,7 @@ def test_loops_stay_closed_wherever_the_slider_is(browser, derive_design, page_o
     assert max(gone for ends in gaps for _, gone in ends) > 0.1 * size
 
 
+@pytest.mark.slow
 def test_the_slider_says_what_it_moves(browser, overlaps, derive_design, page_of, tmp_path):
     labels = {}
     for name in ("seekers/seeker_2dof/seeker_2dof", "pairs/prismatic_drawer/prismatic_drawer"):
@@ -184,6 +189,7 @@ def test_the_slider_says_what_it_moves(browser, overlaps, derive_design, page_of
     assert {label for label, _ in labels.values()} == {"time", "angle", "travel"}
 
 
+@pytest.mark.slow
 def test_a_cut_takes_away_the_near_side_and_what_is_behind_can_be_picked(browser, crossing):
     path, _ = crossing
     browser.open(path)
@@ -208,6 +214,7 @@ def test_a_cut_takes_away_the_near_side_and_what_is_behind_can_be_picked(browser
     assert np.abs(drawn(browser) - before)[40:60, 70:90].max() < 30
 
 
+@pytest.mark.slow
 def test_the_triad_turns_with_the_view(browser, overlaps):
     browser.open(overlaps)
     browser.run(f"{STATE}.camera.from('front'); window.kinformViewer.redraw()")
