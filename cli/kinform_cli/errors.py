@@ -21,8 +21,6 @@ OK = 0
 FINDINGS = 1
 NOT_VERIFIED = 2
 
-_INTERRUPTED = 130
-"""What typer makes of Ctrl-C."""
 _NO_CHOICE = re.compile(
     r"Invalid value for (?P<where>.+?): (?:Value error, )?'(?P<given>.*)' is not one of (?P<choices>'.*')"
 )
@@ -83,7 +81,8 @@ def report(error: BaseException) -> int:
 
 def from_typer(code: object) -> int:
     """The exit code for what typer returned: commands return theirs, Ctrl-C is its own affair."""
-    if code == _INTERRUPTED:
+    # What typer makes of Ctrl-C.
+    if code == 130:
         return report(KeyboardInterrupt())
     return code if isinstance(code, int) else OK
 
