@@ -21,9 +21,6 @@ from kinform.foundation.algebra.spatial import along_motion, multiply, rotation_
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
-CORNER_MARGIN = 2.0
-"""Margin of a corner over the root of the difference in lengths that makes it, as a share of the mechanism's length:
-at most."""
 LENGTHS_ROUNDED = 1e-13
 """Share of the mechanism's length by which lengths that are exact in double precision may be off: a few hundred
 roundings, as poses are products of many factors."""
@@ -121,7 +118,9 @@ class Mechanism:
     def narrow(self) -> float:
         """The margin (smallest singular value or pivot of the loops over the largest) below which what is known of
         lengths does not tell whether branches of the motion meet, or part just before."""
-        return CORNER_MARGIN * float(np.sqrt(max(self.uncertain, LENGTHS_ROUNDED)))
+        # Margin of a corner over the root of the difference in lengths that makes it, as a share of the mechanism's
+        # length: at most.
+        return 2.0 * float(np.sqrt(max(self.uncertain, LENGTHS_ROUNDED)))
 
     def folds(self, q: Array, rank: int) -> bool:
         """Whether branches of the motion meet at positions q (nq,), or part just before, as far as is known of lengths:

@@ -14,13 +14,6 @@ from kinform.simulation.record import Record
 from kinform.simulation.settings import SolverSettings
 from kinform.simulation.solver.start import Start
 
-FIRST_STEP = 1e-3
-"""s: the first step that is tried in a stretch; the control finds the right one in a few steps."""
-STIFF_PATIENCE = 15.0
-"""Steps in a row that a decay kept short before the run is looked at for stiffness: those of Hairer's DOP853."""
-PASSED_BEFORE_STOP = 1e-3
-"""s: a singular pose nearer than this to where a run stopped is why it did, and was not passed. A choice: steps that
-shrink towards one are far shorter."""
 APPROACHED = 3e-3
 """Margin below which a step that ends there was not laid across a singular pose ahead, but came too near. A pose that
 could not be crossed is behind from three times this on. Choices: forty four-bars in a row never come above 0.05."""
@@ -45,9 +38,10 @@ class Run:
         self.clock[layout.RTOL], self.clock[layout.ATOL] = settings.rtol, settings.atol
         self.clock[layout.CLOSED], self.clock[layout.OPEN] = settings.closed, settings.open
         self.clock[layout.NEAR], self.clock[layout.KEEP] = settings.near, settings.keep
+        # Steps in a row that a decay kept short before the run is looked at for stiffness: those of Hairer's DOP853.
         self.clock[layout.MARGIN], self.clock[layout.PATIENCE] = (
             np.inf,
-            STIFF_PATIENCE if settings.method == "auto" else np.inf,
+            15.0 if settings.method == "auto" else np.inf,
         )
         self.clock[layout.NARROW] = dynamics.mechanism.narrow
         self.clock[layout.APPROACH] = APPROACHED
@@ -92,7 +86,8 @@ class Run:
         """Prepare for laws that are smooth from begin to end."""
         self.clock[layout.END] = end
         self.dynamics.tables.nums[layout.CONSTANTS][0, layout.LAST] = np.nextafter(end, begin)
-        self.clock[layout.STEP] = min(FIRST_STEP, end - begin)
+        # s: the first step that is tried in a stretch; the control finds the right one in a few steps.
+        self.clock[layout.STEP] = min(1e-3, end - begin)
         self.tally[layout.FRESH], self.tally[layout.STIFF] = 1, 0
 
     def change(self, dynamics: Dynamics) -> None:
@@ -160,7 +155,9 @@ class Run:
             self.dynamics.tables.rates(self.out[:done, k : k + n]) for k in (size, size + n, size + 2 * n)
         )
         notes = list(self.notes)
-        passed = not stopped or self.clock[layout.TIGHTEST] < self.clock[layout.NOW] - PASSED_BEFORE_STOP
+        # s: a singular pose nearer than this to where a run stopped is why it did, and was not passed. A choice: steps
+        # that shrink towards one are far shorter.
+        passed = not stopped or self.clock[layout.TIGHTEST] < self.clock[layout.NOW] - 1e-3
         if passed and self.clock[layout.MARGIN] < self.settings.doubtful:
             notes.append(
                 f"near t = {self.clock[layout.TIGHTEST]:.4g} s the loops pass a singular pose, where they could go "

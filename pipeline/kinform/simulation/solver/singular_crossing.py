@@ -28,20 +28,11 @@ from kinform.simulation.solver.run_state import Run
 CROSSING_MARGIN = 0.02
 """Margin, by singular values, below which a singular pose may be ahead; and below which rows of the loops are about to
 depend on others: a choice."""
-CROSSING_REACHES = (0.025, 0.05, 0.1, 0.2, 0.4)
-"""How far a step reaches from the pose to either side, tried from the first on: rad, or lengths, that the fastest joint
-moves. The error of the stages' slopes goes with the inverse square of it, what the polynomial leaves out with its
-twelfth power; for chains of 2 to 40 four-bars the first that are tried agree to 1e-12."""
 CROSSING_COARSE, CROSSING_FINE = 6, 8
 """Stages of the two steps that are compared: even, as none may lie in the middle."""
-CROSSING_ERROR = 1e-8
-"""Difference beyond which the run is left as it is: what a run of ten seconds gathers at the default tolerance."""
 CROSSING_NEARER = 100.0
 """A step that errs so many times as much as one that is shorter is too long, and longer ones are not tried: twice as
 long leaves out 2^12 times as much. A choice."""
-CROSSING_TURNED = 0.1
-"""Share of itself that the least singular value must have as its negative behind the pose: straight on it has all,
-turned back none. A choice."""
 
 
 def cross_singular_pose(run: Run) -> str | None:
@@ -62,7 +53,8 @@ def cross_singular_pose(run: Run) -> str | None:
         if best[0] < ARITHMETIC:  # a hundredth of the tolerance of a step
             break
     run.choose()
-    if best is None or best[0] > CROSSING_ERROR:
+    # Difference beyond which the run is left as it is: what a run of ten seconds gathers at the default tolerance.
+    if best is None or best[0] > 1e-8:
         return ""
     gap = _gap(run, best[1].state_at(0.5))
     if gap > ARITHMETIC:
@@ -95,7 +87,10 @@ def _passages(run: Run, pose: float) -> Iterator[tuple[Passage, float]]:
     """Steps across the pose, one longer than the other, with their errors."""
     t, y = float(run.clock[layout.NOW]), run.y
     unit = 1.0 / max(_pace(run, y), np.sqrt(_pull(run, t, y)))
-    for reach in (share * unit for share in CROSSING_REACHES):
+    # How far a step reaches from the pose to either side, tried from the first on: rad, or lengths, that the fastest
+    # joint moves. The error of the stages' slopes goes with the inverse square of it, what the polynomial leaves out
+    # with its twelfth power; for chains of 2 to 40 four-bars the first that are tried agree to 1e-12.
+    for reach in (share * unit for share in (0.025, 0.05, 0.1, 0.2, 0.4)):
         begin, end = pose - reach, pose + reach
         if begin > t - 0.5 * (pose - t):
             # Too near: a step begins at least half as far again before the pose as the run has come to.
@@ -183,7 +178,9 @@ def _goes_straight(run: Run, passage: Passage) -> bool:
     left, values, right = np.linalg.svd(_scaled_rows(run, passage.start))
     k = run.dynamics.rank - 1
     after = float(left[:, k] @ _scaled_rows(run, passage.end) @ right[k])
-    return after < -CROSSING_TURNED * float(values[k])
+    # Share of itself that the least singular value must have as its negative behind the pose: straight on it has all,
+    # turned back none. A choice.
+    return after < -0.1 * float(values[k])
 
 
 def _stopped(run: Run, passage: Passage) -> bool:
