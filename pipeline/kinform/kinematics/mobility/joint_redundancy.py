@@ -21,10 +21,6 @@ from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint, Redundancy, RedundancyKind
 from kinform.model.tolerances import Tolerances
 
-NAMED_CONTACT_AXIS = 0.02
-"""Directions of contacts this near (sine) to an axis of the world have its name: contacts are not snapped."""
-SITE_GAP = 0.25
-"""Patches whose gap is below this share of the radius of the smaller one belong together."""
 FEW_OF_SITE = 4
 """One of so many samples is looked at before all are, where patches may lie together."""
 HELD_TWICE = 1e-9
@@ -85,7 +81,8 @@ def sites(patches: Sequence[Patch]) -> list[list[int]]:
         for n in range(k):
             if sets.find(k) == sets.find(n):
                 continue
-            near = SITE_GAP * min(radii[k], radii[n])
+            # Patches whose gap is below this share of the radius of the smaller one belong together.
+            near = 0.25 * min(radii[k], radii[n])
             if norm(centres[k] - centres[n]) - radii[k] - radii[n] > near:
                 continue
             a, b = patches[k].points - centres[k], patches[n].points - centres[k]
@@ -133,7 +130,8 @@ def _twice(spaces: Sequence[Array]) -> list[Locked]:
         left, cosines, _ = np.linalg.svd(space.T @ before, full_matrices=False)
         both = space @ left[:, cosines > 1.0 - HELD_TWICE]
         if both.shape[1]:
-            twice += locked_wrenches(both.T, NAMED_CONTACT_AXIS)
+            # Directions of contacts this near (sine) to an axis of the world have its name: contacts are not snapped.
+            twice += locked_wrenches(both.T, 0.02)
         before = span(np.hstack([before, space]))
     return twice
 

@@ -32,8 +32,6 @@ from kinform.mechanism.frame import axes_frame
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Redundancy
 
-MOST_SORTED_LOOPS = 60
-"""Up to so many loops in a block, what they hold together is told apart."""
 MOST_NAMED = 12
 """So many bodies or joints are named in a text."""
 
@@ -55,7 +53,8 @@ def redundancies_of_loops(joints: Sequence[Joint], closure: Closure, size: float
             out.append(_of_block(members, count))
             continue
         out += alone
-        if rest and len(block.cycles) <= MOST_SORTED_LOOPS and rates <= FEW_RATES:
+        # Up to so many loops in a block, what they hold together is told apart.
+        if rest and len(block.cycles) <= 60 and rates <= FEW_RATES:
             out += _together(members, block, count, rest)
         elif rest:
             out.append(_of_block(members, rest))

@@ -22,16 +22,10 @@ from kinform.model.arrays import Array
 from kinform.model.kinematics import Freedom, Kinematics, MotionKind
 from kinform.model.names import BodyName, JointName
 
-SAME_RATES = 1e-2
-"""An idle turn is one of the assembly's freedoms when it is within this share of one."""
 NO_TURN = 1e-10
 """Turn (rad/s) that is none, as a share of a velocity over the size of the assembly; rounding."""
-NO_PITCH = 1e-6
-"""m a turn that is none, as a share of the size of the assembly; a choice: a fine thread has 1e-2 of its screw."""
 PITCH_ROUNDING = 1e-13
 """The same as a share of the distance of the axis from the origin: what products of doubles lose."""
-EXCHANGED = 0.1
-"""Rate in an idle turn from which on a driver may give way to it."""
 NO_TWIST = 1e-12
 """Largest component of a relative twist that is none."""
 
@@ -99,7 +93,8 @@ def _read(twist: Array, near: Array | None, place: Array, size: float) -> tuple[
     point = foot(cross(omega, velocity) / square, axis, beside)
     pitch = 2.0 * np.pi * float(omega @ velocity) / square
     lost = PITCH_ROUNDING * norm(velocity) / np.sqrt(square)
-    if abs(pitch) < NO_PITCH * size + lost:
+    # m a turn that is none, as a share of the size of the assembly; a choice: a fine thread has 1e-2 of its screw.
+    if abs(pitch) < 1e-6 * size + lost:
         return "turn", canonical(axis), point, 0.0
     return "screw", canonical(axis), point, pitch
 
@@ -131,7 +126,8 @@ def _exchange(
             wanted = _rates(turn, node, around.get(node, []), graph, closure.offset)
             parts = {driven[c]: rate for c, rate in wanted.items() if c in driven}
             spun = _sum(closure.solutions, parts)
-            if _difference(spun, wanted) > SAME_RATES:
+            # An idle turn is one of the assembly's freedoms when it is within this share of one.
+            if _difference(spun, wanted) > 1e-2:
                 continue
             rest = dict(parts)
             while taken := sorted(set(rest) & set(reduced)):
@@ -140,7 +136,8 @@ def _exchange(
                 for n, value in reduced[pivot].items():
                     rest[n] = rest.get(n, 0.0) - factor * value
                 del rest[pivot]
-            drivers = {n: closure.solutions[n].driver for n, value in rest.items() if abs(value) > EXCHANGED}
+            # Rate in an idle turn from which on a driver may give way to it.
+            drivers = {n: closure.solutions[n].driver for n, value in rest.items() if abs(value) > 0.1}
             if not drivers:
                 continue
             chosen = min(drivers, key=lambda n: (near[drivers[n]], n))

@@ -30,10 +30,6 @@ TOOTH_POSES = 24
 """Poses in which the sections are held against each other while one tooth passes."""
 IN_PLANE = 1e-3
 """rad: axes that are parallel or perpendicular to this lie in one plane."""
-RATIO_AGREES = 0.01
-"""Relative: what the ratio at one pose, from the normals of the flanks, may differ from that of the teeth."""
-TIP_MARGIN = 1.02
-"""Teeth up to this share of the other wheel's tip radius are within its reach."""
 ROUNDED_LEVEL = 1e-9
 """Share of the greatest radius by which the end of an edge may be beyond a level that it meets, for rounding."""
 
@@ -156,7 +152,8 @@ def meshing(sides: tuple[Side, Side], axis: Array, place: Array, normal: Array, 
             return row
     first_row, second_row = (row for row in rows if not isinstance(row, str))
     mean = math.copysign(first_row.pitch / second_row.pitch, ratio)
-    if abs(ratio / mean - 1.0) > RATIO_AGREES:
+    # Relative: what the ratio at one pose, from the normals of the flanks, may differ from that of the teeth.
+    if abs(ratio / mean - 1.0) > 0.01:
         return (
             f"the ratio at this pose is {ratio:.5g}, that of {first_row.count} and {second_row.count} teeth {mean:.5g}"
         )
@@ -280,7 +277,8 @@ def _near(outline: _Outline, other: _Outline) -> Array:
     level = other.coordinates(other.edges.reshape(-1, 2))[0]
     reached = other.coordinates(outline.edges.reshape(-1, 2))[0].reshape(-1, 2)
     if other.turns:
-        return np.asarray(outline.edges[(reached <= TIP_MARGIN * level.max()).any(axis=1)])
+        # Teeth up to this share of the other wheel's tip radius are within its reach.
+        return np.asarray(outline.edges[(reached <= 1.02 * level.max()).any(axis=1)])
     return np.asarray(outline.edges[((reached >= level.min()) & (reached <= level.max())).any(axis=1)])
 
 

@@ -27,8 +27,6 @@ SLOW = 1e-4
 OPPOSED_AREA = 0.05
 """Share of the area between two parts that may oppose a joint that parts them: scraps decide nothing. Chosen, not
 measured."""
-OPPOSED_SOME = 5
-"""One of so many points of a contact is asked about all joints before all are: a fifth has several times that share."""
 JOURNAL = 40.0
 """Price of parting a journal, a collar or a guide. Prices have no unit: only their order counts (`constants`)."""
 LOOSE_JOURNAL = 35.0
@@ -49,12 +47,8 @@ FLAT_APART = 50.0
 """The same of one that does not touch: the tip of a screw over the face of a motor. Chosen, not measured."""
 APART = 0.05
 """Gap of a flat from which it does not touch, as a share of the root of its area. Chosen, not measured."""
-JOURNAL_OFF = 0.7
-"""Share of its reach by which the middle of a round patch may lie beside the axis that it goes round: half of one."""
 FACE_OFF = 0.5
 """The same of other faces. Chosen, not measured."""
-GUIDED_ROUND = np.radians(181.0)
-"""rad: normals of a guide leave no wider gap round it than this."""
 ROLLING = 1.0
 """Price of parting what touches at points or along lines only: balls, rollers, teeth hold nothing together."""
 NUMBERS_AT_ONCE = 8192
@@ -246,7 +240,9 @@ class Contact:
     def _surely_opposed(self, motions: Array) -> Flags:
         """(k,) of which of k motions (k, 6) some of the points tell that they press on, or leave, more than next to
         none of the area, or that it is not `_little`: of thousands of joints most are elsewhere, and do."""
-        some = slice(None, None, OPPOSED_SOME)
+        # One of so many points of a contact is asked about all joints before all are: a fifth has several times that
+        # share.
+        some = slice(None, None, 5)
         middle, radius = self.ball
         way = motions[:, 3:] + cross(motions[:, :3], np.broadcast_to(middle, (len(motions), 3)))
         # no point of the ball is faster
@@ -321,7 +317,9 @@ class Contact:
         u, v, w = np.array([patch.axis for patch in patches]).T[:, None]
         sphere = np.array([patch.kind == "sphere" for patch in patches], dtype=bool)
         lies = np.where(axes.ball[:, None], sphere, np.abs(u * p + v * q + w * r) > np.cos(SAME_AXIS))
-        return np.asarray(turning & ((off < JOURNAL_OFF) | (lies & (far < COAXIAL_OFF * size))))
+        # Share of its reach by which the middle of a round patch may lie beside the axis that it goes round: half of
+        # one.
+        return np.asarray(turning & ((off < 0.7) | (lies & (far < COAXIAL_OFF * size))))
 
     def _round(self, axes: Axes, opposed: Flags, serrated: Flags) -> list[float]:
         """The price along a turn about each axis: do patches go round it, or its centre?"""
@@ -347,7 +345,8 @@ class Contact:
         assert joint.axis is not None
         axis = joint.axis / norm(joint.axis)
         gap = widest_gap(self.normals[~opposed], axis)
-        return JOURNAL if gap < GUIDED_ROUND else FLAT_BESIDE
+        # rad: normals of a guide leave no wider gap round it than this.
+        return JOURNAL if gap < np.radians(181.0) else FLAT_BESIDE
 
 
 def _squares(columns: Sequence[Array]) -> Array:

@@ -31,13 +31,8 @@ from kinform.mechanism.joint_graph import JointGraph
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
 
-MOST_COMPARED_JOINTS = 400
-"""Blocks with more joints are left as they are: loops of four bodies grow with their square."""
 ONE_PIN = 1e-13
 """Share of the assembly's size by which lines that were made coaxial may be apart: rounding."""
-LEAST_SIDE = 100.0
-"""Times what the pins of a loop may be shifted by in all that each of its sides is long at least: shorter sides are
-equal to anything."""
 EQUAL_SIDES = 4e-15
 """Share of the assembly's size by which sides that are equal differ: a few roundings of its coordinates."""
 
@@ -74,7 +69,8 @@ def equalise_lengths(graph: JointGraph, bounds: MoveBounds, size: float) -> tupl
     """The joints, with sides of four-bars that are equal within the bounds made equal; `size` of the assembly (m)."""
     out = list(graph.joints)
     for block in blocks(len(graph.bodies), graph.edges):
-        if 4 <= len(block) <= MOST_COMPARED_JOINTS:
+        # Blocks with more joints are left as they are: loops of four bodies grow with their square.
+        if 4 <= len(block) <= 400:
             for members in _parallel([k for k in block if _is_hinge(out[k])], out):
                 for k, joint in _equal_sides(graph, members, out, bounds, size):
                     out[k] = joint
@@ -167,7 +163,9 @@ def _equalities(cycle: Sequence[int], pins: Sequence[_Pin]) -> Iterator[_Equalit
     places = [pins[n].place for n in cycle]
     sides = [places[(k + 1) % 4] - places[k] for k in range(4)]
     lengths = [norm(side) for side in sides]
-    if min(lengths) <= LEAST_SIDE * slack:
+    # Times what the pins of a loop may be shifted by in all that each of its sides is long at least: shorter sides are
+    # equal to anything.
+    if min(lengths) <= 100.0 * slack:
         return
 
     def equal(i: int, j: int) -> bool:
