@@ -27,24 +27,13 @@ from kinform.surfaces.polygons.facets import Facets
 FITS_PER_NOISE = 10
 """The tolerance of fits, in noises that are expected of vertices, and the noise as such a part of the tolerance.
 Chosen, not measured."""
-NOISE_ROUNDINGS = 1.5
-"""Noise in roundings of the largest coordinate: a vertex is off by half of one in each of three directions."""
 SCATTER_SHOWS = 2
 """Vertices scatter where twice the standard deviation that is read exceeds the expected noise."""
-FIT_SIGMAS = 5
-"""Standard deviations of scattered vertices that a fit allows: one more than those that count as scatter."""
 CALM_SHARE = 0.25
 """Share of the area, from the calmest vertices up, at which the scatter is read: saddles are rarely more
 than the rest."""
-CALM_SHARE_OF_RIPPLE = 0.1
-"""The same for the difference from the neighbours, which is smaller on saddles too."""
-RIPPLE = 0.05
-"""Where scattered vertices differ from their neighbours by this much of what they show, saddles do by less
-(0.12 to 0.4 against 0.01 to 0.02 where tried)."""
 MIXED_PER_SIGMA = 1.2
 """What is read there, in standard deviations of one coordinate (tried on noisy copies of robots' parts)."""
-REPEATED = 1e-2
-"""Relative difference of what neighbours show that is no accident in a long row of them. Chosen, not measured."""
 
 
 @dataclass(frozen=True)
@@ -64,15 +53,17 @@ class Scale:
     def of(cls, mesh: Facets, rounding: float, tolerances: Tolerances) -> Scale:
         """Those of a mesh that was stored with this rounding: vertices that scatter more widen everything to four
         standard deviations."""
-        noise = max(tolerances.fit / FITS_PER_NOISE, NOISE_ROUNDINGS * rounding)
+        # Noise in roundings of the largest coordinate: a vertex is off by half of one in each of three directions.
+        noise = max(tolerances.fit / FITS_PER_NOISE, 1.5 * rounding)
         sigma = scatter(mesh, tolerances.smooth_edge, noise / SCATTER_SHOWS)
         fit = max(tolerances.fit, FITS_PER_NOISE * noise)
         if SCATTER_SHOWS * sigma > noise:
+            # Standard deviations of scattered vertices that a fit allows: one more than those that count as scatter.
             return cls(
                 max(rounding, sigma),
                 sigma,
                 noise=SCATTERED * sigma,
-                fit=max(fit, FIT_SIGMAS * sigma),
+                fit=max(fit, 5 * sigma),
             )
         return cls(rounding, 0.0, noise=noise, fit=fit)
 
@@ -151,9 +142,12 @@ def scatter(mesh: Facets, smooth_edge: float, least: float = 0.0) -> float:
     spokes = np.maximum(np.bincount(a, minlength=count) + np.bincount(b, minlength=count), 1)
     mean = (np.bincount(a, off, count) + np.bincount(b, off, count)) / spokes
     around = (np.bincount(a, mean[b], count) + np.bincount(b, mean[a], count)) / spokes
-    # a vertex differs from its neighbours where it has at least three
-    ripple = _calmest(mesh, np.abs(mean - around), spokes >= 3, CALM_SHARE_OF_RIPPLE)
-    if mixed <= 0.0 or ripple <= RIPPLE * mixed:
+    # a vertex differs from its neighbours where it has at least three A smaller share of the area, from the calmest up,
+    # for the difference from the neighbours, which is smaller on saddles too.
+    ripple = _calmest(mesh, np.abs(mean - around), spokes >= 3, 0.1)
+    # Where scattered vertices differ from their neighbours by this much of what they show, saddles do by less (0.12 to
+    # 0.4 against 0.01 to 0.02 where tried).
+    if mixed <= 0.0 or ripple <= 0.05 * mixed:
         return 0.0
     irregular = _irregular(mesh, inner, above, below)
     return _calmest(mesh, irregular, readable, CALM_SHARE) / MIXED_PER_SIGMA
@@ -165,7 +159,8 @@ def _irregular(mesh: Facets, inner: Ints, above: Array, below: Array) -> Array:
     a, b = mesh.ends[inner].T
     alike = np.ones(len(a), bool)
     for value in (above, below):
-        alike &= np.abs(value[a] - value[b]) <= REPEATED * np.maximum(value[a], value[b])
+        # Relative difference of what neighbours show that is no accident in a long row of them. Chosen, not measured.
+        alike &= np.abs(value[a] - value[b]) <= 1e-2 * np.maximum(value[a], value[b])
     # an edge shows at its four vertices: so few are alike anyway
     label = components(a[alike], b[alike], len(above))
     # a row of a dozen equal values is no accident
