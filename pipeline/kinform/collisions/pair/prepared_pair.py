@@ -35,17 +35,9 @@ FACET_GRID = 12
 """Parts of the side of a facet at whose ends it is asked what is inside the other part: a choice, 91 points in all."""
 DIRECTIONS_ROUND = np.stack([np.cos(np.arange(8) * np.pi / 4), np.sin(np.arange(8) * np.pi / 4)], axis=1)
 """(8, 2) directions about a point in a plane."""
-CROSSINGS_MOST = 200_000
-"""Crossing facets that one question may return: a choice, so that memory stays bounded."""
 OVERLAP_SAME = 1.25
 """Parts that overlapped at the start, and come to overlap by no more than this share of it, come back to where they
-were: a choice; ..."""
-DEEPER = 5e-3
-"""... and go into each other where it is by so much more: an arm that lies 0.3 mm in its base, of 166 mm, rubs on it by
-0.74 mm until it is clear of it."""
-OVERLAP_THIN = 0.25
-"""Share of what mates may be deep to which pieces of an overlap are thin: twice their volume over their area, which is
-half as much as a wedge is deep, or a third as a ball."""
+were: a choice."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,7 +128,9 @@ class PairTest:
     @property
     def _rubs(self) -> float:
         """m: so far parts that overlap as they are drawn may go on."""
-        return max(self.loose, DEEPER * self.size)
+        # Parts go into each other where their overlap grows by this share of the size: an arm that lies 0.3 mm in its
+        # base, of 166 mm, rubs on it by 0.74 mm until it is clear of it.
+        return max(self.loose, 5e-3 * self.size)
 
     def leads_in(self, displacement: Callable[[float], Array], start: float, end: float) -> float | None:
         """How far a motion from `start` up to `end` goes until it is seen to lead on into what the parts share at its
@@ -145,7 +139,9 @@ class PairTest:
         X = self.pose(displacement(start))
         with working_on(*self.names):
             if X.tobytes() not in self._drawn:
-                self._drawn[X.tobytes()] = DrawnOverlap(*self._meshes, X, OVERLAP_THIN * self.loose)
+                # Share of what mates may be deep to which pieces of an overlap are thin: twice their volume over their
+                # area, which is half as much as a wedge is deep, or a third as a ball.
+                self._drawn[X.tobytes()] = DrawnOverlap(*self._meshes, X, 0.25 * self.loose)
             return self._drawn[X.tobytes()].leads_in(lambda s: self.pose(displacement(s)), start, end, self._rubs)
 
     def pose(self, D: Array) -> Array:
@@ -383,6 +379,7 @@ def _moved(points: Array, X: Array) -> Array:
 def _hits(first: fcl.CollisionObject, second: fcl.CollisionObject) -> Ints:
     """(n, 2) facets of two models that FCL finds to touch, each pair once, in order."""
     result = fcl.CollisionResult()
-    fcl.collide(first, second, fcl.CollisionRequest(num_max_contacts=CROSSINGS_MOST, enable_contact=False), result)
+    # Crossing facets that one question may return: a choice, so that memory stays bounded.
+    fcl.collide(first, second, fcl.CollisionRequest(num_max_contacts=200_000, enable_contact=False), result)
     key = distinct(np.array([(c.b1 << 32) + c.b2 for c in result.contacts], dtype=np.int64))
     return np.stack([key >> 32, key & 0xFFFFFFFF], axis=1)
