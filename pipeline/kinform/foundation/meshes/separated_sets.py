@@ -20,13 +20,8 @@ from kinform.foundation.meshes.slivers import sides_of
 from kinform.foundation.rounding import SINGLE
 from kinform.model.arrays import Array, Flags, Ints
 
-APART_MOST = 20
-"""Pairs of near triangles, per triangle, beyond which sets count as not separated without looking: the search for a
-contact then takes less. Chosen, not measured."""
 APART_SOME = 32
 """Pairs that are looked at first, at most: where sets are not separated, a few tell."""
-APART_TOGETHER = 50_000
-"""Pairs of triangles of several sets that are handled together: 10 MB."""
 
 
 def surely_separated(asked: Sequence[tuple[Array, Array, float]]) -> list[bool]:
@@ -51,7 +46,9 @@ def _near(first: Array, second: Array, distance: float) -> tuple[Ints, Ints] | N
     if len(first) * len(second) > BOXES_MATRIX:
         return None
     low, high = triangle_boxes(first)
-    most = APART_MOST * (len(first) + len(second))
+    # Pairs of near triangles, per triangle, beyond which sets count as not separated without looking: the search for a
+    # contact then takes less. Chosen, not measured.
+    most = 20 * (len(first) + len(second))
     return meeting_boxes((low - distance, high + distance), triangle_boxes(second), most)
 
 
@@ -65,7 +62,8 @@ def _not_parted(
     for k, (one, _) in pairs.items():
         group.append(k)
         count += len(one)
-        if count > APART_TOGETHER:
+        # Pairs of triangles of several sets that are handled together: 10 MB.
+        if count > 50_000:
             out |= _not_parted_of(asked, {k: pairs[k] for k in group})
             group, count = [], 0
     return sorted(out | _not_parted_of(asked, {k: pairs[k] for k in group}) if group else out)
