@@ -22,14 +22,9 @@ from kinform.foundation.words import counted
 from kinform.model.arrays import Array, Ints, freeze
 from kinform.model.assembly import Mesh, MeshHealth
 
-SMALLEST_MESH = 1e-12
-"""Diagonal (m) of the smallest mesh: an atom is a hundred times larger, and cubes of its lengths are still numbers."""
 EPS32 = 2.0**-23
 """Relative step of single precision, in which STL files are written: no mesh is taken to be known better than that, at
 its own size."""
-WELD_STEPS = 2.0
-"""The same in steps of the last place of the largest coordinate, where that is more: copies of one corner that were
-rounded apart differ by one in each direction."""
 FAR = 8.0
 """A mesh whose middle lies this many of its diagonals from the origin of its file, along one axis, is moved to its own:
 nearer ones lose no more than four bits, of the 29 that doubles have more than single precision."""
@@ -53,7 +48,8 @@ def build_mesh(raw: RawMesh, metres: float, weld: float | None, *, path: str, bo
     used, kept = used_only(vertices, kept)
     shape: Array = np.ascontiguousarray(used, dtype=np.float64)
     diagonal = _diagonal(shape)
-    if diagonal < SMALLEST_MESH:
+    # Diagonal (m) of the smallest mesh: an atom is a hundred times larger, and cubes of its lengths are still numbers.
+    if diagonal < 1e-12:
         raise MeshError([Fault(f"is {diagonal:.2g} m across, less than an atom", "correct its units or its scale")])
     centred = _centred(shape)
     if solid and _thickness(centred) <= max(SOLVED * diagonal, 0.0):
@@ -104,7 +100,9 @@ def _welded(raw: RawMesh, metres: float, weld: float | None, resolution: float) 
     vertices -= origin
     vertices *= metres
     faces = place.take(raw.faces)
-    distance = max(SINGLE * _diagonal(vertices), WELD_STEPS * resolution) if weld is None else weld
+    # Vertices are welded within two steps of the last place of the largest coordinate, where that is more: copies of
+    # one corner that were rounded apart differ by one in each direction.
+    distance = max(SINGLE * _diagonal(vertices), 2.0 * resolution) if weld is None else weld
     leaders, close = merge_close(vertices, distance)
     if len(leaders) == len(vertices):
         return vertices, faces, origin, distance
