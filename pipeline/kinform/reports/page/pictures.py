@@ -41,14 +41,8 @@ OVERVIEW_WIDTH, OVERVIEW_HEIGHT = 960, 600
 """px, of the picture of the whole."""
 PICTURE_WIDTH, PICTURE_HEIGHT = 480, 320
 """px, of the picture of a finding."""
-SIGNS_MARGIN = 1.5
-"""The same where only signs of joints are drawn, which have a size of their own. Chosen by eye."""
-FAINT = 0.22
-"""Weight of what a finding is not about. Chosen by eye, as the next two."""
-GLASS = 0.35
-"""Weight of a part that stands before the place where it meets another."""
 TINT = 0.4
-"""Share of red in parts that meet."""
+"""Share of red in parts that meet. Chosen by eye."""
 OVERLAP_WEIGHT, FINDING_OVERLAP_WEIGHT = 0.75, 0.8
 """Weights of overlaps over the whole, and over what a finding is about."""
 
@@ -163,7 +157,8 @@ class Artist:
         ]
         image = layer(view, [item for item in stage.chosen if item not in before] or before)
         if 0 < len(before) < len(stage.chosen):
-            paint(image, view, before, GLASS)
+            # Weight of a part that stands before the place where it meets another. Chosen by eye.
+            paint(image, view, before, 0.35)
         red = self._red(lambda both: not stage.moved and set(both) <= stage.names)
         paint(image, view, red, FINDING_OVERLAP_WEIGHT)
         for joint in self.scene.joints:
@@ -175,7 +170,8 @@ class Artist:
             ring(image, view.project(place[None])[0, :2], 15.0 * FINER, 2.0 * FINER)
         image = smaller(image)
         if stage.others:
-            image = over(image, layer(coarse(view), stage.others), 1.0, FAINT)
+            # Weight of what a finding is not about. Chosen by eye.
+            image = over(image, layer(coarse(view), stage.others), 1.0, 0.22)
         return png(whole_numbers(image))
 
     def _figures(
@@ -221,11 +217,12 @@ class Artist:
 
 def _whole_view(figures: Shown, signs: list[Array], width: int, height: int) -> View:
     """From where everything is seen."""
+    # Margin where only signs of joints are drawn, which have a size of their own. Chosen by eye.
     return view_of(
         np.concatenate([*signs, *(figure.box for figure, _ in figures)]),
         FINER * width,
         FINER * height,
-        VIEW_MARGIN if figures else SIGNS_MARGIN,
+        VIEW_MARGIN if figures else 1.5,
     )
 
 
