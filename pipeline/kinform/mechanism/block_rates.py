@@ -19,19 +19,12 @@ from kinform.mechanism.constants import FREE, SIGMAS
 from kinform.mechanism.frame import axes_frame
 from kinform.model.arrays import Array, Ints
 
-LOOSEST_CLOSED = 1e-4
-"""Loops whose axes are in no relation that snapping knows (Bennett's) close to `SIGMAS` times the uncertainty of the
-axes, but to no more than this relative singular value."""
 FEW_RATES = 160
 """Blocks of at most so many joint rates are decided at once."""
-MOST_RATES = 4000
-"""Largest number of joint rates for which singular values are affordable."""
 SURE_DROPPED = 1e-10
 """In the elimination, what is dropped is below this, ..."""
 SURE_KEPT = 1e-5
 """... and what is kept above this, or else the decision is left to singular values."""
-PIVOT_SHARE = 0.3
-"""Any column of at least this share of the largest may be chosen: preference decides among these."""
 RATE_ROUNDING = 1e-10
 """Rates below this share of the largest of a solution are zero."""
 FACTOR_ROUNDING = 1e-13
@@ -89,13 +82,16 @@ def close_block(
     solutions, sure = None, True
     if count > few:
         solutions, sure = _eliminate(members, cycles, norms, prefer, size)
-    if solutions is None or (not sure and count <= MOST_RATES):
+    # Largest number of joint rates for which singular values are affordable.
+    if solutions is None or (not sure and count <= 4000):
         closed = max(FREE, frame.rounding)
         if doubts is not None:
             blur = doubts[list(block)]
+            # Loops whose axes are in no relation that snapping knows (Bennett's) close to `SIGMAS` times the
+            # uncertainty of the axes, but to no more than this relative singular value.
             closed = max(
                 closed,
-                min(LOOSEST_CLOSED, SIGMAS * float((blur[:, 0] + blur[:, 1] / frame.length).max())),
+                min(1e-4, SIGMAS * float((blur[:, 0] + blur[:, 1] / frame.length).max())),
             )
         nothing = max(RATE_ROUNDING, frame.rounding)
         solutions, sure = _decompose(loop_matrix(members, cycles, frame, norms), prefer, closed, nothing), True
@@ -201,7 +197,8 @@ def _pivots(matrix: Array, prefer: Array) -> tuple[list[int], bool]:
         clear &= largest < SURE_DROPPED or largest > SURE_KEPT
         if largest < FREE:
             break
-        good = np.flatnonzero(norms >= PIVOT_SHARE * largest)
+        # Any column of at least this share of the largest may be chosen: preference decides among these.
+        good = np.flatnonzero(norms >= 0.3 * largest)
         best = int(good[np.argmax(prefer[good])])
         pivots.append(best)
         unit = rest[:, best] / norms[best]

@@ -21,8 +21,6 @@ from kinform.model.kinematics import Joint
 LEAST_FRAME = 0.05
 """Share of the assembly's size that the length is at least, as joints may meet in one point, and have no size of their
 own then. Chosen, not measured."""
-PART_OF_TURN = 1e-3
-"""Share of the fastest turn of a joint's freedoms below which a combination of them is a slide."""
 AXES_RANK = 1e-6
 """Relative singular value below which axes are parallel where the point nearest to all of them is looked for: `SINGLE`,
 as axes come from fits to files in single precision."""
@@ -64,7 +62,8 @@ def _by_turn(space: Array) -> Array:
     if len(space) < 2:
         return space
     left, values, _ = np.linalg.svd(space[:, :3])
-    turning = int(np.count_nonzero(values > PART_OF_TURN * values[0])) if values[0] > 0.0 else 0
+    # Share of the fastest turn of a joint's freedoms below which a combination of them is a slide.
+    turning = int(np.count_nonzero(values > 1e-3 * values[0])) if values[0] > 0.0 else 0
     return np.asarray(left.T[:turning] @ space) if 0 < turning < len(space) else space
 
 
