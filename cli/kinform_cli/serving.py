@@ -14,6 +14,10 @@ from typing import Any
 
 from kinform_cli.errors import refuse
 
+KEEP_ALIVE = 15.0
+"""s after which a browser that follows a page is told again what it knows: so connections that are gone are noticed."""
+
+
 HOST = "127.0.0.1"
 
 
@@ -80,9 +84,7 @@ class PageServer:
     def news(self, known: tuple[str, str] | None) -> tuple[str, str] | None:
         """(version, text) as soon as they are not those that are known, or after a while; None at the end."""
         with self._changed:
-            # s after which a browser that follows a page is told again what it knows: so connections that are gone are
-            # noticed.
-            self._changed.wait_for(lambda: self._over or (str(self._pages), self._text) != known, 15.0)
+            self._changed.wait_for(lambda: self._over or (str(self._pages), self._text) != known, KEEP_ALIVE)
             return None if self._over else (str(self._pages), self._text)
 
 

@@ -20,6 +20,8 @@ INDENT = 4
 """Blanks before the facts of a block; a choice."""
 LEAST_NAME = 16
 """Characters to which a name is shortened at most: of the two bodies of a joint seven each. A choice."""
+LEAST_TEXT = 24
+"""Columns below which a text is not wrapped in a table: about four words a line. A choice."""
 MOST_LINES = 4
 """Lines that a text takes in a table at most; a row of which one takes more becomes a block. A choice."""
 INSET = 2
@@ -91,8 +93,7 @@ class Rows:
         widths = {k: self._natural(k) for k in chosen}
         texts = {k: widths[k] for k in chosen if self._headings[k] in self._texts}
         names = {k: widths[k] for k in chosen if self._headings[k] in self._names}
-        # Columns below which a text is not wrapped in a table: about four words a line. A choice.
-        least = {k: min(most, max(24, self._longest_word(k))) for k, most in texts.items()}
+        least = {k: min(most, max(LEAST_TEXT, self._longest_word(k))) for k, most in texts.items()}
         room = width - _across(widths.values()) + sum(texts.values()) + sum(names.values())
         widths |= _shares(room - sum(least.values()), names)
         widths |= _shares(room - sum(widths[k] for k in names), texts)

@@ -19,6 +19,12 @@ from kinform.reports.values.runs import coordinates
 from kinform_cli.tables import Rows
 from kinform_cli.text import Lengths, degrees, number, scaled
 
+SPARK_WIDTH = 20
+"""Characters of a line of blocks: with the extremes it fits in 80 columns where names are short."""
+SAME_PEAK = 1e-6
+"""Share of the span of a series within which two of its peaks are equally high: the first is named."""
+
+
 BLOCKS = "▁▂▃▄▅▆▇█"
 PLAIN = "_.:-=+*#"
 
@@ -53,7 +59,7 @@ def render(run: Simulation, lengths: Lengths) -> Rows | None:
             number(float(run.time[least])),
             _value(float(values[most]), angles),
             number(float(run.time[most])),
-            spark(values, 20, _levels()),
+            spark(values, SPARK_WIDTH, _levels()),
         )
     return rows
 
@@ -61,8 +67,7 @@ def render(run: Simulation, lengths: Lengths) -> Rows | None:
 def _extremes(values: NDArray[np.float64]) -> tuple[int, int]:
     """Where the lowest and the highest are: the first places that are not lower or higher by rounding only."""
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
-    # Share of the span of a series within which two of its peaks are equally high: the first is named.
-    same = 1e-6 * (high - low)
+    same = SAME_PEAK * (high - low)
     return int(np.argmax(values <= low + same)), int(np.argmax(values >= high - same))
 
 

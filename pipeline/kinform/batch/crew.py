@@ -20,6 +20,8 @@ from kinform.batch.desks import close_all, perform
 from kinform.batch.task import DIED, INTERNAL, Answer, Task, failed
 from kinform.errors import InputError, Problem
 
+TRIES = 2
+"""How often a task is begun whose worker died: once, and once more elsewhere."""
 WAITING = 2
 """Tasks a worker that are under way or waiting for it, so that none is idle while an answer travels. A choice."""
 PATIENCE = 20.0
@@ -119,8 +121,7 @@ class Crew:
             task, tries = under_way.pop(future)
             answer, avoided = _outcome(future, task)
             future.release()
-            # How often a task is begun whose worker died: once, and once more elsewhere.
-            if answer.failure is not None and answer.failure.kind == DIED and tries < 2:
+            if answer.failure is not None and answer.failure.kind == DIED and tries < TRIES:
                 waiting.append((task, tries + 1, avoided))
             else:
                 yield replace(answer, tries=tries)

@@ -16,6 +16,12 @@ from kinform.catalog.store import entry_from, open_catalog
 from kinform.foundation.rounding import SINGLE
 from kinform.frozen import dataclass
 
+MOST_ALIKE = 20
+"""Designs that are named as like another one; a choice."""
+LOOKED_AT = 120
+"""Designs of the same graph and mobility, those of the nearest size, whose axes are compared: 0.05 s. A choice."""
+
+
 JOINT_TYPES = (
     "fixed", "revolute", "prismatic", "cylindrical", "spherical", "planar", "screw", "universal", "general",
 )  # fmt: skip
@@ -74,8 +80,7 @@ def find(path: str | Path, wanted: Wanted) -> tuple[tuple[Entry, ...], int]:
         return tuple(entry_from(database, row) for row in rows), int(total)
 
 
-# Designs that are named as like another one; a choice.
-def like(path: str | Path, entry: Entry, most: int = 20) -> tuple[tuple[tuple[float, Entry], ...], int]:
+def like(path: str | Path, entry: Entry, most: int = MOST_ALIKE) -> tuple[tuple[tuple[float, Entry], ...], int]:
     """The designs of the catalog at `path` that do the same as this one, with how far each is from it, the nearest
     first; and how many designs it has.
 
@@ -88,8 +93,7 @@ def like(path: str | Path, entry: Entry, most: int = 20) -> tuple[tuple[tuple[fl
         ).fetchall()
         total = database.execute("SELECT count(*) FROM designs").fetchone()[0]
         size = _extent(entry)
-        # Designs of the same graph and mobility, those of the nearest size, whose axes are compared: 0.05 s. A choice.
-        near = sorted(rows, key=lambda row: (_ratio(size, _row_extent(row)), row["path"]))[:120]
+        near = sorted(rows, key=lambda row: (_ratio(size, _row_extent(row)), row["path"]))[:LOOKED_AT]
         found = [(distance(entry, other), other) for other in (entry_from(database, row) for row in near)]
         found.sort(key=lambda pair: (pair[0], pair[1].path))
         return tuple(found[:most]), int(total)

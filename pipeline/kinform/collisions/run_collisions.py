@@ -25,10 +25,21 @@ from kinform.model.kinematics import Kinematics
 from kinform.model.simulation import Simulation
 from kinform.model.surfaces import MeshSurfaces
 
+CONTACT_TIME = 1e-4
+"""Share of the time between two outputs to which a first contact is found: a choice. Bodies are taken to move evenly in
+between, which is no better."""
 OUTPUT_TURN = 0.2
 """rad that a joint may turn between outputs: an arc is off its chord by r/8 times its square, 0.5 % of the radius."""
 OUTPUT_SLIDE = 0.05
 """The same of a slide, as a share of the assembly's size: a choice."""
+OUTPUT_PEAK = 0.005
+"""Share of these that a joint may go further on between outputs than at them, where it turns back: a choice."""
+OUTPUTS_MOST = 50_000
+"""Outputs up to which a run is asked for again: a choice."""
+OUTPUTS_FOR_PEAKS = 2_000
+"""The same where that is for what happens where joints turn back: impacts would ask for any number."""
+RUN_ASKED = 3
+"""How often: with more outputs more of the motion is seen."""
 COLLISIONS_MOST = 100
 """Collisions after which later ones are not looked for: a choice, more than anybody reads."""
 DEPTH_TIMES = 12
@@ -62,9 +73,7 @@ def along(
     nodes = nodes_of(simulation, kinematics.joints)
     pairs = moving_pairs(shapes, names, kinematics.joints, nodes)
     end, step = float(simulation.time[-1]), float(np.diff(simulation.time).min())
-    # Share of the time between two outputs to which a first contact is found: a choice. Bodies are taken to move evenly
-    # in between, which is no better.
-    met = FirstCrossings(pairs, end, 1e-4 * step, progress)
+    met = FirstCrossings(pairs, end, CONTACT_TIME * step, progress)
     untested: list[tuple[str, str, str]] = []
     out: list[Collision] = []
     most = COLLISIONS_MOST
@@ -120,10 +129,8 @@ def _followed(simulation: Simulation, size: float, finer: Callable[[int], Simula
     if finer is None:
         return simulation, ""
     times, (wanted, _) = 1, _parts_of_a_step(simulation, size)
-    # How often: with more outputs more of the motion is seen.
-    for _ in range(3):
-        # Outputs up to which a run is asked for again: a choice.
-        if wanted == 1 or 2 * wanted * len(simulation.time) > 50_000:
+    for _ in range(RUN_ASKED):
+        if wanted == 1 or 2 * wanted * len(simulation.time) > OUTPUTS_MOST:
             break
         times *= 2 * wanted
         again = finer(times)
@@ -133,9 +140,7 @@ def _followed(simulation: Simulation, size: float, finer: Callable[[int], Simula
         wanted, _ = _parts_of_a_step(simulation, size)
     if wanted == 1:
         _, wished = _parts_of_a_step(simulation, size)
-        # Outputs up to which a run is asked for again for what happens where joints turn back: impacts would ask for
-        # any number.
-        if 1 < wished and wished * len(simulation.time) <= 2_000:
+        if 1 < wished and wished * len(simulation.time) <= OUTPUTS_FOR_PEAKS:
             again = finer(times * wished)
             simulation = again if len(again.time) > len(simulation.time) else simulation
         return simulation, ""
@@ -172,9 +177,7 @@ def _parts_of_a_step(simulation: Simulation, size: float) -> tuple[int, int]:
         for values in (simulation.joint_velocity, simulation.joint_acceleration)
     )
     parts = max(rate * step, float(np.sqrt(0.5 * acceleration)) * step)
-    # Share of `OUTPUT_TURN` and `OUTPUT_SLIDE` that a joint may go further on between outputs than at them, where it
-    # turns back: a choice.
-    peaks = float(np.sqrt(0.125 * acceleration / 0.005)) * step
+    peaks = float(np.sqrt(0.125 * acceleration / OUTPUT_PEAK)) * step
     return max(1, int(np.ceil(parts - SINGLE))), max(1, int(np.ceil(peaks - SINGLE)))
 
 

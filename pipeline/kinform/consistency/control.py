@@ -15,6 +15,11 @@ from kinform.frozen import dataclass
 from kinform.model.checks import CheckSettings, Ignore
 from kinform.model.findings import Finding, Ignored, RuleOutcome
 
+FEW_WARNINGS = 6
+"""Warnings of one rule on a robot description that are told one by one: the sides of three joints. Of more, nobody
+reads the last."""
+
+
 DOUBT = "KF9"
 """Rules that have one finding for each thing that could not be decided."""
 
@@ -67,9 +72,7 @@ def _few(findings: Sequence[Finding]) -> Iterator[Finding]:
     names all that the others are about."""
     warnings = [finding for finding in findings if finding.severity == "warning"]
     yield from (finding for finding in findings if finding.severity != "warning")
-    # Warnings of one rule on a robot description that are told one by one: the sides of three joints. Of more, nobody
-    # reads the last.
-    if len(warnings) <= 6:
+    if len(warnings) <= FEW_WARNINGS:
         yield from warnings
         return
     told, rest = warnings[:ALIKE_MOST], warnings[ALIKE_MOST:]

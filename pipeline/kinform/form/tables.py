@@ -12,6 +12,8 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 from kinform.form.constants import LARGEST_NUMBER, NAME_LENGTH
 
+PATH_LENGTH = 4095
+"""Characters of the path of a file: what Linux takes."""
 ROWS_MOST = 10_000
 """Rows of a law or a curve that is written in the manifest; longer ones are CSV files. Chosen, not measured: 100 s at a
 hundred a second."""
@@ -27,8 +29,7 @@ Colour = Annotated[str, StringConstraints(pattern=r"^#[0-9a-fA-F]{6}$")]
 Name = Annotated[str, StringConstraints(min_length=1, max_length=NAME_LENGTH, pattern=r"^[^/\x00]+$")]
 Path = Annotated[str, StringConstraints(min_length=1, max_length=NAME_LENGTH, pattern=r"^[^/\x00]+(/[^/\x00]+)*$")]
 """Names with "/" between them, as parts of a scene have."""
-# Characters of the path of a file: what Linux takes.
-Reference = Annotated[str, StringConstraints(min_length=1, max_length=4095, pattern=r"^[^\x00]+$")]
+Reference = Annotated[str, StringConstraints(min_length=1, max_length=PATH_LENGTH, pattern=r"^[^\x00]+$")]
 """Of a part, joint, material, file or rule."""
 Pair = Annotated[list[Reference], Field(min_length=2, max_length=2)]
 Unit = Literal["m", "cm", "mm", "um", "in", "ft"]

@@ -35,6 +35,11 @@ SMALLEST_ASSEMBLY = 1e-3
 measured."""
 LARGEST_ASSEMBLY = 100.0
 """Diagonal (m) above which a unit is doubted: few machines are as large as a ship. Chosen, not measured."""
+MISTAKEN_METRES = 20.0
+"""Diagonal (m) from which on metres are doubted: machines of that size are drawn in mm, and a device of 20 mm, a common
+size, read as metres has it. Chosen, not measured."""
+USUAL_ASSEMBLY = (0.01, 10.0)
+"""Diagonals (m) between which another unit is proposed: from a watch to a lorry. Chosen, not measured."""
 WIDTH = 100
 """Columns of comments in a manifest that is proposed. Chosen."""
 
@@ -194,13 +199,10 @@ def doubts(assembly: Assembly) -> list[str]:
     corners = np.concatenate([np.array(p.mesh.placed_box(p.X_WP)) for p in assembly.parts if p.mesh is not None])
     size = float(np.linalg.norm(np.ptp(corners, axis=0)))
     # what measures some tens of metres may be, but as often millimetres were taken for them
-    # Diagonal (m) from which on metres are doubted: machines of that size are drawn in mm, and a device of 20 mm, a
-    # common size, read as metres has it. Chosen, not measured.
-    mistaken = units == "m" and size >= 20.0
+    mistaken = units == "m" and size >= MISTAKEN_METRES
     if SMALLEST_ASSEMBLY <= size <= LARGEST_ASSEMBLY and not mistaken:
         return []
-    # Diagonals (m) between which another unit is proposed: from a watch to a lorry. Chosen, not measured.
-    least, most = (0.01, 10.0)
+    least, most = USUAL_ASSEMBLY
     better = [u for u in UNITS if least <= size / METRES_PER_UNIT[units] * METRES_PER_UNIT[u] <= most]
     advice = f"; units = {' or '.join(_text(u) for u in better)} would be more usual" if better else ""
     return [f"doubtful: in {units} the assembly is {length(size, 'mm', 3)} across{advice}"]

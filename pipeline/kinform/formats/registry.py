@@ -92,13 +92,14 @@ WRITTEN = {format.name: format for format in ROBOT_FORMATS if format.ending}
 
 _ROOT = re.compile(rb"<\s*([A-Za-z_][\w:.-]*)")
 _BEFORE_ROOT = re.compile(rb"<!--.*?-->|<\?.*?\?>|<!DOCTYPE[^>]*>", re.DOTALL)
+HEAD_BYTES = 1 << 16
+"""Of a file, in which its root element is looked for: comments before it, such as licences, have a few thousand.
+Chosen, not measured."""
 
 
 def reader_of(path: Path, data: bytes) -> Read | None:
     """`read` of the format that a file has by its suffix and its root element; None where it is none of them."""
-    # Bytes of a file in which its root element is looked for: comments before it, such as licences, have a few
-    # thousand. Chosen, not measured.
-    match = _ROOT.search(_BEFORE_ROOT.sub(b"", data[: (1 << 16)]))
+    match = _ROOT.search(_BEFORE_ROOT.sub(b"", data[:HEAD_BYTES]))
     root = match[1].decode() if match else ""
     fits = [format for format in ROBOT_FORMATS if path.suffix.lower() in format.suffixes]
     chosen = next((format for format in fits if format.root == root), None)

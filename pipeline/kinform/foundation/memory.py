@@ -11,6 +11,10 @@ from functools import cache
 
 import numpy as np
 
+LEARNT = (32 << 20) - (64 << 10)
+"""Bytes of the largest array whose release makes glibc raise its mmap threshold: DEFAULT_MMAP_THRESHOLD_MAX, 32 MiB,
+less room for its header."""
+
 
 @contextmanager
 def uncollected() -> Iterator[None]:
@@ -38,9 +42,7 @@ def keep_heap() -> None:
     asks for, two thirds are saved so, and a twentieth of its time. On systems with another C library nothing happens.
     """
     for _ in range(2):
-        # Bytes of the largest array whose release makes glibc raise its mmap threshold: DEFAULT_MMAP_THRESHOLD_MAX, 32
-        # MiB, less room for its header.
-        np.empty(((32 << 20) - (64 << 10)), np.uint8)
+        np.empty(LEARNT, np.uint8)
 
 
 def give_back() -> None:

@@ -7,10 +7,14 @@ from collections.abc import Iterable
 
 NAME_SHOWN = 255
 """Characters of a name that a message shows: the longest name that file systems allow."""
+CLOSE_NAMES = 0.6
+"""Least similarity of a suggested name: the default of `difflib.get_close_matches`."""
 CHOICES_COMPARED = 500
 """Most known names that a wrong one is compared with: each takes 10 µs, all of them 5 ms."""
 MEANT_NAMES = 2
 """Most names that are suggested. Chosen, not measured."""
+LISTED_NAMES = 12
+"""Most known names that are listed where none is close. Chosen, not measured."""
 
 
 def in_quotes(name: object) -> str:
@@ -21,8 +25,7 @@ def in_quotes(name: object) -> str:
     return f'"{text if text.isprintable() else text.encode("unicode_escape").decode("ascii")}"'
 
 
-# Most known names that are listed where none is close. Chosen, not measured.
-def first_names(names: Iterable[str], limit: int = 12) -> str:
+def first_names(names: Iterable[str], limit: int = LISTED_NAMES) -> str:
     """Names in order, comma separated; beyond the limit only their number."""
     names = list(names)
     text = ", ".join(names[:limit])
@@ -35,8 +38,7 @@ def did_you_mean(name: str, names: Iterable[str], what: str) -> str:
     compared = choices if len(choices) <= CHOICES_COMPARED else [k for k in choices if k[:1] == name[:1]]
     close: list[str] = []
     if len(name) <= NAME_SHOWN:
-        # Least similarity of a suggested name: the default of `difflib.get_close_matches`.
-        close = difflib.get_close_matches(name, compared[:CHOICES_COMPARED], n=MEANT_NAMES, cutoff=0.6)
+        close = difflib.get_close_matches(name, compared[:CHOICES_COMPARED], n=MEANT_NAMES, cutoff=CLOSE_NAMES)
     folded = [k for k in choices if k.casefold() == name.casefold()]
     tails = [k for k in choices if k.rpartition("/")[2] == name]
     inside = [k for k in choices if len(name) > 1 and name.casefold() in k.casefold()]

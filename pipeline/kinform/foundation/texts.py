@@ -13,6 +13,9 @@ JSON_DEPTH = 32
 """Deepest nesting of brackets in a JSON file: those that kinform writes have five, and Python's parser recurses."""
 JSON_DIGITS = 18
 """Most digits of a whole number in a JSON file: those of a 64-bit integer."""
+JSON_LARGEST = 1e60
+"""The largest magnitude of a number in a JSON file: moments of inertia of mountains in g·mm² are smaller, and cubes of
+it are still finite."""
 
 
 _JSON_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*+"?|[\[{]|[\]}]', re.DOTALL)
@@ -62,9 +65,7 @@ def parse_json(text: str) -> Any:
 
 def _finite(text: str) -> float:
     value = float(text)
-    # The largest magnitude of a number in a JSON file: moments of inertia of mountains in g·mm² are smaller, and cubes
-    # of it are still finite.
-    if not abs(value) <= 1e60:
+    if not abs(value) <= JSON_LARGEST:
         raise ValueError(f"the number {text[:JSON_DIGITS]} is too large")
     return value
 

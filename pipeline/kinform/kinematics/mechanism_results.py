@@ -37,6 +37,10 @@ from kinform.model.kinematics import (
 )
 from kinform.model.names import JointName, PartName
 
+MOST_BASIS_NUMBERS = 1_000_000
+"""Numbers, of 8 MB, up to which the dense basis of freedoms is kept: the named freedoms, which are sparse, say the
+same. Chosen, not measured."""
+
 
 @dataclass(frozen=True, eq=False)
 class DecidedMechanism:
@@ -131,9 +135,7 @@ def _uncertain(joint: Joint, constant: Collection[str]) -> bool:
 def freedom_basis(closure: Closure, graph: JointGraph) -> Array:
     """Orthonormal basis (k, bodies, 6) of the twists of all bodies; none where it would be very large."""
     count, nodes = closure.mobility, len(graph.bodies)
-    # Numbers, of 8 MB, up to which the dense basis of freedoms is kept: the named freedoms, which are sparse, say the
-    # same. Chosen, not measured.
-    if count == 0 or 6 * count * nodes > 1_000_000:
+    if count == 0 or 6 * count * nodes > MOST_BASIS_NUMBERS:
         return np.zeros((0, nodes, 6))
     twists = body_twists(closure, graph.edges, graph.spaces)
     basis, _ = np.linalg.qr(twists.reshape(count, -1).T)

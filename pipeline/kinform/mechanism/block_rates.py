@@ -19,8 +19,13 @@ from kinform.mechanism.constants import FREE, SIGMAS
 from kinform.mechanism.frame import axes_frame
 from kinform.model.arrays import Array, Ints
 
+LOOSEST_CLOSED = 1e-4
+"""Loops whose axes are in no relation that snapping knows (Bennett's) close to `SIGMAS` times the uncertainty of the
+axes, but to no more than this relative singular value."""
 FEW_RATES = 160
 """Blocks of at most so many joint rates are decided at once."""
+MOST_RATES = 4000
+"""Largest number of joint rates for which singular values are affordable."""
 SURE_DROPPED = 1e-10
 """In the elimination, what is dropped is below this, ..."""
 SURE_KEPT = 1e-5
@@ -82,8 +87,7 @@ def close_block(
     solutions, sure = None, True
     if count > few:
         solutions, sure = _eliminate(members, cycles, norms, prefer, size)
-    # Largest number of joint rates for which singular values are affordable.
-    if solutions is None or (not sure and count <= 4000):
+    if solutions is None or (not sure and count <= MOST_RATES):
         closed = max(FREE, frame.rounding)
         if doubts is not None:
             blur = doubts[list(block)]
@@ -91,7 +95,7 @@ def close_block(
             # uncertainty of the axes, but to no more than this relative singular value.
             closed = max(
                 closed,
-                min(1e-4, SIGMAS * float((blur[:, 0] + blur[:, 1] / frame.length).max())),
+                min(LOOSEST_CLOSED, SIGMAS * float((blur[:, 0] + blur[:, 1] / frame.length).max())),
             )
         nothing = max(RATE_ROUNDING, frame.rounding)
         solutions, sure = _decompose(loop_matrix(members, cycles, frame, norms), prefer, closed, nothing), True

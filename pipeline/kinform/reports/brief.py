@@ -24,6 +24,9 @@ MOST_BRIEF = 10
 """Findings that are told line by line, the worst; with all that stands around them they fill a screen of 24 lines."""
 LEAST_BRIEF = 5
 """Findings that are told line by line though what was found has to be cut; above, fewer are told, and whole."""
+BRIEF_LINES = 21
+"""Lines up to which single findings that do not fit beside their rule take a second one: a screen of 24, without the
+two of the next commands and the prompt."""
 COMPARED = ("KF3", "KF4")
 """Rules, by how their codes begin, that compare with what is stated: what was found says little without it."""
 TOLD_NOTES = ("KF509",)
@@ -31,6 +34,11 @@ TOLD_NOTES = ("KF509",)
 LEAST_NAME = 12
 """Characters of the name of a part to which names are shortened before what was found is: both its ends are still
 recognised. Where less than that is left beside a rule, a finding goes below it. Chosen, not measured."""
+MANY_JOINTS = 9
+"""Derived joints from which a design without a complete function is told how it gets fewer: contact alone counts each
+part that is screwed on; few mechanisms are meant to have so many. A choice."""
+BRIEF_NAME = 28
+"""Characters of the name of the ground: with the rest of its line it fits in 80."""
 
 
 ItemKind = Literal["warning", "not decided", "error"]
@@ -74,9 +82,7 @@ def render(report: CheckReport, design: Design, fail_on: str = "error", *, width
     for most in range(MOST_BRIEF, LEAST_BRIEF - 1, -1):
         chosen, rest = _worst(items, most)
         more = _more(rest, width)
-        # Lines up to which single findings that do not fit beside their rule take a second one: a screen of 24, without
-        # the two of the next commands and the prompt.
-        told, whole = _groups(chosen, width, 21 - len(lines) - len(more))
+        told, whole = _groups(chosen, width, BRIEF_LINES - len(lines) - len(more))
         if whole:
             break
     return "\n".join([*lines, *more, *told]) + "\n"
@@ -291,8 +297,7 @@ def _assumptions(report: CheckReport, design: Design) -> Iterable[str]:
         titles = body_titles(design.assembly, design.kinematics)
         ground = next((titles.get(b.name, str(b.name)) for b in design.kinematics.bodies if b.ground), None)
         if ground is not None:
-            # Characters of the name of the ground: with the rest of its line it fits in 80.
-            yield f"assumed ground: {shortened(one_line(ground), 28)} (`ground` in [assembly])"
+            yield f"assumed ground: {shortened(one_line(ground), BRIEF_NAME)} (`ground` in [assembly])"
     if design.assembly.notes:
         yield f"{counted(len(design.assembly.notes), 'remark')} on what was read (-v)"
 
@@ -300,9 +305,7 @@ def _assumptions(report: CheckReport, design: Design) -> Iterable[str]:
 def _many_joints(design: Design, width: int) -> list[str]:
     """Where contact alone tells the joints, and there are many: how to have those that are meant."""
     function, kinematics = design.assembly.function, design.kinematics
-    # Derived joints from which a design without a complete function is told how it gets fewer: contact alone counts
-    # each part that is screwed on; few mechanisms are meant to have so many. A choice.
-    if kinematics is None or function.complete or len(kinematics.joints) < 9:
+    if kinematics is None or function.complete or len(kinematics.joints) < MANY_JOINTS:
         return []
     many = f"{counted(len(kinematics.joints), 'joint')} between {counted(len(design.assembly.parts), 'part')}"
     advice = "if too many, take over those that `kinform init` proposes, with `complete = true`"

@@ -21,6 +21,11 @@ from kinform.frozen import dataclass
 MOST_OBJECTS = 10_000
 """Groups, datasets and attributes of a file: kinform writes some two hundred, whatever the design, and some for each
 kind of thing that is in it. More would take long to look through, and are not of kinform."""
+DEPTH = 6
+"""Groups in groups: kinform writes three, and a group that contains itself has no end."""
+READ_AT_ONCE = 1 << 16
+"""Bytes of a table that are looked through at once: memory that is used again is cheaper than
+new memory. Chosen, not measured."""
 
 
 _SIMPLE = frozenset((h5t.INTEGER, h5t.FLOAT, h5t.ENUM, h5t.STRING))
@@ -47,8 +52,7 @@ def check_structure(file: h5py.File, stream: BufferedReader, size: int) -> None:
     """Raise ForeignError where an open file of `size` bytes holds what no results file does. Errors of HDF5 as h5py
     raises them."""
     counted = 0
-    # Groups in groups: kinform writes three, and a group that contains itself has no end.
-    for place, thing in _objects(file.id, "", 6, set()):
+    for place, thing in _objects(file.id, "", DEPTH, set()):
         attributes = h5a.get_num_attrs(thing)
         counted += 1 + attributes
         if counted > MOST_OBJECTS:
@@ -149,9 +153,7 @@ def _check_dataset(dataset: h5d.DatasetID, place: str, stream: BufferedReader, s
 def _check_texts(stream: BufferedReader, rows: int, item: _Item, place: str, size: int) -> None:
     """Raise ForeignError where texts of any length are longer, together, than the file, or not in it."""
     lengths = [0] * len(item.texts)
-    # Bytes of a table that are looked through at once: memory that is used again is cheaper than new memory. Chosen,
-    # not measured.
-    at_once = max((1 << 16) // item.size, 1)
+    at_once = max(READ_AT_ONCE // item.size, 1)
     for first in range(0, rows, at_once):
         count = min(at_once, rows - first)
         data = np.frombuffer(stream.read(count * item.size), np.uint8).reshape(count, item.size)

@@ -33,6 +33,8 @@ from kinform.simulation.subject import Failures, refuse
 OUTPUT_NUMBERS = 100_000_000
 """Numbers that a run gives in all, at all output times: 800 MB in the results file, and three times that while they are
 computed. A four-bar has a hundred at each time."""
+OUTPUT_TIMES = 10_000_000
+"""Output times of a run, whatever it gives at each: with ten numbers at each as many numbers as the above."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,8 +198,7 @@ def run_course(
 
 def _excess(mechanism: Mechanism, course: Course) -> str:
     """Why a run of this length is not begun; "" where it is."""
-    # Output times of a run, whatever it gives at each: with ten numbers at each as many numbers as `OUTPUT_NUMBERS`.
-    times = course.duration / course.step + 1.0 if course.step * 10_000_000 >= course.duration else np.inf
+    times = course.duration / course.step + 1.0 if course.step * OUTPUT_TIMES >= course.duration else np.inf
     numbers = times * numbers_at_a_time(mechanism, course.level)
     if numbers <= OUTPUT_NUMBERS:
         return ""

@@ -21,6 +21,8 @@ from kinform.model.simulation import Simulation
 
 DEPENDENT = 1e-7
 """Relative singular value below which a balance depends on the others, as in the count of freedoms."""
+MOST_JOINTS = 60
+"""Joints up to which all wrenches are looked for: the time grows with the third power. A choice."""
 
 
 def axes_of(joint: Joint, R: Array, X: Array) -> tuple[list[Array], list[Array], list[Array]]:
@@ -49,8 +51,7 @@ def axes_of(joint: Joint, R: Array, X: Array) -> tuple[list[Array], list[Array],
 
 def decidable(run: Simulation) -> bool:
     """Whether all wrenches that balance can be looked through: of few joints, and without gears among them."""
-    # Joints up to which all wrenches are looked for: the time grows with the third power. A choice.
-    return len(run.joint_names) <= 60 and not run.gear_names
+    return len(run.joint_names) <= MOST_JOINTS and not run.gear_names
 
 
 def self_stresses(

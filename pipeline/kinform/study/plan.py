@@ -15,6 +15,8 @@ from kinform.form.stated import stated_value, toml_of
 from kinform.frozen import dataclass
 from kinform.study import fits
 
+SAMPLES_MOST = 1_000_000
+"""Samples of a study; its table is held in memory. A choice."""
 SIGMAS = 3.0
 """Standard deviations from the middle of a tolerance to its limits, where it is met by a normal distribution: a process
 whose capability is 1, so that 0.27 % lie outside. What drawings are commonly read as."""
@@ -34,8 +36,7 @@ class Study(_Table):
     design: str
     """The manifest or description, relative to this file."""
     method: Method = "monte-carlo"
-    # Samples of a study; its table is held in memory. A choice.
-    samples: Annotated[int, Field(ge=1, le=1_000_000)] | None = None
+    samples: Annotated[int, Field(ge=1, le=SAMPLES_MOST)] | None = None
     seed: Annotated[int, Field(ge=0)] = 0
     indices: bool = False
     """With sobol: also first-order indices, by d + 2 times as many samples."""

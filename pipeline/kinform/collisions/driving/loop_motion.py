@@ -31,6 +31,11 @@ STEP_KEPT = 0.3
 SINGULAR = 2e-3
 """A singular value of the closure that counts, but is below this, is that of a branching: twenty times what may be none
 (`RANK_SHARE`), and a twentieth of a step."""
+LONG_STEP = 0.4
+"""rad: the longest step where a motion goes on evenly: screws and slides along one line, on which there is nothing to
+be passed over."""
+EVEN_TRIED = 30
+"""Steps after which it is believed that a motion goes on evenly."""
 EVEN_STEPS = 6000
 """Steps of an even motion in all."""
 JACOBIAN_SAME = 1e-9
@@ -120,8 +125,7 @@ def follow(driven: Driven, sign: float) -> Path:
         return Path(np.array(path), np.array(s), why, len(path) > 2 and even is not None)
 
     while len(path) <= PATH_STEPS:
-        # Steps after which it is believed that a motion goes on evenly.
-        if even is not None and len(path) > 30:
+        if even is not None and len(path) > EVEN_TRIED:
             rest = np.arange(1.0, EVEN_STEPS)[:, None] * step * along
             if driven.opened(q + rest[-1]) < ACCEPTED:
                 path.extend(q + rest)
@@ -139,9 +143,7 @@ def follow(driven: Driven, sign: float) -> Path:
         q = following
         path.append(q)
         s.append(s[-1] + step / STEP)
-        # rad: the longest step where a motion goes on evenly: screws and slides along one line, on which there is
-        # nothing to be passed over.
-        step = STEP if even is None else min(2.0 * step, 0.4)
+        step = STEP if even is None else min(2.0 * step, LONG_STEP)
         along = tangent[0] if float(tangent[0] @ along) >= 0.0 else -tangent[0]
         # Steps after which the motion may be back where it began.
         if len(path) > 8 and float(np.linalg.norm(_around(q, turns))) < step and _meets_start(driven, q, along):

@@ -30,6 +30,12 @@ from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.kinematics import Freedom, Joint, Kinematics
 from kinform.model.names import BodyName, PartName
 
+TURNED_ROUND = 2.0 * math.pi - 0.2
+"""rad: a joint of a motion that comes back, and turned by more, goes round and round."""
+LOOP_STOP = 1e-3
+"""Share of a step to which a contact along a motion of loops is found."""
+
+
 LEAVES = "leaves its guide"
 STILL = "the loops do not move"
 
@@ -146,8 +152,7 @@ def _travelled(shapes: Shapes, kinematics: Kinematics, driven: Driven, path: Pat
         if met is None:
             continue
         near = None if met is test else Near(lambda *_, met=met: met, math.inf)
-        # Share of a step to which a contact along a motion of loops is found.
-        first = first_crossing(test, item.course, end, 1e-3, start=item.free, near=near)
+        first = first_crossing(test, item.course, end, LOOP_STOP, start=item.free, near=near)
         rolling = item.rolls and first.at is not None
         if first.overlaps or rolling:
             left_out.add(test.part_names)
@@ -212,8 +217,7 @@ def _range(joint: Joint, driven: Driven, column: int, ends: Sequence[_Travelled]
         still = RangeEnd("unknown", reason="its loops move, and it does not")
         return JointRange(joint.name, still, still, left_out)
     returned = any(end.why == RETURNED for end in ends)
-    # rad: a joint of a motion that comes back, and turned by more, goes round and round.
-    if returned and driven.linkage.turns[column] and high - low > (2.0 * math.pi - 0.2):
+    if returned and driven.linkage.turns[column] and high - low > TURNED_ROUND:
         free = RangeEnd("unknown", reason=overlap) if left_out else RangeEnd("unbounded")
         return JointRange(joint.name, free, free, left_out)
     sides = []

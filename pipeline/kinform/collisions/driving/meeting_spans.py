@@ -20,8 +20,20 @@ from kinform.foundation.meshes.boxes import along_curve, triangle_boxes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 
+DIVIDED_TO = 0.02
+"""Share of a turn, or of a part's length along a slide, that a facet spans at most, or it is divided."""
+DIVIDED_ROUNDS = 2
+"""So often they are asked which of them meet, and those divided further."""
+DIVIDED_AT_ONCE = 2
+"""Times that they are divided into four before they are asked."""
+DIVIDED_MOST = 60_000
+"""Pieces of a part at most."""
 PROFILE_CELLS = 60
 """Profiles of one surface that are the same to so many parts of where both parts are, are taken together."""
+TESTED_MOST = 20_000_000
+"""Groups of one part times those of the other, up to which they are asked."""
+SPANS_MOST = 4_000_000
+"""Spans of pairs of groups in all."""
 PLACES = 8192
 """Spans begin and end at so many places of a turn, or of the length of the longer part."""
 SECTORS = 64
@@ -206,17 +218,14 @@ def meeting_spans(parts: Sequence[tuple[Array, Ints]], turning: bool, margin: fl
     groups, pairs = _met(sides, origin, cell, margin, along)
     if groups is None:
         return None
-    # So often they are asked which of them meet, and those divided further.
-    for _ in range(2):
+    for _ in range(DIVIDED_ROUNDS):
         kept = [
             side.some((np.bincount(pairs[:, k], minlength=len(group.low)) > 0)[group.of])
             for k, (side, group) in enumerate(zip(sides, groups, strict=True))
         ]
         sides = kept
-        # Times that they are divided into four before they are asked.
-        for _ in range(2):
-            # Share of a turn, or of a part's length along a slide, that a facet spans at most, or it is divided.
-            wide = [side.stop - side.start > 0.02 * whole for side in sides]
+        for _ in range(DIVIDED_AT_ONCE):
+            wide = [side.stop - side.start > DIVIDED_TO * whole for side in sides]
             sides = [side.divided(flags, turning, margin) for side, flags in zip(sides, wide, strict=True)]
         if sides == kept:
             break
@@ -232,12 +241,10 @@ def _met(
 ) -> tuple[tuple[_Groups, _Groups] | None, Ints]:
     """Groups of the pieces of both, and pairs (n, 2) of groups that meet; None where they are too many."""
     none = np.zeros((0, 2), dtype=np.int64)
-    # Pieces of a part at most.
-    if max(len(side.low) for side in sides) > 60_000:
+    if max(len(side.low) for side in sides) > DIVIDED_MOST:
         return None, none
     first, second = (_Groups(side, origin, cell) for side in sides)
-    # Groups of one part times those of the other, up to which they are asked.
-    if len(first.low) * len(second.low) > 20_000_000:
+    if len(first.low) * len(second.low) > TESTED_MOST:
         return None, none
     return (first, second), np.concatenate([none, *_overlapping(first, second, margin, along)])
 
@@ -272,8 +279,7 @@ def _united(first: _Groups, second: _Groups, pairs: Ints, turning: bool, step: f
     (start_a, stop_a, at_a, count_a), (start_b, stop_b, at_b, count_b) = first.spans(), second.spans()
     i, j = pairs.T
     count = count_a[i] * count_b[j]
-    # Spans of pairs of groups in all.
-    if count.sum() > 4_000_000:
+    if count.sum() > SPANS_MOST:
         return None
     pair = np.repeat(np.arange(len(pairs)), count)
     rank = np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)

@@ -35,6 +35,8 @@ FACET_GRID = 12
 """Parts of the side of a facet at whose ends it is asked what is inside the other part: a choice, 91 points in all."""
 DIRECTIONS_ROUND = np.stack([np.cos(np.arange(8) * np.pi / 4), np.sin(np.arange(8) * np.pi / 4)], axis=1)
 """(8, 2) directions about a point in a plane."""
+CROSSINGS_MOST = 200_000
+"""Crossing facets that one question may return: a choice, so that memory stays bounded."""
 OVERLAP_SAME = 1.25
 """Parts that overlapped at the start, and come to overlap by no more than this share of it, come back to where they
 were: a choice."""
@@ -379,7 +381,6 @@ def _moved(points: Array, X: Array) -> Array:
 def _hits(first: fcl.CollisionObject, second: fcl.CollisionObject) -> Ints:
     """(n, 2) facets of two models that FCL finds to touch, each pair once, in order."""
     result = fcl.CollisionResult()
-    # Crossing facets that one question may return: a choice, so that memory stays bounded.
-    fcl.collide(first, second, fcl.CollisionRequest(num_max_contacts=200_000, enable_contact=False), result)
+    fcl.collide(first, second, fcl.CollisionRequest(num_max_contacts=CROSSINGS_MOST, enable_contact=False), result)
     key = distinct(np.array([(c.b1 << 32) + c.b2 for c in result.contacts], dtype=np.int64))
     return np.stack([key >> 32, key & 0xFFFFFFFF], axis=1)

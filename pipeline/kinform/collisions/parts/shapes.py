@@ -21,6 +21,13 @@ from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.surfaces import MeshSurfaces
 
+SCRAPE = 1e-3
+"""By so much parts may overlap as they slide along each other: by rounding of their files and by what is left over
+where joints were fitted."""
+SCRAPE_ANGLES = 1.5
+"""What a surface may be off an exact invariance, in alignment tolerances: a choice, above 1 as the axis of the joint
+is off too."""
+
 
 @dataclass
 class Shapes:
@@ -73,11 +80,7 @@ class Shapes:
     def allowed(self, first: str, second: str) -> Allowed:
         """What surfaces of a pair may be off an exact invariance."""
         size = min(self.mesh(first).diagonal, self.mesh(second).diagonal)
-        # By so much parts may overlap as they slide along each other: by rounding of their files and by what is left
-        # over where joints were fitted.
-        # What a surface may be off an exact invariance, in alignment tolerances: a choice, above 1 as the axis of the
-        # joint is off too.
-        return Allowed(1e-3 * size, 1.5 * self.assembly.tolerances.alignment)
+        return Allowed(SCRAPE * size, SCRAPE_ANGLES * self.assembly.tolerances.alignment)
 
     def invariant(self, name: str, twists: Array, allowed: Allowed) -> Flags:
         """(s,) which surfaces of a part the motions `twists` (k, 6), in the world, map onto themselves."""

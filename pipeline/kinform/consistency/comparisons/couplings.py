@@ -27,6 +27,8 @@ ROUNDED_RATIO = 1e-3
 UNCERTAIN_RATIO = 0.05
 """Relative uncertainty, for each coupling of a chain, beyond which a ratio says nothing: gears of 20 and 21 teeth
 differ by so much."""
+DEVIATIONS = 3.0
+"""Standard uncertainties of a derived ratio within which a stated one agrees: 99.7 % of a normal distribution."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +69,7 @@ def derived_ratio(
         spread = coupling.uncertainty / abs(coupling.ratio) if math.isfinite(coupling.uncertainty) else 0.0
         # Standard uncertainties of a derived ratio within which a stated one agrees: 99.7 % of a normal distribution.
         relative += max(
-            3.0 * spread,
+            DEVIATIONS * spread,
             ROUNDED_RATIO if coupling.kind == "screw" else UNCOUNTED_TEETH,
         )
     if relative > UNCERTAIN_RATIO * len(chain):

@@ -21,6 +21,10 @@ from kinform.model.contacts import Patch
 from kinform.model.descriptions import DescribedLink, Description
 from kinform.model.names import PartName
 
+OPENS = 1e-3
+"""Least speed with which all of a contact must open, for a motion of 1: normals of surfaces that were recovered from
+meshes are off by less, and a bore that reaches half round, less one facet of 3000, still opens."""
+
 
 @dataclass(frozen=True, eq=False)
 class HeldLink:
@@ -92,9 +96,7 @@ def _opens(patches: list[Patch], free: frozenset[PartName]) -> bool:
     columns = np.concatenate([-rows, np.ones((len(rows), 1))], axis=1)
     bounds = [(-1.0, 1.0)] * 6 + [(None, 1.0)]
     solved = linprog(np.r_[np.zeros(6), -1.0], A_ub=columns, b_ub=np.zeros(len(rows)), bounds=bounds, method="highs")
-    # Least speed with which all of a contact must open, for a motion of 1: normals of surfaces that were recovered from
-    # meshes are off by less, and a bore that reaches half round, less one facet of 3000, still opens.
-    return solved.status != 0 or float(solved.x[6]) > 1e-3
+    return solved.status != 0 or float(solved.x[6]) > OPENS
 
 
 def _words(context: Context, one: PartName, other: PartName) -> str:

@@ -22,6 +22,9 @@ from kinform.model.contacts import Contacts, Patch
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import FREEDOMS, Body, Joint, Kinematics, UndeclaredJoint
 
+SHARED_MOTION = 0.02
+"""Share of a motion within which what contact leaves is a motion that a loop's closure leaves, too; as `ADMITTED`."""
+
 
 def compare_joints(
     assembly: Assembly, contacts: Contacts | None, kinematics: Kinematics, intended: Iterable[IntendedJoint]
@@ -161,8 +164,7 @@ def _shares(intended: IntendedJoint, kind: str, found: Array) -> bool:
     together = np.concatenate([at(found), at(wanted)])
     scale = max(float(np.abs(together[:, 3:]).max()), TINY)
     together = together / np.r_[np.ones(3), np.full(3, scale)]
-    # Share of a motion within which what contact leaves is a motion that a loop's closure leaves, too; as `ADMITTED`.
-    return int(np.linalg.matrix_rank(together, tol=0.02)) < len(found) + len(wanted)
+    return int(np.linalg.matrix_rank(together, tol=SHARED_MOTION)) < len(found) + len(wanted)
 
 
 def _slack(patches: list[Patch]) -> tuple[float, float]:

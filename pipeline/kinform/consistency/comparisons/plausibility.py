@@ -28,6 +28,8 @@ from kinform.model.findings import Severity
 LARGE = 20.0
 """Diagonal (m) above which the units are doubted: few machines are larger, and one of 20 mm in metres is. Chosen, not
 measured."""
+MASSIVE = 1000.0
+"""Volume of solid material (m³) above which the units are doubted: 8000 t of steel. Chosen, not measured."""
 TINY: Mapping[str, float] = {"um": 3e-6}
 """Diagonal (m) below which the units are doubted, for each unit; `TINY_ELSE` where not listed."""
 TINY_ELSE = 3e-3
@@ -44,6 +46,8 @@ WRONG_SCALE = 1e9
 """By so much a density is off where a mesh is in metres and is in millimetres, or the other way round."""
 SCALE_SPREAD = 50.0
 """Factor about `WRONG_SCALE` within which a density says a wrong unit: hulls of 10 to 25 000 kg/m³ are right ones."""
+HULL_DENSITY = 500.0
+"""kg/m³: mass over the volume of the convex hull, as parts of robots have it; in the middle of what there is."""
 SCALE_OUTLIER = 20.0
 """Factor by which a shape with such a density must also be larger or smaller than the middle one of the others: what a
 placeholder of a nanogram is stated for is not."""
@@ -87,9 +91,7 @@ def _scaled(assembly: Assembly) -> Iterator[Doubt]:
             continue
         density = body.mass / body.hull.volume
         for factor, other in ((WRONG_SCALE, "smaller"), (1.0 / WRONG_SCALE, "larger")):
-            # kg/m³: mass over the volume of the convex hull, as parts of robots have it; in the middle of what there
-            # is.
-            if not 1.0 / SCALE_SPREAD < density * factor / 500.0 < SCALE_SPREAD:
+            if not 1.0 / SCALE_SPREAD < density * factor / HULL_DENSITY < SCALE_SPREAD:
                 continue
             text = length(body.size, assembly.units)
             message = (
@@ -124,8 +126,7 @@ def _of_the_whole(assembly: Assembly, size: float) -> Doubt | None:
     def doubt(message: str, size_found: str = across) -> Doubt:
         return Doubt("warning", (assembly.name,), message, size_found, assembly.source)
 
-    # Volume of solid material (m³) above which the units are doubted: 8000 t of steel. Chosen, not measured.
-    if material > 1000.0:
+    if material > MASSIVE:
         amount = volume(material, units)
         return doubt(
             f"the parts hold {amount} of solid material with units = '{units}': no mechanism is that heavy",

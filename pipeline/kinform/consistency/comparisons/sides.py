@@ -19,6 +19,11 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.descriptions import DescribedLink, Description
 
+MIRRORED = 2e-3
+"""Share of the span of all pairs by which a frame may be off its mirror image: numbers that were rounded to millimetres
+in a robot of half a metre. Chosen, not measured."""
+PLANE_NEAR = math.cos(math.radians(15.0))
+"""Cosine of the angle within which the plane of symmetry is across an axis of the first link: robots are drawn so."""
 MIRRORED_ANGLE = math.radians(0.5)
 """rad by which an axis may be off its mirror image: numbers that were rounded to two decimals. Chosen, not measured."""
 
@@ -67,9 +72,7 @@ class Sides:
 
     def agrees(self, pair: Pair) -> bool:
         """Whether the frames of a pair are mirrored."""
-        # Share of the span of all pairs by which a frame may be off its mirror image: numbers that were rounded to
-        # millimetres in a robot of half a metre. Chosen, not measured.
-        return pair.off <= 2e-3 * self.span and pair.tilt <= MIRRORED_ANGLE
+        return pair.off <= MIRRORED * self.span and pair.tilt <= MIRRORED_ANGLE
 
 
 def partner(name: str, names: Mapping[str, DescribedLink]) -> str | None:
@@ -155,8 +158,7 @@ def _mirror(a: Array, b: Array, R: Array) -> Image:
     """The mirror that takes a to b, across an axis of the frame R (3, 3) that is near; the plane half way between."""
     normal = (b - a) / np.linalg.norm(b - a)
     nearest = R[:, int(np.argmax(np.abs(R.T @ normal)))]
-    # Cosine of the angle within which the plane of symmetry is across an axis of the first link: robots are drawn so.
-    if abs(float(nearest @ normal)) > math.cos(math.radians(15.0)):
+    if abs(float(nearest @ normal)) > PLANE_NEAR:
         normal = nearest
     return Image(np.eye(3) - 2.0 * np.outer(normal, normal), 2.0 * float(normal @ (0.5 * (a + b))) * normal)
 

@@ -29,12 +29,17 @@ from kinform.consistency.outcome import Outcome, decided
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, mass, number, volume
 
+DENSEST = 23000.0
+"""kg/m³: osmium has 22 600. Nothing has more mass over the volume of its convex hull, in which all of it is."""
 HEAVY = 12000.0
 """kg/m³ above which what closed meshes enclose is doubted: lead has 11 340; a screw or a motor that is not drawn makes
 a small part heavy."""
 LIGHT = 5.0
 """kg/m³ below which what closed meshes enclose is doubted: the lightest foams have 10; hollow links of public robots
 have 100 and more."""
+INERTIA_LARGE = 1.001
+"""Share of m·r² (r from the centre of mass to the farthest point of the hull) above which half the trace of an inertia
+is impossible: rounding of stated numbers."""
 INERTIA_FAR = 30.0
 """Factor by which an inertia may be below or above that of the same mass, spread evenly over the shape, before it is
 doubted: hollow shells have up to 3, dense motors in light shells down to a tenth."""
@@ -60,8 +65,7 @@ def check(context: Context) -> Outcome:
 def _of_mass(context: Context, body: Weighed) -> Ranked | None:
     assert body.hull is not None
     units, solid = context.units, body.solid
-    # kg/m³: osmium has 22 600. Nothing has more mass over the volume of its convex hull, in which all of it is.
-    if body.hull.volume > 0.0 and body.mass / body.hull.volume > 23000.0:
+    if body.hull.volume > 0.0 and body.mass / body.hull.volume > DENSEST:
         density = body.mass / body.hull.volume
         text = (
             f"{body.what} states {mass(body.mass)}, and its geometry fits into {volume(body.hull.volume, units)}: "
@@ -103,9 +107,7 @@ def _of_inertia(body: Weighed) -> Ranked | None:
     most = body.mass * reach * reach
     even = _even(body)
     ratio = half_trace / even if even > 0.0 else 1.0
-    # Share of m·r² (r from the centre of mass to the farthest point of the hull) above which half the trace of an
-    # inertia is impossible: rounding of stated numbers.
-    if half_trace > 1.001 * most:
+    if half_trace > INERTIA_LARGE * most:
         severity = "error" if ratio > INERTIA_FAR else "warning"
         why = "of the mass spread evenly, and more than if all of it were at the farthest point of its geometry"
     elif half_trace <= 0.0 or not 1.0 / INERTIA_FAR < ratio < INERTIA_FAR:

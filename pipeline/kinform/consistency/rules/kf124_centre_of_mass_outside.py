@@ -22,6 +22,10 @@ from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import length, place
 
+CENTRE_OUTSIDE = 0.03
+"""Share of the size by which a centre of mass may lie outside of the hull: pieces that are not drawn, rounding.
+Chosen, not measured."""
+
 
 def check(context: Context) -> Findings:
     """The centre of every stated mass beside the hull of its geometry."""
@@ -36,9 +40,7 @@ def _outside(context: Context) -> Iterator[Ranked]:
         if doubted & {body.name, *(part.name for part in body.parts)}:
             continue
         out = float(body.hull.outside(body.centre[None])[0])
-        # Share of the size by which a centre of mass may lie outside of the hull: pieces that are not drawn, rounding.
-        # Chosen, not measured.
-        if out > 0.03 * body.size:
+        if out > CENTRE_OUTSIDE * body.size:
             middle = 0.5 * (body.points.min(axis=0) + body.points.max(axis=0))
             finding = RULE.finding(
                 [body.name],

@@ -30,6 +30,9 @@ BARE_SHARE = 0.15
 Chosen, not measured."""
 BARE_DEPTH = 0.10
 """Share of the link's size by which it may reach out there. Chosen, not measured: what matters collides by more."""
+FAR_BEYOND = 0.30
+"""Share of the link's size by which collision geometry may reach beyond the visual: boxes and cylinders around slender
+links."""
 THOUSAND_SPREAD = 5.0
 """Factor about 1000, metres over millimetres, within which two sizes of one link say that their units differ. Chosen,
 not measured: collision geometry is hardly five times as large or small as what is seen."""
@@ -70,9 +73,7 @@ def _of_link(context: Context, link: DescribedLink, coverage: Coverage) -> list[
         remedy = "Add what is missing to the collision geometry, or correct its origin and scale."
         finding = _finding("warning", link, text, f"{share} bare", "all of it covered", remedy)
         findings.append(Ranked("bare", coverage.uncovered_share, finding))
-    # Share of the link's size by which collision geometry may reach beyond the visual: boxes and cylinders around
-    # slender links.
-    if coverage.beyond > 0.30 * size:
+    if coverage.beyond > FAR_BEYOND * size:
         text = (
             f"the collision geometry of link '{link.name}' reaches {length(coverage.beyond, units)} beyond its visual "
             f"(the link is {length(size, units)} across)"

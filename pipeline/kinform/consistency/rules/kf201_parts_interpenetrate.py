@@ -26,6 +26,10 @@ from kinform.model.contacts import Interference
 from kinform.model.findings import Finding
 from kinform.model.names import PartName
 
+AT_JOINT = 0.02
+"""Share of the size of the smaller of two links that a joint joins, up to which they may overlap in a description:
+bearings, flush horns, bevel gears drawn at their nominal size. Chosen, not measured."""
+
 
 def check(context: Context) -> Findings:
     """Overlaps that are not mated fits."""
@@ -78,9 +82,7 @@ def _relation(context: Context, overlap: Interference) -> tuple[str, str]:
         return "; they move as one body", "note" if _links(context, parts) else "warning"
     links = _links(context, parts)
     joined = {frozenset(joint.between) for d in assembly.descriptions for joint in d.joints}
-    # Share of the size of the smaller of two links that a joint joins, up to which they may overlap in a description:
-    # bearings, flush horns, bevel gears drawn at their nominal size. Chosen, not measured.
-    if links and frozenset(links) in joined and overlap.depth <= 0.02 * _size(context, links):
+    if links and frozenset(links) in joined and overlap.depth <= AT_JOINT * _size(context, links):
         return f"; a joint joins the links {quoted(links)}", "note"
     return f" (links {quoted(links)})" if links else "", "error"
 

@@ -26,6 +26,8 @@ from kinform.model.findings import Finding
 
 SHORT_TURN = math.radians(0.02)
 """rad by which a turn may fall short: a stop on facets is not where it is on the surface. Chosen, not measured."""
+SHORT_SLIDE = 1e-3
+"""Share of a stated length by which a slide may fall short: as `SHORT_TURN` of a turn of 20°."""
 
 
 def check(context: Context) -> Outcome:
@@ -38,7 +40,9 @@ def check(context: Context) -> Outcome:
         lower, upper = item.intended.range or (-math.inf, math.inf)
         # Share of a stated length by which a slide may fall short: as `SHORT_TURN` of a turn of 20°.
         allowed = (
-            1e-3 * (upper - lower) if item.intended.type == "prismatic" and math.isfinite(upper - lower) else SHORT_TURN
+            SHORT_SLIDE * (upper - lower)
+            if item.intended.type == "prismatic" and math.isfinite(upper - lower)
+            else SHORT_TURN
         )
         for side, stated, end, toward in (("lower", lower, item.lower, -1.0), ("upper", upper, item.upper, 1.0)):
             reach = _reach(end, stated)

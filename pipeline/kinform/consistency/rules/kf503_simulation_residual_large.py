@@ -19,6 +19,10 @@ from kinform.consistency.outcome import Outcome, decided, inconclusive, skipped
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import number
 
+LOOP_RESIDUAL = 1e-6
+"""Residual relative to the size of the assembly (m), and absolute (rad): a micrometre in a
+metre. Chosen, not measured."""
+
 
 def check(context: Context) -> Outcome:
     """The greatest constraint residual of the run."""
@@ -29,9 +33,7 @@ def check(context: Context) -> Outcome:
     if not np.isfinite(residual).all():
         return inconclusive("the residual of the constraints was not recorded at every time")
     worst = int(np.argmax(residual))
-    # Residual relative to the size of the assembly (m), and absolute (rad): a micrometre in a metre. Chosen, not
-    # measured.
-    limit = 1e-6 * min(1.0, extent(context.assembly) or 1.0)
+    limit = LOOP_RESIDUAL * min(1.0, extent(context.assembly) or 1.0)
     if float(residual[worst]) <= limit:
         return decided(reason=f"largest residual {number(float(residual[worst]), 2)}")
     finding = RULE.finding(

@@ -21,6 +21,12 @@ from kinform.foundation.words import number
 
 ENERGY_DRIFT = 1e-3
 """Drift relative to the energy exchanged. Chosen, not measured: a simulation is to be right to three digits."""
+ENERGY_SOLVED = 1e-6
+"""Share of the greatest kinetic energy that solving leaves: output times may catch the motion where nothing is
+exchanged."""
+NO_ENERGY = 1e-15
+"""Energy exchanged (J) below which there is nothing to compare. Chosen, not measured: a milligram at
+0.04 mm/s has as much."""
 
 
 def check(context: Context) -> Outcome:
@@ -34,12 +40,8 @@ def check(context: Context) -> Outcome:
     drift = np.abs(balance - balance[0])
     exchanged = float(np.ptp(simulation.energy, axis=0).max())
     worst = int(np.argmax(drift))
-    # Share of the greatest kinetic energy that solving leaves: output times may catch the motion where nothing is
-    # exchanged.
-    rounding = 1e-6 * float(simulation.energy[:, 0].max())
-    # Energy exchanged (J) below which there is nothing to compare. Chosen, not measured: a milligram at 0.04 mm/s has
-    # as much.
-    if float(drift[worst]) <= max(ENERGY_DRIFT * exchanged, rounding, 1e-15):
+    rounding = ENERGY_SOLVED * float(simulation.energy[:, 0].max())
+    if float(drift[worst]) <= max(ENERGY_DRIFT * exchanged, rounding, NO_ENERGY):
         return decided(reason=f"drift {number(float(drift[worst]), 2)} J of {number(exchanged, 3)} J exchanged")
     finding = RULE.finding(
         (context.assembly.name,),

@@ -31,6 +31,19 @@ from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.tolerances import Tolerances
 
+SLIP_LEAST = 0.1
+"""Share of the shortest segment, or of the contact tolerance, by which points that touch may be off each other's
+normal. Chosen, not measured."""
+ROUNDER = 0.2
+"""Share of their own curvatures at which curves that touch along a line diverge at least. Chosen, not measured."""
+LENGTH_SHARED = 0.1
+"""Least length, in contact tolerances, along which outlines touch. Chosen, not measured."""
+DISTINCT_DISTANCE = 0.2
+"""Distance, in contact tolerances, within which lines of contact with similar normals are one. Chosen, not measured."""
+GAP_ROUNDING = 2e-3
+"""Difference of gaps, in contact tolerances, up to which lines of contact touch alike; two chordal deviations where
+that is more. Chosen, not measured."""
+
 
 @dataclass(frozen=True, eq=False)
 class _Meeting:
@@ -241,12 +254,9 @@ def _refined(first: Curve, second: Curve, s: float, t: float, tolerance: float) 
     inner = max(tolerance, float(np.diff(first.knots).min()))
     if abs(turn) > math.sin(FLUSH_ANGLE):
         return None
-    # Share of the shortest segment, or of the contact tolerance, by which points that touch may be off each other's
-    # normal. Chosen, not measured.
-    if abs(gap) > MATING_REACH * tolerance or slip > 0.1 * inner:
+    if abs(gap) > MATING_REACH * tolerance or slip > SLIP_LEAST * inner:
         return None
-    # Share of their own curvatures at which curves that touch along a line diverge at least. Chosen, not measured.
-    if relative <= 0.2 * max(abs(kappa), abs(lam)):
+    if relative <= ROUNDER * max(abs(kappa), abs(lam)):
         return None
     i, j = first.segment(at.s), second.segment(at.t)
     shares = np.array([abs(kappa), abs(lam)]) / (abs(kappa) + abs(lam))
@@ -263,14 +273,14 @@ def _distinct(meetings: list[_Meeting], tolerance: float) -> list[_Meeting]:
     out: list[_Meeting] = []
     for met in sorted(meetings, key=lambda m: (m.doubt, m.gap, *m.point.tolist())):
         low, high = met.reach
-        # Least length, in contact tolerances, along which outlines touch. Chosen, not measured.
-        if high - low <= 0.1 * tolerance:
+        if high - low <= LENGTH_SHARED * tolerance:
             continue
         # normals within 26°
         # Distance, in contact tolerances, within which lines of contact with similar normals are one. Chosen, not
         # measured.
         if all(
-            float(np.linalg.norm(met.point - other.point)) > 0.2 * tolerance or float(met.normal @ other.normal) < 0.9
+            float(np.linalg.norm(met.point - other.point)) > DISTINCT_DISTANCE * tolerance
+            or float(met.normal @ other.normal) < 0.9
             for other in out
         ):
             out.append(met)
@@ -280,9 +290,7 @@ def _distinct(meetings: list[_Meeting], tolerance: float) -> list[_Meeting]:
 def _nearest(meetings: list[_Meeting], tolerance: float) -> list[_Meeting]:
     """Those that touch. Where nothing touches, those that hold a tooth between them with equal play."""
     least = min(met.gap for met in meetings)
-    # Difference of gaps, in contact tolerances, up to which lines of contact touch alike; two chordal deviations where
-    # that is more. Chosen, not measured.
-    margin = max(2.0 * max(met.chord for met in meetings), 2e-3 * tolerance)
+    margin = max(2.0 * max(met.chord for met in meetings), GAP_ROUNDING * tolerance)
     close = [met for met in meetings if met.gap <= max(least, 0.0) + margin]
     limit = TOUCH * tolerance
     if least > limit:

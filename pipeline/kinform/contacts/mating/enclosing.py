@@ -31,6 +31,12 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 
+ENCLOSING_PROBES = 20_000
+"""Middles of facets of either part that are looked at, of those that may be near what they face: as good as all. Where
+they were 600 of 700, evenly by area, none need have been on a pin, and which were hung on the pose. Contacts of robots
+(so100, dog, sigmaban2019) take as long as then."""
+ENCLOSING_SAMPLES = 600
+"""Of the middles that face the other part, as many as a patch is made of. Chosen, not measured."""
 STRAY_SHARE = 0.02
 """Share of the area of all patches below which facets that do not touch hold nothing on their own: what joints are
 derived from leaves as much out."""
@@ -81,8 +87,7 @@ def enclosing_patches(pair: PairView, patches: list[Patch]) -> list[Patch]:
     near = _near(pair, unread)
     if near is None or not _encloses(near, patches, pair.tolerance):
         return []
-    # Of the middles that face the other part, as many as a patch is made of. Chosen, not measured.
-    return [_patch(pair, near.few(600))]
+    return [_patch(pair, near.few(ENCLOSING_SAMPLES))]
 
 
 def _without_strays(patches: list[Patch], tolerance: float) -> list[Patch]:
@@ -130,10 +135,7 @@ def _facing(view: PairView, unread: Flags) -> _Near | None:
     able, region = _can_hit(view, points, normals, reach, unread, of_row, column)
     if not len(able):
         return None
-    # Middles of facets of either part that are looked at, of those that may be near what they face: as good as all.
-    # Where they were 600 of 700, evenly by area, none need have been on a pin, and which were hung on the pose.
-    # Contacts of robots (so100, dog, sigmaban2019) take as long as then.
-    some, weight = _evenly(areas[able], 20_000)
+    some, weight = _evenly(areas[able], ENCLOSING_PROBES)
     able = able[some]
     points, normals, of_row = points[able], normals[able], of_row[able]
     hits = region.cast(b.to_part(points), b.turn_to_part(normals), np.full(len(points), reach))

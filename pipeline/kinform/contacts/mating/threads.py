@@ -23,8 +23,14 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 
+PITCH_SAME = 2e-3
+"""Relative difference of two leads that are meant as one; less where the engagement is long. Chosen, not measured."""
+THREAD_AXIS_VAGUE = 0.02
+"""rad: uncertainty of its axis from which on a surface is no thread that mates. Chosen, not measured."""
 PROFILE_SHARES = np.array([1.0, 3.0, 5.0]) / 6.0
 """Where samples lie on the profile of a facet: the middles of its thirds."""
+FLANK_GAP = 0.15
+"""Largest gap of two flanks, in leads: beyond, neither is the other's. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,13 +75,10 @@ def _fit(pair: PairView, surfaces: SurfacePair) -> tuple[Axes, float, float] | N
     turns = engaged / max(abs(first), ARITHMETIC)
     apart = abs(first - second)
     pitch = 0.5 * (first + second)
-    # Largest gap of two flanks, in leads: beyond, neither is the other's. Chosen, not measured.
-    limit = 0.15 * abs(pitch)
-    # rad: uncertainty of its axis from which on a surface is no thread that mates. Chosen, not measured.
-    if max(surfaces.turns) > 0.02:
+    limit = FLANK_GAP * abs(pitch)
+    if max(surfaces.turns) > THREAD_AXIS_VAGUE:
         return None
-    # Relative difference of two leads that are meant as one; less where the engagement is long. Chosen, not measured.
-    if apart > 2e-3 * abs(first) or apart * max(turns, 1.0) > limit:
+    if apart > PITCH_SAME * abs(first) or apart * max(turns, 1.0) > limit:
         return None
     return (axes, pitch, limit) if aligned(pair, axes, limit, engaged) else None
 

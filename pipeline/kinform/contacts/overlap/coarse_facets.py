@@ -27,6 +27,8 @@ from kinform.model.tolerances import Tolerances
 
 BEYOND_FACETS = 2.5
 """Times what a facet stands off by which its surface may go on beside it, as where it ends at another at 22°."""
+COARSE_AT_ONCE = 4_000_000
+"""Points times facets near all of them of which it is asked at once which are near each other: 0.1 s, 0.1 GB."""
 
 
 _FREE = [KINDS.index(kind) for kind in ("helicoid", "revolution", "extrusion", "freeform")]
@@ -137,8 +139,7 @@ def _meeting(first: Boxes, second: Boxes, one: Ints, two: Ints) -> Iterator[tupl
     if len(one) == 1:
         yield np.repeat(one, len(two)), two
         return
-    # Points times facets near all of them of which it is asked at once which are near each other: 0.1 s, 0.1 GB.
-    if len(one) * len(two) <= 4_000_000:
+    if len(one) * len(two) <= COARSE_AT_ONCE:
         met = meeting_boxes((low, high), (second[0].take(two, axis=0), second[1].take(two, axis=0)))
         if met is not None:
             yield one[met[0]], two[met[1]]

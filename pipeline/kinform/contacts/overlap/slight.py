@@ -19,6 +19,9 @@ from kinform.foundation.sorting import distinct, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
+SLIGHT_MOST = 400_000
+"""Points times the facets that bound their piece up to which it is asked which are near each other: 10 MB, and 5 ms."""
+
 
 def counts_of(own: list[int], facets: int) -> list[int]:
     """How many points of each piece are measured, of its `own` facets, of so many facets of all pieces."""
@@ -130,9 +133,7 @@ class _Bounded:
         too many to be asked about."""
         begin, end = self.side.searchsorted(wanted), self.side.searchsorted(wanted, side="right")
         number = end - begin
-        # Points times the facets that bound their piece up to which it is asked which are near each other: 10 MB, and 5
-        # ms.
-        if not number.all() or int(number.sum()) > 400_000:
+        if not number.all() or int(number.sum()) > SLIGHT_MOST:
             return False
         of = np.repeat(np.arange(len(points)), number)
         at = np.arange(len(of)) + np.repeat(end - np.cumsum(number), number)

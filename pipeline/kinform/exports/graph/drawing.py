@@ -30,8 +30,20 @@ EDGE_LENGTH = 105.0
 """px, of a joint between two bodies: its symbol stands clear of both. Chosen by eye."""
 SYMBOL_RADIUS = 10.5
 """px, of the circle with the letter of a joint: the letter fits in it. Chosen by eye."""
+SYMBOL_PLACES = (0.5, 0.6, 0.4, 0.7, 0.3, 0.8, 0.2)
+"""Shares of a joint's line at which its symbol may stand, the best first: from the middle outwards."""
+CLEARANCE = 0.8
+"""Share of its radius by which a symbol keeps clear of boxes. Chosen by eye."""
+MOST_CLEARED = 600
+"""Bodies up to which the symbols keep clear of boxes: the search takes bodies times joints. Chosen, not measured."""
+MOST_LOOPS = 40
+"""Loops up to which they are numbered: more marks cannot be told apart. Chosen by eye."""
+MOST_BODIES = 150
+"""Bodies of the largest graph in a page: a larger one cannot be read there. Chosen by eye."""
 LONGEST_NAME = 30
 """Letters of a name in a page: two thirds of the width of the panel."""
+PANEL = (320.0, 470.0)
+"""px, width and height of the graph in a page: a column of its layout."""
 
 
 SYMBOLS = {
@@ -129,14 +141,12 @@ def graph_panel(kinematics: Kinematics, colours: Sequence[str]) -> str:
 
     They carry their numbers as data-body and data-joint. Empty where the graph is too large to be read.
     """
-    # Bodies of the largest graph in a page: a larger one cannot be read there. Chosen by eye.
-    if not 0 < len(kinematics.bodies) <= 150:
+    if not 0 < len(kinematics.bodies) <= MOST_BODIES:
         return ""
     names = [one_line(body.name) for body in kinematics.bodies]
     names = [name if len(name) <= LONGEST_NAME else name[: LONGEST_NAME - 1] + "…" for name in names]
     both = [_drawing(kinematics, names, 36.0, upright=upright) for upright in (True, False)]
-    # px, width and height of the graph in a page: a column of its layout.
-    drawing = min(both, key=lambda d: float((d.extent / (320.0, 470.0)).max()))
+    drawing = min(both, key=lambda d: float((d.extent / PANEL).max()))
     width, height = drawing.extent
     return (
         f'<svg class="graph" viewBox="0 0 {width:.0f} {height:.0f}" width="{width:.0f}" height="{height:.0f}" '
@@ -216,8 +226,7 @@ def _loops(kinematics: Kinematics, edges: list[tuple[int, int]]) -> list[_Loop]:
             members = [block[k] for k, _ in cycle]
             around = tuple(sorted({n for k in members for n in edges[k]}))
             out.append(_Loop(around, held.get(frozenset(names[k] for k in members), 0)))
-    # Loops up to which they are numbered: more marks cannot be told apart. Chosen by eye.
-    return out if len(out) <= 40 else []
+    return out if len(out) <= MOST_LOOPS else []
 
 
 def _trimmed(start: Array, end: Array, size: Array) -> Array:
@@ -235,13 +244,10 @@ def _ends(at: Array, sizes: Array, edge: tuple[int, int]) -> tuple[Array, Array]
 def _middle(at: Array, sizes: Array, edge: tuple[int, int]) -> Array:
     """Where the symbol of the joint stands: half-way, or beside that where a box is in the way."""
     first, second = _ends(at, sizes, edge)
-    # Bodies up to which the symbols keep clear of boxes: the search takes bodies times joints. Chosen, not measured.
-    if len(at) <= 600:
-        # Shares of a joint's line at which its symbol may stand, the best first: from the middle outwards.
-        for share in (0.5, 0.6, 0.4, 0.7, 0.3, 0.8, 0.2):
+    if len(at) <= MOST_CLEARED:
+        for share in SYMBOL_PLACES:
             place = first + share * (second - first)
-            # Share of its radius by which a symbol keeps clear of boxes. Chosen by eye.
-            if not (np.abs(at - place) < sizes / 2 + 0.8 * SYMBOL_RADIUS).all(axis=1).any():
+            if not (np.abs(at - place) < sizes / 2 + CLEARANCE * SYMBOL_RADIUS).all(axis=1).any():
                 return np.asarray(place)
     return np.asarray((first + second) / 2)
 

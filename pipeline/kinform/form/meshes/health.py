@@ -22,6 +22,8 @@ from kinform.foundation.words import counted
 from kinform.model.arrays import Array, Ints, freeze
 from kinform.model.assembly import Mesh, MeshHealth
 
+SMALLEST_MESH = 1e-12
+"""Diagonal (m) of the smallest mesh: an atom is a hundred times larger, and cubes of its lengths are still numbers."""
 EPS32 = 2.0**-23
 """Relative step of single precision, in which STL files are written: no mesh is taken to be known better than that, at
 its own size."""
@@ -48,8 +50,7 @@ def build_mesh(raw: RawMesh, metres: float, weld: float | None, *, path: str, bo
     used, kept = used_only(vertices, kept)
     shape: Array = np.ascontiguousarray(used, dtype=np.float64)
     diagonal = _diagonal(shape)
-    # Diagonal (m) of the smallest mesh: an atom is a hundred times larger, and cubes of its lengths are still numbers.
-    if diagonal < 1e-12:
+    if diagonal < SMALLEST_MESH:
         raise MeshError([Fault(f"is {diagonal:.2g} m across, less than an atom", "correct its units or its scale")])
     centred = _centred(shape)
     if solid and _thickness(centred) <= max(SOLVED * diagonal, 0.0):

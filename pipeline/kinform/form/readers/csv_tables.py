@@ -13,6 +13,9 @@ from kinform.form.constants import LARGEST_NUMBER, VALUE_LENGTH
 from kinform.form.readers.open_manifest import Scope
 from kinform.foundation.texts import TextError, read_text
 
+TABLE_BYTES = 8 << 20
+"""Bytes of a CSV file: half a million rows. A row of 8 bytes takes 300 as numbers, so that all take 300 MB."""
+
 
 def law_rows(scope: Scope, path: Path, shown: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Times (strictly ascending) and values of a file; a header line and further columns are allowed.
@@ -65,8 +68,7 @@ def _rows(scope: Scope, path: Path, shown: str, most: int | None = None) -> Iter
     them comes empty. Blank lines, and a first line that is no numbers, are left out. A file that cannot be read as
     such is a problem of the scope, and ends there."""
     try:
-        # Bytes of a CSV file: half a million rows. A row of 8 bytes takes 300 as numbers, so that all take 300 MB.
-        text = read_text(path, (8 << 20), "a table of numbers")
+        text = read_text(path, TABLE_BYTES, "a table of numbers")
     except TextError as error:
         scope.problems.add(error.message, shown, None, error.remedy or "check its permissions")
         return

@@ -27,6 +27,13 @@ from kinform.model.arrays import Array
 from kinform.model.assembly import Part
 from kinform.model.descriptions import Coverage, DescribedJoint, DescribedLink, Description, LooseMesh
 
+SIBLINGS_MOST = 300
+"""Files of a package that are looked through for the names of meshes, at most: a package has a few dozen. Chosen, not
+measured."""
+SIBLING_BYTES = 4 * 1024 * 1024
+"""Of each of these files, at most: texts that name meshes have some 10 kB, and data the rest. Chosen, not measured."""
+
+
 _TEXTS = (".urdf", ".xacro", ".xml", ".sdf", ".mjcf", ".toml", ".launch", ".py", ".gazebo", ".world")
 """Suffixes of files that may name the meshes of a package."""
 
@@ -154,10 +161,6 @@ class _Describer:
         """What may name the meshes: the description, and the texts of its package."""
         yield self.facts.description.text.encode()
         path = self.files.top / self.facts.description.file
-        # Files of a package that are looked through for the names of meshes, at most: a package has a few dozen.
-        # Chosen, not measured.
-        for other in files_below(MeshFiles(path, {}).home, _TEXTS)[:300]:
-            # Bytes of such a file, at most: texts that name meshes have some 10 kB, and data the rest. Chosen, not
-            # measured.
-            if other.stat().st_size <= (4 * 1024 * 1024):
+        for other in files_below(MeshFiles(path, {}).home, _TEXTS)[:SIBLINGS_MOST]:
+            if other.stat().st_size <= SIBLING_BYTES:
                 yield other.read_bytes()

@@ -15,6 +15,10 @@ from kinform.frozen import dataclass
 PACKAGE_LEVELS = 4
 """Folders, from that of a description upwards, in which its package is looked for where nothing names it:
 `package/robots/variant/urdf`, and one. Chosen, not measured."""
+WORKSPACE_LEVELS = 4
+"""Folders below the `src` of a workspace in which packages are looked for: `src/group/repository/package`, and one."""
+PACKAGE_BYTES = 64 * 1024
+"""Of a package.xml, that are searched for its name, which stands near the beginning. Chosen, not measured."""
 ENTRIES_MOST = 20_000
 """Files and folders that are looked at for these, at most: about a second. The largest public package tried has 1,453;
 what is more is a home folder that holds a description."""
@@ -127,9 +131,7 @@ class MeshFiles:
         folder `src` that it is in; without one, those beside its own."""
         full = self.home.resolve()
         source = next((above for above in full.parents if above.name == "src"), None)
-        # Folders below the `src` of a workspace in which packages are looked for: `src/group/repository/package`, and
-        # one.
-        return packages_below(full.parent, 1) if source is None else packages_below(source, 4)
+        return packages_below(full.parent, 1) if source is None else packages_below(source, WORKSPACE_LEVELS)
 
 
 def packages_below(folder: Path, levels: int) -> dict[str, Path]:
@@ -152,9 +154,7 @@ def package_name(folder: Path) -> str | None:
     """The name that a package gives itself; None where the folder is none."""
     try:
         with open(folder / _PACKAGE_FILES[0], "rb") as stream:
-            # Bytes of a package.xml that are searched for its name, which stands near the beginning. Chosen, not
-            # measured.
-            stated = _NAME.search(stream.read(64 * 1024))
+            stated = _NAME.search(stream.read(PACKAGE_BYTES))
     except OSError:
         return None
     return None if stated is None else stated[1].decode("utf-8", "replace")

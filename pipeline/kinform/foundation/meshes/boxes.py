@@ -23,6 +23,20 @@ measured."""
 OFTEN = 128
 """Questions up to which chunks are not made: to make them takes as long as 100 to 200 questions, for 20,000 facets as
 for 400,000."""
+CHUNKED_LEAST = 16_000
+"""Facets up to which comparing all takes no longer than with chunks: 0.02 ms."""
+GRID_FINEST = 512
+"""Most cells along the side of a grid: 2 MB of counts."""
+GRID_LISTED = 12
+"""Most cells of a grid that a facet is listed in on average: beyond, the grid is made coarser. Chosen, not measured."""
+UNLISTED = 32
+"""Comparisons of points with boxes a facet that together cost as much as making a grid."""
+COMPARED_MOST = 8000
+"""Comparisons of points with boxes that take no longer than finding out which of them are not needed."""
+FOLLOWED_AT_ONCE = 500_000
+"""Comparisons of points with boxes that are made at once: 30 MB."""
+SIZE_OCTAVES = 20
+"""Octaves of size that facets are sorted by: down to a millionth of the whole, where files end."""
 PLACE_BITS = 10
 """Bits of a coordinate along the Z-curve that facets are sorted along: three coordinates fit into 31 bits, which numpy
 sorts in half of the time."""
@@ -124,8 +138,7 @@ class FacetBoxes:
     def meeting(self, low: Array, high: Array) -> Ints:
         """Facets whose boxes meet the box from `low` to `high` (d,), ascending."""
         self._asked += 1
-        # Facets up to which comparing all takes no longer than with chunks: 0.02 ms.
-        if self._asked <= OFTEN or len(self.low) <= 16_000:
+        if self._asked <= OFTEN or len(self.low) <= CHUNKED_LEAST:
             return np.flatnonzero(self._meeting(low, high))
         if self._order is None:
             self._columns = None
@@ -154,25 +167,21 @@ class FlatBoxes:
     def __init__(self, low: Array, high: Array, tops: Array | None = None):
         self.low, self.high, self._tops = low, high, tops
         self._sides = [np.ascontiguousarray(side) for side in (*low.T, *high.T)]
-        # Comparisons of points with boxes a facet that together cost as much as making a grid.
-        self._left = 32 * len(low)
+        self._left = UNLISTED * len(low)
         """Comparisons that cost less than the list does."""
 
     def _list(self) -> None:
         low, high = self.low, self.high
         self._origin = low.min(axis=0, initial=np.inf)
         whole = np.maximum(high.max(axis=0, initial=-np.inf) - self._origin, TINY)
-        # Most cells along the side of a grid: 2 MB of counts.
-        side = int(np.clip(2.0 * np.sqrt(len(low)), 1, 512))
+        side = int(np.clip(2.0 * np.sqrt(len(low)), 1, GRID_FINEST))
         while True:
             self._cell, self._side = whole / side, side
             left, lower, right, upper = (self._cells(column, k % 2) for k, column in enumerate(self._sides))
             wide, tall = right - left + 1, upper - lower + 1
             listed = int((wide * tall).sum())
             # a few thousand entries in all cost nothing
-            # Most cells of a grid that a facet is listed in on average: beyond, the grid is made coarser. Chosen, not
-            # measured.
-            if side == 1 or listed <= 12 * len(low) + 4096:
+            if side == 1 or listed <= GRID_LISTED * len(low) + 4096:
                 break
             side = (side + 1) // 2
         # each box by the columns of cells that it covers, and each of these by its cells
@@ -215,8 +224,7 @@ class FlatBoxes:
     def _among(self, points: Array, heights: Array | None) -> tuple[Ints, Ints] | None:
         """As above by comparison with all boxes about the points; None where that has come to cost more than a list."""
         left, lower, right, upper = self._sides
-        # Comparisons of points with boxes that take no longer than finding out which of them are not needed.
-        if len(points) * len(left) <= 8000:
+        if len(points) * len(left) <= COMPARED_MOST:
             self._left -= len(points) * len(left)
             return self._compared(points, heights) if self._left > 0 else None
         (least_x, least_y), (most_x, most_y) = points.min(axis=0, initial=np.inf), points.max(axis=0, initial=-np.inf)
@@ -258,8 +266,7 @@ class FlatBoxes:
         that are so many `number` (m,) in their `order` (n,) from `begin` (m,) on, and are in it."""
         low, high = (self._sides[k + 1 - axis].take(near) for k in (0, 2))
         ends, out = np.cumsum(number), []
-        # Comparisons of points with boxes that are made at once: 30 MB.
-        blocks = range(0, int(ends[-1]) if len(ends) else 0, 500_000)
+        blocks = range(0, int(ends[-1]) if len(ends) else 0, FOLLOWED_AT_ONCE)
         cuts = [*ends.searchsorted(list(blocks), side="right").tolist(), len(near)] if len(blocks) else [0, len(near)]
         for i, j in pairwise(cuts):
             box = np.repeat(np.arange(i, j), number[i:j])
@@ -298,8 +305,7 @@ def together(low: Array, high: Array) -> Ints:
         return np.zeros(0, np.int64)
     size = (high - low).max(axis=1)
     whole = max(float((bounds(high)[1] - bounds(low)[0]).max()), TINY)
-    # Octaves of size that facets are sorted by: down to a millionth of the whole, where files end.
-    octave = np.clip(np.floor(np.log2(np.maximum(size, ARITHMETIC * whole) / whole)), -20, 0).astype(np.int64)
+    octave = np.clip(np.floor(np.log2(np.maximum(size, ARITHMETIC * whole) / whole)), -SIZE_OCTAVES, 0).astype(np.int64)
     return np.lexsort((_places(low, high), -octave)).astype(np.int64)
 
 

@@ -22,6 +22,8 @@ from kinform.model.arrays import Array, Flags, Ints
 
 APART_SOME = 32
 """Pairs that are looked at first, at most: where sets are not separated, a few tell."""
+APART_TOGETHER = 50_000
+"""Pairs of triangles of several sets that are handled together: 10 MB."""
 
 
 def surely_separated(asked: Sequence[tuple[Array, Array, float]]) -> list[bool]:
@@ -62,8 +64,7 @@ def _not_parted(
     for k, (one, _) in pairs.items():
         group.append(k)
         count += len(one)
-        # Pairs of triangles of several sets that are handled together: 10 MB.
-        if count > 50_000:
+        if count > APART_TOGETHER:
             out |= _not_parted_of(asked, {k: pairs[k] for k in group})
             group, count = [], 0
     return sorted(out | _not_parted_of(asked, {k: pairs[k] for k in group}) if group else out)

@@ -27,6 +27,8 @@ from kinform.model.names import BodyName, JointName, PartName
 
 FIXED_RATIO = 1e-6
 """Relative: rates that keep their ratio to this are coupled."""
+TOOTHED_TURNS = 1.75
+"""Full turns of the convex edges of an outline from which on it has teeth."""
 
 
 SINGLE = ("revolute", "prismatic", "screw")
@@ -207,7 +209,7 @@ class _Tie:
         touch = self.touching[0]
         # Full turns of the convex edges of an outline from which on it has teeth.
         toothed = np.any(touch.axis) and all(
-            convex_turns(mesh, part.X_WP, touch.axis, touch.point) >= 1.75
+            convex_turns(mesh, part.X_WP, touch.axis, touch.point) >= TOOTHED_TURNS
             for part in (self.assembly.part(name) for name in touch.parts)
             if (mesh := part.mesh) is not None
         )

@@ -28,6 +28,9 @@ from kinform.model.names import JointName
 MOST_BLOCK_WORK = 5e8
 """Multiplications of one singular value decomposition of a block; above it the block is not tried. A mesh of
 300 hinges has 5e7, one of 250 ball joints about 5e8."""
+MOST_BATCH_NUMBERS = 200_000
+"""Squares of freedoms of blocks that are tried in step: 10,000 four-bars, but no two blocks of 500 hinges, whose
+matrices would take the memory of both."""
 MOVING_JOINT = 1e-3
 """Share of the fastest rate from which on a joint is named as moving."""
 MOST_STATEMENTS = 4
@@ -97,9 +100,7 @@ def _batches(of_graph: Sequence[Sequence[int]], freedoms: Sequence[int]) -> Iter
     batch: list[Sequence[int]] = []
     numbers = 0
     for block, count in zip(of_graph, freedoms, strict=True):
-        # Squares of freedoms of blocks that are tried in step: 10,000 four-bars, but no two blocks of 500 hinges, whose
-        # matrices would take the memory of both.
-        if batch and numbers + count**2 > 200_000:
+        if batch and numbers + count**2 > MOST_BATCH_NUMBERS:
             yield batch
             batch, numbers = [], 0
         batch.append(block)

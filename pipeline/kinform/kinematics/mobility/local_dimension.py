@@ -37,6 +37,10 @@ from kinform.model.kinematics import CurvatureVerdict
 
 MIXES = 3
 """Mixes of the freedoms, all of which must be kept: one could by chance lie in a branch of its own."""
+MANY_MIXES = 6
+"""Mixes at a singular pose, beside the freedoms themselves."""
+BRANCH_MIXES = 2
+"""Mixes at a pose that lies on one branch, as far as is known."""
 STEP_SIZES = (0.05, 0.01, 0.002)
 """rad, and shares of the block's size: near a singular pose a long step leaves the neighbourhood."""
 STEPPED_RANK = 1e-6
@@ -46,6 +50,9 @@ STEPPED_RANK_EXACT = 1e-9
 """The same where the loops close to rounding over the whole step: nothing of the axes' misfit is in it."""
 CLOSURE_ROUNDING = 1e-13
 """Rounding of a closure."""
+HIGHER_ORDER = 0.3
+"""What a half stride leaves of a whole one's residual: more is misfit, which grows with the step, less an obstruction
+of higher order."""
 STEP_KEPT = 0.9
 """Share of a step that is left when the motion is real."""
 STEP_LOST = 0.1
@@ -54,6 +61,16 @@ STEP_ASTRAY = 2.0
 """Steps that end farther than this many steps away lead elsewhere."""
 STEP_ASIDE = 0.2
 """Share of a step that may go aside within a smooth branch."""
+CONE_SHARE = 0.05
+"""Relative singular value from which on the ends of steps span a direction of the tangent cone."""
+MOST_BRANCHES = 8
+"""Branches that are told apart."""
+SAME_BRANCH = 0.95
+"""Least cosine between the freedoms of two poses of one branch."""
+BRANCH_STEP = 0.1
+"""Share of the distance from the pose by which a branch is stepped along."""
+MOST_STEP_WORK = 2e10
+"""Multiplications that the steps at a singular pose may take; a block that needs more stays undecided."""
 FULL_RANK = Rank(share=FINEST_VALUE)
 """At singular poses: whatever is more than rounding counts."""
 QUADRATIC = Termination(accepted=0.0, iterations=12, change=SOLVED)
@@ -162,9 +179,7 @@ def _regular(pose: Pose, mixes: Array, stride: float, step: float) -> Steps[tupl
     if misfit:
         # it grows with the step where axes are off, an obstruction of third or higher order with its powers
         half = yield _beside(pose, pose.q + 0.5 * stride * mixes, stride)
-        # What a half stride leaves of a whole one's residual: more is misfit, which grows with the step, less an
-        # obstruction of higher order.
-        if float(half.residual.max()) < 0.3 * worst * stride / step:
+        if float(half.residual.max()) < HIGHER_ORDER * worst * stride / step:
             return None
     values = np.linalg.svd(jacobian, compute_uv=False)
     beyond = values[:, pose.rank :].max(initial=0.0) / max(values.max(), TINY)
@@ -206,8 +221,7 @@ def _spread(pose: Pose, directions: Array, step: float) -> _Spread:
     closed = residual < max(FREE, pose.system.rounding) * step
     stays = closed & (kept > STEP_LOST) & (np.linalg.norm(q - start, axis=1) < STEP_ASTRAY * step)
     _, values, right = np.linalg.svd(moved[stays], full_matrices=False)
-    # Relative singular value from which on the ends of steps span a direction of the tangent cone.
-    cone = right[: int(np.count_nonzero(values > 0.05 * values.max(initial=0.0)))] @ pose.free
+    cone = right[: int(np.count_nonzero(values > CONE_SHARE * values.max(initial=0.0)))] @ pose.free
     return _Spread(
         q[stays],
         cone,
@@ -235,12 +249,10 @@ def _singular(pose: Pose, rng: np.random.Generator) -> LocalMotions:
     """Motions at a pose that is not regular: steps of two sizes have to agree with each other, and with the second
     order. What they found is told with the reason where they do not."""
     order, along = second_order(pose, rng)
-    # Mixes at a singular pose, beside the freedoms themselves.
-    directions = np.concatenate([along, pose.free, units(rng.normal(size=(6, pose.freedoms))) @ pose.free])
+    directions = np.concatenate([along, pose.free, units(rng.normal(size=(MANY_MIXES, pose.freedoms))) @ pose.free])
     none = np.zeros((0, pose.system.coordinates))
     rows, columns = 6 * len(pose.system.loops), pose.system.coordinates
-    # Multiplications that the steps at a singular pose may take; a block that needs more stays undecided.
-    if 2.0 * len(directions) * LINEAR.iterations * rows * columns * min(rows, columns) > 2e10:
+    if 2.0 * len(directions) * LINEAR.iterations * rows * columns * min(rows, columns) > MOST_STEP_WORK:
         why = "the pose is singular, and the block too large for the steps that would tell its branches"
         return LocalMotions(pose.freedoms, None, none, order=order, reason=why)
     wide, narrow = STEP_SIZES[:2]
@@ -279,12 +291,10 @@ def _explore(pose: Pose, directions: Array, step: float, rng: np.random.Generato
     dimensions: list[int | None] = []
     for end in spread.ends:
         there = Pose.at(pose.system, end, STEPPED_RANK)
-        # Branches that are told apart.
-        fresh = len(poses) < 8 or all(there.freedoms != other.freedoms for other in poses)
+        fresh = len(poses) < MOST_BRANCHES or all(there.freedoms != other.freedoms for other in poses)
         if fresh and not any(_same(there, other) for other in poses):
             poses.append(there)
-            # Share of the distance from the pose by which a branch is stepped along.
-            dimensions.append(_dimension(there, 0.1 * norm(end - pose.q), rng))
+            dimensions.append(_dimension(there, BRANCH_STEP * norm(end - pose.q), rng))
     decided = [] if None in dimensions else [d for d in dimensions if d is not None]
     if not decided:
         doubt = "a branch is singular itself"
@@ -300,8 +310,7 @@ def _dimension(pose: Pose, step: float, rng: np.random.Generator) -> int | None:
     count = pose.freedoms
     if count == 0:
         return 0
-    # Mixes at a pose that lies on one branch, as far as is known.
-    mixes = units(rng.normal(size=(2, count))) @ pose.free
+    mixes = units(rng.normal(size=(BRANCH_MIXES, count))) @ pose.free
     if run_in_lockstep([_regular(pose, mixes, step, step)], close_each)[0] is not None:
         return count
     more = units(rng.normal(size=(count + 3, count))) @ pose.free
@@ -316,5 +325,4 @@ def _same(a: Pose, b: Pose) -> bool:
     if a.freedoms == 0:
         return True
     cosines = np.linalg.svd(a.free @ b.free.T, compute_uv=False)
-    # Least cosine between the freedoms of two poses of one branch.
-    return bool(cosines.min() > 0.95)
+    return bool(cosines.min() > SAME_BRANCH)

@@ -32,6 +32,8 @@ from kinform.mechanism.frame import axes_frame
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Redundancy
 
+MOST_SORTED_LOOPS = 60
+"""Up to so many loops in a block, what they hold together is told apart."""
 MOST_NAMED = 12
 """So many bodies or joints are named in a text."""
 
@@ -53,8 +55,7 @@ def redundancies_of_loops(joints: Sequence[Joint], closure: Closure, size: float
             out.append(_of_block(members, count))
             continue
         out += alone
-        # Up to so many loops in a block, what they hold together is told apart.
-        if rest and len(block.cycles) <= 60 and rates <= FEW_RATES:
+        if rest and len(block.cycles) <= MOST_SORTED_LOOPS and rates <= FEW_RATES:
             out += _together(members, block, count, rest)
         elif rest:
             out.append(_of_block(members, rest))

@@ -18,6 +18,12 @@ from kinform.model.kinematics import CurvatureVerdict
 
 BALANCED = 1e-6
 """Curvature (of unit freedoms) that is rounding."""
+MOST_TESTED_FREEDOMS = 40
+"""Freedoms of a block up to which directions that pass the second-order test are looked for."""
+TEST_ITERATIONS = 60
+"""Gauss–Newton iterations for a common zero of the forms: where it is double they converge by halving."""
+MOST_PASSING = 12
+"""Directions that pass the second-order test that are followed."""
 SAME_LINE = 0.999
 """Cosine above which two of them are one."""
 COMPLEMENT = 1e-6
@@ -31,8 +37,7 @@ def second_order(pose: Pose, rng: np.random.Generator) -> tuple[CurvatureVerdict
     """
     count = pose.freedoms
     none = np.zeros((0, pose.free.shape[1]))
-    # Freedoms of a block up to which directions that pass the second-order test are looked for.
-    if count > 40:
+    if count > MOST_TESTED_FREEDOMS:
         bends = np.linalg.norm(pose.obstruction(units(rng.normal(size=(6, count))) @ pose.free), axis=1)
         return ("extends" if bends.max() < BALANCED else "", none)
     i, j = np.triu_indices(count)
@@ -50,8 +55,7 @@ def second_order(pose: Pose, rng: np.random.Generator) -> tuple[CurvatureVerdict
         if values[0] > BALANCED or values[-1] < -BALANCED:
             return "obstructed", none
     u = units(rng.normal(size=(8 + 4 * count, count)))
-    # Gauss–Newton iterations for a common zero of the forms: where it is double they converge by halving.
-    for _ in range(60):
+    for _ in range(TEST_ITERATIONS):
         value = np.einsum("pij,di,dj->dp", forms, u, u)
         slope = 2.0 * np.einsum("pij,dj->dpi", forms, u)
         u = units(u - np.einsum("dip,dp->di", np.linalg.pinv(slope, rcond=RCOND), value))
@@ -61,8 +65,7 @@ def second_order(pose: Pose, rng: np.random.Generator) -> tuple[CurvatureVerdict
         return "obstructed", none
     distinct: list[Array] = []
     for direction in passing:
-        # Directions that pass the second-order test that are followed.
-        if len(distinct) < 12 and all(abs(float(direction @ other)) < SAME_LINE for other in distinct):
+        if len(distinct) < MOST_PASSING and all(abs(float(direction @ other)) < SAME_LINE for other in distinct):
             distinct.append(direction)
     return "partly", np.array(distinct) @ pose.free
 

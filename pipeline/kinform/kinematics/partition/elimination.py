@@ -17,6 +17,9 @@ from kinform.model.arrays import Array
 CLEARLY_LESS = 1e-4
 """Cost by which the best labels are better than all others where no solver can take others for as good: a hundred times
 what the integer program may miss. Sums of prices are known to 1e-10."""
+MOST_IN_TABLE = 50_000
+"""Numbers in a table of costs, of all labels of a few nodes together, up to which nodes are eliminated: beyond, the
+integer program is as quick. Chosen, not measured."""
 
 
 _Table = tuple[tuple[int, ...], Array, Array]
@@ -63,9 +66,7 @@ def _order(nodes: int, pairs: Mapping[tuple[int, int], Array], wide: int) -> lis
     while left:
         node = min(left, key=lambda one: (len(beside[one]), one))
         near = beside[node]
-        # Numbers in a table of costs, of all labels of a few nodes together, up to which nodes are eliminated: beyond,
-        # the integer program is as quick. Chosen, not measured.
-        if wide ** (len(near) + 1) > 50_000:
+        if wide ** (len(near) + 1) > MOST_IN_TABLE:
             return None
         for one in near:
             beside[one] |= near

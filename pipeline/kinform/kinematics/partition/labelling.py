@@ -22,6 +22,9 @@ JAMMED = 25.0
 """Price of such a contact between two bodies that stated joints connect, beside: it is in the way of the joint, and
 that of others is not. Less than any face, so that it only decides between a face and a journal; what it decides is
 listed."""
+MOST_SECONDS = 60.0
+"""s: what the integer program may take before the best answer so far is taken and said to be unproven. Chosen, not
+measured."""
 
 
 Labels = tuple[int, int]
@@ -198,7 +201,7 @@ def _solve(
         ),
         integrality=whole,
         bounds=Bounds(0.0, 1.0),
-        options={"time_limit": 60.0, "mip_rel_gap": 0.0},
+        options={"time_limit": MOST_SECONDS, "mip_rel_gap": 0.0},
     )
     if answer.x is None:
         return dict.fromkeys(members, candidates[0]), False

@@ -35,6 +35,9 @@ from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import FoundSides
 from kinform.model.names import PartName
 
+FAR_ALONG = 0.2
+"""Share of the assembly's size beyond which contact along an axis is too far from the joint's point to be taken unseen:
+the true ones of ten robots lie within 0.094 (0 mostly), the wrong one of the hand that asked for this at 0.67."""
 ROUNDS = 4
 """Rounds in which the splits of joints round a loop are searched, each given those of the others. Chosen, not
 measured."""
@@ -141,10 +144,7 @@ def _clear(splits: Splits, joint: int, known: Mapping[int, Names]) -> tuple[Spli
     lone = [name for side in found[0].bodies if len(side) == 1 for name in side - named]
     if any(splits.round(joint, name) for name in lone) and splits.held_about(joint, found[0]):
         return None
-    # Share of the assembly's size beyond which contact along an axis is too far from the joint's point to be taken
-    # unseen: the true ones of ten robots lie within 0.094 (0 mostly), the wrong one of the hand that asked for this at
-    # 0.67.
-    far = found[0].beyond > 0.2 * splits.size
+    far = found[0].beyond > FAR_ALONG * splits.size
     if far or ahead < ONLY_SPLIT or splits.elsewhere(joint, known, found[0]):
         return None
     return found[0], ahead

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 MOTION_THERE = 1e-3
 """A unit twist is there when less than this of it lies outside the freedoms (scaled by the size). Chosen, not
 measured."""
+MOST_PROGRAM_ROWS = 20_000
+"""Rows of contact beyond which the linear program would take minutes. Chosen, not measured."""
 MOST_CONTACTS_TRIED = 40
 """Violated contacts up to which each is tried again, so that none is named without need. Chosen, not measured."""
 MOST_ROWS_TRIED = 2_000
@@ -87,8 +89,7 @@ def attempt(
             program.add(rows, label, graph.edges[k])
     if not program.count:
         return Attempt(True)
-    # Rows of contact beyond which the linear program would take minutes. Chosen, not measured.
-    slack = program.violations() if program.count <= 20_000 else None
+    slack = program.violations() if program.count <= MOST_PROGRAM_ROWS else None
     if slack is None:
         return Attempt(None)
     worst: dict[int | str, float] = {}

@@ -24,6 +24,8 @@ LONGEST_STEP = 2.0
 quadratic model still holds roughly."""
 FAR_EXPONENT = 40.0
 """Exponent at which the sum has evidently no minimum. exp(-40) is below the rounding of 1."""
+MOST_RAYS = 48
+"""Rays at an intermediate step beyond which there are too many to list. Chosen, not measured."""
 
 
 _MIX = np.array([0x2C1B3C6D, 0x9E3779B1, 0x85EBCA77, 0xC2B2AE3D, 0x27D4EB2F, 0x165667B1, 0x5BD1E995], dtype=np.int64)
@@ -270,7 +272,6 @@ def _cut(rays: Array, inner: Array, done: Sequence[int], row: Array) -> Array | 
     a, b = a[neighbours], b[neighbours]
     new = rays[b] * speed[a][:, None] - rays[a] * speed[b][:, None]
     new /= np.maximum(np.linalg.norm(new, axis=1), TINY)[:, None]
-    # Rays at an intermediate step beyond which there are too many to list. Chosen, not measured.
-    if len(kept) + len(new) > 48:
+    if len(kept) + len(new) > MOST_RAYS:
         return None
     return np.vstack([kept, new])

@@ -41,6 +41,10 @@ if TYPE_CHECKING:
 MOST_CERTIFIED = 120
 """Components of twists up to which it is first asked whether anything opens in a block: dense algebra of a
 millisecond, where importing and calling a linear program takes hundreds."""
+MOST_OPENING_ROWS = 12_000
+"""Rows of one block's program beyond which it would take minutes: 400 bricks in a wall, 5,000 rows, take 3 s."""
+MOST_TOGETHER = 8
+"""Bodies up to which those are told that leave together. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,8 +150,7 @@ def _links_that_open(links: Sequence[Link]) -> Generator[tuple[Array, Array], bo
     nodes = {n: k for k, n in enumerate(sorted({n for link in links for n in link.ends}))}
     loose = [k for k, link in enumerate(links) if link.cone is not None]
     frame = _common([link.cone.frame for link in links if link.cone is not None])
-    # Rows of one block's program beyond which it would take minutes: 400 bricks in a wall, 5,000 rows, take 3 s.
-    if sum(6 - len(link.twists) if link.cone is None else len(link.cone.rows) for link in links) > 12_000:
+    if sum(6 - len(link.twists) if link.cone is None else len(link.cone.rows) for link in links) > MOST_OPENING_ROWS:
         return None
     width = 6 * (len(nodes) - 1)
     if width > MOST_CERTIFIED and _lift_apart(links, nodes):
@@ -336,8 +339,7 @@ def _push(start: int, rest: int, sides: dict[int, list[_Side]], direction: Array
         for side in sides[queue.pop()]:
             if side.other in group or not _in_the_way(side, direction):
                 continue
-            # Bodies up to which those are told that leave together. Chosen, not measured.
-            if side.other == rest or len(group) == 8:
+            if side.other == rest or len(group) == MOST_TOGETHER:
                 return None
             group.add(side.other)
             queue.append(side.other)

@@ -25,8 +25,17 @@ from kinform.reports.page.constants import SHOWN_TURN, SIDE_FRAMES
 
 FINEST_TURN = math.radians(3.0)
 """rad, of one step: the eye sees larger ones as jumps."""
+FULL_TURN = 2.0 * math.pi
+"""rad: no turn is shown further."""
 SHOWN_SLIDE = 0.14
 """Greatest slide of such a driver as a share of the assembly's size; a choice."""
+FOLLOWER_TURN = 1.4
+"""No joint turns further than this times SHOWN_TURN at the rates of the start; a choice."""
+LARGE_SHARE = 0.25
+"""Share of the way that assemblies go whose motion is shown at first order only, so that what opens stays small; a
+choice."""
+MOST_COORDINATES = 240
+"""Assemblies with loops and more joint coordinates than this are shown at first order only: closing them is slow."""
 MOST_FREEDOMS = 60
 """Freedoms that are shown."""
 
@@ -62,8 +71,7 @@ def freedom_motions(kinematics: Kinematics, size: float, spans: Mapping[str, Spa
     """Each freedom of the assembly of this size (m) as a motion; `spans` of joints by name."""
     driven, loose = driven_freedoms(kinematics, size, MOST_FREEDOMS)
     has_loops, coordinates = looped(kinematics)
-    # Assemblies with loops and more joint coordinates than this are shown at first order only: closing them is slow.
-    large = has_loops and coordinates > 240
+    large = has_loops and coordinates > MOST_COORDINATES
     out = [_shown(kinematics, freedom, size, spans or {}, large) for freedom in driven]
     return out + [_adrift(kinematics, twists, size) for twists in loose[: MOST_FREEDOMS - len(out)]]
 
@@ -88,9 +96,7 @@ def _shown(
         many = max(SIDE_FRAMES, int(np.ceil(reach / FINEST_TURN))) if angular else SIDE_FRAMES
         steps = np.linspace(0.0, 1.0, many + 1)
         values = sign * reach * steps
-        # Share of the way that assemblies go whose motion is shown at first order only, so that what opens stays small;
-        # a choice.
-        q = freedom.at_first_order(0.25 * values) if large else freedom.followed(values)
+        q = freedom.at_first_order(LARGE_SHARE * values) if large else freedom.followed(values)
         followed = freedom.linkage.poses(q)
         if len(q) < len(values):
             note = note or "the loops do not close any further"
@@ -109,9 +115,7 @@ def _reach(freedom: DrivenFreedom, size: float, end: float | None) -> float:
     """How far the driver goes to one side (rad or m, positive)."""
     angular = freedom.coordinate.turns
     if end is not None:
-        # rad: no turn is shown further.
-        return float(min(abs(end), (2.0 * math.pi) if angular else size))
+        return float(min(abs(end), FULL_TURN if angular else size))
     reach = float(SHOWN_TURN if angular else SHOWN_SLIDE * size)
     fastest = freedom.fastest_turn
-    # No joint turns further than this times SHOWN_TURN at the rates of the start; a choice.
-    return min(reach, 1.4 * SHOWN_TURN / fastest) if fastest > 0.0 else reach
+    return min(reach, FOLLOWER_TURN * SHOWN_TURN / fastest) if fastest > 0.0 else reach

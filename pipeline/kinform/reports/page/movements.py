@@ -25,6 +25,10 @@ from kinform.model.simulation import Simulation
 from kinform.reports.page.freedoms import Showing, Span, freedom_motions
 from kinform.reports.page.subjects import wanted_names
 
+MOST_FRAMES = 600
+"""Poses of a simulated motion that are embedded; of longer ones an even choice. Twenty seconds at 30 a
+second."""
+
 
 @dataclass(frozen=True, eq=False)
 class Mark:
@@ -92,8 +96,7 @@ def movements_of(design: Design, size: float) -> list[Movement]:
 
 
 def _run(design: Design, run: Simulation, known: set[str]) -> Movement:
-    # Poses of a simulated motion that are embedded; of longer ones an even choice. Twenty seconds at 30 a second.
-    frames = np.unique(np.linspace(0, len(run.time) - 1, min(len(run.time), 600)).round().astype(int))
+    frames = np.unique(np.linspace(0, len(run.time) - 1, min(len(run.time), MOST_FRAMES)).round().astype(int))
     kept = [k for k, name in enumerate(run.body_names) if name in known]
     left = f"; every {len(run.time) / len(frames):.2g}th pose is shown" if len(frames) < len(run.time) else ""
     marks = [_collision(item, design.assembly.units) for item in run.collisions or ()]

@@ -9,14 +9,16 @@ from kinform.foundation.current_work import working_on
 from kinform.model.assembly import Part
 from kinform.reports.page.meshes import Shape, shape_of_facets
 
+MOST_OVERLAPS = 200
+"""Overlaps that are cut out; further ones are marked at their place alone. Chosen, not measured."""
+
 
 def overlap_shapes(design: Design) -> list[Shape | None]:
     """The overlap of each interference in the world (m); None where a mesh is no manifold."""
     found = [] if design.contacts is None else list(design.contacts.interferences)
     solids: dict[tuple[str, int], ScaledSolid | None] = {}
     shapes: list[Shape | None] = []
-    # Overlaps that are cut out; further ones are marked at their place alone. Chosen, not measured.
-    for item in found[:200]:
+    for item in found[:MOST_OVERLAPS]:
         first, second = map(design.assembly.part, item.parts)
         with working_on(*item.parts):
             shapes.append(_common(first, second, solids))

@@ -41,6 +41,12 @@ OVERVIEW_WIDTH, OVERVIEW_HEIGHT = 960, 600
 """px, of the picture of the whole."""
 PICTURE_WIDTH, PICTURE_HEIGHT = 480, 320
 """px, of the picture of a finding."""
+SIGNS_MARGIN = 1.5
+"""The same where only signs of joints are drawn, which have a size of their own. Chosen by eye."""
+FAINT = 0.22
+"""Weight of what a finding is not about. Chosen by eye, as the next two."""
+GLASS = 0.35
+"""Weight of a part that stands before the place where it meets another."""
 TINT = 0.4
 """Share of red in parts that meet. Chosen by eye."""
 OVERLAP_WEIGHT, FINDING_OVERLAP_WEIGHT = 0.75, 0.8
@@ -157,8 +163,7 @@ class Artist:
         ]
         image = layer(view, [item for item in stage.chosen if item not in before] or before)
         if 0 < len(before) < len(stage.chosen):
-            # Weight of a part that stands before the place where it meets another. Chosen by eye.
-            paint(image, view, before, 0.35)
+            paint(image, view, before, GLASS)
         red = self._red(lambda both: not stage.moved and set(both) <= stage.names)
         paint(image, view, red, FINDING_OVERLAP_WEIGHT)
         for joint in self.scene.joints:
@@ -170,8 +175,7 @@ class Artist:
             ring(image, view.project(place[None])[0, :2], 15.0 * FINER, 2.0 * FINER)
         image = smaller(image)
         if stage.others:
-            # Weight of what a finding is not about. Chosen by eye.
-            image = over(image, layer(coarse(view), stage.others), 1.0, 0.22)
+            image = over(image, layer(coarse(view), stage.others), 1.0, FAINT)
         return png(whole_numbers(image))
 
     def _figures(
@@ -222,7 +226,7 @@ def _whole_view(figures: Shown, signs: list[Array], width: int, height: int) -> 
         np.concatenate([*signs, *(figure.box for figure, _ in figures)]),
         FINER * width,
         FINER * height,
-        VIEW_MARGIN if figures else 1.5,
+        VIEW_MARGIN if figures else SIGNS_MARGIN,
     )
 
 

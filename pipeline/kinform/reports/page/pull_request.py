@@ -9,6 +9,10 @@ from kinform.foundation.progress import Progress
 from kinform.reports.page import agreement, facts
 from kinform.reports.page.pictures import Artist
 
+MOST_PICTURE_FILES = 40
+"""Findings that the summary tells, the worst first; errors and warnings among them get a picture. Chosen,
+not measured."""
+
 
 def page_pictures(artist: Artist, notes: bool = False, progress: Progress | None = None) -> dict[str, bytes]:
     """PNG files by name: overview.png, and finding-01-KF403.png and so on, the worst first; of `notes` where they are
@@ -24,9 +28,7 @@ def page_pictures(artist: Artist, notes: bool = False, progress: Progress | None
 
 def _told(design: Design, notes: bool) -> list[tuple[str, facts.FindingFacts]]:
     """The findings that the summary tells, the worst first, each with the name of its picture; empty: it has none."""
-    # Findings that the summary tells, the worst first; errors and warnings among them get a picture. Chosen, not
-    # measured.
-    found = facts.findings(design)[:40]
+    found = facts.findings(design)[:MOST_PICTURE_FILES]
     return [
         (f"finding-{n:02d}-{f.code}.png" if notes or f.severity != "note" else "", f) for n, f in enumerate(found, 1)
     ]

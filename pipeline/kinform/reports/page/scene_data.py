@@ -24,6 +24,12 @@ from kinform.reports.values.plain import fields, plain
 
 FIT_COLOURS = {"clearance": "#3f7fbf", "touch": "#2e9e76", "transition": "#c9962b", "interference": "#c2410c"}
 """Of contact patches by their fit."""
+MOST_SAMPLES = 400
+"""Samples of one contact patch that are drawn; of larger ones an even choice. Chosen, not measured: on
+most patches they cover each other already."""
+BOX_MARGIN = 0.02
+"""Share of the assembly's size by which contact samples may leave its box, for numbers are packed in
+shares of it. Chosen, not measured."""
 
 
 def embedded_scene(scene: Scene) -> tuple[dict[str, Any], str]:
@@ -108,9 +114,7 @@ def _patches(scene: Scene, blob: Blob) -> dict[str, Any]:
     rows, items, start = [], [], 0
     largest = 0.0
     for k, patch in enumerate(patches):
-        # Samples of one contact patch that are drawn; of larger ones an even choice. Chosen, not measured: on most
-        # patches they cover each other already.
-        step = -(-len(patch.points) // 400) or 1
+        step = -(-len(patch.points) // MOST_SAMPLES) or 1
         points, normals = patch.points[::step], patch.normals[::step]
         radii = np.sqrt(np.maximum(patch.weights[::step], 0.0) * step / np.pi)
         largest = max(largest, float(radii.max(initial=0.0)))
@@ -129,9 +133,7 @@ def _patches(scene: Scene, blob: Blob) -> dict[str, Any]:
         start += len(points)
     table = np.concatenate(rows) if rows else np.zeros((0, 7))
     low, high = scene.box
-    # Share of the assembly's size by which contact samples may leave its box, for numbers are packed in shares of it.
-    # Chosen, not measured.
-    pad = 0.02 * scene.size
+    pad = BOX_MARGIN * scene.size
     lows = np.concatenate([low - pad, [-1.0] * 3, [0.0]])
     sizes = np.concatenate([high - low + 2 * pad, [2.0] * 3, [largest]])
     offset = blob.columns(quantised(table, lows, sizes)) if len(table) else 0

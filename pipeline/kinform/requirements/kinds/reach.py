@@ -27,6 +27,9 @@ REACHED_SHARE = 1e-3
 REACHED_ANGLE = math.radians(0.1)
 """rad within which a direction is reached, where no tolerance is stated. Chosen, not measured: 0.5 mm at 300 mm, about
 what the default of places is."""
+SAMPLED_FREEDOMS = 2
+"""Freedoms of closed loops up to which sampling is dense enough for a "no": the walk through 600 configurations leaves
+a step of 24 by 24 in two freedoms, and of 8 a freedom in three."""
 OTHERWISE = "Check it by other means, or require `follow` of a simulated motion."
 REMEDY = "Widen a range, lengthen a link, or move the base."
 
@@ -132,9 +135,7 @@ def judge(evidence: Evidence, wanted: ReachRecord) -> Answer:
         near = REACHED_ANGLE if pointing else REACHED_SHARE * (evidence.size or 1.0)
     coverage = carrier.cover(carried, targets.values, directions=pointing, near=near)
     missed = np.flatnonzero(~(coverage.distance <= near))
-    # Freedoms of closed loops up to which sampling is dense enough for a "no": the walk through 600 configurations
-    # leaves a step of 24 by 24 in two freedoms, and of 8 a freedom in three.
-    if len(missed) and chain.looped and chain.freedoms > 2:
+    if len(missed) and chain.looped and chain.freedoms > SAMPLED_FREEDOMS:
         return undecided(
             f"{len(missed)} of {len(targets.values)} places were not reached, but {chain.freedoms} freedoms in closed "
             "loops are too many to be sampled densely",

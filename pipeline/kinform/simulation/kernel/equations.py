@@ -20,6 +20,14 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Table, Index, Nums, Work,
 )  # fmt: skip
 
+TORN_GAP = 1e-4
+"""Gap (rad, or lengths) up to which rows that depended on others count as closed: what the rank overlooks
+(`SolverSettings.free`)."""
+SLOW_CORRECTION = 0.05
+"""Corrections that leave more than this share of a gap are made by new factors: a choice."""
+MOST_CORRECTIONS = 10
+"""Corrections of a pose; they converge in three or four."""
+
 
 def impose(links: Index, columns: Index, values: Table, pieces: Table, t: float, y: Row, first: int) -> None:
     """Puts led joints where their laws have them."""
@@ -181,15 +189,13 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float,
     for k in range(n):
         vectors[FORCE][k] = 0.0
     before, size = 1e300, 1e300
-    # Corrections of a pose; they converge in three or four.
-    for count in range(10):
+    for count in range(MOST_CORRECTIONS):
         place_links(ints, nums, work, y)
         size = 0.0
         for r in range(rank):
             vectors[GAP][r] = -gap_of(ints, nums, state, y, mode[CHOSEN][r])
             size = max(size, abs(vectors[GAP][r]))
-        # Corrections that leave more than this share of a gap are made by new factors: a choice.
-        stale = count > 0 and size > 0.05 * before if factored else before > SOLVED
+        stale = count > 0 and size > SLOW_CORRECTION * before if factored else before > SOLVED
         if stale:
             if mode[WAY][0] == 0:
                 inertias(ints, nums, work)
@@ -208,9 +214,7 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float,
         for row in range(6 * len(ints[CLOSURES]) + len(nums[GEARS])):
             # The rows that depend on the others at the start must stay closed too.
             rest = abs(gap_of(ints, nums, state, y, row))
-            # Gap (rad, or lengths) up to which rows that depended on others count as closed: what the rank overlooks
-            # (`SolverSettings.free`).
-            if rest > 1e-4:
+            if rest > TORN_GAP:
                 size = max(size, rest)
     for _ in range(2 if factored else 1):
         close_rates(ints, nums, work, y)

@@ -41,8 +41,23 @@ unnoticed."""
 SHORTEST_STEP = 1e-13
 """Share of the time (of 1 s at least) below which a step is none: 450 spacings of doubles, so that times within it are
 still apart."""
+REOPENED_SHRINK = 0.25
+"""Share of a step to try where loops could not be closed at its end: a choice."""
+SHORTEST_CLOSING_STEP = 1e-9
+"""s: steps so short that still leave loops open end the run. A choice: nothing rigid moves measurably in a
+nanosecond."""
 STABLE_DECAY = 3.0
 """Step times the fastest decay to which steps are kept: half of about 6, up to which the method is stable."""
+REAL_ROUGHNESS = 10.0
+"""Times the noise of accelerations that a change of slopes has to be to count as a decay: a choice, an order of
+magnitude above the estimate of the noise."""
+MOST_LAYINGS = 4
+"""Times that a step is laid anew to avoid a singular pose: a choice; each finds the tip of the V from nearer."""
+LAID_ALIKE = 0.01
+"""Share of a step: one that differs by less from the last puts evaluations where they were. A choice, an eighth of
+`crossings.CROSSING_CLEAR`."""
+ROUNDINGS_EVERY = 20
+"""Steps after which roundings are measured again: two evaluations beside 240."""
 CROSSING_AROUND = 0.1
 """Share of the step about the place where a singular pose is expected, within which it is: as `CROSSING_CLEAR`, a
 little more. A choice."""
@@ -161,17 +176,14 @@ def set_out(clock: Row) -> bool:
 def lay_anew(nums: Nums, clock: Row, tally: Counts) -> bool:
     """Whether the step tried had an evaluation too near to a singular pose, and laying it differently helps."""
     error, h = clock[ERROR], clock[SPAN]
-    # Times that a step is laid anew to avoid a singular pose: a choice; each finds the tip of the V from nearer.
-    if not (error < FAILED and tally[LAYINGS] < 4 and tip(nums, clock)):
+    if not (error < FAILED and tally[LAYINGS] < MOST_LAYINGS and tip(nums, clock)):
         return False
     if error > 1.0:
         # Perhaps the evaluation near the pose is to blame, perhaps the step is too long besides. Near a singular pose,
         # where the error may be that of one evaluation, a step shrinks to no less than 0.6: a choice.
         clock[STEP] *= shrink(error, 0.6)
     again = laid(clock[STEP], clock[CROSSING] - clock[NOW])
-    # Share of a step: one that differs by less from the last puts evaluations where they were. A choice, an eighth of
-    # `crossings.CROSSING_CLEAR`.
-    return abs(again - h) > 0.01 * h and clock[NOW] + again < clock[END]
+    return abs(again - h) > LAID_ALIKE * h and clock[NOW] + again < clock[END]
 
 
 def attempt(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Counts) -> int:
@@ -193,11 +205,8 @@ def attempt(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Count
     gap = project(ints, nums, work, clock[REACHED], slopes[NEW], clock[CLOSED], False)
     clock[WEAR] = work[VECTORS][KEPT][0]
     if rank > 0 and not 0.0 <= gap < clock[OPEN]:
-        # Share of a step to try where loops could not be closed at its end: a choice.
-        clock[STEP] = 0.25 * clock[SPAN]
-        # s: steps so short that still leave loops open end the run. A choice: nothing rigid moves measurably in a
-        # nanosecond.
-        if clock[SPAN] < 1e-9:
+        clock[STEP] = REOPENED_SHRINK * clock[SPAN]
+        if clock[SPAN] < SHORTEST_CLOSING_STEP:
             return MASSLESS if gap == -1.0 else OPENED
         return REJECTED
     tally[SLOPES] += 1
@@ -217,9 +226,7 @@ def fastest_decay(ints: Ints, work: Work, clock: Row, tally: Counts) -> float:
         moved += way * way
     # What rounding leaves near a singular pose is no decay.
     least = max(clock[LEAST], LEAST_NOISY_MARGIN)
-    # Times the noise of accelerations that a change of slopes has to be to count as a decay: a choice, an order of
-    # magnitude above the estimate of the noise.
-    real = math.sqrt(rough) > 10.0 * ROUNDING_NOISE / (least * least)
+    real = math.sqrt(rough) > REAL_ROUGHNESS * ROUNDING_NOISE / (least * least)
     fastest = math.sqrt(rough / moved) if moved > 0.0 and real else 0.0
     tally[STIFF] = tally[STIFF] + 1 if clock[SPAN] * fastest > STABLE_DECAY else 0
     return fastest
@@ -298,8 +305,7 @@ def advance(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Count
             return SPENT
         spent += 1
         tally[STEPS] += 1
-        # Steps after which roundings are measured again: two evaluations beside 240.
-        if tally[STEPS] % 20 == 0:
+        if tally[STEPS] % ROUNDINGS_EVERY == 0:
             roundings(ints, nums, work, clock, tally, y)
         status = attempt(ints, nums, work, y, clock, tally)
         if status == REJECTED:

@@ -14,6 +14,13 @@ from kinform.simulation.record import Record
 from kinform.simulation.settings import SolverSettings
 from kinform.simulation.solver.start import Start
 
+FIRST_STEP = 1e-3
+"""s: the first step that is tried in a stretch; the control finds the right one in a few steps."""
+STIFF_PATIENCE = 15.0
+"""Steps in a row that a decay kept short before the run is looked at for stiffness: those of Hairer's DOP853."""
+PASSED_BEFORE_STOP = 1e-3
+"""s: a singular pose nearer than this to where a run stopped is why it did, and was not passed. A choice: steps that
+shrink towards one are far shorter."""
 APPROACHED = 3e-3
 """Margin below which a step that ends there was not laid across a singular pose ahead, but came too near. A pose that
 could not be crossed is behind from three times this on. Choices: forty four-bars in a row never come above 0.05."""
@@ -41,7 +48,7 @@ class Run:
         # Steps in a row that a decay kept short before the run is looked at for stiffness: those of Hairer's DOP853.
         self.clock[layout.MARGIN], self.clock[layout.PATIENCE] = (
             np.inf,
-            15.0 if settings.method == "auto" else np.inf,
+            STIFF_PATIENCE if settings.method == "auto" else np.inf,
         )
         self.clock[layout.NARROW] = dynamics.mechanism.narrow
         self.clock[layout.APPROACH] = APPROACHED
@@ -86,8 +93,7 @@ class Run:
         """Prepare for laws that are smooth from begin to end."""
         self.clock[layout.END] = end
         self.dynamics.tables.nums[layout.CONSTANTS][0, layout.LAST] = np.nextafter(end, begin)
-        # s: the first step that is tried in a stretch; the control finds the right one in a few steps.
-        self.clock[layout.STEP] = min(1e-3, end - begin)
+        self.clock[layout.STEP] = min(FIRST_STEP, end - begin)
         self.tally[layout.FRESH], self.tally[layout.STIFF] = 1, 0
 
     def change(self, dynamics: Dynamics) -> None:
@@ -155,9 +161,7 @@ class Run:
             self.dynamics.tables.rates(self.out[:done, k : k + n]) for k in (size, size + n, size + 2 * n)
         )
         notes = list(self.notes)
-        # s: a singular pose nearer than this to where a run stopped is why it did, and was not passed. A choice: steps
-        # that shrink towards one are far shorter.
-        passed = not stopped or self.clock[layout.TIGHTEST] < self.clock[layout.NOW] - 1e-3
+        passed = not stopped or self.clock[layout.TIGHTEST] < self.clock[layout.NOW] - PASSED_BEFORE_STOP
         if passed and self.clock[layout.MARGIN] < self.settings.doubtful:
             notes.append(
                 f"near t = {self.clock[layout.TIGHTEST]:.4g} s the loops pass a singular pose, where they could go "

@@ -28,8 +28,14 @@ from kinform.simulation.solver.run_state import Run
 CROSSING_MARGIN = 0.02
 """Margin, by singular values, below which a singular pose may be ahead; and below which rows of the loops are about to
 depend on others: a choice."""
+CROSSING_REACHES = (0.025, 0.05, 0.1, 0.2, 0.4)
+"""How far a step reaches from the pose to either side, tried from the first on: rad, or lengths, that the fastest joint
+moves. The error of the stages' slopes goes with the inverse square of it, what the polynomial leaves out with its
+twelfth power; for chains of 2 to 40 four-bars the first that are tried agree to 1e-12."""
 CROSSING_COARSE, CROSSING_FINE = 6, 8
 """Stages of the two steps that are compared: even, as none may lie in the middle."""
+CROSSING_ERROR = 1e-8
+"""Difference beyond which the run is left as it is: what a run of ten seconds gathers at the default tolerance."""
 CROSSING_NEARER = 100.0
 """A step that errs so many times as much as one that is shorter is too long, and longer ones are not tried: twice as
 long leaves out 2^12 times as much. A choice."""
@@ -53,8 +59,7 @@ def cross_singular_pose(run: Run) -> str | None:
         if best[0] < ARITHMETIC:  # a hundredth of the tolerance of a step
             break
     run.choose()
-    # Difference beyond which the run is left as it is: what a run of ten seconds gathers at the default tolerance.
-    if best is None or best[0] > 1e-8:
+    if best is None or best[0] > CROSSING_ERROR:
         return ""
     gap = _gap(run, best[1].state_at(0.5))
     if gap > ARITHMETIC:
@@ -87,10 +92,7 @@ def _passages(run: Run, pose: float) -> Iterator[tuple[Passage, float]]:
     """Steps across the pose, one longer than the other, with their errors."""
     t, y = float(run.clock[layout.NOW]), run.y
     unit = 1.0 / max(_pace(run, y), np.sqrt(_pull(run, t, y)))
-    # How far a step reaches from the pose to either side, tried from the first on: rad, or lengths, that the fastest
-    # joint moves. The error of the stages' slopes goes with the inverse square of it, what the polynomial leaves out
-    # with its twelfth power; for chains of 2 to 40 four-bars the first that are tried agree to 1e-12.
-    for reach in (share * unit for share in (0.025, 0.05, 0.1, 0.2, 0.4)):
+    for reach in (share * unit for share in CROSSING_REACHES):
         begin, end = pose - reach, pose + reach
         if begin > t - 0.5 * (pose - t):
             # Too near: a step begins at least half as far again before the pose as the run has come to.

@@ -38,6 +38,11 @@ from kinform.simulation.solver.sticking import Hold, Sticking, grouped, ways
 SLIP_PARTS = 8
 """Parts of a step at whose ends rates are looked at for a reversal: the dense output, a polynomial of order 7, turns
 less often."""
+MOST_SWITCHES = 100_000
+"""Changes between sticking and slipping before a run gives up: a choice."""
+SWITCHES_AT_ONCE = 8
+"""Changes at one and the same time, for each friction, before a run gives up as one that goes to and fro: three are
+ordinary."""
 
 
 Dense = Callable[[float], Array]
@@ -183,10 +188,10 @@ class _Driver:
             state.stopped(what, t)
         before, count = self.at_once
         self.at_once = (t, count + 1) if t <= before + SOLVED * (run.times[-1] - run.times[0]) else (t, 1)
-        # Changes between sticking and slipping before a run gives up: a choice.
-        # Changes at one and the same time, for each friction, before a run gives up as one that goes to and fro: three
-        # are ordinary.
-        if self.at_once[1] > 8 * (len(state.rubbings) + len(state.base.stops)) or state.switches > 100_000:
+        if (
+            self.at_once[1] > SWITCHES_AT_ONCE * (len(state.rubbings) + len(state.base.stops))
+            or state.switches > MOST_SWITCHES
+        ):
             names = ", ".join(dict.fromkeys(one.joint for one in state.rubbings))
             return f"at t = {t:.6g} s friction in {names} changes between sticking and slipping without end"
         return ""

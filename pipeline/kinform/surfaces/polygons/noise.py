@@ -29,9 +29,16 @@ FITS_PER_NOISE = 10
 Chosen, not measured."""
 SCATTER_SHOWS = 2
 """Vertices scatter where twice the standard deviation that is read exceeds the expected noise."""
+FIT_SIGMAS = 5
+"""Standard deviations of scattered vertices that a fit allows: one more than those that count as scatter."""
 CALM_SHARE = 0.25
 """Share of the area, from the calmest vertices up, at which the scatter is read: saddles are rarely more
 than the rest."""
+CALM_SHARE_OF_RIPPLE = 0.1
+"""The same for the difference from the neighbours, which is smaller on saddles too."""
+RIPPLE = 0.05
+"""Where scattered vertices differ from their neighbours by this much of what they show, saddles do by less
+(0.12 to 0.4 against 0.01 to 0.02 where tried)."""
 MIXED_PER_SIGMA = 1.2
 """What is read there, in standard deviations of one coordinate (tried on noisy copies of robots' parts)."""
 
@@ -63,7 +70,7 @@ class Scale:
                 max(rounding, sigma),
                 sigma,
                 noise=SCATTERED * sigma,
-                fit=max(fit, 5 * sigma),
+                fit=max(fit, FIT_SIGMAS * sigma),
             )
         return cls(rounding, 0.0, noise=noise, fit=fit)
 
@@ -142,12 +149,9 @@ def scatter(mesh: Facets, smooth_edge: float, least: float = 0.0) -> float:
     spokes = np.maximum(np.bincount(a, minlength=count) + np.bincount(b, minlength=count), 1)
     mean = (np.bincount(a, off, count) + np.bincount(b, off, count)) / spokes
     around = (np.bincount(a, mean[b], count) + np.bincount(b, mean[a], count)) / spokes
-    # a vertex differs from its neighbours where it has at least three A smaller share of the area, from the calmest up,
-    # for the difference from the neighbours, which is smaller on saddles too.
-    ripple = _calmest(mesh, np.abs(mean - around), spokes >= 3, 0.1)
-    # Where scattered vertices differ from their neighbours by this much of what they show, saddles do by less (0.12 to
-    # 0.4 against 0.01 to 0.02 where tried).
-    if mixed <= 0.0 or ripple <= 0.05 * mixed:
+    # a vertex differs from its neighbours where it has at least three
+    ripple = _calmest(mesh, np.abs(mean - around), spokes >= 3, CALM_SHARE_OF_RIPPLE)
+    if mixed <= 0.0 or ripple <= RIPPLE * mixed:
         return 0.0
     irregular = _irregular(mesh, inner, above, below)
     return _calmest(mesh, irregular, readable, CALM_SHARE) / MIXED_PER_SIGMA

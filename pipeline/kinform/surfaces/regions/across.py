@@ -23,6 +23,9 @@ from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.growth import Growth
 from kinform.surfaces.regions.territory import Territory
 
+TURNS_ON = (0.03, 0.56)
+"""Angle by which a ridge turns where it goes on round an axis: more than lines of one direction differ, and no more
+than a smooth edge."""
 GOES_ON = 2.05
 """Ratio of lengths up to which the next edge goes on with a ridge: a fillet is longer than the edges of its corners."""
 
@@ -66,9 +69,7 @@ def _onward(work: Patchwork, ridges: Ints) -> tuple[Flags, tuple[Ints, Ints]]:
     length, longer = work.length[ridge], work.length[following]
     alike = (longer <= GOES_ON * length) & (length <= GOES_ON * longer)
     cosine = np.abs(dot(work.along(ridge), work.along(following))) / np.maximum(length * longer, TINY)
-    # Angle by which a ridge turns where it goes on round an axis: more than lines of one direction differ, and no more
-    # than a smooth edge.
-    least, most = (0.03, 0.56)
+    least, most = TURNS_ON
     on = alike & (cosine >= np.cos(most)) & (cosine <= np.cos(least))
     found = np.zeros(2 * len(ridges), bool)
     found[place[on]] = True

@@ -48,6 +48,12 @@ measured."""
 GRAIN = 1e-4
 """Share of the mesh's area that the two polygons at a seed have at least: finer detail that is no piece of its
 own stays freeform."""
+BROAD = 2e-2
+"""Share of the area of the mesh above which a polygon is a plane of its own, whatever is beside it. Chosen, not
+measured."""
+CHORD_FITS = (10.0, 100.0)
+"""Fits, in multiples, to which closed rounds of strips are held once nothing else explains them. A shaft of 9 mm in a
+decimated mesh of 78 mm has vertices 2 µm off its mean radius, where a fit is 1.6 µm."""
 
 
 CYLINDER, CONE, TORUS = Cylinder(), Cone(), Torus()
@@ -124,9 +130,7 @@ def partition(work: Patchwork, scales: Scales) -> Partition:
         last |= (_gained(work, chosen) < WORTH * work.total)[of_edge]
     del bent, like, tried, last, asked, before  # large, and needed no longer
     rounds: Rounds | None = None
-    # Fits, in multiples, to which closed rounds of strips are held once nothing else explains them. A shaft of 9 mm in
-    # a decimated mesh of 78 mm has vertices 2 µm off its mean radius, where a fit is 1.6 µm.
-    for factor in (10.0, 100.0):
+    for factor in CHORD_FITS:
         rounds = rounds or Rounds.of(CYLINDER, *_pieces(territory, link, link.alike))
         chosen = _choose([decimated(territory, CYLINDER, rounds, factor)], territory)
         regions += chosen
@@ -363,9 +367,7 @@ def _remainder(territory: Territory) -> tuple[Ints, Ints]:
     nearby = np.bincount(np.r_[a, b], np.r_[work.area[b], work.area[a]], work.count)
     # a polygon much larger than its neighbours is a plane of its own
     dominant = work.area > 3 * nearby / np.maximum(neighbours, 1)
-    # Share of the area of the mesh above which a polygon is a plane of its own, whatever is beside it. Chosen, not
-    # measured.
-    dominant |= work.area > 2e-2 * work.total[work.mesh]
+    dominant |= work.area > BROAD * work.total[work.mesh]
     label = components(a, b, work.count)
     size = np.bincount(label[left], minlength=work.count)[label]
     # fewer than four connected polygons are planes

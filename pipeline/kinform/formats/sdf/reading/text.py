@@ -17,6 +17,8 @@ from lxml import etree
 from kinform.formats.description.elements import FILE, Element, tag_of, xml_text
 from kinform.frozen import dataclass
 
+MODERN = (1, 7)
+"""The version from which on poses and axes are said in the same way."""
 _OVER = ("pose", "static")
 """What an include says over the model: in place of what that says."""
 
@@ -40,8 +42,7 @@ def whole_text(root: Element, data: bytes, includes: Sequence[Included]) -> str:
     """The text of all of it; "" where includes cannot be put in without another meaning. Elements are changed."""
     if not includes:
         return xml_text(data)
-    # The version from which on poses and axes are said in the same way.
-    if any(one != other and min(one, other) < (1, 7) for one, other in (i.versions for i in includes)):
+    if any(one != other and min(one, other) < MODERN for one, other in (i.versions for i in includes)):
         return ""
     if any(
         i.merged or i.element.getparent() is None or _is_alone(i.element, root) or _is_dressed(i.element)

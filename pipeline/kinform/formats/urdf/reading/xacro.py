@@ -20,6 +20,9 @@ from kinform.formats.urdf.reading import reader
 from kinform.foundation.processes import Crash, in_own_process
 from kinform.frozen import dataclass
 
+XACRO_FILES = 500
+"""Files of a package that are looked through for the names of other packages, at most: a package has a few dozen.
+Chosen, not measured."""
 XACRO_SECONDS = 20
 """Seconds of processor time that the expansion of a xacro file may take: robots take one or two, and macros that call
 each other twice, thirty deep, never end."""
@@ -182,7 +185,5 @@ _FIND = re.compile(rb"\$\(find ([^)\s]+)\)")
 def _packages_of(data: bytes, home: Path) -> list[str]:
     """Names of packages that the file, and the xacro files of its package, ask for."""
     beside = files_below(home, (".xacro",))
-    # Files of a package that are looked through for the names of other packages, at most: a package has a few dozen.
-    # Chosen, not measured.
-    texts = [data, *(path.read_bytes() for path in beside[:500])]
+    texts = [data, *(path.read_bytes() for path in beside[:XACRO_FILES])]
     return sorted({name.decode("utf-8", "replace") for text in texts for name in _FIND.findall(text)})

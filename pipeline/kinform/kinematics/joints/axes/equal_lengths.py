@@ -31,6 +31,8 @@ from kinform.mechanism.joint_graph import JointGraph
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
 
+MOST_COMPARED_JOINTS = 400
+"""Blocks with more joints are left as they are: loops of four bodies grow with their square."""
 ONE_PIN = 1e-13
 """Share of the assembly's size by which lines that were made coaxial may be apart: rounding."""
 EQUAL_SIDES = 4e-15
@@ -69,8 +71,7 @@ def equalise_lengths(graph: JointGraph, bounds: MoveBounds, size: float) -> tupl
     """The joints, with sides of four-bars that are equal within the bounds made equal; `size` of the assembly (m)."""
     out = list(graph.joints)
     for block in blocks(len(graph.bodies), graph.edges):
-        # Blocks with more joints are left as they are: loops of four bodies grow with their square.
-        if 4 <= len(block) <= 400:
+        if 4 <= len(block) <= MOST_COMPARED_JOINTS:
             for members in _parallel([k for k in block if _is_hinge(out[k])], out):
                 for k, joint in _equal_sides(graph, members, out, bounds, size):
                     out[k] = joint

@@ -37,8 +37,24 @@ from kinform.model.kinematics import Joint
 
 CLOSED_GAP = ARITHMETIC
 """rad, and shares of the size: loops that stay closed to this need nothing."""
+GLANCE = 0.1
+"""Share of that gap below which one look ahead is enough."""
+IMPROVED = 0.01
+"""Share of the gap before that moved axes may leave."""
+STRIDE = 0.12
+"""rad (of the joint that turns most) from one pose to the next."""
+STRIDES = 16
+"""Poses on each side of the start."""
+MOST_FITTED_FREEDOMS = 3
+"""Blocks with more freedoms are left as they are."""
+MOST_FITTED_RATES = 48
+"""So are blocks with more joint rates."""
+SOUND_POSE = 0.01
+"""Relative singular value that must be left: nearer to singular poses gaps say more of the pose than of the axes."""
 POSES = Termination(closed=MET, accepted=SINGLE)
 """Poses are closed as far as numbers go: what is left open is what axes have to be moved for."""
+WAY_LOST = 1e-3
+"""Share of a direction that must be left among the freedoms of the next pose."""
 
 
 def fit_proportions(graph: JointGraph, bounds: MoveBounds, size: float) -> tuple[Joint, ...]:
@@ -90,18 +106,15 @@ def _fit_axes(loops: _Loops) -> Sequence[Joint]:
     moves the axes for the gaps along a walk through the poses, and walks again through those of the moved loops.
     """
     joints = loops.joints
-    # So are blocks with more joint rates.
-    if sum(joint.freedoms for joint in joints) > 48:
+    if sum(joint.freedoms for joint in joints) > MOST_FITTED_RATES:
         return joints
     system = loops.system
     values = np.linalg.svd(system.equations(system.start).jacobian[0], compute_uv=False)
     rank = int(np.count_nonzero(values > SINGLE * max(values.max(initial=0.0), TINY)))
     freedoms = system.coordinates - rank
-    # Blocks with more freedoms are left as they are.
-    if rank == (3 if _planar(joints) else 6) * len(system.loops) or not 0 < freedoms <= 3:
+    if rank == (3 if _planar(joints) else 6) * len(system.loops) or not 0 < freedoms <= MOST_FITTED_FREEDOMS:
         return joints
-    # Share of that gap below which one look ahead is enough.
-    if _glance(system, rank) < 0.1 * CLOSED_GAP:
+    if _glance(system, rank) < GLANCE * CLOSED_GAP:
         return joints
     before = walk = _walk(system, rank)
     if before.gap < CLOSED_GAP:
@@ -115,8 +128,7 @@ def _fit_axes(loops: _Loops) -> Sequence[Joint]:
         walk = _walk(moved.system, rank)
         if walk.gap < CLOSED_GAP:
             break
-    # Share of the gap before that moved axes may leave.
-    if walk.gap > max(0.01 * before.gap, CLOSED_GAP):
+    if walk.gap > max(IMPROVED * before.gap, CLOSED_GAP):
         return joints
     for joint, twist, (angle, place) in zip(joints, twists, loops.most, strict=True):
         at = np.zeros(3) if joint.point is None else joint.point
@@ -141,12 +153,10 @@ def _planar(joints: Sequence[Joint]) -> bool:
 def _along(system: LoopSystem, start: Array, ways: Array, rank: int) -> tuple[Closing, Flags, list[Array]]:
     """Poses one stride from `start` (K, n) along `ways` (K, n), closed as well as their rank allows; which of them (K,)
     closed and are far from singular ones; and their freedoms (k, n)."""
-    # rad (of the joint that turns most) from one pose to the next.
-    ahead = start + 0.12 * ways / np.abs(ways).max(axis=1, keepdims=True)
+    ahead = start + STRIDE * ways / np.abs(ways).max(axis=1, keepdims=True)
     closing = close(system, ahead, rank=Rank(number=rank), until=POSES)
     _, values, right = np.linalg.svd(closing.jacobian)
-    # Relative singular value that must be left: nearer to singular poses gaps say more of the pose than of the axes.
-    sound = (values[:, rank - 1] >= 0.01 * values[:, 0]) & closing.closed
+    sound = (values[:, rank - 1] >= SOUND_POSE * values[:, 0]) & closing.closed
     return closing, np.asarray(sound), list(right[:, rank:])
 
 
@@ -165,12 +175,10 @@ def _walk(system: LoopSystem, rank: int) -> _Walk:
     ways = np.concatenate([ways, -ways])
     q = np.repeat(system.start, len(ways), axis=0)
     poses, gap = [], 0.0
-    # Poses on each side of the start.
-    for _ in range(16):
+    for _ in range(STRIDES):
         closing, sound, nulls = _along(system, q, ways, rank)
         ways = np.array([null.T @ (null @ way) for null, way in zip(nulls, ways, strict=True)])
-        # Share of a direction that must be left among the freedoms of the next pose.
-        going = sound & (np.abs(ways).max(axis=1) >= 1e-3)
+        going = sound & (np.abs(ways).max(axis=1) >= WAY_LOST)
         if not going.any():
             break
         q, ways = closing.q[going], ways[going]
