@@ -52,7 +52,6 @@ def render(run: Simulation, lengths: Lengths) -> Rows | None:
     )
     for name, values, angles in series:
         least, most = _extremes(values)
-        # Characters of a line of blocks: with the extremes it fits in 80 columns where names are short.
         rows.add(
             name,
             _value(float(values[least]), angles),

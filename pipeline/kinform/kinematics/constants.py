@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-RCOND = 1e-9
-"""Relative singular value below which least squares of axes ignore a direction: `rounding.SOLVED`."""
-AT_REST = 1e-9
-"""Relative speed below which a motion does not concern a pair or a joint: `rounding.SOLVED`."""
 SAME_DIRECTION = 1e-3
 """Unit directions that differ by less (sine) are one, and a screw that advances less a radian, over the size, is a
 turn. A milliradian is a third of the default alignment tolerance. Chosen, not measured."""

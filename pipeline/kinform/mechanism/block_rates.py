@@ -13,7 +13,7 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, scaled
 from kinform.foundation.graphs.cycles import Cycle, short_cycles
-from kinform.foundation.rounding import TINY
+from kinform.foundation.rounding import ARITHMETIC, SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.mechanism.constants import FREE, SIGMAS
 from kinform.mechanism.frame import axes_frame
@@ -30,12 +30,6 @@ SURE_DROPPED = 1e-10
 """In the elimination, what is dropped is below this, ..."""
 SURE_KEPT = 1e-5
 """... and what is kept above this, or else the decision is left to singular values."""
-RATE_ROUNDING = 1e-10
-"""Rates below this share of the largest of a solution are zero."""
-FACTOR_ROUNDING = 1e-13
-"""Factors of an elimination below this are zero, ..."""
-SUM_ROUNDING = 1e-14
-"""... and sums of products of them below this."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,13 +85,11 @@ def close_block(
         closed = max(FREE, frame.rounding)
         if doubts is not None:
             blur = doubts[list(block)]
-            # Loops whose axes are in no relation that snapping knows (Bennett's) close to `SIGMAS` times the
-            # uncertainty of the axes, but to no more than this relative singular value.
             closed = max(
                 closed,
                 min(LOOSEST_CLOSED, SIGMAS * float((blur[:, 0] + blur[:, 1] / frame.length).max())),
             )
-        nothing = max(RATE_ROUNDING, frame.rounding)
+        nothing = max(SOLVED, frame.rounding)
         solutions, sure = _decompose(loop_matrix(members, cycles, frame, norms), prefer, closed, nothing), True
     return Block(tuple(block), tuple(cycles), frame, _in_joint_units(solutions, norms), sure)
 
@@ -218,14 +210,14 @@ def _substitute(
     others = [n for n in range(len(columns)) if n not in set(pivots)]
     factors = -np.linalg.lstsq(matrix[:, pivots], matrix[:, others], rcond=None)[0]
     for pivot, row in zip((int(columns[p]) for p in pivots), factors, strict=True):
-        keep = np.flatnonzero(np.abs(row) > FACTOR_ROUNDING)
+        keep = np.flatnonzero(np.abs(row) > ARITHMETIC)
         by = [(int(columns[others[n]]), float(row[n])) for n in keep]
         for user in users[pivot]:
             factors_of = depends[user]
             share = factors_of.pop(pivot)
             for free, factor in by:
                 total = factors_of.get(free, 0.0) + share * factor
-                if abs(total) > SUM_ROUNDING:
+                if abs(total) > ARITHMETIC:
                     factors_of[free] = total
                     users[free].add(user)
                 else:
@@ -243,7 +235,7 @@ def _solutions(depends: list[dict[int, float]]) -> list[Solution]:
     out = []
     for driver in sorted(rows):
         largest = max(abs(f) for _, f in rows[driver])
-        kept = [(c, f) for c, f in rows[driver] if abs(f) > RATE_ROUNDING * largest]
+        kept = [(c, f) for c, f in rows[driver] if abs(f) > SOLVED * largest]
         out.append(Solution(driver, np.array([c for c, _ in kept]), np.array([f for _, f in kept])))
     return out
 

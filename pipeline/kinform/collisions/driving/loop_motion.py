@@ -38,8 +38,6 @@ EVEN_TRIED = 30
 """Steps after which it is believed that a motion goes on evenly."""
 EVEN_STEPS = 6000
 """Steps of an even motion in all."""
-JACOBIAN_SAME = 1e-9
-"""Change of the closure's Jacobian within which a motion goes on evenly."""
 NODES_THROUGH = 6
 """Nodes that the motion between two of them is taken through."""
 SMOOTH = SOLVED
@@ -138,7 +136,7 @@ def follow(driven: Driven, sign: float) -> Path:
         tangent = driven.tangent(jacobian)
         if tangent is None or not tangent[1]:
             return ended("a singular pose, from which motions branch")
-        if even is not None and np.abs(jacobian - even).max(initial=0.0) > JACOBIAN_SAME:
+        if even is not None and np.abs(jacobian - even).max(initial=0.0) > SOLVED:
             even = None
         q = following
         path.append(q)

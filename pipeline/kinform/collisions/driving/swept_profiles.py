@@ -14,14 +14,12 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross, perpendicular
 from kinform.foundation.meshes.boxes import along_curve, bounds, facet_boxes
 from kinform.foundation.meshes.near_facets import near_boxes
-from kinform.foundation.rounding import TINY
+from kinform.foundation.rounding import ARITHMETIC, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
 CHUNK = 64
 """Facets that lie together and are asked as one whether any of them can meet any of others."""
-LEVEL = 1e-12
-"""m a radian by which a turn may advance and keep heights, over its reach and the distance of its axis: rounding."""
 
 
 TURN = 2.0 * math.pi
@@ -50,7 +48,7 @@ class Profile:
         self._heights = away @ axis
         self.largest: float = float(self._radius.max(initial=0.0))
         """m: greatest distance from the axis of a turn."""
-        rounding = LEVEL * max(self.largest, float(np.linalg.norm(twist[3:])))
+        rounding = ARITHMETIC * max(self.largest, float(np.linalg.norm(twist[3:])))
         self._level = self._turning and abs(float(twist[:3] @ twist[3:])) < rounding
 
     @cached_property
@@ -61,7 +59,7 @@ class Profile:
         bottom, top = self.span
         middle = 0.5 * (low + high), 0.5 * (bottom + top)
         away = (x - middle[0][0]) ** 2 + (y - middle[0][1]) ** 2 + (height - middle[1]) ** 2
-        return np.array([*middle[0], middle[1], (1.0 + LEVEL) * math.sqrt(float(away.max()))])
+        return np.array([*middle[0], middle[1], (1.0 + ARITHMETIC) * math.sqrt(float(away.max()))])
 
     @cached_property
     def span(self) -> tuple[float, float]:

@@ -67,7 +67,6 @@ def derived_ratio(
             continue
         ratio *= coupling.ratio if forward else 1.0 / coupling.ratio
         spread = coupling.uncertainty / abs(coupling.ratio) if math.isfinite(coupling.uncertainty) else 0.0
-        # Standard uncertainties of a derived ratio within which a stated one agrees: 99.7 % of a normal distribution.
         relative += max(
             DEVIATIONS * spread,
             ROUNDED_RATIO if coupling.kind == "screw" else UNCOUNTED_TEETH,

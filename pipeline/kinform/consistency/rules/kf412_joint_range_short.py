@@ -38,7 +38,6 @@ def check(context: Context) -> Outcome:
     found: list[tuple[float, Finding]] = []
     for item in ranges:
         lower, upper = item.intended.range or (-math.inf, math.inf)
-        # Share of a stated length by which a slide may fall short: as `SHORT_TURN` of a turn of 20°.
         allowed = (
             SHORT_SLIDE * (upper - lower)
             if item.intended.type == "prismatic" and math.isfinite(upper - lower)

@@ -276,8 +276,6 @@ def _distinct(meetings: list[_Meeting], tolerance: float) -> list[_Meeting]:
         if high - low <= LENGTH_SHARED * tolerance:
             continue
         # normals within 26°
-        # Distance, in contact tolerances, within which lines of contact with similar normals are one. Chosen, not
-        # measured.
         if all(
             float(np.linalg.norm(met.point - other.point)) > DISTINCT_DISTANCE * tolerance
             or float(met.normal @ other.normal) < 0.9

@@ -207,7 +207,6 @@ class _Tie:
         if self.through.type == "screw":
             return "screw"
         touch = self.touching[0]
-        # Full turns of the convex edges of an outline from which on it has teeth.
         toothed = np.any(touch.axis) and all(
             convex_turns(mesh, part.X_WP, touch.axis, touch.point) >= TOOTHED_TURNS
             for part in (self.assembly.part(name) for name in touch.parts)

@@ -14,6 +14,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, rows, scaled, span
 from kinform.foundation.algebra.vectors import cross, dot, norm
 from kinform.foundation.graphs.graph import UnionFind
+from kinform.foundation.rounding import SOLVED
 from kinform.kinematics.joints.pair.evidence import COAXIAL
 from kinform.kinematics.screws.wording import Locked, locked_text, locked_wrenches, rows_too_many
 from kinform.model.arrays import Array
@@ -23,8 +24,6 @@ from kinform.model.tolerances import Tolerances
 
 FEW_OF_SITE = 4
 """One of so many samples is looked at before all are, where patches may lie together."""
-HELD_TWICE = 1e-9
-"""1 − cosine of directions that two sites both hold."""
 
 
 def redundancy(
@@ -128,7 +127,7 @@ def _twice(spaces: Sequence[Array]) -> list[Locked]:
     before = spaces[0]
     for space in spaces[1:]:
         left, cosines, _ = np.linalg.svd(space.T @ before, full_matrices=False)
-        both = space @ left[:, cosines > 1.0 - HELD_TWICE]
+        both = space @ left[:, cosines > 1.0 - SOLVED]
         if both.shape[1]:
             # Directions of contacts this near (sine) to an axis of the world have its name: contacts are not snapped.
             twice += locked_wrenches(both.T, 0.02)

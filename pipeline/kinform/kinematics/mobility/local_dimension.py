@@ -23,7 +23,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import bracket
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.lockstep import run_in_lockstep
-from kinform.foundation.rounding import SOLVED, TINY
+from kinform.foundation.rounding import ARITHMETIC, SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.mobility.second_order import complement, independent, second_order, units
 from kinform.mechanism.closing import Closing, StepLimit, Task, Termination, close, close_each
@@ -46,10 +46,6 @@ STEP_SIZES = (0.05, 0.01, 0.002)
 STEPPED_RANK = 1e-6
 """Relative singular value below which a freedom counts as free at a stepped pose, whose loops are closed to
 rounding."""
-STEPPED_RANK_EXACT = 1e-9
-"""The same where the loops close to rounding over the whole step: nothing of the axes' misfit is in it."""
-CLOSURE_ROUNDING = 1e-13
-"""Rounding of a closure."""
 HIGHER_ORDER = 0.3
 """What a half stride leaves of a whole one's residual: more is misfit, which grows with the step, less an obstruction
 of higher order."""
@@ -175,7 +171,7 @@ def _regular(pose: Pose, mixes: Array, stride: float, step: float) -> Steps[tupl
             return None
     worst = float(residual.max())
     # where the numbers of the place leave more unknown, what is missed may be that
-    misfit = worst > max(CLOSURE_ROUNDING, pose.system.rounding * step)
+    misfit = worst > max(ARITHMETIC, pose.system.rounding * step)
     if misfit:
         # it grows with the step where axes are off, an obstruction of third or higher order with its powers
         half = yield _beside(pose, pose.q + 0.5 * stride * mixes, stride)
@@ -183,7 +179,8 @@ def _regular(pose: Pose, mixes: Array, stride: float, step: float) -> Steps[tupl
             return None
     values = np.linalg.svd(jacobian, compute_uv=False)
     beyond = values[:, pose.rank :].max(initial=0.0) / max(values.max(), TINY)
-    zero = STEPPED_RANK if misfit else STEPPED_RANK_EXACT
+    # where the loops close to rounding over the whole step, nothing of the axes' misfit is in the rank
+    zero = STEPPED_RANK if misfit else SOLVED
     return (kept, worst) if beyond < max(zero, pose.system.rounding) else None
 
 

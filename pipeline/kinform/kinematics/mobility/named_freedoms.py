@@ -13,21 +13,14 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical, cross, foot, norm
 from kinform.foundation.graphs.graph import Forest, forest
+from kinform.foundation.rounding import ARITHMETIC, SOLVED
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import AT_REST
-from kinform.mechanism.block_rates import RATE_ROUNDING, Solution
+from kinform.mechanism.block_rates import Solution
 from kinform.mechanism.first_order import Closure
 from kinform.mechanism.joint_graph import JointGraph
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Freedom, Kinematics, MotionKind
 from kinform.model.names import BodyName, JointName
-
-NO_TURN = 1e-10
-"""Turn (rad/s) that is none, as a share of a velocity over the size of the assembly; rounding."""
-PITCH_ROUNDING = 1e-13
-"""The same as a share of the distance of the axis from the origin: what products of doubles lose."""
-NO_TWIST = 1e-12
-"""Largest component of a relative twist that is none."""
 
 
 def named_freedoms(
@@ -87,12 +80,12 @@ def _read(twist: Array, near: Array | None, place: Array, size: float) -> tuple[
     square = float(omega @ omega)
     beside = np.zeros(3) if near is None else near
     there = velocity + cross(omega, place if near is None else near)
-    if square * size**2 < NO_TURN**2 * float(there @ there):
+    if square * size**2 < SOLVED**2 * float(there @ there):
         return "slide", canonical(there), beside, 0.0
     axis = omega / np.sqrt(square)
     point = foot(cross(omega, velocity) / square, axis, beside)
     pitch = 2.0 * np.pi * float(omega @ velocity) / square
-    lost = PITCH_ROUNDING * norm(velocity) / np.sqrt(square)
+    lost = ARITHMETIC * norm(velocity) / np.sqrt(square)
     # m a turn that is none, as a share of the size of the assembly; a choice: a fine thread has 1e-2 of its screw.
     if abs(pitch) < 1e-6 * size + lost:
         return "turn", canonical(axis), point, 0.0
@@ -156,7 +149,7 @@ def _rates(turn: Array, node: int, around: Sequence[int], graph: JointGraph, off
         sign = 1.0 if graph.edges[k][1] == node else -1.0
         rates = np.linalg.lstsq(graph.joints[k].twists.T, sign * unit, rcond=None)[0]
         for n, rate in enumerate(rates):
-            if abs(rate) > AT_REST:
+            if abs(rate) > SOLVED:
                 out[offset[k] + n] = float(rate)
     return out
 
@@ -167,7 +160,7 @@ def _sum(solutions: Sequence[Solution], parts: Mapping[int, float]) -> dict[int,
         for c, rate in zip(solutions[n].columns.tolist(), solutions[n].rates.tolist(), strict=True):
             out[c] = out.get(c, 0.0) + factor * rate
     largest = max((abs(rate) for rate in out.values()), default=0.0)
-    return {c: rate for c, rate in out.items() if abs(rate) > RATE_ROUNDING * largest}
+    return {c: rate for c, rate in out.items() if abs(rate) > SOLVED * largest}
 
 
 def _difference(one: Mapping[int, float], other: Mapping[int, float]) -> float:
@@ -207,7 +200,7 @@ class Motions:
             if relative is not None:
                 forward = self._forward(edge, node)
                 twist = forward * relative if twist is None else twist + forward * relative
-                if float(np.abs(twist).max()) <= AT_REST * float(np.abs(relative).max()):
+                if float(np.abs(twist).max()) <= SOLVED * float(np.abs(relative).max()):
                     twist = None
             if twist is not None:
                 moving[node] = twist
@@ -264,7 +257,7 @@ class Motions:
                 edge = self._number[joint]
                 if edge in signs:
                     twist += signs[edge] * rate * self.graph.joints[edge].twists[coordinate]
-            if np.abs(twist).max() > NO_TWIST:
+            if np.abs(twist).max() > ARITHMETIC:
                 out.append(twist)
         return np.array(out).reshape(-1, 6)
 

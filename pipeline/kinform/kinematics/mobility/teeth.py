@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, norm, perpendicular
-from kinform.foundation.rounding import TINY
+from kinform.foundation.rounding import SOLVED, TINY
 from kinform.foundation.sorting import heads, median
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
@@ -30,8 +30,6 @@ TOOTH_POSES = 24
 """Poses in which the sections are held against each other while one tooth passes."""
 IN_PLANE = 1e-3
 """rad: axes that are parallel or perpendicular to this lie in one plane."""
-ROUNDED_LEVEL = 1e-9
-"""Share of the greatest radius by which the end of an edge may be beyond a level that it meets, for rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +118,7 @@ class _Outline:
 def _within(levels: Array, low: Array, high: Array) -> tuple[Ints, Ints]:
     """(k,) levels (m,), ascending, and spans from `low` to `high` (n,) that they are in, but for rounding."""
     order = np.argsort(levels, kind="stable")
-    spare = ROUNDED_LEVEL * np.abs(high).max(initial=0.0)
+    spare = SOLVED * np.abs(high).max(initial=0.0)
     begin = levels[order].searchsorted(low - spare)
     count = levels[order].searchsorted(high + spare, side="right") - begin
     span = np.repeat(np.arange(len(low)), count)

@@ -192,8 +192,6 @@ def _solve(
             cost.append(JAMMED)
     whole = np.zeros(len(cost))
     whole[: len(members) * wide] = 1
-    # s: what the integer program may take before the best answer so far is taken and said to be unproven. Chosen, not
-    # measured.
     answer = milp(
         np.array(cost),
         constraints=LinearConstraint(

@@ -221,7 +221,6 @@ class Artist:
 
 def _whole_view(figures: Shown, signs: list[Array], width: int, height: int) -> View:
     """From where everything is seen."""
-    # Margin where only signs of joints are drawn, which have a size of their own. Chosen by eye.
     return view_of(
         np.concatenate([*signs, *(figure.box for figure, _ in figures)]),
         FINER * width,

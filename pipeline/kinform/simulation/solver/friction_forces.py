@@ -136,7 +136,7 @@ def _settled(
         steep = np.abs(share) @ steep if np.all(np.isfinite(share)) else np.full(left.shape, 2.0)
     # Growth of friction with itself, by the loads that it causes, from which on its answer is not unique: 1, but for
     # rounding of what is solved for (`rounding.SOLVED`).
-    if float(np.abs(np.linalg.eigvals(steep)).max()) >= (1.0 - SOLVED):
+    if float(np.abs(np.linalg.eigvals(steep)).max()) >= 1.0 - SOLVED:
         joints = [one.joint for one, _ in pairs]
         raise NotDeterminedError(_doubt(joints, t), joints)
     for _ in range(MOST_ROUNDS):

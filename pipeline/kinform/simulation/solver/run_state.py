@@ -45,7 +45,6 @@ class Run:
         self.clock[layout.RTOL], self.clock[layout.ATOL] = settings.rtol, settings.atol
         self.clock[layout.CLOSED], self.clock[layout.OPEN] = settings.closed, settings.open
         self.clock[layout.NEAR], self.clock[layout.KEEP] = settings.near, settings.keep
-        # Steps in a row that a decay kept short before the run is looked at for stiffness: those of Hairer's DOP853.
         self.clock[layout.MARGIN], self.clock[layout.PATIENCE] = (
             np.inf,
             STIFF_PATIENCE if settings.method == "auto" else np.inf,

@@ -38,6 +38,9 @@ KEPT_RISE = 2.0
 """Least squares that converge bring vertices nearer; rounding alone does not double what they are off."""
 ALONG: float = float(np.cos(np.radians(10.0)))
 """Cosine of the angle between an edge and a generator, above which it is one."""
+BOW = 1e-5
+"""Depth (spans) to which a generator that leans may dip below the surface: the ends of slanted ridges lie on it,
+but a cut between them does not."""
 APEX = 0.05
 """Distance from the axis, in radii, within which a vertex of a cone is its apex. Chosen, not measured."""
 STEEPEST_CONE = 1.567
@@ -365,9 +368,7 @@ def generators(batch: Batch, params: Params) -> tuple[Ints, Ints, Flags]:
 def _along(work: Patchwork, params: Params, region: Ints, edge: Ints) -> Flags:
     """Whether each edge runs along a generator of its region's surface."""
     sizes = np.bincount(region, minlength=len(params))
-    # Depth (spans) to which a generator that leans may dip below the surface: the ends of slanted ridges lie on it, but
-    # a cut between them does not.
-    bow = 8 * 1e-5 * np.maximum(np.abs(params[:, 6]), ARITHMETIC)
+    bow = 8 * BOW * np.maximum(np.abs(params[:, 6]), ARITHMETIC)
     mine = repeated(np.array([*params.T[:3], bow]).T, sizes)
     direction = mine[:, :3]
     cones = params[:, 7].nonzero()[0]

@@ -65,7 +65,6 @@ class Scale:
         sigma = scatter(mesh, tolerances.smooth_edge, noise / SCATTER_SHOWS)
         fit = max(tolerances.fit, FITS_PER_NOISE * noise)
         if SCATTER_SHOWS * sigma > noise:
-            # Standard deviations of scattered vertices that a fit allows: one more than those that count as scatter.
             return cls(
                 max(rounding, sigma),
                 sigma,

@@ -13,8 +13,8 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, foot, norm, perpendicular
 from kinform.foundation.graphs.graph import UnionFind
+from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import RCOND
 from kinform.kinematics.joints.axes.constants import MET
 from kinform.model.arrays import Array, Flags, Ints
 
@@ -215,12 +215,12 @@ def _solve(loci: Sequence[Locus], points: list[tuple[list[int], Array]]) -> Arra
     # eliminate the points, then take the least shifts that satisfy what is left
     free = matrix[:, width:]
     left, values, _ = np.linalg.svd(free, full_matrices=True)
-    rank = int(np.count_nonzero(values > RCOND * values[0]))
+    rank = int(np.count_nonzero(values > SOLVED * values[0]))
     rest = left[:, rank:].T
     missed = rest @ right
     if np.abs(missed).max(initial=0.0) <= MET * max(float(np.abs(loci[k].point).max()) for k in members):
         return shifts
-    solution = np.linalg.lstsq(rest @ matrix[:, :width], missed, rcond=RCOND)[0]
+    solution = np.linalg.lstsq(rest @ matrix[:, :width], missed, rcond=SOLVED)[0]
     for k in members:
         shifts[k] = solution[start[k] : start[k] + len(bases[k])] @ bases[k]
     return shifts

@@ -21,7 +21,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, norm, perpendicular
 from kinform.foundation.graphs.graph import blocks
-from kinform.foundation.rounding import SINGLE, TINY
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.axes.bounds import MoveBounds
 from kinform.kinematics.joints.axes.constants import EXACTLY_PARALLEL, FITTING_ROUNDS, MET
@@ -33,8 +33,6 @@ from kinform.model.kinematics import Joint
 
 MOST_COMPARED_JOINTS = 400
 """Blocks with more joints are left as they are: loops of four bodies grow with their square."""
-ONE_PIN = 1e-13
-"""Share of the assembly's size by which lines that were made coaxial may be apart: rounding."""
 EQUAL_SIDES = 4e-15
 """Share of the assembly's size by which sides that are equal differ: a few roundings of its coordinates."""
 
@@ -126,7 +124,8 @@ def _pins(members: Sequence[int], joints: Sequence[Joint], bounds: MoveBounds, p
         place = plane @ _point(joints[k])
         sigma, most = float(bounds.sigma[k, 1]), float(bounds.most[k, 1])
         for n, pin in enumerate(pins):
-            if norm(pin.place - place) <= ONE_PIN * size:
+            # lines that were made coaxial are apart by rounding only
+            if norm(pin.place - place) <= ARITHMETIC * size:
                 pins[n] = _Pin((*pin.joints, k), pin.place, min(pin.sigma, sigma), min(pin.most, most))
                 break
         else:

@@ -16,9 +16,8 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, scaled, span
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.graphs.graph import UnionFind
-from kinform.foundation.rounding import TINY
+from kinform.foundation.rounding import SOLVED, TINY
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import AT_REST
 from kinform.kinematics.joints.pair.certainty import meets
 from kinform.kinematics.joints.pair.touches import TOUCHING
 from kinform.kinematics.screws.canonical_basis import canonical_twists
@@ -109,7 +108,7 @@ def _groups(pairs: Sequence[_Pair], count: int) -> list[tuple[list[int], list[in
         speed = np.linalg.norm(pair.slip, axis=2).max(axis=0) if len(pair.slip) else np.zeros(count)
         turn = pair.frame.length * np.linalg.norm(pair.relative[:, :3], axis=1)
         size = speed + turn
-        for motion in np.flatnonzero(size > AT_REST * max(float(size.max(initial=0.0)), TINY)).tolist():
+        for motion in np.flatnonzero(size > SOLVED * max(float(size.max(initial=0.0)), TINY)).tolist():
             sets.union(g, len(pairs) + motion)
     out: dict[int, tuple[list[int], list[int]]] = {}
     for g in range(len(pairs)):

@@ -21,9 +21,8 @@ from kinform.foundation.algebra.displacements import adjoint, displacement
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import cross, cross_matrix, norm
 from kinform.foundation.graphs.graph import blocks
-from kinform.foundation.rounding import ARITHMETIC, SINGLE, TINY
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED, TINY
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import RCOND
 from kinform.kinematics.joints.axes.bounds import MoveBounds
 from kinform.kinematics.joints.axes.constants import EXACTLY_PARALLEL, FITTING_ROUNDS, MET
 from kinform.kinematics.joints.pair.joint import twists_of
@@ -218,7 +217,7 @@ def _moves(loops: _Loops, q: Array, rank: int) -> Array:
         rows.append(beyond @ effect[k].reshape(6 * cycles, -1))
         gaps.append(beyond @ closed.residual[k])
     matrix, missing = np.concatenate(rows), np.concatenate(gaps)
-    answer = np.linalg.lstsq(matrix, -missing, rcond=RCOND)[0].reshape(-1, 6)
+    answer = np.linalg.lstsq(matrix, -missing, rcond=SOLVED)[0].reshape(-1, 6)
     local: Array = np.einsum("jkl,jl->jk", weigh, answer)
     out = local.copy()
     # from the block's units about its centre to metres about the world's origin

@@ -17,9 +17,8 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical, cross, norm, perpendicular, sine
 from kinform.foundation.records import altered
-from kinform.foundation.rounding import TINY
+from kinform.foundation.rounding import SOLVED, TINY
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import RCOND
 from kinform.kinematics.joints.axes.bounds import MoveBounds
 from kinform.kinematics.joints.axes.concurrence import Locus, meeting_shifts
 from kinform.kinematics.joints.axes.constants import MET
@@ -190,7 +189,7 @@ def _within(places: Array, reach: float) -> Callable[[int], Ints]:
     in which they differ most: all that are so near, and some more."""
     along = places[:, int(np.ptp(places, axis=0).argmax())]
     order = along.argsort(kind="stable")
-    reach += RCOND * float(np.abs(along).max())
+    reach += SOLVED * float(np.abs(along).max())
     low, high = (np.searchsorted(along[order], along + side * reach) for side in (-1.0, 1.0))
     return lambda k: order[low[k] : high[k]]
 
@@ -302,7 +301,7 @@ def _squared(directions: Sequence[Array], sigma: Array, first: Ints, second: Int
         missing[np.abs(missing) < MET] = 0.0
         if not np.any(missing):
             break
-        solution = np.linalg.lstsq(matrix, missing, rcond=RCOND)[0].reshape(-1, 2)
+        solution = np.linalg.lstsq(matrix, missing, rcond=SOLVED)[0].reshape(-1, 2)
         for k in sorted({*first.tolist(), *second.tolist()}):
             turned = out[k] + sigma[k] / sigma.max() * (solution[k] @ turns[k])
             out[k] = canonical(turned) if np.any(turned != out[k]) else out[k]
