@@ -18,8 +18,11 @@ if TYPE_CHECKING:
 
 
 OK = 0
+"""Exit code: written, or verified."""
 FINDINGS = 1
+"""Exit code: there are findings."""
 NOT_VERIFIED = 2
+"""Exit code: not written, or not verified; typer has the same for wrong arguments."""
 
 _NO_CHOICE = re.compile(
     r"Invalid value for (?P<where>.+?): (?:Value error, )?'(?P<given>.*)' is not one of (?P<choices>'.*')"

@@ -21,15 +21,14 @@ from kinform.model.arrays import Array, Ints
 
 LOOSEST_CLOSED = 1e-4
 """Loops whose axes are in no relation that snapping knows (Bennett's) close to `SIGMAS` times the uncertainty of the
-axes, but to no more than this relative singular value."""
+axes, but to no more than this relative singular value. Chosen, not measured."""
 FEW_RATES = 160
-"""Blocks of at most so many joint rates are decided at once."""
+"""Blocks of at most so many joint rates are decided at once. Chosen, not measured."""
 MOST_RATES = 4000
-"""Largest number of joint rates for which singular values are affordable."""
-SURE_DROPPED = 1e-10
-"""In the elimination, what is dropped is below this, ..."""
+"""Largest number of joint rates for which singular values are affordable. Chosen, not measured."""
 SURE_KEPT = 1e-5
-"""... and what is kept above this, or else the decision is left to singular values."""
+"""In the elimination, what is dropped is below `SOLVED` and what is kept above this, or else the decision is left to
+singular values. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,7 +189,7 @@ def _pivots(matrix: Array, prefer: Array) -> tuple[list[int], bool]:
         norms = np.linalg.norm(rest, axis=0)
         norms[pivots] = 0.0
         largest = float(norms.max())
-        clear &= largest < SURE_DROPPED or largest > SURE_KEPT
+        clear &= largest < SOLVED or largest > SURE_KEPT
         if largest < FREE:
             break
         # Any column of at least this share of the largest may be chosen: preference decides among these.

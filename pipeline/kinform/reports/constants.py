@@ -11,4 +11,4 @@ EYE_TURN, EYE_RISE = -0.95, 0.42
 FINDING_MARGIN = 1.35
 """The same in the picture of a finding. Chosen by eye."""
 FINDING_ZOOM, FINDING_SHIFT = 1.12, 0.4
-"""How much closer the picture of a finding with a place is, and how far it moves towards the place."""
+"""How much closer the picture of a finding with a place is, and how far it moves towards the place. Chosen by eye."""

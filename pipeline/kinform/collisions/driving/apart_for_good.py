@@ -15,7 +15,7 @@ from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array
 
 TURNED_LEAST = 1e-3
-"""Sine of the greatest turn, below which an axis is not looked for."""
+"""Sine of the greatest turn, below which an axis is not looked for. Chosen, not measured."""
 
 
 def that_can_meet(shapes: Shapes, test: PairTest, relative: Array) -> PairTest | None:

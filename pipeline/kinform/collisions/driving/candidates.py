@@ -26,16 +26,17 @@ from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 
 STOP_ANGLE = math.radians(2e-5)
-"""rad: to which a stop of a turn is found."""
+"""rad: to which a stop of a turn is found. Chosen, not measured."""
 STOP_LENGTH = 1e-5
-"""To which a stop of a slide is found."""
+"""To which a stop of a slide is found. Chosen, not measured."""
 WINDOW_TURN = 2.0 * math.pi / 32
 """rad of a turn, ..."""
 WINDOW_SLIDE = 0.05
 """... and share of the smaller part's diagonal of a slide, that parts which come near each other are followed with the
-facets that can meet there."""
+facets that can meet there. Chosen, not measured."""
 MODEL_MOST = 0.7
-"""Where more than this share of the facets that can meet at all can in a window, all are modelled."""
+"""Where more than this share of the facets that can meet at all can in a window, all are modelled. Chosen, not
+measured."""
 
 
 class Candidate:

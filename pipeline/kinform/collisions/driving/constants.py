@@ -3,4 +3,4 @@
 from __future__ import annotations
 
 MEETING_MARGIN = 1e-6
-"""Facets whose swept profiles come no nearer than this never meet."""
+"""Facets whose swept profiles come no nearer than this never meet. Chosen, not measured."""

@@ -23,23 +23,23 @@ from kinform.model.arrays import Array, Flags
 from kinform.model.kinematics import Freedom
 
 STEP = 0.04
-"""Arc length of a step: rad, and share of the block's size."""
+"""Arc length of a step: rad, and share of the block's size. Chosen, not measured."""
 PATH_STEPS = 900
 """Steps to each side at most: 36 rad, six turns of a linkage with one turning joint, or two of one with ten."""
 STEP_KEPT = 0.3
-"""Share of a step that has to be left of it where the loops are closed again."""
+"""Share of a step that has to be left of it where the loops are closed again. Chosen, not measured."""
 SINGULAR = 2e-3
 """A singular value of the closure that counts, but is below this, is that of a branching: twenty times what may be none
 (`RANK_SHARE`), and a twentieth of a step."""
 LONG_STEP = 0.4
 """rad: the longest step where a motion goes on evenly: screws and slides along one line, on which there is nothing to
-be passed over."""
+be passed over. Chosen, not measured."""
 EVEN_TRIED = 30
-"""Steps after which it is believed that a motion goes on evenly."""
+"""Steps after which it is believed that a motion goes on evenly. Chosen, not measured."""
 EVEN_STEPS = 6000
-"""Steps of an even motion in all."""
+"""Steps of an even motion in all. Chosen, not measured."""
 NODES_THROUGH = 6
-"""Nodes that the motion between two of them is taken through."""
+"""Nodes that the motion between two of them is taken through. Chosen, not measured."""
 SMOOTH = SOLVED
 """rad and share of the size that loops may be open between nodes."""
 

@@ -31,9 +31,9 @@ from kinform.model.kinematics import Freedom, Joint, Kinematics
 from kinform.model.names import BodyName, PartName
 
 TURNED_ROUND = 2.0 * math.pi - 0.2
-"""rad: a joint of a motion that comes back, and turned by more, goes round and round."""
+"""rad: a joint of a motion that comes back, and turned by more, goes round and round. Chosen, not measured."""
 LOOP_STOP = 1e-3
-"""Share of a step to which a contact along a motion of loops is found."""
+"""Share of a step to which a contact along a motion of loops is found. Chosen, not measured."""
 
 
 LEAVES = "leaves its guide"

@@ -19,10 +19,8 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
 CHUNK = 64
-"""Facets that lie together and are asked as one whether any of them can meet any of others."""
+"""Facets that lie together and are asked as one whether any of them can meet any of others. Chosen, not measured."""
 
-
-TURN = 2.0 * math.pi
 
 Sides = tuple[Array, Array]
 """Lower and upper."""
@@ -188,7 +186,7 @@ class Meeting:
         meet &= high >= begin
         if self.turning:
             # a whole number of turns from there
-            meet = np.floor((high - begin) / TURN) * TURN >= low - end
+            meet = np.floor((high - begin) / math.tau) * math.tau >= low - end
         chosen = pairs[meet]
         out = []
         for k, order in enumerate(orders):
@@ -251,11 +249,11 @@ def _near(first: Sides, second: Sides, margin: float) -> tuple[Ints, Ints]:
 def _cut(start: Array, stop: Array) -> tuple[Ints, Array, Array]:
     """Where facets (n,) are on a turn (rad) that is cut open at 0: of each piece (m,) the facet, and from where to
     where."""
-    wide = np.minimum(stop - start, TURN)
-    start = np.where(wide >= TURN, 0.0, start % TURN)
-    over = np.flatnonzero(start + wide > TURN)
-    rest = start[over] + wide[over] - TURN
-    ends = np.append(np.minimum(start + wide, TURN), rest)
+    wide = np.minimum(stop - start, math.tau)
+    start = np.where(wide >= math.tau, 0.0, start % math.tau)
+    over = np.flatnonzero(start + wide > math.tau)
+    rest = start[over] + wide[over] - math.tau
+    ends = np.append(np.minimum(start + wide, math.tau), rest)
     return np.append(np.arange(len(start)), over), np.append(start, np.zeros(len(over))), ends
 
 
@@ -277,12 +275,12 @@ def spanned(flat: Array, radius: Array, margin: float) -> Sides:
     first, *others = (np.arctan2(flat[:, corner, 1], flat[:, corner, 0]) for corner in range(3))
     low, high = np.zeros(len(flat)), np.zeros(len(flat))
     for angle in others:
-        apart = (angle - first + math.pi) % TURN - math.pi
+        apart = (angle - first + math.pi) % math.tau - math.pi
         low, high = np.minimum(low, apart), np.maximum(high, apart)
     wide = margin / np.maximum(radius, TINY)
     start, stop = first + low - wide, first + high + wide
     whole = (stop - start >= math.pi) | (wide > 1.0)
-    return np.where(whole, 0.0, start % TURN), np.where(whole, TURN, start % TURN + stop - start)
+    return np.where(whole, 0.0, start % math.tau), np.where(whole, math.tau, start % math.tau + stop - start)
 
 
 def nearest(flat: Array) -> Array:

@@ -61,6 +61,7 @@ class Crossing:
 
 
 NONE = Crossing({}, 0.0)
+"""Where no facets cross."""
 
 
 class PairTest:

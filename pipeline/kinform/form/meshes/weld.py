@@ -16,9 +16,9 @@ from kinform.foundation.meshes.near_points import Near
 from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array, Ints
 
+# Directions along which no designer lays an edge.
 _LINES = np.array([[0.57735, 0.51763, 0.63144], [-0.70143, 0.37291, 0.60741]])
 _LINES /= np.linalg.norm(_LINES, axis=1)[:, None]
-"""Directions along which no designer lays an edge."""
 
 
 def used_only(vertices: NDArray[np.floating], faces: Ints) -> tuple[NDArray[np.floating], Ints]:

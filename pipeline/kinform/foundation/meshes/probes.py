@@ -66,6 +66,7 @@ class Facets(Protocol):
 
 
 _UNITS = np.eye(3)
+"""x, y, z."""
 
 
 @dataclass(frozen=True, eq=False)

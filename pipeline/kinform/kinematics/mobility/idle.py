@@ -31,11 +31,11 @@ from kinform.model.names import BodyName, PartName
 from kinform.model.surfaces import MeshSurfaces
 
 IDLE_AXIS = 1e-3
-"""Sine between axes, and part of a unit turn outside a joint's freedoms, that is none."""
+"""Sine between axes, and part of a unit turn outside a joint's freedoms, that is none. Chosen, not measured."""
 IDLE_PLACE = 1e-4
-"""Share of the assembly's size by which axes and centres may lie apart."""
+"""Share of the assembly's size by which axes and centres may lie apart. Chosen, not measured."""
 INTENDED_PLACE = 1e-2
-"""... and share of the assembly's size by which its place may."""
+"""... and share of the assembly's size by which its place may. Chosen, not measured."""
 
 
 def touching_balls(

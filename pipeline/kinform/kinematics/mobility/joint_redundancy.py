@@ -23,7 +23,7 @@ from kinform.model.kinematics import Joint, Redundancy, RedundancyKind
 from kinform.model.tolerances import Tolerances
 
 FEW_OF_SITE = 4
-"""One of so many samples is looked at before all are, where patches may lie together."""
+"""One of so many samples is looked at before all are, where patches may lie together. Chosen, not measured."""
 
 
 def redundancy(

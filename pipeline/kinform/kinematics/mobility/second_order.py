@@ -16,13 +16,13 @@ from kinform.model.arrays import Array
 from kinform.model.kinematics import CurvatureVerdict
 
 MOST_TESTED_FREEDOMS = 40
-"""Freedoms of a block up to which directions that pass the second-order test are looked for."""
+"""Freedoms of a block up to which directions that pass the second-order test are looked for. Chosen, not measured."""
 TEST_ITERATIONS = 60
 """Gauss–Newton iterations for a common zero of the forms: where it is double they converge by halving."""
 MOST_PASSING = 12
-"""Directions that pass the second-order test that are followed."""
+"""Directions that pass the second-order test that are followed. Chosen, not measured."""
 SAME_LINE = 0.999
-"""Cosine above which two of them are one."""
+"""Cosine above which two of them are one. Chosen, not measured."""
 
 
 def second_order(pose: Pose, rng: np.random.Generator) -> tuple[CurvatureVerdict, Array]:

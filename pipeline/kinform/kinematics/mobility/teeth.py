@@ -25,11 +25,12 @@ EVEN_TEETH = 0.03
 """Share of the pitch by which teeth may stand elsewhere than at even distances, or leave the constant ratio:
 tessellated involutes of five points a flank stay below a third of it, straight flanks on wheels do not."""
 FEWEST_TEETH = 5
-"""Teeth of a whole wheel, and teeth in a row of a rack or a sector, from which on they are teeth and no cams."""
+"""Teeth of a whole wheel, and teeth in a row of a rack or a sector, from which on they are teeth and no cams. Chosen,
+not measured."""
 TOOTH_POSES = 24
-"""Poses in which the sections are held against each other while one tooth passes."""
+"""Poses in which the sections are held against each other while one tooth passes. Chosen, not measured."""
 IN_PLANE = 1e-3
-"""rad: axes that are parallel or perpendicular to this lie in one plane."""
+"""rad: axes that are parallel or perpendicular to this lie in one plane. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,11 +17,12 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 PLOT_WIDTH, PLOT_HEIGHT = 380.0, 168.0
-"""px, of a plot."""
+"""px, of a plot. Chosen by eye."""
 PLOT_LEFT, PLOT_RIGHT, PLOT_TOP, PLOT_BOTTOM = 54.0, 366.0, 12.0, 142.0
-"""px, of the area of the curves."""
+"""px, of the area of the curves. Chosen by eye."""
 MOST_COLUMNS = 300
-"""Columns of a curve, about its pixels on the page; in each the least and the greatest value are kept."""
+"""Columns of a curve, about its pixels on the page; in each the least and the greatest value are kept. Chosen by
+eye."""
 MOST_EVENTS = 40
 """Collisions that are marked in a plot: more touch each other. Chosen, not measured."""
 

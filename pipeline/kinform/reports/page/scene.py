@@ -27,7 +27,7 @@ BODY_COLOURS = (
 )  # fmt: skip
 """Of the other bodies, one after the other and again from the first."""
 LEAST_SIGN, MOST_SIGN = 0.045, 0.16
-"""Shares of the assembly's size between which a sign stays."""
+"""Shares of the assembly's size between which a sign stays. Chosen by eye."""
 
 
 @dataclass(frozen=True, eq=False)

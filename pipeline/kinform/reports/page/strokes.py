@@ -129,6 +129,7 @@ def ring(image: Image, centre: Array, radius: float, width: float) -> None:
 
 
 _SIGNAL = [*rgb(SIGNAL_COLOUR), 1.0]
+"""The colour of signals, opaque."""
 
 Pixels = tuple[NDArray[np.int64], NDArray[np.int64]]
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from kinform.behaviour.joints import JointKind
 from kinform.behaviour.primitives import OneFreedom
+from kinform.foundation.algebra.displacements import UNMOVED
 from kinform.foundation.algebra.spatial import along_motion, multiply, rotation_vector, to_matrix
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
@@ -27,9 +28,6 @@ roundings, as poses are products of many factors."""
 AT_LIMIT, AT_LIMIT_SHARE = 0.05, 0.1
 """Margin of the loops for what is not led, and its share of that for all rates, below which a run that cannot go on
 has come to the end of what the loops let be led. Runs end at margins of a hundredth and less. A choice."""
-
-
-IDENTITY = np.eye(4)
 
 
 @dataclass(frozen=True)
@@ -165,14 +163,14 @@ class Mechanism:
         values = q[self.screw_q]
         factors = np.empty((len(values), 1, 3))
         factors[:, 0, 0], factors[:, 0, 1], factors[:, 0, 2] = values, np.sin(values), 1.0 - np.cos(values)
-        motions = IDENTITY + (factors @ self.screw_terms.reshape(-1, 3, 16)).reshape(-1, 4, 4)
-        own: list[Array] = [IDENTITY] * len(self.parent)
+        motions = UNMOVED + (factors @ self.screw_terms.reshape(-1, 3, 16)).reshape(-1, 4, 4)
+        own: list[Array] = [UNMOVED] * len(self.parent)
         for link, motion in zip(self.screw_link, motions, strict=True):
             own[link] = motion
         for ball in self.balls:
             own[ball.link] = _ball_motion(ball, q)
         X = np.empty((len(self.parent), 4, 4))
-        X[0] = IDENTITY
+        X[0] = UNMOVED
         for link in range(1, len(self.parent)):
             np.matmul(X[self.parent[link]], own[link], out=X[link])
         return X

@@ -7,12 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.constants import COVERAGE
 from kinform.foundation.graphs.graph import blocks
 from kinform.foundation.rounding import ARITHMETIC
 from kinform.model.kinematics import Joint, Kinematics
-
-LENGTH_SIGMAS = 3.0
-"""Standard uncertainties by which lengths may be off: beyond it chance is below 1 %."""
 
 
 def loop_uncertainty(kinematics: Kinematics, length: float) -> float:
@@ -28,7 +26,7 @@ def loop_uncertainty(kinematics: Kinematics, length: float) -> float:
         if len(members) > 1:
             places = [joint.point_uncertainty / length for joint in members]
             turns = [] if _planar(members) else [joint.axis_uncertainty for joint in members]
-            worst = max(worst, LENGTH_SIGMAS * float(np.linalg.norm([*places, *turns])))
+            worst = max(worst, COVERAGE * float(np.linalg.norm([*places, *turns])))
     return worst
 
 

@@ -29,6 +29,7 @@ not measured."""
 
 
 _PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+"""Rows and columns of the six entries of a symmetric 3 × 3 matrix."""
 
 
 @dataclass(frozen=True, eq=False)

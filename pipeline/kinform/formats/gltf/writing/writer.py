@@ -24,10 +24,10 @@ from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
 from kinform.version import __version__
 
-FLOAT, UNSIGNED = 5126, 5125
-VERTICES, INDICES = 34962, 34963
-LINES = 1
-"""Numbers of glTF 2.0: types of components, targets of buffers, mode of a primitive."""
+# Numbers of glTF 2.0:
+FLOAT, UNSIGNED = 5126, 5125  # types of components
+VERTICES, INDICES = 34962, 34963  # targets of buffers
+LINES = 1  # mode of a primitive
 
 
 @dataclass

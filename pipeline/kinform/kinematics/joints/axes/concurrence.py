@@ -19,7 +19,7 @@ from kinform.kinematics.joints.axes.constants import MET
 from kinform.model.arrays import Array, Flags, Ints
 
 LEAST_CROSSING = 0.05
-"""Lines at a smaller angle (sine) meet nowhere in particular."""
+"""Lines at a smaller angle (sine) meet nowhere in particular. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)

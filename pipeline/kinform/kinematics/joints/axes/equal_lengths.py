@@ -24,7 +24,7 @@ from kinform.foundation.graphs.graph import blocks
 from kinform.foundation.rounding import ARITHMETIC, SINGLE, TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.axes.bounds import MoveBounds
-from kinform.kinematics.joints.axes.constants import EXACTLY_PARALLEL, FITTING_ROUNDS, MET
+from kinform.kinematics.joints.axes.constants import FITTING_ROUNDS, MET
 from kinform.kinematics.joints.axes.snapping import LINES
 from kinform.kinematics.joints.pair.joint import twists_of
 from kinform.mechanism.joint_graph import JointGraph
@@ -32,7 +32,7 @@ from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
 
 MOST_COMPARED_JOINTS = 400
-"""Blocks with more joints are left as they are: loops of four bodies grow with their square."""
+"""Blocks with more joints are left as they are: loops of four bodies grow with their square. Chosen, not measured."""
 EQUAL_SIDES = 4e-15
 """Share of the assembly's size by which sides that are equal differ: a few roundings of its coordinates."""
 
@@ -85,7 +85,7 @@ def _parallel(candidates: Sequence[int], joints: Sequence[Joint]) -> list[list[i
     bundles: list[list[int]] = []
     for k in candidates:
         for bundle in bundles:
-            if norm(cross(_axis(joints[bundle[0]]), _axis(joints[k]))) < EXACTLY_PARALLEL:
+            if norm(cross(_axis(joints[bundle[0]]), _axis(joints[k]))) < ARITHMETIC:
                 bundle.append(k)
                 break
         else:
