@@ -15,6 +15,8 @@ from kinform.foundation.sorting import distinct, numbered
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 
+COARSE_CELL = 0.02
+"""Side of the cells whose vertices become one, of the part itself: facets of fine details vanish. A choice; ..."""
 COARSE_WORTH = 0.5
 """... and where more than this share of all are left, all are: the coarse ones would gain less than half."""
 
@@ -43,8 +45,7 @@ def coarse_mesh(mesh: Mesh) -> tuple[Array, Ints, float] | None:
 def _clustered(mesh: Mesh) -> tuple[Array, Ints]:
     """(v, 3) m middles of the vertices in each cell, and of each vertex (V,) which of these is its own."""
     vertices, low = mesh.vertices, mesh.vertices.min(axis=0)
-    # Side of the cells whose vertices become one, of the part itself: facets of fine details vanish. A choice; ...
-    size = max(0.02 * mesh.diagonal, TINY)
+    size = max(COARSE_CELL * mesh.diagonal, TINY)
     counts = np.floor(np.ptp(vertices, axis=0) / size).astype(np.int64) + 1
     x, y, z = np.floor((vertices - low) / size).astype(np.int64).T
     cells, owner = numbered((x * counts[1] + y) * counts[2] + z, int(counts.prod()))

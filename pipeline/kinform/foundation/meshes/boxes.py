@@ -41,7 +41,8 @@ sorts in half of the time."""
 ROWS_TOGETHER = 64
 """Rows that are viewed as one wide row for the least and the greatest of each column. Chosen, not measured."""
 BOXES_MATRIX = 600_000
-"""Boxes times boxes up to which all of one kind are compared with all of another; of more, so many at once."""
+"""Boxes times boxes, or times points, up to which all of one kind are compared with all of another; of more, so many at
+once: 30 MB."""
 BOXES_A_BLOCK = 64
 """Neighbouring boxes that are compared together with what comes near them. Chosen, not measured."""
 

@@ -35,7 +35,8 @@ IDLE_AXIS = 1e-3
 IDLE_PLACE = 1e-4
 """Share of the assembly's size by which axes and centres may lie apart. Chosen, not measured."""
 INTENDED_PLACE = 1e-2
-"""... and share of the assembly's size by which its place may. Chosen, not measured."""
+"""Share of the assembly's size by which the place of an intended joint may be off an idle turn. Chosen, not
+measured."""
 
 
 def touching_balls(

@@ -47,8 +47,11 @@ FLAT_APART = 50.0
 """The same of one that does not touch: the tip of a screw over the face of a motor. Chosen, not measured."""
 APART = 0.05
 """Gap of a flat from which it does not touch, as a share of the root of its area. Chosen, not measured."""
+JOURNAL_OFF = 0.7
+"""Share of its reach by which the middle of a round patch may lie beside the axis that it goes round: half of one."""
 FACE_OFF = 0.5
-"""The same of other faces. Chosen, not measured."""
+"""Distance from the axis of a joint to the middle of a face that goes round it, as a share of the reach of the face.
+Chosen, not measured."""
 ROLLING = 1.0
 """Price of parting what touches at points or along lines only: balls, rollers, teeth hold nothing together."""
 NUMBERS_AT_ONCE = 8192
@@ -317,9 +320,7 @@ class Contact:
         u, v, w = np.array([patch.axis for patch in patches]).T[:, None]
         sphere = np.array([patch.kind == "sphere" for patch in patches], dtype=bool)
         lies = np.where(axes.ball[:, None], sphere, np.abs(u * p + v * q + w * r) > np.cos(SAME_AXIS))
-        # Share of its reach by which the middle of a round patch may lie beside the axis that it goes round: half of
-        # one.
-        return np.asarray(turning & ((off < 0.7) | (lies & (far < COAXIAL_OFF * size))))
+        return np.asarray(turning & ((off < JOURNAL_OFF) | (lies & (far < COAXIAL_OFF * size))))
 
     def _round(self, axes: Axes, opposed: Flags, serrated: Flags) -> list[float]:
         """The price along a turn about each axis: do patches go round it, or its centre?"""

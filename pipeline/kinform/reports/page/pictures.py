@@ -42,7 +42,8 @@ OVERVIEW_WIDTH, OVERVIEW_HEIGHT = 960, 600
 PICTURE_WIDTH, PICTURE_HEIGHT = 480, 320
 """px, of the picture of a finding. Chosen by eye."""
 SIGNS_MARGIN = 1.5
-"""The same where only signs of joints are drawn, which have a size of their own. Chosen by eye."""
+"""Size of a picture over that of what it holds where only signs of joints are drawn, which have a size of their own.
+Chosen by eye."""
 FAINT = 0.22
 """Weight of what a finding is not about. Chosen by eye, as the next two."""
 GLASS = 0.35

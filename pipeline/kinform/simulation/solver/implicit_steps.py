@@ -29,6 +29,9 @@ DAMPING_STEP = 100.0
 of a thousandth by 1e-9 of itself. Steps that are cut short count as damping from 0.3 of it on, by 0.1."""
 WITHOUT_CONTROL = 1e3
 """Relative and absolute error a step that no step has: errors do not control the steps that damp. Any great number."""
+DAMPING_SETTLED = 1e-10
+"""Newton's last correction in such a step, over the state and 1: the absolute tolerance of the implicit method
+(`SolverSettings.implicit_atol`)."""
 DAMPING_NEWTON = 0.03
 """The same as a share of the change by the step before: what such a step leaves of the vibration, 3/100."""
 
@@ -99,9 +102,7 @@ class VibrationDamping:
         # Newton need not be more exact than what the step leaves of the vibration.
         relative = (run.y - before) / (1.0 + np.abs(before))
         change = float(np.sqrt(np.mean(relative[: run.dynamics.tables.metered.start] ** 2)))
-        # Newton's last correction in such a step, over the state and 1: the absolute tolerance of the implicit method
-        # (`SolverSettings.implicit_atol`).
-        settled = max(1e-10, DAMPING_NEWTON * change)
+        settled = max(DAMPING_SETTLED, DAMPING_NEWTON * change)
         solver.newton_tol = settled / WITHOUT_CONTROL
         self.made += int(self.fastest * span > 0.3 * DAMPING_STEP)
         # Steps that damp: a vibration to 0.1^16, the last bit, at least of what it was.
