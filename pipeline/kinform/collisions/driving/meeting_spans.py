@@ -17,6 +17,7 @@ import numpy as np
 
 from kinform.collisions.driving.swept_profiles import nearest, spanned
 from kinform.foundation.meshes.boxes import along_curve, triangle_boxes
+from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 
@@ -205,7 +206,7 @@ class _Groups:
         # each group is shifted beyond those before it, and back
         apart = 2.0 * (float(stop.max()) - float(start.min()))
         low, high = _merged(start + apart * self._rank, stop + apart * self._rank)
-        group = np.floor((low - start.min()) / apart + 1e-9).astype(np.int64)
+        group = np.floor((low - start.min()) / apart + SOLVED).astype(np.int64)
         count = np.bincount(group, minlength=len(self.low))
         return low - apart * group, high - apart * group, np.cumsum(count) - count, count
 
