@@ -18,11 +18,12 @@ if TYPE_CHECKING:
 
 
 OK = 0
+"""Exit code: written, or verified."""
 FINDINGS = 1
+"""Exit code: there are findings."""
 NOT_VERIFIED = 2
+"""Exit code: not written, or not verified; typer has the same for wrong arguments."""
 
-_INTERRUPTED = 130
-"""What typer makes of Ctrl-C."""
 _NO_CHOICE = re.compile(
     r"Invalid value for (?P<where>.+?): (?:Value error, )?'(?P<given>.*)' is not one of (?P<choices>'.*')"
 )
@@ -83,7 +84,8 @@ def report(error: BaseException) -> int:
 
 def from_typer(code: object) -> int:
     """The exit code for what typer returned: commands return theirs, Ctrl-C is its own affair."""
-    if code == _INTERRUPTED:
+    # What typer makes of Ctrl-C.
+    if code == 130:
         return report(KeyboardInterrupt())
     return code if isinstance(code, int) else OK
 

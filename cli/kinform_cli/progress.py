@@ -17,11 +17,6 @@ from kinform_cli import console, interrupts
 if TYPE_CHECKING:
     from rich.progress import Progress as Bars
 
-DELAY = 1.0
-"""Seconds after which a bar appears: shorter work needs none."""
-PERIOD = 0.1
-"""Seconds between two drawings of the bar; a choice."""
-
 
 _drawing = threading.RLock()
 if hasattr(os, "register_at_fork"):
@@ -69,13 +64,15 @@ class Working:
         self(done, total)
 
     def _draw(self) -> None:
-        if self._over.wait(DELAY):
+        # Seconds after which a bar appears: shorter work needs none.
+        if self._over.wait(1.0):
             return
         with _drawing:
             bars = _bars()
             task = bars.add_task(self._label, total=None)
             bars.start()
-        while not self._over.wait(PERIOD):
+        # Seconds between two drawings of the bar; a choice.
+        while not self._over.wait(0.1):
             with _drawing:
                 bars.update(task, description=self._label, completed=self._done, total=self._total or None)
                 bars.refresh()

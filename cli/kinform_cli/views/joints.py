@@ -21,9 +21,6 @@ from kinform_cli.text import NONE, Lengths, degrees, ground_note, singular, vect
 if TYPE_CHECKING:
     from kinform.consistency.comparisons.answers import Answer
 
-MOST_WAYS = 3
-"""Ways to leave that are listed for each joint; `--joint` lists all. A choice."""
-
 
 def render(design: Design, *, short: bool = False) -> RenderableType:
     """One row a joint, then why a joint is not plainly determined, then the bodies of several parts; with `short` no
@@ -131,7 +128,8 @@ def leaves(joint: Joint) -> str:
 def _ways(releases: Sequence[Release], *, many: bool = False) -> str:
     """The slides among the ways to leave, else the first turns, in words."""
     slides = [way for way in releases if way.kind == "slide"]
-    shown = (slides or list(releases))[:MOST_WAYS]
+    # Ways to leave that are listed for each joint; `--joint` lists all. A choice.
+    shown = (slides or list(releases))[:3]
     words = ", ".join(way.words for way in shown)
     if many or not all(way.extreme for way in shown):
         return f"{words}, and many ways beside"

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.rounding import SOLVED
+from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.model.simulation import Simulation
 from kinform.reports.values.runs import coordinates
 from kinform_cli.tables import Rows
@@ -21,8 +21,6 @@ from kinform_cli.text import Lengths, degrees, number, scaled
 
 SPARK_WIDTH = 20
 """Characters of a line of blocks: with the extremes it fits in 80 columns where names are short."""
-SAME_PEAK = 1e-6
-"""Share of the span of a series within which two of its peaks are equally high: the first is named."""
 
 
 BLOCKS = "▁▂▃▄▅▆▇█"
@@ -66,7 +64,7 @@ def render(run: Simulation, lengths: Lengths) -> Rows | None:
 def _extremes(values: NDArray[np.float64]) -> tuple[int, int]:
     """Where the lowest and the highest are: the first places that are not lower or higher by rounding only."""
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
-    same = SAME_PEAK * (high - low)
+    same = SINGLE * (high - low)
     return int(np.argmax(values <= low + same)), int(np.argmax(values >= high - same))
 
 

@@ -17,13 +17,9 @@ from typing import Any
 from kinform.errors import InputError, Problem
 from kinform.form.constants import MANIFEST_BYTES
 from kinform.form.sources import states_units
+from kinform.formats.registry import HEAD_BYTES
 from kinform.foundation.regular_files import not_a_file
 from kinform.frozen import dataclass
-
-HEAD = 65536
-"""Bytes of an XML file in which its root element is looked for: a comment with a licence before it
-takes some thousand."""
-
 
 DESCRIPTIONS = (".urdf", ".xacro", ".sdf", ".world", ".mjcf", ".xml")
 """Suffixes of files that are looked into, beside manifests."""
@@ -101,7 +97,7 @@ def is_design(path: Path) -> bool:
         return False
     try:
         with path.open("rb") as stream:
-            head = stream.read(HEAD)
+            head = stream.read(HEAD_BYTES)
     except OSError:
         return True
     return re.search(_ROOTS[suffix], re.sub(rb"<!--.*?-->", b"", head, flags=re.S)) is not None

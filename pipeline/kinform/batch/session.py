@@ -18,9 +18,6 @@ from kinform.batch.unchanged import row_if_unchanged
 from kinform.errors import InputError, Problem, ResultsError
 from kinform.frozen import dataclass
 
-KEEPING = 5.0
-"""s between two writings of the record: what a killed batch has to look at again. Chosen, not measured."""
-
 
 @dataclass(frozen=True)
 class Settings:
@@ -79,7 +76,8 @@ def _run(
                 rows[one.name] = kept.rows[one.name] = _row(one, answer)
                 if progress is not None:
                     progress(done, len(left))
-                if time.monotonic() - written > KEEPING:
+                # s between two writings of the record: what a killed batch has to look at again. Chosen, not measured.
+                if time.monotonic() - written > 5.0:
                     record.write(kept, folder)
                     written = time.monotonic()
         finally:

@@ -93,3 +93,4 @@ __all__ = [
 ]
 
 CODE_VERSION: int = 17
+"""Bumped when results of this package change for the same input."""

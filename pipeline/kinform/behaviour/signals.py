@@ -14,8 +14,6 @@ from kinform.model.function import Law
 
 OVERSHOOT = 0.02
 """Share of a table's span that a spline may leave its rows: a sine of sixteen rows a turn does."""
-SPLINE_SAMPLES = 17
-"""Places in each stretch of a table at which a spline is compared with its straight line: ends and sixteenths."""
 
 
 class Signal(Protocol):
@@ -142,7 +140,8 @@ class Spline:
         self._ends = (table.levels[0], table.levels[-1])
         levels = np.asarray(table.levels)
         self.curve: Any = CubicSpline(table.knots, levels, bc_type="clamped")
-        places = np.linspace(table.knots[:-1], table.knots[1:], SPLINE_SAMPLES)
+        # Places in each stretch of a table at which a spline is compared with its straight line: ends and sixteenths.
+        places = np.linspace(table.knots[:-1], table.knots[1:], 17)
         between = self.curve(places)
         low, high = np.minimum(levels[:-1], levels[1:]), np.maximum(levels[:-1], levels[1:])
         outside = max(float((between - high).max()), float((low - between).max()))

@@ -29,9 +29,6 @@ if TYPE_CHECKING:
 GRAIN_SHARE = 0.1
 """Values are rounded to this share of their tolerance: rounding cannot make a difference by itself. Of two
 roundings each is off by half of it, a tenth of the tolerance together."""
-LENGTH_ERROR = 1e-3
-"""By so much a direction in a lock may miss the length 1; more is a mistake of who wrote it. Numbers of three digits
-pass."""
 
 
 SCHEMA = "kinform/behaviour-lock/1"
@@ -315,7 +312,9 @@ def _read_vector(values: Iterable[float] | None, scale: float) -> Vector | None:
 
 def _read_direction(values: Iterable[float] | None) -> Vector | None:
     direction = _read_vector(values, 1.0)
-    if direction is not None and abs(math.hypot(*direction) - 1.0) > LENGTH_ERROR:
+    # By so much a direction in a lock may miss the length 1; more is a mistake of who wrote it. Numbers of three digits
+    # pass.
+    if direction is not None and abs(math.hypot(*direction) - 1.0) > 1e-3:
         raise ValueError(f"the direction {list(direction)} is not of length 1")
     return direction
 

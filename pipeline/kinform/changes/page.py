@@ -29,8 +29,6 @@ REVISION_COLOURS = {
     "other shape, after": "#2e9e76", "new": "#79ab83", "gone": "#c9807a",
 }  # fmt: skip
 """Of parts on the page of two revisions; the legend and the text say the same in words."""
-REVISION_FRAMES = 17
-"""Poses from before to after: enough for a turn of half a circle to look round."""
 
 
 def diff_page(comparison: Comparison, before: Design, after: Design, files: tuple[str, str]) -> str:
@@ -144,7 +142,8 @@ def _drawn(comparison: Comparison, before: Design, after: Design) -> tuple[dict[
 
 def _motion(blob: Blob, moved: list[tuple[int, Cause]]) -> dict[str, Any]:
     """From before to after: parts that moved go their way, the others change in the middle."""
-    shares = np.linspace(0.0, 1.0, REVISION_FRAMES)
+    # Poses from before to after: enough for a turn of half a circle to look round.
+    shares = np.linspace(0.0, 1.0, 17)
     poses = np.array(
         [[inverse(displacement((1.0 - s) * twist_of(cause.X))) for _, cause in moved if cause.X is not None]
          for s in shares]

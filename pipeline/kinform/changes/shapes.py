@@ -16,9 +16,6 @@ from kinform.foundation.words import angle, direction, length, listed
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh, Part
 
-SAME_VOLUME = 0.005
-"""%: smaller differences of volume are told as none, as they would be told as 0.00 %."""
-
 
 def displacement(was: Part, part: Part) -> tuple[Array | None, bool]:
     """The displacement of a part in the world (4, 4), and whether its facets are the same. None: it is another shape in
@@ -151,7 +148,8 @@ def reshaped(was: Part, part: Part, X: Array | None, units: str) -> tuple[Litera
     told = []
     if old.health.watertight and new.health.watertight and old.health.volume > 0.0:
         share = 100.0 * (new.health.volume - old.health.volume) / old.health.volume
-        told.append("the same volume" if abs(share) < SAME_VOLUME else f"volume {share:+.2g} %")
+        # %: smaller differences of volume are told as none, as they would be told as 0.00 %.
+        told.append("the same volume" if abs(share) < 0.005 else f"volume {share:+.2g} %")
     before, after = (one, _placed(part)) if X is None else (old.vertices, new.vertices)
     for k, name in enumerate("xyz"):
         grown = float(np.ptp(after[:, k]) - np.ptp(before[:, k]))

@@ -42,9 +42,6 @@ RUN_ASKED = 3
 """How often: with more outputs more of the motion is seen."""
 COLLISIONS_MOST = 100
 """Collisions after which later ones are not looked for: a choice, more than anybody reads."""
-DEPTH_SOON = 17
-"""Times within an output step of the first contact, its ends and sixteenths, at which the depth is measured: a
-choice."""
 DEPTH_TIMES = 12
 """Output times after the first contact at which the depth is measured: so many spread over the rest, and about the
 worst. A choice."""
@@ -187,7 +184,9 @@ def _parts_of_a_step(simulation: Simulation, size: float) -> tuple[int, int]:
 def _depth(test: PairTest, course: Course, time: Array, hit: float) -> float:
     """m: how deep two parts are in each other at the worst of some times from the first contact on: soon after it,
     between outputs too, at outputs spread over the run, and about the worst of these."""
-    soon = np.linspace(hit, min(hit + float(np.diff(time).max()), float(time[-1])), DEPTH_SOON)
+    # Times within an output step of the first contact, its ends and sixteenths, at which the depth is measured: a
+    # choice.
+    soon = np.linspace(hit, min(hit + float(np.diff(time).max()), float(time[-1])), 17)
     after = np.unique(np.concatenate([soon, time[time >= hit]]))
     last = len(after) - 1
     depths: dict[int, float] = {}

@@ -37,12 +37,6 @@ from kinform.model.contacts import Interference, Patch
 from kinform.model.surfaces import MeshSurfaces
 from kinform.model.tolerances import Tolerances
 
-NARROW_SHARE = 5e-4
-"""Share of the contact of a pair below which overlaps narrower than such lenses say nothing: corners cross by chance.
-Of 38 kinds of clean random assemblies one was in doubt without this (1e-4); the shoulder that it is for has 3e-2."""
-STRIP_AREA = 0.02
-"""Share of the area of a part below which a plane may be a facet of a curve. Chosen, not measured."""
-
 
 @dataclass(frozen=True, eq=False)
 class PairContacts:
@@ -130,7 +124,10 @@ def pair_contacts(mates: Mated, patches: list[Patch], crosses: bool | None, soli
     interference, possible = find_interference(pair, patches, solids, crosses)
     if not patches and interference is None and not pair.apart:
         patches = unknown_touches(pair)
-    least = NARROW_SHARE * sum(patch.area for patch in patches)
+    # Share of the contact of a pair below which overlaps narrower than such lenses say nothing: corners cross by
+    # chance. Of 38 kinds of clean random assemblies one was in doubt without this (1e-4); the shoulder that it is for
+    # has 3e-2.
+    least = 5e-4 * sum(patch.area for patch in patches)
     if patches:
         narrow = [patch for patch in mated if patch.narrow and patch.area >= least]
         patches = sorted([*patches, *narrow], key=_place_in_list)
@@ -230,4 +227,5 @@ def _strip(pair: PairView, patch: Patch) -> bool:
     areas = [
         float(part.table.areas[k] / part.table.areas.sum()) for part, k in zip(pair.parts, patch.surfaces, strict=True)
     ]
-    return patch.kind == "plane" and min(areas) < STRIP_AREA
+    # Share of the area of a part below which a plane may be a facet of a curve. Chosen, not measured.
+    return patch.kind == "plane" and min(areas) < 0.02

@@ -27,9 +27,6 @@ from kinform.frozen import dataclass
 from kinform.mechanism.rank import rank_of
 from kinform.model.arrays import Array, Ints
 
-POSES_OF_RUN = 24
-"""Poses of our run at which the free coordinates must be good: a turn is seen every 15°. Chosen, not measured."""
-
 
 @dataclass(frozen=True, eq=False)
 class Closure:
@@ -287,5 +284,6 @@ def _poses_of_run(model: ExportModel) -> list[Array]:
     run, mechanism = model.simulation, model.mechanism
     if run is None or run.joint_names != tuple(slot.name for slot in mechanism.slots):
         return [model.q]
-    picked = np.unique(np.linspace(0, len(run.time) - 1, POSES_OF_RUN).round().astype(np.int64))
+    # Poses of our run at which the free coordinates must be good: a turn is seen every 15°. Chosen, not measured.
+    picked = np.unique(np.linspace(0, len(run.time) - 1, 24).round().astype(np.int64))
     return [model.q, *run.joint_position[picked]]

@@ -17,10 +17,6 @@ from kinform.foundation.units import metres_per
 from kinform.frozen import dataclass
 from kinform.model.assembly import Assembly, Mesh, Part
 
-HASHED_AT_ONCE = 8
-"""Mesh files that are hashed at the same time: more gain nothing on one disk. Chosen, not measured."""
-
-
 MESHES = (".stl", ".obj")
 """Suffixes of mesh files that kinform reads itself."""
 
@@ -236,7 +232,8 @@ class DesignFiles:
 
     def hash_meshes(self, paths: Sequence[Path]) -> None:
         """Hash mesh files, several at a time; what cannot be read is told when it is asked for."""
-        with ThreadPoolExecutor(min(HASHED_AT_ONCE, os.cpu_count() or 1)) as pool:
+        # Mesh files that are hashed at the same time: more gain nothing on one disk. Chosen, not measured.
+        with ThreadPoolExecutor(min(8, os.cpu_count() or 1)) as pool:
             for path, digest in zip(paths, pool.map(_digest, paths), strict=True):
                 self._keep(path, digest)
 

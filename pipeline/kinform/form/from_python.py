@@ -25,11 +25,6 @@ from kinform.model.function import Function
 from kinform.model.names import PartName
 from kinform.model.tolerances import Tolerances
 
-SOLID_DEVIATION = 1e-3
-"""Deviation of facets of solids that a program holds, in diagonals: `STEP_TURN` decides for what is round, and this
-only for what is nearly flat. Chosen, not measured."""
-
-
 WHERE = "(python)"
 """In place of a file, in what is told of such parts."""
 
@@ -204,7 +199,9 @@ def _raw(shape: Any, deviation: float | None) -> RawMesh:
 def _tessellated(shape: Any, deviation: float | None) -> tuple[Any, Any]:
     """Vertices and triangles of a solid, in its own unit; a thousandth of its size off where nothing is stated."""
     try:
-        size = SOLID_DEVIATION * _diagonal(shape) if deviation is None else deviation
+        # Deviation of facets of solids that a program holds, in diagonals: `STEP_TURN` decides for what is round, and
+        # this only for what is nearly flat. Chosen, not measured.
+        size = 1e-3 * _diagonal(shape) if deviation is None else deviation
         vertices, faces = shape.tessellate(size, STEP_TURN)
         return [_xyz(vertex) for vertex in vertices], [tuple(face) for face in faces]
     except MeshError:

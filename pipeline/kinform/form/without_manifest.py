@@ -42,9 +42,6 @@ USUAL_ASSEMBLY = (0.01, 10.0)
 """Diagonals (m) between which another unit is proposed: from a watch to a lorry. Chosen, not measured."""
 WIDTH = 100
 """Columns of comments in a manifest that is proposed. Chosen."""
-NOISE = 2e-5
-"""Components of a proposed axis or point below this share of the largest are written as zero: 0.001°, or 6 µm at 0.3 m,
-is the rounding of meshes in float32 far from the origin, and nothing that is meant."""
 
 
 def load_meshes(
@@ -174,7 +171,9 @@ def joint_lines(joint: IntendedJoint, units: str, within: float) -> list[str]:
 
 def _without_noise(values: Array) -> Array:
     """The values without those that are rounding of meshes beside the largest."""
-    rest: Array = np.where(np.abs(values) < NOISE * np.abs(values).max(), 0.0, values)
+    # Components of a proposed axis or point below this share of the largest are written as zero: 0.001°, or 6 µm at 0.3
+    # m, is the rounding of meshes in float32 far from the origin, and nothing that is meant.
+    rest: Array = np.where(np.abs(values) < 2e-5 * np.abs(values).max(), 0.0, values)
     return rest
 
 

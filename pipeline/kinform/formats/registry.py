@@ -92,7 +92,7 @@ WRITTEN = {format.name: format for format in ROBOT_FORMATS if format.ending}
 
 _ROOT = re.compile(rb"<\s*([A-Za-z_][\w:.-]*)")
 _BEFORE_ROOT = re.compile(rb"<!--.*?-->|<\?.*?\?>|<!DOCTYPE[^>]*>", re.DOTALL)
-HEAD_BYTES = 1 << 16
+HEAD_BYTES = 64 << 10
 """Of a file, in which its root element is looked for: comments before it, such as licences, have a few thousand.
 Chosen, not measured."""
 

@@ -14,11 +14,6 @@ from numpy.typing import NDArray
 
 from kinform.model.arrays import Ints
 
-HASHES = 12
-"""Tables before the rest is sorted. Each leaves about one row in eight, so that 8^12 rows leave one: a sort is needed
-only where rows are chosen against the hash."""
-
-
 _Words = Sequence[NDArray[np.unsignedinteger]]
 
 _ODD = (0x9E3779B1, 0x85EBCA77, 0xC2B2AE3D)
@@ -32,7 +27,9 @@ def first_equal_rows(words: _Words) -> Ints:
     bits."""
     rest = np.arange(len(words[0]))
     leader = np.empty_like(rest)
-    for turn in range(HASHES):
+    # Tables before the rest is sorted. Each leaves about one row in eight, so that 8^12 rows leave one: a sort is
+    # needed only where rows are chosen against the hash.
+    for turn in range(12):
         lead = _first_in_slot(_slots(words, turn))
         leader[rest] = rest.take(lead)
         other = np.flatnonzero(_differ(words, lead))

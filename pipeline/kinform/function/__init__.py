@@ -29,6 +29,7 @@ __all__ = [
 ]
 
 CODE_VERSION: int = 6
+"""Bumped when results of this package change for the same input."""
 
 __getattr__ = lazy_attributes(
     __name__,

@@ -16,6 +16,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.graphs.graph import blocks
+from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.frozen import dataclass
 from kinform.function.joint_names import stated_ranges
 from kinform.kinematics.joints.bodies.extents import Extents
@@ -26,11 +27,6 @@ from kinform.mechanism.loop_system import LoopSystem
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Kinematics
-
-RATE_MOVES = 1e-6
-"""Rate of a coordinate in a unit motion above which it takes part."""
-BODY_MOVES = 1e-9
-"""Twist of a body in a unit motion above which it moves."""
 
 
 @dataclass(frozen=True)
@@ -106,9 +102,9 @@ class Chain:
         held = np.eye(len(self.coordinates))[[c.known for c in self.coordinates]]
         tip = self.system.reach[self.index(body)]
         moved = [
-            [c.joint for c, rate in zip(self.coordinates, loose, strict=True) if abs(rate) > RATE_MOVES]
+            [c.joint for c, rate in zip(self.coordinates, loose, strict=True) if abs(rate) > SINGLE]
             for loose in null_space(np.concatenate([self._rows, held]), FREE)
-            if np.abs((tip * loose) @ self.system.screws).max() > BODY_MOVES
+            if np.abs((tip * loose) @ self.system.screws).max() > SOLVED
         ]
         return tuple(dict.fromkeys(name for names in moved for name in names))
 

@@ -25,10 +25,6 @@ SAMPLES = 4000
 WALK = 600
 """Configurations along closed loops, each of which takes a closure of its own: 24 by 24 of two freedoms. Chosen, not
 measured."""
-WALK_TRIES = 8
-"""Steps for each configuration after which the walk ends."""
-STARTS = 6
-"""Samples from which each target is approached: the nearest may lie behind the end of a range. Chosen, not measured."""
 AGAIN = 40
 """How many of the farthest targets are approached again, ..."""
 STARTS_AGAIN = 48
@@ -37,8 +33,6 @@ TOGETHER = 400
 """Approaches that are made at once: with 20 coordinates their matrices take 1 MB, what a cache holds."""
 TURNS = 60
 """Steps of an approach at most: with `APPROACH_STEP` a coordinate may go five turns. Chosen, not measured."""
-TARGET_CLOSED = 1e-8
-"""Residual at which the loops of an approach count as closed: it ends damped, a step before `SOLVED`."""
 FAR = 1.0
 """Loops may close in several ways: what is farther (rad, or sizes) from all that the walk came through is not
 counted."""
@@ -52,8 +46,6 @@ DAMPING_WORSE = 5.0
 """... and after one that did not: textbook values."""
 DAMPING_RANGE = (1e-12, 1e6)
 """Where it stays."""
-DAMPING_STUCK = 1e2
-"""When no approach comes nearer and none is damped by less, all have ended."""
 APPROACH_STEP = 0.5
 """rad, or share of the size, that one step changes a coordinate at most: within 30° a first order is of use. The walk
 along closed loops takes half of it, so that it does not jump from one branch to another. Chosen, not measured."""
@@ -90,7 +82,8 @@ def cover(chain: Chain, body: str, carried: Array, targets: Array, *, directions
             best[chunk[better]] = nearest[better]
             where[chunk[better]] = image.reshape(*seeds.shape, 3)[np.arange(len(chunk)), pick][better]
 
-    attempt(np.arange(len(aims)), STARTS)
+    # Samples from which each target is approached: the nearest may lie behind the end of a range. Chosen, not measured.
+    attempt(np.arange(len(aims)), 6)
     missed = np.flatnonzero(best > enough)
     attempt(missed[np.argsort(-best[missed], kind="stable")][:AGAIN], STARTS_AGAIN)
     if not directions:
@@ -106,7 +99,8 @@ def _sampled(chain: Chain) -> Array:
     if not chain.looped:
         return np.vstack([np.clip(start, low, high), rng.uniform(low, high, (SAMPLES, len(low)))])
     closed, tries = [start], 0
-    while len(closed) < WALK and tries < WALK_TRIES * WALK:
+    # Steps for each configuration after which the walk ends.
+    while len(closed) < WALK and tries < 8 * WALK:
         base = closed[int(rng.integers(len(closed)))]
         tries += 1
         loose = null_space(chain.system.equations(base[None]).jacobian[0], FREE)
@@ -174,10 +168,12 @@ def _approach(
         residual = np.where(better[:, None], new_residual, residual)
         miss = np.where(better, new_miss, miss)
         damping = np.clip(np.where(better, DAMPING_BETTER, DAMPING_WORSE) * damping, *DAMPING_RANGE)
-        if not better.any() and damping.min() > DAMPING_STUCK:
+        # Where no approach comes nearer and none is damped by less, all have ended.
+        if not better.any() and damping.min() > 1e2:
             break
     opened = np.abs(residual[:, 3:]).max(axis=1, initial=0.0) / STIFF
-    return q, image, opened < TARGET_CLOSED
+    # Residual at which the loops of an approach count as closed: it ends damped, a step before `SOLVED`.
+    return q, image, opened < 1e-8
 
 
 def _linear(

@@ -28,9 +28,7 @@ BUDGET = 4000
 FIRST = 1e-3
 """Share of the shortest step to which the first pose that falls short is found: ten halvings."""
 FLOOR = 1e-4
-"""Shortest step, of the size of the smaller group: 0.01 mm of a part of 100 mm, what is machined. ..."""
-FLOOR_TOGETHER = 10.0
-"""... and how many times that where several joints move at once: cells of two joints are a hundred times fewer then."""
+"""Shortest step, of the size of the smaller group: 0.01 mm of a part of 100 mm, what is machined."""
 
 
 def along(groups: Apart, first: Array, second: Array, required: float) -> Swept:
@@ -71,7 +69,8 @@ def over(groups: Apart, chain: Chain, first: str, second: str, low: Array, high:
     """Over all values of the coordinates (n,) of a chain without loops between `low` and `high`."""
     a, b = chain.index(first), chain.index(second)
     lever = _levers(chain, groups, b, low, high)
-    floor = FLOOR * groups.size * (1.0 if np.count_nonzero(lever) < 2 else FLOOR_TOGETHER)
+    # Ten times the shortest step where several joints move at once: cells of two joints are a hundred times fewer then.
+    floor = FLOOR * groups.size * (1.0 if np.count_nonzero(lever) < 2 else 10.0)
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     cells: list[tuple[float, int, Array, Array]] = [(0.0, 0, middle, half)]
     worst, values = Nearest(np.inf, ("", ""), np.zeros(3)), middle

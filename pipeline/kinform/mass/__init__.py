@@ -7,3 +7,4 @@ from kinform.mass.compile import compile_mass, weighed_together
 __all__ = ["CODE_VERSION", "compile_mass", "weighed_together"]
 
 CODE_VERSION: int = 4
+"""Bumped when results of this package change for the same input."""

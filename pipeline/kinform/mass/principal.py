@@ -8,10 +8,6 @@ from kinform.foundation.algebra.vectors import canonical, cross
 from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.model.arrays import Array
 
-NEAREST = 1e-3
-"""How much shorter the projection of a world's axis may be than the longest, where x goes before y before z, as in the
-sign of an axis."""
-
 
 def principal(inertia: Array) -> tuple[Array, Array]:
     """Moments (3,) ascending and axes (3, 3) as columns, right-handed, each with the canonical sign
@@ -62,6 +58,8 @@ def _nearest_to_world(space: Array) -> Array:
         for vector in basis:
             rest = rest - np.outer(vector, vector)
         length = np.linalg.norm(rest, axis=0)
-        column = int(np.flatnonzero(length >= length.max() - NEAREST)[0])
+        # How much shorter the projection of a world's axis may be than the longest, where x goes before y before z, as
+        # in the sign of an axis.
+        column = int(np.flatnonzero(length >= length.max() - 1e-3)[0])
         basis.append(rest[:, column] / length[column])
     return np.column_stack(basis)

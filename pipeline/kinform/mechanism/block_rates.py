@@ -13,7 +13,7 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, scaled
 from kinform.foundation.graphs.cycles import Cycle, short_cycles
-from kinform.foundation.rounding import TINY
+from kinform.foundation.rounding import ARITHMETIC, SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.mechanism.constants import FREE, SIGMAS
 from kinform.mechanism.frame import axes_frame
@@ -21,23 +21,14 @@ from kinform.model.arrays import Array, Ints
 
 LOOSEST_CLOSED = 1e-4
 """Loops whose axes are in no relation that snapping knows (Bennett's) close to `SIGMAS` times the uncertainty of the
-axes, but to no more than this relative singular value."""
+axes, but to no more than this relative singular value. Chosen, not measured."""
 FEW_RATES = 160
-"""Blocks of at most so many joint rates are decided at once."""
+"""Blocks of at most so many joint rates are decided at once. Chosen, not measured."""
 MOST_RATES = 4000
-"""Largest number of joint rates for which singular values are affordable."""
-SURE_DROPPED = 1e-10
-"""In the elimination, what is dropped is below this, ..."""
+"""Largest number of joint rates for which singular values are affordable. Chosen, not measured."""
 SURE_KEPT = 1e-5
-"""... and what is kept above this, or else the decision is left to singular values."""
-PIVOT_SHARE = 0.3
-"""Any column of at least this share of the largest may be chosen: preference decides among these."""
-RATE_ROUNDING = 1e-10
-"""Rates below this share of the largest of a solution are zero."""
-FACTOR_ROUNDING = 1e-13
-"""Factors of an elimination below this are zero, ..."""
-SUM_ROUNDING = 1e-14
-"""... and sums of products of them below this."""
+"""In the elimination, what is dropped is below `SOLVED` and what is kept above this, or else the decision is left to
+singular values. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +88,7 @@ def close_block(
                 closed,
                 min(LOOSEST_CLOSED, SIGMAS * float((blur[:, 0] + blur[:, 1] / frame.length).max())),
             )
-        nothing = max(RATE_ROUNDING, frame.rounding)
+        nothing = max(SOLVED, frame.rounding)
         solutions, sure = _decompose(loop_matrix(members, cycles, frame, norms), prefer, closed, nothing), True
     return Block(tuple(block), tuple(cycles), frame, _in_joint_units(solutions, norms), sure)
 
@@ -198,10 +189,11 @@ def _pivots(matrix: Array, prefer: Array) -> tuple[list[int], bool]:
         norms = np.linalg.norm(rest, axis=0)
         norms[pivots] = 0.0
         largest = float(norms.max())
-        clear &= largest < SURE_DROPPED or largest > SURE_KEPT
+        clear &= largest < SOLVED or largest > SURE_KEPT
         if largest < FREE:
             break
-        good = np.flatnonzero(norms >= PIVOT_SHARE * largest)
+        # Any column of at least this share of the largest may be chosen: preference decides among these.
+        good = np.flatnonzero(norms >= 0.3 * largest)
         best = int(good[np.argmax(prefer[good])])
         pivots.append(best)
         unit = rest[:, best] / norms[best]
@@ -217,14 +209,14 @@ def _substitute(
     others = [n for n in range(len(columns)) if n not in set(pivots)]
     factors = -np.linalg.lstsq(matrix[:, pivots], matrix[:, others], rcond=None)[0]
     for pivot, row in zip((int(columns[p]) for p in pivots), factors, strict=True):
-        keep = np.flatnonzero(np.abs(row) > FACTOR_ROUNDING)
+        keep = np.flatnonzero(np.abs(row) > ARITHMETIC)
         by = [(int(columns[others[n]]), float(row[n])) for n in keep]
         for user in users[pivot]:
             factors_of = depends[user]
             share = factors_of.pop(pivot)
             for free, factor in by:
                 total = factors_of.get(free, 0.0) + share * factor
-                if abs(total) > SUM_ROUNDING:
+                if abs(total) > ARITHMETIC:
                     factors_of[free] = total
                     users[free].add(user)
                 else:
@@ -242,7 +234,7 @@ def _solutions(depends: list[dict[int, float]]) -> list[Solution]:
     out = []
     for driver in sorted(rows):
         largest = max(abs(f) for _, f in rows[driver])
-        kept = [(c, f) for c, f in rows[driver] if abs(f) > RATE_ROUNDING * largest]
+        kept = [(c, f) for c, f in rows[driver] if abs(f) > SOLVED * largest]
         out.append(Solution(driver, np.array([c for c, _ in kept]), np.array([f for _, f in kept])))
     return out
 

@@ -35,11 +35,6 @@ CLOSED = ARITHMETIC
 ACCEPTED = SINGLE
 """rad, and shares of the length: loops that cannot be closed further, and are open by less, are closed as far as their
 axes fit: those of files in single precision miss each other by as much."""
-STALLED = 0.5
-"""Share of its residual that a step leaves at least where steps gain nothing more: in reach of a solution the next
-residual is the square of the last."""
-ITERATIONS = 20
-"""Steps at most: three or four are usual, and five more each time that a step is cut at its limit."""
 LONGEST_STEP = 0.5
 """rad, and shares of the length: greatest change, as a whole, of one step. Beyond half a radian the linear equations
 say little of where loops close. Chosen, not measured."""
@@ -98,7 +93,8 @@ class Termination:
 
     closed: float = CLOSED
     accepted: float = ACCEPTED
-    iterations: int = ITERATIONS
+    # Steps at most: three or four are usual, and five more each time that a step is cut at its limit.
+    iterations: int = 20
     change: float = 0.0
     """Greatest change of a step after which no other is taken; 0: residuals decide."""
 
@@ -106,7 +102,9 @@ class Termination:
         """(D,) where residuals (D,), of those `before` the last step, end the steps."""
         if self.change > 0.0:
             return np.zeros(len(residual), dtype=np.bool_)
-        stalled = (residual <= self.accepted) & (residual > STALLED * before)
+        # Share of its residual that a step leaves at least where steps gain nothing more: in reach of a solution the
+        # next residual is the square of the last.
+        stalled = (residual <= self.accepted) & (residual > 0.5 * before)
         return np.asarray((residual <= self.closed) | stalled)
 
 

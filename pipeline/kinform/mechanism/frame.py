@@ -14,18 +14,13 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import cross, norm
-from kinform.mechanism.constants import FAR_AXIS
+from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
 
 LEAST_FRAME = 0.05
 """Share of the assembly's size that the length is at least, as joints may meet in one point, and have no size of their
 own then. Chosen, not measured."""
-PART_OF_TURN = 1e-3
-"""Share of the fastest turn of a joint's freedoms below which a combination of them is a slide."""
-AXES_RANK = 1e-6
-"""Relative singular value below which axes are parallel where the point nearest to all of them is looked for: `SINGLE`,
-as axes come from fits to files in single precision."""
 PLACED = ("revolute", "screw", "cylindrical", "spherical", "universal")
 """Types of joints whose point says where the mechanism is; that of a slide may be anywhere along it."""
 
@@ -53,7 +48,7 @@ def axes_frame(spaces: Sequence[Array], size: float) -> Frame:
     across = np.eye(3) - axes[:, :, None] * axes[:, None, :]
     start = feet.mean(axis=0)
     missing = np.einsum("nij,nj->i", across, feet - start)
-    centre = start + np.linalg.lstsq(across.sum(axis=0), missing, rcond=AXES_RANK)[0]
+    centre = start + np.linalg.lstsq(across.sum(axis=0), missing, rcond=SINGLE)[0]
     frame = Frame.of(np.vstack([_feet(turns, centre), centre]))
     return Frame(frame.centre, max(frame.length, LEAST_FRAME * size))
 
@@ -64,7 +59,8 @@ def _by_turn(space: Array) -> Array:
     if len(space) < 2:
         return space
     left, values, _ = np.linalg.svd(space[:, :3])
-    turning = int(np.count_nonzero(values > PART_OF_TURN * values[0])) if values[0] > 0.0 else 0
+    # Share of the fastest turn of a joint's freedoms below which a combination of them is a slide.
+    turning = int(np.count_nonzero(values > 1e-3 * values[0])) if values[0] > 0.0 else 0
     return np.asarray(left.T[:turning] @ space) if 0 < turning < len(space) else space
 
 
@@ -73,12 +69,12 @@ def _slowest(spaces: Sequence[Array]) -> Array:
     twists = np.concatenate([np.zeros((0, 6)), *spaces])
     omega, velocity = twists[:, :3], twists[:, 3:]
     across = (omega**2).sum() * np.eye(3) - omega.T @ omega
-    return np.asarray(np.linalg.lstsq(across, cross(omega, velocity).sum(axis=0), rcond=AXES_RANK)[0])
+    return np.asarray(np.linalg.lstsq(across, cross(omega, velocity).sum(axis=0), rcond=SINGLE)[0])
 
 
 def _turns(twist: Array, middle: Array, size: float) -> bool:
     """Whether a twist turns, beyond the rounding of a slide, seen from the `middle` (3,) of all."""
-    return norm(twist[:3]) * size > FAR_AXIS * norm(twist[3:] + cross(twist[:3], middle))
+    return norm(twist[:3]) * size > SOLVED * norm(twist[3:] + cross(twist[:3], middle))
 
 
 def _feet(turns: Array, centre: Array) -> Array:

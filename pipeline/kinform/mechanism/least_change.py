@@ -20,13 +20,6 @@ from kinform.model.arrays import Array
 REDUCED_RATES = 60
 """Coordinates of a block from which on its equations are made triangular before its singular values are asked: at 100
 to 420 coordinates the two take 0.6 of the time of one, at 40 nine tenths."""
-INVERSE_ITERATIONS = 8
-"""Inverse iterations for the singular vectors that do not count: with a gap each gains digits by the square of it."""
-CONVERGED_VECTORS = 1e-14
-"""Share of a matrix that may be missing from its product with singular vectors that have converged: some fifty
-roundings, as what they leave is added to the solution."""
-LEAST_DIAGONAL = 1e-250
-"""Share of a triangle below which nothing can be divided by what is on its diagonal: quotients stay finite."""
 FINEST_VALUE = ARITHMETIC
 """Relative singular value that can still be used at all: less is rounding. Near a singularity of fourth order they are
 that small."""
@@ -99,15 +92,19 @@ def truncated_solution(triangle: Array, right: Array, left_out: Array) -> Array 
     from scipy.linalg import solve_triangular
 
     size = norm(triangle)
-    if float(np.abs(np.diag(triangle)).min()) <= LEAST_DIAGONAL * size:
+    # Share of a triangle below which nothing can be divided by what is on its diagonal: quotients stay finite.
+    if float(np.abs(np.diag(triangle)).min()) <= 1e-250 * size:
         return None
     inner = left_out.T
-    for _ in range(INVERSE_ITERATIONS):
+    # Inverse iterations for the singular vectors that do not count: with a gap each gains digits by the square of it.
+    for _ in range(8):
         outer = np.linalg.qr(solve_triangular(triangle, inner, trans="T", check_finite=False))[0]
         inner = np.linalg.qr(solve_triangular(triangle, outer, check_finite=False))[0]
         image, preimage = triangle @ inner, triangle.T @ outer
         missed = norm(image - outer @ (outer.T @ image)) + norm(preimage - inner @ (inner.T @ preimage))
-        if missed < CONVERGED_VECTORS * size:
+        # Share of a matrix that may be missing from its product with singular vectors that have converged: some fifty
+        # roundings, as what they leave is added to the solution.
+        if missed < 1e-14 * size:
             break
     else:
         return None

@@ -21,9 +21,8 @@ from kinform.foundation.algebra.displacements import carry, exponential_terms, e
 from kinform.foundation.algebra.screws import Frame, bracket, scaled
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.records import altered
-from kinform.foundation.rounding import TINY
+from kinform.foundation.rounding import SOLVED, TINY
 from kinform.frozen import dataclass
-from kinform.mechanism.constants import FAR_AXIS
 from kinform.mechanism.spanning_tree import spanning_tree
 from kinform.model.arrays import Array, Flags
 
@@ -227,7 +226,7 @@ def _unit_screws(twists: Array, frame: Frame) -> tuple[Array, Flags]:
     local = scaled(twists.T, frame).T / frame.length
     turning = np.linalg.norm(local[:, :3], axis=1)
     sliding = np.linalg.norm(local[:, 3:], axis=1)
-    turns = turning > FAR_AXIS * sliding
+    turns = turning > SOLVED * sliding
     local = local / np.maximum(np.where(turns, turning, sliding), TINY)[:, None]
     local[~turns, :3] = 0.0
     return local, turns

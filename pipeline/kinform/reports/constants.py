@@ -9,6 +9,6 @@ OVERLAP_COLOUR = "#f0283a"
 EYE_TURN, EYE_RISE = -0.95, 0.42
 """rad, the direction from which everything is seen: angle about z, and above the ground; that of the viewer's start."""
 FINDING_MARGIN = 1.35
-"""The same in the picture of a finding. Chosen by eye."""
+"""Size of the picture of a finding over that of what it holds. Chosen by eye."""
 FINDING_ZOOM, FINDING_SHIFT = 1.12, 0.4
-"""How much closer the picture of a finding with a place is, and how far it moves towards the place."""
+"""How much closer the picture of a finding with a place is, and how far it moves towards the place. Chosen by eye."""

@@ -23,12 +23,6 @@ from kinform.requirements.joints import single_joint
 RATE_RESOLVED = 0.1
 """Share of the greatest rate by which a rate may miss what its derivatives at both ends of a step make of it; a sine is
 within it from six output times a period."""
-MOST_STEPS = 0.2
-"""Share of the steps that may miss by more: single kinks and jumps of a law are no reason to doubt. Chosen, not
-measured: a law with a kink in every fifth output step is not resolved either."""
-BENT_ALIKE = 0.25
-"""Share of its curvature that a peak's neighbours must have for a parabola to say how high it is. Chosen, not measured:
-beside the peak of a sine with six output times a period, the coarsest that counts as resolved, it is a half."""
 
 SIMULATE = "Ask for a simulation that runs to its end: [simulation], and a [[function.drive]] that moves the joints."
 DYNAMIC = 'Ask for `level = "dynamic"`, with the mass of every moving part known.'
@@ -133,7 +127,9 @@ def coarse(simulation: Simulation) -> bool:
     # Turning points fall on the outputs where their time is that of an oscillation: all rates vanish there,
     # accelerations do not.
     moving = np.maximum(fastest, (h * np.abs(a[1:])).max(axis=0, initial=0.0)) > SOLVED
-    return bool(((missed.mean(axis=0) > MOST_STEPS) & moving).any())
+    # Share of the steps that may miss by more: single kinks and jumps of a law are no reason to doubt. Chosen, not
+    # measured: a law with a kink in every fifth output step is not resolved either.
+    return bool(((missed.mean(axis=0) > 0.2) & moving).any())
 
 
 def _highest_between(values: Array) -> float:
@@ -144,5 +140,8 @@ def _highest_between(values: Array) -> float:
     slope = 0.5 * (values[2:] - values[:-2])
     beside = np.minimum(bend[:-2], bend[2:])
     middle, rate, top = bend[1:-1], slope[1:-1], values[2:-2]
-    smooth = (middle < 0.0) & (beside < BENT_ALIKE * middle) & (np.abs(rate) <= -middle)
+    # Share of its curvature that a peak's neighbours must have for a parabola to say how high it is. Chosen, not
+    # measured: beside the peak of a sine with six output times a period, the coarsest that counts as resolved, it is a
+    # half.
+    smooth = (middle < 0.0) & (beside < 0.25 * middle) & (np.abs(rate) <= -middle)
     return float(np.max(top[smooth] - 0.5 * rate[smooth] ** 2 / middle[smooth], initial=-np.inf))

@@ -42,6 +42,7 @@ TIME, BODIES, JOINTS = "simulation/time", "simulation/body_names", "simulation/j
 COORDINATES, GEARS, FRICTIONS = Last("simulation/joint_offset"), "simulation/gear_names", "simulation/friction_joints"
 _OF_DRIVES = Form("f", ("simulation/time", "simulation/drives"), or_none=True)
 _OF_COORDINATES = Form("f", (TIME, COORDINATES), or_none=True)
+# a wrench (τ; f) of each joint at each time
 _WRENCHES = Form("f", (TIME, JOINTS, 6), or_none=True)
 ARRAYS: dict[str, Form] = {
     "assembly/X_WP": Form("f", ("assembly/parts", 4, 4)),

@@ -34,6 +34,7 @@ from kinform.results.texts import has_surrogates, stored_text
 
 FACETS = "<i4"
 """Numbers of facets, vertices and surfaces of one mesh: most of a file, and fewer than two thousand millions."""
+# NA of R (see above)
 _MISSING_NUMBER = 0x7FF8_0000_0000_0000 | 1954
 _IS_NONE = partial(is_, None)
 _DECODER = json.JSONDecoder()

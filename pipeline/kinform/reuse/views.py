@@ -17,6 +17,7 @@ from kinform.model.function import Function, Law, SimulationRequest
 
 NOWHERE = Source("")
 UNSCALED = np.ones(3)
+"""The scale of a mesh that is as its file has it."""
 
 
 def for_contacts(assembly: Assembly) -> Assembly:

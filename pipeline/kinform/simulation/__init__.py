@@ -31,6 +31,7 @@ __all__ = [
 ]  # fmt: skip
 
 CODE_VERSION: int = 36
+"""Bumped when results of this package change for the same input."""
 
 __getattr__ = lazy_attributes(
     __name__,

@@ -17,11 +17,6 @@ from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
-LEAST_SAMPLES = 16
-"""Samples of a spectrum, at least: the window alone is four of its eight frequencies wide."""
-LEAST_LINE = 3e-2
-"""Share of the greatest amplitude that a line has at least: the lobes of the window beside a line have up to 2.7 % of
-it."""
 MOST_LINES = 3
 """Lines that are named: a choice, of what a reader takes in."""
 LEAST_PERIODS = 8.0
@@ -67,7 +62,8 @@ def amplitude_spectrum(time: Array, values: Array) -> Spectrum | None:
     samples that are not all numbers."""
     count = even_samples(time)
     samples = np.asarray(values[:count], dtype=np.float64)
-    if count < LEAST_SAMPLES or not np.isfinite(samples).all():
+    # Samples of a spectrum, at least: the window alone is four of its eight frequencies wide.
+    if count < 16 or not np.isfinite(samples).all():
         return None
     span = float(time[count - 1] - time[0]) * count / (count - 1)
     window = 0.5 - 0.5 * np.cos(2.0 * math.pi / count * np.arange(count))
@@ -89,7 +85,9 @@ def _lines(amplitude: Array, samples: Array, span: float) -> tuple[Line, ...]:
     """Sines that stand out, the greatest first."""
     inner = amplitude[1:-1]
     tops = 1 + np.flatnonzero((inner > amplitude[:-2]) & (inner >= amplitude[2:]))
-    floor = max(LEAST_LINE * float(amplitude.max()), SOLVED * float(np.abs(samples).max(initial=0.0)))
+    # Share of the greatest amplitude that a line has at least: the lobes of the window beside a line have up to 2.7 %
+    # of it.
+    floor = max(3e-2 * float(amplitude.max()), SOLVED * float(np.abs(samples).max(initial=0.0)))
     found = []
     for k in tops[amplitude[tops] > floor].tolist():
         side = 1 if amplitude[k + 1] > amplitude[k - 1] else -1

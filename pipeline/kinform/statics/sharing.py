@@ -15,12 +15,11 @@ import numpy as np
 
 from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.algebra.vectors import cross_matrix, perpendicular
+from kinform.mechanism.constants import FREE
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.simulation import Simulation
 
-DEPENDENT = 1e-7
-"""Relative singular value below which a balance depends on the others, as in the count of freedoms."""
 MOST_JOINTS = 60
 """Joints up to which all wrenches are looked for: the time grows with the third power. A choice."""
 
@@ -85,4 +84,5 @@ def self_stresses(
             row[6 * n : 6 * n + 6] = freedom
             still.append(row)
     matrix = np.concatenate([rows, np.array(still).reshape(-1, 6 * len(joints))])
-    return null_space(matrix, DEPENDENT).reshape(-1, len(joints), 6)
+    # a balance depends on others as in the count of freedoms
+    return null_space(matrix, FREE).reshape(-1, len(joints), 6)

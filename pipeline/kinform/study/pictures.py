@@ -20,8 +20,6 @@ _WIDTH, _HEIGHT = 320, 220
 """px of a picture: three stand side by side on a page 1,000 px wide."""
 _LEFT, _RIGHT, _TOP, _BOTTOM = 62, 12, 10, 40
 """px of the margins: labels of seven characters on the left, two lines of text below."""
-_TICKS = 4
-"""Steps between ticks of an axis, about: five labels fit. Chosen, not measured."""
 _DOTS = 2000
 """Samples that are drawn: more cover each other, and make the page large. Chosen, not measured."""
 
@@ -69,7 +67,8 @@ class _Axis:
 
     def ticks(self) -> list[float]:
         """Round values within the axis, least first."""
-        rough = (self.high - self.low) / _TICKS
+        # Steps between ticks of an axis, about: five labels fit. Chosen, not measured.
+        rough = (self.high - self.low) / 4
         power = 10.0 ** math.floor(math.log10(rough))
         step = next(m * power for m in (1.0, 2.0, 5.0, 10.0) if m * power >= rough * (1.0 - SOLVED))
         first, last = math.ceil(self.low / step - SOLVED), math.floor(self.high / step + SOLVED)

@@ -19,10 +19,6 @@ from kinform.study.session import Outcome
 
 CONFIDENCE = 0.95
 """Of all intervals: what is commonly given."""
-WORST = 5
-"""Samples that are listed as the worst of a measure; a choice."""
-RESAMPLES = 999
-"""Of the bootstrap of Sobol' indices; scipy's own choice is as many."""
 
 
 @dataclass(frozen=True)
@@ -181,7 +177,8 @@ def _indices(outcome: Outcome, values: Array) -> tuple[Array, Array, Array] | No
     parts = values.reshape(d + 2, n)
     given = {"f_A": parts[0][None], "f_B": parts[1][None], "f_AB": parts[2:][:, None]}
     found = stats.sobol_indices(func=given, n=n, rng=np.random.default_rng(outcome.plan.study.seed))
-    ends = found.bootstrap(CONFIDENCE, n_resamples=RESAMPLES).first_order.confidence_interval
+    # Resamples of the bootstrap of Sobol' indices; scipy's own choice is as many.
+    ends = found.bootstrap(CONFIDENCE, n_resamples=999).first_order.confidence_interval
     return np.ravel(found.first_order), np.ravel(ends.low), np.ravel(ends.high)
 
 
@@ -199,4 +196,5 @@ def _worst(outcome: Outcome, k: int, values: Array) -> tuple[int, ...]:
     if measure.least is None and measure.most is None:
         beyond = np.abs(some - some.mean())
     order = sorted(range(len(known)), key=lambda i: (-beyond[i], known[i]))
-    return tuple(int(known[i]) for i in order[:WORST])
+    # Samples that are listed as the worst of a measure; a choice.
+    return tuple(int(known[i]) for i in order[:5])

@@ -31,8 +31,6 @@ SINGULAR = 1e-14
 
 ROUNDED_SCATTER = 0.3
 """Least scatter of the vertices of a curved surface, in roundings: rounding to a step of one scatters by 1/√12."""
-ROUNDED_SCATTER_OF_PLANES = 0.6
-"""The same for planes, which are stated twice as carefully."""
 
 
 class Description(NamedTuple):
@@ -78,7 +76,8 @@ def flat(work: Patchwork, number: Ints, scales: Scales) -> list[Description]:
     normal, centre, variances = fit_planes(region, points, outward)
     distance = dot(points - columns_of(centre, region), columns_of(normal, region))
     squares, samples, deepest = _deviations(region, distance, count)
-    scatter = np.maximum(np.sqrt(squares / np.maximum(samples - 3, 1)), ROUNDED_SCATTER_OF_PLANES * rounding)
+    # Least scatter of the vertices of planes, in roundings, which are stated twice as carefully.
+    scatter = np.maximum(np.sqrt(squares / np.maximum(samples - 3, 1)), 0.6 * rounding)
     spread = np.maximum(np.sqrt(variances[:, 1] * samples), ARITHMETIC)
     angular = np.minimum(COVERAGE * scatter / spread, np.pi / 2)
     linear = np.maximum(COVERAGE * scatter / np.sqrt(np.maximum(samples, 1)), rounding)

@@ -37,8 +37,6 @@ PACK = 200_000
 """Facets of meshes that are recovered at once, at most. A step of numpy takes as long to begin as for a few hundred
 rows: so100 (60,000 facets in 13 meshes) takes 1.0 s of processor in one pack and 2.0 s mesh by mesh; packs of 400,000
 gain 7 % over packs of 100,000, those of 200,000 5 %, for 140 and 60 MB more."""
-THREAD_FACET = 2e-2
-"""Share of the area of a mesh below which a plane may be a facet of a thread. Chosen, not measured."""
 
 
 def recover(mesh: Mesh, tolerances: Tolerances) -> MeshSurfaces:
@@ -146,7 +144,8 @@ def _describe_all(starts: Sequence[_Start]) -> list[tuple[list[Description], Int
         regions.sort(key=lambda region: int(joint.mesh[region.polygons[0]]))
         add(_surfaces_of_kind(joint, regions, scales) if regions else ())
     planes, patches = parts.planes, parts.freeform
-    loose = (patches >= 0) | ((planes >= 0) & (joint.area < THREAD_FACET * joint.total[joint.mesh]))
+    # Share of the area of a mesh below which a plane may be a facet of a thread. Chosen, not measured.
+    loose = (patches >= 0) | ((planes >= 0) & (joint.area < 2e-2 * joint.total[joint.mesh]))
     for start, run, others, turning in zip(starts, runs, list(found), turning_lines(joint, loose), strict=True):
         for thread in threads(start.work, loose[run], lines(joint, others, turning), start.scale):
             polygons = thread.polygons + run.start

@@ -3,6 +3,7 @@ collision wherever the motion goes."""
 
 from __future__ import annotations
 
+import math
 from types import SimpleNamespace
 
 import fcl
@@ -13,7 +14,7 @@ from support.slots import lever_between_pegs
 from support.solids import assembly, box, part, random_pose, rod
 
 from kinform import collisions, contacts, kinematics, surfaces
-from kinform.collisions.driving.meeting_spans import TURN, meeting_spans
+from kinform.collisions.driving.meeting_spans import meeting_spans
 from kinform.collisions.driving.swept_profiles import Profile, meeting
 from kinform.collisions.driving.swept_spheres import first_touch
 from kinform.collisions.pair.advancement import Search
@@ -115,7 +116,7 @@ def test_what_lies_on_the_far_side_does_not_count_in_a_gap_of_a_ring(middle):
         return turned.reshape(-1, 3), np.arange(3 * len(angles)).reshape(-1, 3)
 
     twist = np.array([0, 0, 1.0, 0, 0, 0])
-    around = middle + np.linspace(0.5, TURN - 0.5, 200)
+    around = middle + np.linspace(0.5, math.tau - 0.5, 200)
     first, second = Profile(*facets(np.array([middle])), twist), Profile(*facets(around), twist)
     found = meeting(first, second, np.arange(1), np.arange(200), MARGIN)
     assert [len(side) for side in found.within(-0.45, 0.45)] == [0, 0]
@@ -129,7 +130,7 @@ def test_a_fine_ring_is_met_no_further_than_its_teeth_reach():
     spans = meeting_spans([(first, np.zeros(1, int)), (second, np.zeros(1, int))], True, MARGIN, no_mates)
     assert len(spans.low) == 1
     assert spans.low[0] <= np.pi / 2 <= spans.high[0]
-    assert spans.high[0] - spans.low[0] < 0.021 + 2 * TURN / 8192
+    assert spans.high[0] - spans.low[0] < 0.021 + 2 * math.tau / 8192
 
 
 @diagonal(kind=["turn", "slide"], seed=range(2))
@@ -137,7 +138,7 @@ def test_spheres_touch_first_where_it_is_said(kind, seed):
     rng = np.random.default_rng(seed)
     spheres = [np.vstack([rng.uniform(-1, 1, (3, 300)), rng.uniform(0, 0.3, (1, 300))]) for _ in range(2)]
     start = 0.0 if seed % 2 else 0.7
-    places = np.linspace(start, start + TURN if kind == "turn" else 4.0, 6000)
+    places = np.linspace(start, start + math.tau if kind == "turn" else 4.0, 6000)
     for sign in (-1, 1):
         first = first_touch(*spheres, kind == "turn", sign, start)
         twist = np.zeros(6)
@@ -184,7 +185,7 @@ def test_points_are_no_further_from_a_mate_than_their_box_says(turning, kind):
             continue
         told += 1
         a, b = rng.uniform(low[0], high[0], (2000, 2)).T
-        angle, height = rng.uniform(0, TURN, 2000), rng.uniform(-1, 1, 2000)
+        angle, height = rng.uniform(0, math.tau, 2000), rng.uniform(-1, 1, 2000)
         points = np.stack([a * np.cos(angle), a * np.sin(angle), b] if turning else [a, b, height], axis=1)
         local = (points - X[:3, 3]) @ X[:3, :3] - surface.point
         along = local @ axis

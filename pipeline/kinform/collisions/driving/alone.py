@@ -21,9 +21,9 @@ from kinform.model.kinematics import Joint
 from kinform.model.names import PartName
 
 SCREW_TURNS = 20
-"""Turns of a screw that are tried at once to each side."""
+"""Turns of a screw that are tried at once to each side. Chosen, not measured."""
 SCREW_TURNS_MOST = 400
-"""Turns of a screw that are tried in all, where its threads end."""
+"""Turns of a screw that are tried in all, where its threads end. Chosen, not measured."""
 
 
 def drive_alone(shapes: Shapes, joint: Joint, still: Sequence[str], moving: Sequence[str]) -> JointRange:

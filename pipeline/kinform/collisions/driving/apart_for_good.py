@@ -14,10 +14,8 @@ from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array
 
-ONE_MOTION = 0.1
-"""Share of what swept profiles are apart at least, by which points may leave the one axis or direction."""
 TURNED_LEAST = 1e-3
-"""Sine of the greatest turn, below which an axis is not looked for."""
+"""Sine of the greatest turn, below which an axis is not looked for. Chosen, not measured."""
 
 
 def that_can_meet(shapes: Shapes, test: PairTest, relative: Array) -> PairTest | None:
@@ -28,7 +26,8 @@ def that_can_meet(shapes: Shapes, test: PairTest, relative: Array) -> PairTest |
         return test
     meshes = [shapes.mesh(name) for name in test.names]
     places = [mesh.vertices @ X[:3, :3].T + X[:3, 3] for mesh, X in zip(meshes, (test.X_WA, test.X_WB), strict=True)]
-    twist = one_motion(relative, places[0].mean(axis=0), shapes.size, ONE_MOTION * MEETING_MARGIN * test.size)
+    # Share of what swept profiles are apart at least, by which points may leave the one axis or direction.
+    twist = one_motion(relative, places[0].mean(axis=0), shapes.size, 0.1 * MEETING_MARGIN * test.size)
     if twist is None:
         return test
     first, second = (Profile(place, mesh.faces, twist) for place, mesh in zip(places, meshes, strict=True))

@@ -25,27 +25,18 @@ from kinform.kinematics.mobility.guides import preserved
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 
-SEEN_BEYOND = 0.016
-"""So much further than where the first pair is too deep others are followed, which may have met before it did: four
-steps of parts in touch."""
 STOP_ANGLE = math.radians(2e-5)
-"""rad: to which a stop of a turn is found."""
+"""rad: to which a stop of a turn is found. Chosen, not measured."""
 STOP_LENGTH = 1e-5
-"""To which a stop of a slide is found."""
+"""To which a stop of a slide is found. Chosen, not measured."""
 WINDOW_TURN = 2.0 * math.pi / 32
 """rad of a turn, ..."""
 WINDOW_SLIDE = 0.05
 """... and share of the smaller part's diagonal of a slide, that parts which come near each other are followed with the
-facets that can meet there, ..."""
-WINDOW_LEAST = 0.1
-"""... of which no less than this share is left where it begins."""
-FACETS_STEP = 2000
-"""Facets of a pair of which it is asked which can meet at all, in the time of one step as wholes: nested parts of 1,000
-facets took 0.5 ms and 1 to 3 ms, those of an arm with 20,000 took 5 ms and 0.5 to 2 ms."""
+facets that can meet there. Chosen, not measured."""
 MODEL_MOST = 0.7
-"""Where more than this share of the facets that can meet at all can in a window, all are modelled, ..."""
-MODEL_SHARED = 8.0
-"""... and a model that is there is used for as many times fewer of its facets."""
+"""Where more than this share of the facets that can meet at all can in a window, all are modelled. Chosen, not
+measured."""
 
 
 class Candidate:
@@ -90,7 +81,9 @@ class Candidate:
     @property
     def beyond(self) -> float:
         """rad or m behind where another pair is too deep that it is followed to see whether it met before."""
-        return SEEN_BEYOND * self._size / max(self.course(1).travel(1.0), TINY)
+        # By this share of the size, further than where the first pair is too deep others are followed, which may have
+        # met before it did: four steps of parts in touch.
+        return 0.016 * self._size / max(self.course(1).travel(1.0), TINY)
 
     def wholes(self) -> Wholes:
         """The parts with all their facets."""
@@ -99,7 +92,9 @@ class Candidate:
     @property
     def steps_apart(self) -> int:
         """Steps as wholes that cost about as much as to ask whether they are apart for good."""
-        return sum(len(self._shapes.mesh(name).faces) for name in self.names) // FACETS_STEP
+        # Facets of a pair of which it is asked which can meet at all, in the time of one step as wholes: nested parts
+        # of 1,000 facets took 0.5 ms and 1 to 3 ms, those of an arm with 20,000 took 5 ms and 0.5 to 2 ms.
+        return sum(len(self._shapes.mesh(name).faces) for name in self.names) // 2000
 
     @property
     def apart(self) -> bool:
@@ -127,7 +122,8 @@ class Candidate:
         if not (len(facets[0]) and len(facets[1])):
             return None
         for test in self._tests:
-            if sum(map(len, test.facets)) <= MODEL_SHARED * count and test.holds(facets):
+            # A model that is there is used for up to eight times fewer of its facets.
+            if sum(map(len, test.facets)) <= 8.0 * count and test.holds(facets):
                 return test
         self._modelled += count if count <= MODEL_MOST * all_facets else all_facets + 1
         return self.anywhere if self._modelled > all_facets else self._test(facets)
@@ -275,7 +271,8 @@ class Approach:
     def _behind(self, s: float) -> float:
         """Where the window ends that begins at s: wherever that is, they meet at the same places."""
         window = self._candidate.window
-        return window if math.isinf(window) else window * (math.floor(s / window + WINDOW_LEAST) + 1.0)
+        # No less than a tenth of a window is left where it begins.
+        return window if math.isinf(window) else window * (math.floor(s / window + 0.1) + 1.0)
 
     def _through(self, window: _Window, reach: float) -> First | None:
         """A step in a window, or all of the rest of it."""

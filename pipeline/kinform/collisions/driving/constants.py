@@ -2,5 +2,8 @@
 
 from __future__ import annotations
 
-MEETING_MARGIN = 1e-6
-"""Facets whose swept profiles come no nearer than this never meet."""
+from kinform.foundation.rounding import SINGLE
+
+MEETING_MARGIN = SINGLE
+"""Share of the size: facets whose swept profiles come no nearer than this never meet, but for rounding of files in
+single precision."""

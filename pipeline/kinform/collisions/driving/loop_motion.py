@@ -23,33 +23,25 @@ from kinform.model.arrays import Array, Flags
 from kinform.model.kinematics import Freedom
 
 STEP = 0.04
-"""Arc length of a step: rad, and share of the block's size."""
+"""Arc length of a step: rad, and share of the block's size. Chosen, not measured."""
 PATH_STEPS = 900
 """Steps to each side at most: 36 rad, six turns of a linkage with one turning joint, or two of one with ten."""
 STEP_KEPT = 0.3
-"""Share of a step that has to be left of it where the loops are closed again."""
-STEPS_AWAY = 8
-"""Steps after which the motion may be back where it began."""
+"""Share of a step that has to be left of it where the loops are closed again. Chosen, not measured."""
 SINGULAR = 2e-3
 """A singular value of the closure that counts, but is below this, is that of a branching: twenty times what may be none
 (`RANK_SHARE`), and a twentieth of a step."""
 LONG_STEP = 0.4
 """rad: the longest step where a motion goes on evenly: screws and slides along one line, on which there is nothing to
-be passed over."""
+be passed over. Chosen, not measured."""
 EVEN_TRIED = 30
-"""Steps after which it is believed that a motion goes on evenly."""
+"""Steps after which it is believed that a motion goes on evenly. Chosen, not measured."""
 EVEN_STEPS = 6000
-"""Steps of an even motion in all."""
-JACOBIAN_SAME = 1e-9
-"""Change of the closure's Jacobian within which a motion goes on evenly."""
-RETURN_MISS = 1e-5
-"""rad and share of the size by which a motion may miss where it began and be back there."""
+"""Steps of an even motion in all. Chosen, not measured."""
 NODES_THROUGH = 6
-"""Nodes that the motion between two of them is taken through."""
+"""Nodes that the motion between two of them is taken through. Chosen, not measured."""
 SMOOTH = SOLVED
 """rad and share of the size that loops may be open between nodes."""
-RATE_SAME = 0.99
-"""Rates of an idle freedom from this share of the greatest are the same but for rounding, and go by their order."""
 
 
 RETURNED = "returned"
@@ -96,7 +88,9 @@ def driven_block(graph: JointGraph, block: Sequence[int], idle: Sequence[Freedom
                 rates[columns[place]] = abs(rate)
         if rates.any():
             # rates that are the same but for rounding go by their order
-            held[np.flatnonzero(rates > RATE_SAME * rates.max())[0]] = True
+            # Rates of an idle freedom from this share of the greatest are the same but for rounding, and go by their
+            # order.
+            held[np.flatnonzero(rates > 0.99 * rates.max())[0]] = True
     return Driven(of_block, held)
 
 
@@ -142,18 +136,15 @@ def follow(driven: Driven, sign: float) -> Path:
         tangent = driven.tangent(jacobian)
         if tangent is None or not tangent[1]:
             return ended("a singular pose, from which motions branch")
-        if even is not None and np.abs(jacobian - even).max(initial=0.0) > JACOBIAN_SAME:
+        if even is not None and np.abs(jacobian - even).max(initial=0.0) > SOLVED:
             even = None
         q = following
         path.append(q)
         s.append(s[-1] + step / STEP)
         step = STEP if even is None else min(2.0 * step, LONG_STEP)
         along = tangent[0] if float(tangent[0] @ along) >= 0.0 else -tangent[0]
-        if (
-            len(path) > STEPS_AWAY
-            and float(np.linalg.norm(_around(q, turns))) < step
-            and _meets_start(driven, q, along)
-        ):
+        # Steps after which the motion may be back where it began.
+        if len(path) > 8 and float(np.linalg.norm(_around(q, turns))) < step and _meets_start(driven, q, along):
             return ended(RETURNED)
     return ended("the motion is too long to be followed to its end")
 
@@ -172,7 +163,8 @@ def _meets_start(driven: Driven, q: Array, along: Array) -> bool:
         if not closing.closed[0] or tangent is None:
             return False
         q, along = closing.q[0], tangent[0]
-    return float(np.linalg.norm(_around(q, turns))) < RETURN_MISS
+    # rad and share of the size by which a motion may miss where it began and be back there.
+    return float(np.linalg.norm(_around(q, turns))) < 1e-5
 
 
 class Between:

@@ -21,6 +21,7 @@ from kinform.collisions.pair.advancement import First, Near, first_crossing
 from kinform.collisions.pair.posed_pairs import Moving, Nodes, moving_pairs
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.displacements import inverse
+from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
 from kinform.kinematics.mobility.guides import guide
 from kinform.mechanism.closing import ACCEPTED
@@ -31,9 +32,9 @@ from kinform.model.kinematics import Freedom, Joint, Kinematics
 from kinform.model.names import BodyName, PartName
 
 TURNED_ROUND = 2.0 * math.pi - 0.2
-"""rad: a joint of a motion that comes back, and turned by more, goes round and round."""
+"""rad: a joint of a motion that comes back, and turned by more, goes round and round. Chosen, not measured."""
 LOOP_STOP = 1e-3
-"""Share of a step to which a contact along a motion of loops is found."""
+"""Share of a step to which a contact along a motion of loops is found. Chosen, not measured."""
 
 
 LEAVES = "leaves its guide"
@@ -223,7 +224,7 @@ def _range(joint: Joint, driven: Driven, column: int, ends: Sequence[_Travelled]
     sides = []
     for value in (low, high):
         n = min(range(2), key=lambda k: abs(float(values[k][-1]) - value))
-        at_end = abs(float(values[n][-1]) - value) < 1e-9
+        at_end = abs(float(values[n][-1]) - value) < SOLVED
         end = ends[n]
         if at_end and end.parts:
             sides.append(RangeEnd("found", float(value), end.parts, end.place))

@@ -15,31 +15,34 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from kinform.collisions.driving.swept_profiles import TURN, nearest, spanned
+from kinform.collisions.driving.swept_profiles import nearest, spanned
 from kinform.foundation.meshes.boxes import along_curve, triangle_boxes
+from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 
 DIVIDED_TO = 0.02
-"""Share of a turn, or of a part's length along a slide, that a facet spans at most, or it is divided."""
+"""Share of a turn, or of a part's length along a slide, that a facet spans at most, or it is divided. Chosen, not
+measured."""
 DIVIDED_ROUNDS = 2
-"""So often they are asked which of them meet, and those divided further."""
+"""So often they are asked which of them meet, and those divided further. Chosen, not measured."""
 DIVIDED_AT_ONCE = 2
-"""Times that they are divided into four before they are asked."""
+"""Times that they are divided into four before they are asked. Chosen, not measured."""
 DIVIDED_MOST = 60_000
-"""Pieces of a part at most."""
+"""Pieces of a part at most. Chosen, not measured."""
 PROFILE_CELLS = 60
-"""Profiles of one surface that are the same to so many parts of where both parts are, are taken together."""
+"""Profiles of one surface that are the same to so many parts of where both parts are, are taken together. Chosen, not
+measured."""
 TESTED_MOST = 20_000_000
-"""Groups of one part times those of the other, up to which they are asked."""
+"""Groups of one part times those of the other, up to which they are asked. Chosen, not measured."""
 SPANS_MOST = 4_000_000
-"""Spans of pairs of groups in all."""
+"""Spans of pairs of groups in all. Chosen, not measured."""
 PLACES = 8192
-"""Spans begin and end at so many places of a turn, or of the length of the longer part."""
+"""Spans begin and end at so many places of a turn, or of the length of the longer part. Chosen, not measured."""
 SECTORS = 64
-"""Of the motion, for each of which it is known which facets can meet in it."""
+"""Of the motion, for each of which it is known which facets can meet in it. Chosen, not measured."""
 TESTED_TOGETHER = 64
-"""Groups of one that are asked at once."""
+"""Groups of one that are asked at once. Chosen, not measured."""
 
 
 Along = Callable[[Ints, Ints, Array, Array], Flags]
@@ -60,7 +63,7 @@ class Spans:
         first = np.floor(low / step).astype(np.int64)
         last = np.maximum(np.ceil(high / step).astype(np.int64), first + 1)
         if turning:
-            around = round(TURN / step)
+            around = round(math.tau / step)
             wide = np.minimum(last - first, around)
             first %= around
             last = first + wide
@@ -79,7 +82,7 @@ class Spans:
         low, high = (self.low, self.high) if sign > 0 else (-self.high[::-1], -self.low[::-1])
         if self._turning:
             first = 0 if sign > 0 else 1
-            low, high = (np.concatenate([side + TURN * k for k in range(first, first + 2)]) for side in (low, high))
+            low, high = (np.concatenate([side + math.tau * k for k in range(first, first + 2)]) for side in (low, high))
         edges = np.stack([low, high], axis=1).ravel().tolist()
 
         def at(s: float) -> tuple[bool, float]:
@@ -96,7 +99,7 @@ class Sectors:
         """Of the spans (m,) of its groups."""
         self._groups, self._turning = groups, turning
         self._origin = 0.0 if turning else float(low.min(initial=np.inf))
-        whole = TURN if turning else float(high.max(initial=-np.inf)) - self._origin
+        whole = math.tau if turning else float(high.max(initial=-np.inf)) - self._origin
         self._step = whole / SECTORS
         first, last = (np.floor((side - self._origin) / self._step).astype(np.int64) for side in (low, high))
         if turning:
@@ -203,7 +206,7 @@ class _Groups:
         # each group is shifted beyond those before it, and back
         apart = 2.0 * (float(stop.max()) - float(start.min()))
         low, high = _merged(start + apart * self._rank, stop + apart * self._rank)
-        group = np.floor((low - start.min()) / apart + 1e-9).astype(np.int64)
+        group = np.floor((low - start.min()) / apart + SOLVED).astype(np.int64)
         count = np.bincount(group, minlength=len(self.low))
         return low - apart * group, high - apart * group, np.cumsum(count) - count, count
 
@@ -212,7 +215,7 @@ def meeting_spans(parts: Sequence[tuple[Array, Ints]], turning: bool, margin: fl
     """Where facets of two parts, each by corners (n, 3, 3), across the axis and along it, and surfaces (n,), can meet
     when the second turns or slides; nearer than `margin` (m) is met. None: they are too many to be told."""
     sides = [Pieces.of(corners, surfaces, np.arange(len(corners)), turning, margin) for corners, surfaces in parts]
-    whole = TURN if turning else max(margin, *(float(np.ptp(side.corners[..., 2])) for side in sides))
+    whole = math.tau if turning else max(margin, *(float(np.ptp(side.corners[..., 2])) for side in sides))
     origin = np.maximum(*(side.low.min(axis=0) for side in sides))
     cell = np.maximum(np.minimum(*(side.high.max(axis=0) for side in sides)) - origin, margin) / PROFILE_CELLS
     groups, pairs = _met(sides, origin, cell, margin, along)

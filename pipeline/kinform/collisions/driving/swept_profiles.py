@@ -14,17 +14,13 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross, perpendicular
 from kinform.foundation.meshes.boxes import along_curve, bounds, facet_boxes
 from kinform.foundation.meshes.near_facets import near_boxes
-from kinform.foundation.rounding import TINY
+from kinform.foundation.rounding import ARITHMETIC, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
 CHUNK = 64
-"""Facets that lie together and are asked as one whether any of them can meet any of others."""
-LEVEL = 1e-12
-"""m a radian by which a turn may advance and keep heights, over its reach and the distance of its axis: rounding."""
+"""Facets that lie together and are asked as one whether any of them can meet any of others. Chosen, not measured."""
 
-
-TURN = 2.0 * math.pi
 
 Sides = tuple[Array, Array]
 """Lower and upper."""
@@ -50,7 +46,7 @@ class Profile:
         self._heights = away @ axis
         self.largest: float = float(self._radius.max(initial=0.0))
         """m: greatest distance from the axis of a turn."""
-        rounding = LEVEL * max(self.largest, float(np.linalg.norm(twist[3:])))
+        rounding = ARITHMETIC * max(self.largest, float(np.linalg.norm(twist[3:])))
         self._level = self._turning and abs(float(twist[:3] @ twist[3:])) < rounding
 
     @cached_property
@@ -61,7 +57,7 @@ class Profile:
         bottom, top = self.span
         middle = 0.5 * (low + high), 0.5 * (bottom + top)
         away = (x - middle[0][0]) ** 2 + (y - middle[0][1]) ** 2 + (height - middle[1]) ** 2
-        return np.array([*middle[0], middle[1], (1.0 + LEVEL) * math.sqrt(float(away.max()))])
+        return np.array([*middle[0], middle[1], (1.0 + ARITHMETIC) * math.sqrt(float(away.max()))])
 
     @cached_property
     def span(self) -> tuple[float, float]:
@@ -190,7 +186,7 @@ class Meeting:
         meet &= high >= begin
         if self.turning:
             # a whole number of turns from there
-            meet = np.floor((high - begin) / TURN) * TURN >= low - end
+            meet = np.floor((high - begin) / math.tau) * math.tau >= low - end
         chosen = pairs[meet]
         out = []
         for k, order in enumerate(orders):
@@ -253,11 +249,11 @@ def _near(first: Sides, second: Sides, margin: float) -> tuple[Ints, Ints]:
 def _cut(start: Array, stop: Array) -> tuple[Ints, Array, Array]:
     """Where facets (n,) are on a turn (rad) that is cut open at 0: of each piece (m,) the facet, and from where to
     where."""
-    wide = np.minimum(stop - start, TURN)
-    start = np.where(wide >= TURN, 0.0, start % TURN)
-    over = np.flatnonzero(start + wide > TURN)
-    rest = start[over] + wide[over] - TURN
-    ends = np.append(np.minimum(start + wide, TURN), rest)
+    wide = np.minimum(stop - start, math.tau)
+    start = np.where(wide >= math.tau, 0.0, start % math.tau)
+    over = np.flatnonzero(start + wide > math.tau)
+    rest = start[over] + wide[over] - math.tau
+    ends = np.append(np.minimum(start + wide, math.tau), rest)
     return np.append(np.arange(len(start)), over), np.append(start, np.zeros(len(over))), ends
 
 
@@ -279,12 +275,12 @@ def spanned(flat: Array, radius: Array, margin: float) -> Sides:
     first, *others = (np.arctan2(flat[:, corner, 1], flat[:, corner, 0]) for corner in range(3))
     low, high = np.zeros(len(flat)), np.zeros(len(flat))
     for angle in others:
-        apart = (angle - first + math.pi) % TURN - math.pi
+        apart = (angle - first + math.pi) % math.tau - math.pi
         low, high = np.minimum(low, apart), np.maximum(high, apart)
     wide = margin / np.maximum(radius, TINY)
     start, stop = first + low - wide, first + high + wide
     whole = (stop - start >= math.pi) | (wide > 1.0)
-    return np.where(whole, 0.0, start % TURN), np.where(whole, TURN, start % TURN + stop - start)
+    return np.where(whole, 0.0, start % math.tau), np.where(whole, math.tau, start % math.tau + stop - start)
 
 
 def nearest(flat: Array) -> Array:

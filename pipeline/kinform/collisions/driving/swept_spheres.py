@@ -10,8 +10,6 @@ import numpy as np
 from kinform.foundation.rounding import TINY
 from kinform.model.arrays import Array
 
-TURN = 2.0 * math.pi
-
 
 def first_touch(first: Array, second: Array, turning: bool, sign: int, start: float) -> Array:
     """(n,) the first place from `start` at which spheres touch, of which the second moves to one side; inf where they
@@ -23,8 +21,8 @@ def first_touch(first: Array, second: Array, turning: bool, sign: int, start: fl
         with np.errstate(over="ignore"):  # on the axis nothing turns towards anything: beyond any cosine
             cosine = (p * p + q * q + (h - k) ** 2 - (r + t) ** 2) / np.maximum(2.0 * p * q, TINY)
         half = np.arccos(np.clip(cosine, -1.0, 1.0))
-        begin = (sign * (np.arctan2(b, a) - np.arctan2(d, c)) - half - start) % TURN
-        return np.where(cosine > 1.0, np.inf, np.where(begin + 2.0 * half >= TURN, start, start + begin))
+        begin = (sign * (np.arctan2(b, a) - np.arctan2(d, c)) - half - start) % math.tau
+        return np.where(cosine > 1.0, np.inf, np.where(begin + 2.0 * half >= math.tau, start, start + begin))
     square = (r + t) ** 2 - (a - c) ** 2 - (b - d) ** 2
     half = np.sqrt(np.maximum(square, 0.0))
     begin, over = sign * (h - k) - half, sign * (h - k) + half

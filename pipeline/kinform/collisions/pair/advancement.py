@@ -25,23 +25,12 @@ from kinform.model.arrays import Array
 WORK = 4000
 """Poses of one pair that one question may try before it is given up: a choice."""
 STEPS_TOUCHED = 12
-"""Steps in touch after which what crosses is told for several at once: as many as there were, ..."""
-STEPS_AHEAD = 48
-"""... and so many at most. One of a thread took 2.5 ms alone, and 0.8 ms among 48."""
+"""Steps in touch after which what crosses is told for several at once: as many as there were."""
 RESOLUTION = 4e-3
 """So far a part may travel unseen where others are in touch, as a share of the size of the pair: a choice between time
 and what thin features may be missed."""
 OVERLAPPING = 5.0
 """Steps are so much longer while parts overlap: all that is asked is whether they separate. A choice."""
-BEHIND_FACE = (1.0, 0.2, 0.04)
-"""Shares of the resolution behind a face at which it is asked what is inside: parts may be thinner, so each is a fifth
-of the one before. A choice."""
-BEHIND_LEAST = 4.0
-"""Nothing is asked behind a face nearer than this many times what a contact is found to: there it could not be told
-from the contact. A choice."""
-BEHIND_DEPTH = 0.4
-"""Share of the way behind a face by which its points are then inside: less than half, so that those of a face that is
-aslant count too. A choice."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -236,7 +225,8 @@ class Search:
         likely to be so further on."""
         if self._touched < STEPS_TOUCHED or stack[-1] in self._states:
             return
-        most, stack, places = min(self._touched, STEPS_AHEAD), list(stack), dict[float, None]()
+        # What crosses is told for 48 steps at once at most. One of a thread took 2.5 ms alone, and 0.8 ms among 48.
+        most, stack, places = min(self._touched, 48), list(stack), dict[float, None]()
         while stack and len(places) < most:
             right, meets = self._step(left, stack)
             if not meets:
@@ -291,13 +281,19 @@ class Search:
         sooner."""
         test, nearest = self.state(s).test, self.state(s).nearest
         begun = self.course.travel(s)
-        for share in BEHIND_FACE:
+        # Shares of the resolution behind a face at which it is asked what is inside: parts may be thinner, so each is a
+        # fifth of the one before. A choice.
+        for share in (1.0, 0.2, 0.04):
             further = self.course.when(begun + share * self._resolution, s, end)
             way = self.course.travel(further) - begun
-            if further - s < BEHIND_LEAST * self._fine:
+            # Nothing is asked behind a face nearer than this many times what a contact is found to: there it could not
+            # be told from the contact. A choice.
+            if further - s < 4.0 * self._fine:
                 return False
             D = self.course.displacement(further)
-            if test.faces(D, *nearest) if share < 1.0 else test.inside(D, *nearest, BEHIND_DEPTH * way):
+            # Share of the way behind a face by which its points are then inside: less than half, so that those of a
+            # face that is aslant count too. A choice.
+            if test.faces(D, *nearest) if share < 1.0 else test.inside(D, *nearest, 0.4 * way):
                 return True
         return False
 

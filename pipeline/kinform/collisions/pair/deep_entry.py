@@ -21,9 +21,6 @@ from kinform.model.arrays import Array, Ints
 UNSEEN = 0.5
 """Share of what mates may be deep that points may travel unseen: what comes in deeper than they may is then seen before
 it is through. A choice below 1."""
-SPARSE = 0.016
-"""So far points near the other part may travel between two questions, as a share of the size of the pair: four times
-`advancement.RESOLUTION`, as to ask whether they are inside is dear, and what came in is found by halving anyhow."""
 REFINED = 2e-3
 """Share of what a contact is found to, to which the facets that cross first, or a point that comes in, are followed:
 less than 1e-9 rad of a turn."""
@@ -80,7 +77,10 @@ class Inside:
         self._outside = np.full(count, s)
         """Where each point was last asked for and not inside."""
         self._speck = speck
-        self._stride = max(UNSEEN * test.loose, SPARSE * test.size)
+        # So far points near the other part may travel between two questions, as a share of the size of the pair: four
+        # times `advancement.RESOLUTION`, as to ask whether they are inside is dear, and what came in is found by
+        # halving anyhow.
+        self._stride = max(UNSEEN * test.loose, 0.016 * test.size)
         self._next = course.travel(s) + self._stride
         """m travelled: nothing is asked before, so that points are asked together."""
         self._wait(course.travel(s), self._every, heights)

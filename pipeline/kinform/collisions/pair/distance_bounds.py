@@ -26,9 +26,6 @@ SHORT_STEP = 0.01
 """Steps below this share of the size of the pair are short: a choice."""
 STEPS_MOST = 60
 """Steps that are taken with whole parts before the facets that count are followed alone: a choice."""
-STEPS_TRIED = 8
-"""Steps after which it is seen whether so many reach the end: a pair that stays near is followed with the facets that
-count, which are fewer. A choice."""
 
 
 class Apart:
@@ -59,7 +56,9 @@ class Apart:
         where so many steps as are taken would not reach the end."""
         s, short = self.step(course, start, end)
         while s < end and not short:
-            if self.steps >= STEPS_TRIED and (s - start) * STEPS_MOST < (end - start) * self.steps:
+            # Steps after which it is seen whether so many reach the end: a pair that stays near is followed with the
+            # facets that count, which are fewer. A choice.
+            if self.steps >= 8 and (s - start) * STEPS_MOST < (end - start) * self.steps:
                 break
             s, short = self.step(course, s, end)
         return s

@@ -31,16 +31,12 @@ more."""
 OVERLAP_SOON = 4
 """So many of these, the first, tell whether parts go on into each other: on a longer way others of their features may
 meet."""
-OVERLAP_FINE = 1e-3
-"""Share of the way to which these places are found: a choice."""
 OVERLAP_GROWS = 1.15
 """Parts that come to share so many times as much go into each other: those of robots that rub on each other, or are
 pressed together, share as much to within a few per cent over such a way."""
 OVERLAP_SHRINKS = 0.5
 """Parts that come to share less than this part: a leaf that turns out of another has left it by half where its far end
 has travelled as far as it was in it."""
-OVERLAP_PIECES = 4
-"""Pieces that are asked about, the largest: a choice."""
 
 
 Pose = Callable[[float], Array]
@@ -99,7 +95,8 @@ class DrawnOverlap:
         corners = overlap.corners.reshape(-1, 3)
         boxes = [corners[3 * i : 3 * j] for i, j in pairwise(overlap.ends)]
         order = np.lexsort((np.arange(len(volumes)), -volumes))
-        largest = order[thickness[order] > self._least][:OVERLAP_PIECES].tolist()
+        # Pieces that are asked about, the largest: a choice.
+        largest = order[thickness[order] > self._least][:4].tolist()
         return [_piece(first, other, float(thickness[k]), *bounds(boxes[k])) for k in largest]
 
     def leads_in(self, pose: Pose, start: float, end: float, spare: float = 0.0) -> float | None:
@@ -138,7 +135,8 @@ class DrawnOverlap:
         beyond, low, high = partial(self._beyond, piece, pose, way), start, end
         while high > low and beyond(0.5 * (low + high)):
             high = 0.5 * (low + high)
-        return narrowed(low, high, OVERLAP_FINE * high, beyond)[1]
+        # Share of the way to which these places are found: a choice.
+        return narrowed(low, high, 1e-3 * high, beyond)[1]
 
     def _beyond(self, piece: _Piece, pose: Pose, way: float, s: float) -> bool:
         return piece.travelled(self._moved(pose, s)) > way

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import NEXT, cross
 from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array, Flags
-
-_CORNERS, _NEXT = np.array([0, 1, 2]), np.array([1, 2, 0])
 
 
 def crossings(first: Array, second: Array, normals: tuple[Array, Array], least: float) -> tuple[Flags, Array]:
@@ -47,11 +45,11 @@ def _heights(triangles: Array, others: Array, normals: Array) -> Array:
 
 def _span(triangles: Array, d: Array, along: Array) -> tuple[Array, Array, Array, Array]:
     """Where a triangle meets the plane from which its corners are `d` (n, 3) away: along a line, and as points."""
-    here, there = d[:, _CORNERS], d[:, _NEXT]
+    here, there = d, d[:, NEXT]
     straddles = (here < 0.0) != (there < 0.0)
     step = np.where(straddles, here - there, 1.0)
     share = np.where(straddles, here / step, 0.0)[..., None]
-    points = triangles + share * (triangles[:, _NEXT] - triangles)
+    points = triangles + share * (triangles[:, NEXT] - triangles)
     places = np.einsum("ij,ikj->ik", along, points)
     lowest = np.argmin(np.where(straddles, places, np.inf), axis=1)
     highest = np.argmax(np.where(straddles, places, -np.inf), axis=1)

@@ -22,14 +22,6 @@ from kinform.model.arrays import Ints
 TOGETHER = 8.0
 """Surfaces that come to cross within so many chord errors of travel belong to one collision, and so does a point that
 comes in. A choice."""
-FIRST_TRIED = 4
-"""So often the facets that cross first are looked for among those that cross a little later: a choice; each time they
-are found to the resolution of the one before."""
-RISE = 0.02
-"""Share of what may be overlap of mates or chord errors by which the depth has to grow: a choice."""
-RISE_UNEVEN = 0.1
-"""Share of the same by which a depth that grows may have been greater before, as it is measured at some points only: a
-choice."""
 
 
 Step = tuple[float, float]
@@ -134,11 +126,14 @@ class Onsets:
         while place > self._start:
             place = self._course.when(travel(place) - self._step, self._start, place)
             depth = self.depth(place)
-            if depth >= least + RISE_UNEVEN * slack:
+            # Share of the same by which a depth that grows may have been greater before, as it is measured at some
+            # points only: a choice.
+            if depth >= least + 0.1 * slack:
                 break
             if depth < least:
                 low, least = place, depth
-        least += RISE * slack
+        # Share of what may be overlap of mates or chord errors by which the depth has to grow: a choice.
+        least += 0.02 * slack
         left, hit = narrowed(low, right, self._fine, lambda s: self.depth(s) > least)
         if travel(hit) - travel(self._start) <= self._step:
             left, hit = self._start, min(self._start + self._fine, hit)
@@ -156,7 +151,9 @@ class Onsets:
         """
         before = self._state(left).crossing.shared.keys()
         for to in (self._fine, REFINED * self._fine):
-            for _ in range(FIRST_TRIED):
+            # So often the facets that cross first are looked for among those that cross a little later: a choice; each
+            # time they are found to the resolution of the one before.
+            for _ in range(4):
                 state = self._state(right)
                 hits = state.test.of_surfaces(state.hits, pairs)
                 low, high = narrowed(left, right, to, partial(self._cross, state.test, hits))

@@ -20,14 +20,8 @@ from kinform.foundation.rounding import TINY
 from kinform.model.arrays import Array, Flags, Ints
 
 DEPTH_ENDS = 32
-"""Ends of crossing segments between which the depth is looked for: a choice, as are the next three. More places take
-more time."""
-DEPTH_SEGMENTS = 256
-"""Segments to which these are so near, or not, that they may be deep."""
-DEPTH_MIDDLES = 64
-"""Places between them that are asked whether they are inside both parts."""
-DEPTH_INSIDE = 40
-"""Of those that are, at which the depth is measured."""
+"""Ends of crossing segments between which the depth is looked for: a choice. More places
+take more time."""
 DEPTH_FINER = 4
 """So many times as many places for a depth that is reported: twice as fine either way."""
 
@@ -44,7 +38,8 @@ class Penetration:
         middles = _middles(segments, finer)
         other = _seen(X, middles)
         inside = self._in_both(middles, other)
-        inside = inside[_spread(len(inside), finer * DEPTH_INSIDE)]
+        # Of the places inside both parts, 40 at which the depth is measured: a choice.
+        inside = inside[_spread(len(inside), finer * 40)]
         total = self._first.depths(middles[inside]) + self._second.depths(other[inside])
         return float(total.max(initial=0.0))
 
@@ -54,7 +49,8 @@ class Penetration:
         points, others = [], []
         for X, some, allowed in zip(poses, segments, least, strict=True):
             middles = _middles(some)
-            near = 2.0 * _from_segments(middles, some[_spread(len(some), DEPTH_SEGMENTS)])
+            # 256 segments to which these ends are so near, or not, that they may be deep: a choice.
+            near = 2.0 * _from_segments(middles, some[_spread(len(some), 256)])
             asked = np.flatnonzero(near > CERTAIN * allowed)
             points.append(middles[asked])
             others.append(_seen(X, middles)[asked])
@@ -102,7 +98,8 @@ def _middles(segments: Array, finer: int = 1) -> Array:
     points = points[_spread(len(points), finer * DEPTH_ENDS)]
     a, b = _pairs(len(points))
     order = np.argsort(np.linalg.norm(points[a] - points[b], axis=1), kind="stable")
-    order = order[_spread(len(order), finer * DEPTH_MIDDLES)]
+    # 64 places between them that are asked whether they are inside both parts: a choice.
+    order = order[_spread(len(order), finer * 64)]
     return np.asarray(0.5 * (points[a[order]] + points[b[order]]))
 
 

@@ -29,8 +29,6 @@ LOWER_TYPES = ("revolute", "prismatic", "cylindrical", "spherical", "planar", "s
 """Joints whose twists stay the same in both bodies."""
 REMEMBERED = 64
 """Displacements of a pair that are kept, as the same are asked for several times: the steps of one search."""
-WORLD_BOXES = 64
-"""Times for which bodies are boxed in the world, to see which of them stay away from each other: a choice."""
 CHORD_SLACK = 1.05
 """Times their straight distance that points may travel between two poses: on an arc of 1 rad it is 1.04."""
 
@@ -108,7 +106,8 @@ class _Near:
             spare = CHORD_SLACK * np.append(steps, 0.0)[:, None] + SOLVED * self._shapes.size
             lows[motion], highs[motion] = places.min(axis=1) - spare, places.max(axis=1) + spare
         out = np.zeros((count, count), bool)
-        for begin, end in pairwise(np.unique(np.linspace(0, lows.shape[1], WORLD_BOXES + 1).astype(int)).tolist()):
+        # Times for which bodies are boxed in the world, to see which of them stay away from each other: a choice.
+        for begin, end in pairwise(np.unique(np.linspace(0, lows.shape[1], 64 + 1).astype(int)).tolist()):
             boxes = lows[:, begin:end].min(axis=1), highs[:, begin:end].max(axis=1)
             met = meeting_boxes(boxes, boxes)
             if met is None:

@@ -39,13 +39,7 @@ CROSSINGS_MOST = 200_000
 """Crossing facets that one question may return: a choice, so that memory stays bounded."""
 OVERLAP_SAME = 1.25
 """Parts that overlapped at the start, and come to overlap by no more than this share of it, come back to where they
-were: a choice; ..."""
-DEEPER = 5e-3
-"""... and go into each other where it is by so much more: an arm that lies 0.3 mm in its base, of 166 mm, rubs on it by
-0.74 mm until it is clear of it."""
-OVERLAP_THIN = 0.25
-"""Share of what mates may be deep to which pieces of an overlap are thin: twice their volume over their area, which is
-half as much as a wedge is deep, or a third as a ball."""
+were: a choice."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +61,7 @@ class Crossing:
 
 
 NONE = Crossing({}, 0.0)
+"""Where no facets cross."""
 
 
 class PairTest:
@@ -136,7 +131,9 @@ class PairTest:
     @property
     def _rubs(self) -> float:
         """m: so far parts that overlap as they are drawn may go on."""
-        return max(self.loose, DEEPER * self.size)
+        # Parts go into each other where their overlap grows by this share of the size: an arm that lies 0.3 mm in its
+        # base, of 166 mm, rubs on it by 0.74 mm until it is clear of it.
+        return max(self.loose, 5e-3 * self.size)
 
     def leads_in(self, displacement: Callable[[float], Array], start: float, end: float) -> float | None:
         """How far a motion from `start` up to `end` goes until it is seen to lead on into what the parts share at its
@@ -145,7 +142,9 @@ class PairTest:
         X = self.pose(displacement(start))
         with working_on(*self.names):
             if X.tobytes() not in self._drawn:
-                self._drawn[X.tobytes()] = DrawnOverlap(*self._meshes, X, OVERLAP_THIN * self.loose)
+                # Share of what mates may be deep to which pieces of an overlap are thin: twice their volume over their
+                # area, which is half as much as a wedge is deep, or a third as a ball.
+                self._drawn[X.tobytes()] = DrawnOverlap(*self._meshes, X, 0.25 * self.loose)
             return self._drawn[X.tobytes()].leads_in(lambda s: self.pose(displacement(s)), start, end, self._rubs)
 
     def pose(self, D: Array) -> Array:

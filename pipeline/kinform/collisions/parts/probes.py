@@ -19,15 +19,11 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 
-POINTS_SURFACE = 24
-"""Points on one surface: a choice."""
 POINTS_PART = 480
 """Points on one part: those of twenty surfaces. A choice."""
 POINTS_FINE = 6
 """A surface's largest facets are divided until they are about so many times smaller than it: 6² = 36 then cover it,
 more than are wanted."""
-POINTS_FAR = 0.05
-"""Share of the other part's diagonal beyond whose box a point needs no closer look: a choice."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +39,8 @@ class Probes:
         placed = self.points[chosen] @ X[:3, :3].T + X[:3, 3]
         beyond = np.maximum(np.maximum(other.low - placed, placed - other.high), 0.0)
         out = -np.linalg.norm(beyond, axis=1)
-        near = np.flatnonzero(out > -POINTS_FAR * other.mesh.diagonal)
+        # Share of the other part's diagonal beyond whose box a point needs no closer look: a choice.
+        near = np.flatnonzero(out > -0.05 * other.mesh.diagonal)
         if len(near):
             inside = other.contains(placed[near])
             deep, clear = near[inside], near[~inside]
@@ -61,7 +58,8 @@ def probes(mesh: Mesh, labels: Ints, facets: Ints) -> Probes:
         return Probes(np.zeros((0, 3)))
     facets = facets[np.argsort(labels[facets], kind="stable")]
     starts = np.flatnonzero(np.diff(labels[facets], prepend=-1))
-    each = max(min(POINTS_SURFACE, POINTS_PART // len(starts)), 1)
+    # Points on one surface: a choice.
+    each = max(min(24, POINTS_PART // len(starts)), 1)
     points = _spread(mesh.vertices[mesh.faces[facets]], starts, each)
     return Probes(points[np.unique(np.linspace(0, len(points) - 1, POINTS_PART).astype(int))])
 

@@ -23,9 +23,6 @@ from kinform.model.arrays import Array, Flags
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
 
-DRIFT = 0.02
-"""Share of the advance of a screw by which its threads' pitch may be off: a choice; fitted pitches are better."""
-
 
 @dataclass(frozen=True)
 class Allowed:
@@ -76,7 +73,8 @@ class Slippage:
         """(s,) which surfaces all twists map onto themselves, but for what is allowed."""
         limit = np.where(self.turns, allowed.length + allowed.angle * self.radius[:, None], allowed.angle)
         # what a screw advances adds up from turn to turn, however little it is
-        return np.asarray(((self.speed <= limit) & (self.drift <= DRIFT)).all(axis=1))
+        # Share of the advance of a screw by which its threads' pitch may be off: a choice; fitted pitches are better.
+        return np.asarray(((self.speed <= limit) & (self.drift <= 0.02)).all(axis=1))
 
 
 class OwnMotions:

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from kinform.foundation.constants import COVERAGE
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.words import rate
 from kinform.frozen import dataclass
@@ -27,8 +28,6 @@ ROUNDED_RATIO = 1e-3
 UNCERTAIN_RATIO = 0.05
 """Relative uncertainty, for each coupling of a chain, beyond which a ratio says nothing: gears of 20 and 21 teeth
 differ by so much."""
-DEVIATIONS = 3.0
-"""Standard uncertainties of a derived ratio within which a stated one agrees: 99.7 % of a normal distribution."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +67,7 @@ def derived_ratio(
         ratio *= coupling.ratio if forward else 1.0 / coupling.ratio
         spread = coupling.uncertainty / abs(coupling.ratio) if math.isfinite(coupling.uncertainty) else 0.0
         relative += max(
-            DEVIATIONS * spread,
+            COVERAGE * spread,
             ROUNDED_RATIO if coupling.kind == "screw" else UNCOUNTED_TEETH,
         )
     if relative > UNCERTAIN_RATIO * len(chain):

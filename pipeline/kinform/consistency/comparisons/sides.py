@@ -23,7 +23,8 @@ MIRRORED = 2e-3
 """Share of the span of all pairs by which a frame may be off its mirror image: numbers that were rounded to millimetres
 in a robot of half a metre. Chosen, not measured."""
 PLANE_NEAR = math.cos(math.radians(15.0))
-"""Cosine of the angle within which the plane of symmetry is across an axis of the first link: robots are drawn so."""
+"""Cosine of the angle within which the plane of symmetry is across an axis of the first link: robots are drawn so.
+Chosen, not measured."""
 MIRRORED_ANGLE = math.radians(0.5)
 """rad by which an axis may be off its mirror image: numbers that were rounded to two decimals. Chosen, not measured."""
 

@@ -18,9 +18,6 @@ from kinform.model.surfaces import MeshSurfaces
 
 AXES_COAXIAL = 0.2
 """Distance, in contact tolerances, of axes that count as one. Chosen, not measured."""
-HOLE_SINK = 0.6
-"""Depth of a chamfer or countersink between a plane and the hole behind it, in radii of the hole: countersinks of ISO
-10642 and DIN 74 are about as deep as half of the hole. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +103,9 @@ def _opens(holes: Cylinders, patch: Patch, tolerance: float, sense: float) -> Fl
         return np.zeros(0, bool)
     upright = np.abs(holes.axes @ patch.axis) > math.cos(AXES_PARALLEL)
     depth = -sense * ((holes.points - patch.point) @ patch.axis)
-    starts = np.abs(depth - holes.halves) <= tolerance + HOLE_SINK * holes.radii
+    # Depth of a chamfer or countersink between a plane and the hole behind it, in radii of the hole: countersinks of
+    # ISO 10642 and DIN 74 are about as deep as half of the hole. Chosen, not measured.
+    starts = np.abs(depth - holes.halves) <= tolerance + 0.6 * holes.radii
     starts |= (np.abs(depth) < holes.halves) & (depth + holes.halves > tolerance)
     low, high = patch.points.min(axis=0), patch.points.max(axis=0)
     beside = holes.points - 0.5 * (low + high)

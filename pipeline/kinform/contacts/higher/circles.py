@@ -27,8 +27,6 @@ from kinform.model.surfaces import KINDS
 
 RIM_UNEVEN = 0.02
 """Vertices of a rim are on one circle to within this: a sixth of what touches."""
-RIM_SAMPLES = 4
-"""Fewest samples along a partial rim: two at either end hold a plane. Chosen, not measured."""
 
 
 _TURNING, _EXACT, _PLANE, _SPHERE = (
@@ -77,7 +75,8 @@ class Rim(Circle):
         """(n,) angles evenly over what is there of it, and the arc (m) that each stands for."""
         total = float(self.spans.sum())
         most = BALL_BORE_SAMPLES
-        count = min(max(math.ceil(most * total / (2.0 * math.pi) - SOLVED), RIM_SAMPLES), most)
+        # Fewest samples along a partial rim: two at either end hold a plane. Chosen, not measured.
+        count = min(max(math.ceil(most * total / (2.0 * math.pi) - SOLVED), 4), most)
         passed = (np.arange(count) + 0.5) / count * total
         ends = np.cumsum(self.spans)
         edge = np.minimum(np.searchsorted(ends, passed), len(ends) - 1)

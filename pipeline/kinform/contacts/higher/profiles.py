@@ -25,7 +25,7 @@ from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.constants import COVERAGE
 from kinform.foundation.meshes.boxes import meeting_box
 from kinform.foundation.meshes.near_facets import near_boxes
-from kinform.foundation.rounding import ARITHMETIC, SOLVED, TINY
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
@@ -306,7 +306,7 @@ def _one_line(meetings: list[_Meeting]) -> list[_Meeting]:
         group = [k for k in left if _agree(meetings[lead], meetings[k])]
         left = [k for k in left if k not in group]
         if len(group) > 1:
-            weight = np.array([1.0 / max(meetings[k].doubt, 1e-6) ** 2 for k in group])
+            weight = np.array([1.0 / max(meetings[k].doubt, SINGLE) ** 2 for k in group])
             normal = np.sum([w * meetings[k].normal for w, k in zip(weight, group, strict=True)], axis=0)
             normal /= np.linalg.norm(normal)
             middle = np.average([meetings[k].point for k in group], axis=0, weights=weight)
@@ -318,7 +318,7 @@ def _one_line(meetings: list[_Meeting]) -> list[_Meeting]:
 
 def _agree(one: _Meeting, two: _Meeting) -> bool:
     """Whether both lie on one line of action."""
-    allowed = COVERAGE * (one.doubt + two.doubt) + 1e-6
+    allowed = COVERAGE * (one.doubt + two.doubt) + SINGLE
     if float(one.normal @ two.normal) < 0.0:
         return False
     angle = abs(float(one.normal[0] * two.normal[1] - one.normal[1] * two.normal[0]))

@@ -157,3 +157,4 @@ def _radius(surfaces: SurfacePair, k: int, height: float) -> float:
 
 
 _SHARES = (np.arange(ROLLER_SAMPLES) + 0.5) / ROLLER_SAMPLES
+"""Shares of a line at which samples stand: the middles of its equal parts."""

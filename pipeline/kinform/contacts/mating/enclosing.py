@@ -43,9 +43,6 @@ derived from leaves as much out."""
 ENCLOSING_SPEED = 0.3
 """Speed along its normal, as a share of that of its place, from which on a facet opposes a motion: 17° from sliding.
 Chosen, not measured."""
-OPENS_AGAINST = 0.2
-"""Speed up to which a facet may be approached by a translation that separates all others: 11.5° from sliding. Chosen,
-not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -232,7 +229,9 @@ def _opens(near: _Near, left: MotionsLeft) -> bool:
     if np.linalg.norm(away) < ENCLOSING_SPEED:
         return False
     along = near.normals @ (away / np.linalg.norm(away))
-    against = float(near.areas[along < -OPENS_AGAINST].sum())
+    # Speed up to which a facet may be approached by a translation that separates all others: 11.5° from sliding.
+    # Chosen, not measured.
+    against = float(near.areas[along < -0.2].sum())
     # 2 % of the area may be approached faster
     return against <= 0.02 * float(near.areas.sum())
 

@@ -12,8 +12,6 @@ from kinform.foundation.constants import SLIVER_WIDTH
 from kinform.foundation.meshes.surface_table import CYLINDER, PLANE, SPHERE
 from kinform.model.arrays import Array, Flags, Ints
 
-OPPOSED_LEVEL = 0.99999
-"""Cosine between opposed planes from which on they are as good as parallel, 0.26°."""
 FACING_NEVER = 0.25
 """Cosine between normals of surfaces up to which none of their facets face each other, as normals scatter: half of
 `FACING_LEAST`."""
@@ -57,7 +55,8 @@ def _away(first: NearSurfaces, rows: Ints, second: NearSurfaces, columns: Ints) 
     plane = kinds == PLANE
     cosine = dot(axes, second.axes[columns])
     radii, spare = second.radii[columns], np.zeros(len(rows))
-    level = plane & (others == PLANE) & (cosine < -OPPOSED_LEVEL)
+    # Cosine between opposed planes from which on they are as good as parallel, 0.26°.
+    level = plane & (others == PLANE) & (cosine < -0.99999)
     # a plane that is not quite parallel is nearer at the ends of both parts
     tilt = np.sqrt(np.maximum(1.0 - cosine * cosine, 0.0))
     spare[level] = (tilt * _reach(first, second))[level]

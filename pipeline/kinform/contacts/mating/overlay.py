@@ -23,12 +23,8 @@ from kinform.foundation.meshes.boxes import triangle_boxes
 from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
 
-PATCH_BINS = 24
-"""Fewest bins of a patch, so that a blocked part of it can be told. Chosen, not measured."""
 REGION_THIN = 0.01
 """Width, in contact tolerances, below which a region is a line, not a patch. Chosen, not measured."""
-REGION_SMALL = 0.02
-"""Area, in squared contact tolerances, below which a region is a point, not a patch. Chosen, not measured."""
 
 
 def _perimeter(polygons: list[Array]) -> float:
@@ -88,7 +84,8 @@ def _pieces(region: CrossSection, thin: float) -> list[list[Array]]:
         # corners that are off by a tenth of a thin region are left out
         polygons = [np.asarray(p) for p in piece.simplify(REGION_THIN * 0.1).to_polygons()]
         area = piece.area()
-        if polygons and area >= REGION_SMALL and 2.0 * area >= thin * _perimeter(polygons):
+        # Area, in squared contact tolerances, below which a region is a point, not a patch. Chosen, not measured.
+        if polygons and area >= 0.02 and 2.0 * area >= thin * _perimeter(polygons):
             pieces.append(polygons)
     return pieces
 
@@ -134,6 +131,7 @@ def _cut(region: CrossSection, chart: Chart, tolerance: float, thin: float) -> C
         triangles.append(np.concatenate(pieces[number])[triangulate(pieces[number])])
     corners = np.concatenate(triangles)
     area = float(np.abs(signed_areas(corners)).sum())
-    size = np.minimum(step, math.sqrt(area / PATCH_BINS))
+    # Fewest bins of a patch, so that a blocked part of it can be told. Chosen, not measured.
+    size = np.minimum(step, math.sqrt(area / 24))
     rim = _rim([polygon for polygons in pieces for polygon in polygons], flat)
     return Cut(corners, size, rim, tolerance, narrow)

@@ -17,9 +17,6 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 
-PARTING_LEAST = 0.1
-"""Least speed, of 1, at which parts leave all their plane contacts that counts as leaving them. Chosen, not
-measured."""
 PARTING_TRIED = 0.9
 """Share of what counts as an overlap by which parts are moved to see whether they are then free: less than all, so that
 what is free then is free with certainty."""
@@ -157,4 +154,6 @@ def parting(patches: list[Patch]) -> Array | None:
             break
         nearest = nearest + min(1.0, gain / float(step @ step)) * step
     length = float(np.linalg.norm(nearest))
-    return nearest / length if length > PARTING_LEAST else None
+    # Least speed, of 1, at which parts leave all their plane contacts that counts as leaving them. Chosen, not
+    # measured.
+    return nearest / length if length > 0.1 else None

@@ -28,10 +28,6 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 
-SURELY_EXPLAINED = 0.9
-"""Share of the depth that surfaces which mate explain by which facets are moved to see whether all is explained: pieces
-of the overlap are then thinner, too, than what their surfaces explain, as no two sides of one are further apart."""
-
 
 @dataclass(frozen=True, eq=False)
 class _Question:
@@ -125,7 +121,10 @@ def _question(pair: PairView, patches: list[Patch]) -> _Question | None:
     facets = (parts[0].probed, parts[1].probed)
     if len(facets[0]) * len(facets[1]) > CROSSED_FEW:
         return None
-    depth = SURELY_EXPLAINED * min(_explained_by(patch, allowance) for patch in rounds)
+    # Share of the depth that surfaces which mate explain by which facets are moved to see whether all is explained:
+    # pieces of the overlap are then thinner, too, than what their surfaces explain, as no two sides of one are further
+    # apart.
+    depth = 0.9 * min(_explained_by(patch, allowance) for patch in rounds)
     apart = parting(patches)
     shift = np.zeros(3) if apart is None else (sides[1] - sides[0]) * PARTING_TRIED * least * apart
     inwards, less = (most - float(np.linalg.norm(shift)) for most in (depth, min(depth, alone[sides[1]] + least)))

@@ -24,9 +24,6 @@ from kinform.foundation.meshes.ray_parity import winding
 from kinform.model.arrays import Array, Flags, Ints, freeze
 from kinform.model.contacts import Interference, OverlapMethod, Patch
 
-SURELY_INSIDE = 0.75
-"""How often the facets of an open mesh go round a point that counts as inside: of a round gap in them, as wide as it is
-deep, less is seen, and what lies nearer to the gap has no depth that is known."""
 CUT_FEW = 1500
 """Facets of either part up to which a cut takes no longer, 2 ms, than it takes to see that none is needed, where round
 surfaces touch and one mostly is."""
@@ -82,7 +79,9 @@ def _surely(part: PartView, points: Array, crossed: Flags) -> Flags:
     """(n,) which of some points (n, 3), that are inside of a part by counting crossings, are so for sure."""
     out = crossed.copy()
     if not part.index.mesh.health.watertight and out.any():
-        out[out] = np.abs(winding(part.index.mesh, part.to_part(points[out]))) > SURELY_INSIDE
+        # How often the facets of an open mesh go round a point that counts as inside: of a round gap in them, as wide
+        # as it is deep, less is seen, and what lies nearer to the gap has no depth that is known.
+        out[out] = np.abs(winding(part.index.mesh, part.to_part(points[out]))) > 0.75
     return out
 
 

@@ -20,10 +20,6 @@ from kinform.foundation.meshes.separated_sets import surely_separated
 from kinform.foundation.meshes.surface_table import CYLINDER
 from kinform.model.arrays import Array, Flags
 
-TOUCHING_WITHIN = 0.6
-"""Facets on both sides of a point in which parts touch are within this of each other, and what they stand off their
-surfaces: `CAPTIVE`, and thrice `PROBE_SPARE`."""
-
 
 def far_apart(pairs: Sequence[PairView]) -> list[bool]:
     """Whether it is sure of each pair that no facets are so near each other that anything touches but surfaces that
@@ -46,7 +42,9 @@ def _distance(pair: PairView) -> float | None:
     slacks = pair.a.table.slack + pair.b.table.slack
     beside = float(a.slacks.max(initial=0.0)) + float(b.slacks.max(initial=0.0))
     outlines = sum(bulges) + slacks if any(bulges) else 0.0
-    points = TOUCHING_WITHIN * pair.tolerance + beside
+    # Facets on both sides of a point in which parts touch are within this of each other, and what they stand off their
+    # surfaces: `CAPTIVE`, and thrice `PROBE_SPARE`.
+    points = 0.6 * pair.tolerance + beside
     return max(MATING_REACH * pair.tolerance + outlines, points)
 
 

@@ -23,12 +23,6 @@ from kinform.foundation.sorting import heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 
-BETWEEN_MARGIN = 0.01
-"""Distance, in contact tolerances, from one of the two facets that a probe meets within which nothing counts as between
-them. Chosen, not measured."""
-BETWEEN_SHARE = 0.05
-"""The same as a share of the distance of the two facets."""
-
 
 @dataclass(frozen=True, eq=False)
 class Probes:
@@ -175,8 +169,11 @@ class _Joined:
         cosine[some] = dot(*(self._normals(side, chosen[side].take(some), some) for side in (0, 1)))
         counts = np.diff(self.starts)
         holds &= cosine < np.repeat([pair.tolerances.opposed for pair in self.pairs], counts)
-        inset = np.repeat([BETWEEN_MARGIN * pair.tolerance for pair in self.pairs], counts)
-        inset += BETWEEN_SHARE * np.abs(along[1] - along[0])
+        # Distance, in contact tolerances, from one of the two facets that a probe meets within which nothing counts as
+        # between them. Chosen, not measured.
+        inset = np.repeat([0.01 * pair.tolerance for pair in self.pairs], counts)
+        # So is what is nearer to one of them than this share of their distance.
+        inset += 0.05 * np.abs(along[1] - along[0])
         low, high = np.minimum(*along) + inset, np.maximum(*along) - inset
         for met, wanted in zip(self.hits, on_surface, strict=True):
             holds &= ~_blocked(met, wanted, low, high)

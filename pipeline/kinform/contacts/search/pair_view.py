@@ -178,6 +178,7 @@ _BITS = np.array([1, 2, 4, 8, 16, 32], dtype=np.uint8)
 
 
 _NONE = np.zeros(0, np.int64)
+"""No surfaces."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,14 +22,8 @@ MOST_ROUNDS = 200
 measured."""
 STILL = 0.05
 """px: a step of majorisation that moves no node by more is the last: a twentieth of a pixel is not seen."""
-LEAST_OVERLAP = 0.5
-"""px: boxes that are nearer to each other than they may be by less stay where they are: half a pixel is not seen."""
 CROWDED = 9
 """Nodes with more neighbours are hubs, whose edges are longer. Chosen by eye."""
-HUB_EXPONENT = 0.75
-"""The edge of a hub grows with this power of its neighbours over CROWDED. Chosen by eye, on the fixtures."""
-WIDTH_SHARE = 0.25
-"""Share of both widths by which boxes beside each other are to be further apart than their edges say. Chosen by eye."""
 GAP = 26.0
 """px, least space between two boxes: more than two symbols of joints. Chosen by eye."""
 
@@ -89,7 +83,8 @@ def _least_stress(at: Array, edges: Sequence[Edge], spacing: float, boxes: Array
     """Least Σ (distance on paper − ideal)² / ideal², by majorisation from where the nodes are."""
     far = _distances(len(at), edges) * spacing
     # boxes are wide: what lies beside each other needs more room than what lies above
-    far = far + WIDTH_SHARE * (boxes[:, 0][:, None] + boxes[:, 0][None])
+    # Share of both widths by which boxes beside each other are to be further apart than their edges say. Chosen by eye.
+    far = far + 0.25 * (boxes[:, 0][:, None] + boxes[:, 0][None])
     np.fill_diagonal(far, 1.0)
     weight = 1.0 / far**2
     np.fill_diagonal(weight, 0.0)
@@ -119,7 +114,8 @@ def _upright(at: Array) -> Array:
 def _distances(nodes: int, edges: Sequence[Edge]) -> Array:
     """(n, n) edges on a shortest path; those of hubs are longer, or their neighbours find no place."""
     near = neighbours(nodes, edges)
-    long = [max(1.0, len(around) / CROWDED) ** HUB_EXPONENT for around in near]
+    # The edge of a hub grows with this power of its neighbours over CROWDED. Chosen by eye, on the fixtures.
+    long = [max(1.0, len(around) / CROWDED) ** 0.75 for around in near]
     out = np.zeros((nodes, nodes))
     for start in range(nodes):
         distance = {start: 0.0}
@@ -143,7 +139,9 @@ def _apart(at: Array, boxes: Array) -> Array:
         delta = at[None] - at[:, None]
         over = need - np.abs(delta)
         over[np.arange(len(at)), np.arange(len(at))] = -1.0
-        first, second = np.nonzero(np.triu((over > LEAST_OVERLAP).all(axis=2), 1))
+        # px: boxes that are nearer to each other than they may be by less stay where they are: half a pixel is not
+        # seen.
+        first, second = np.nonzero(np.triu((over > 0.5).all(axis=2), 1))
         if not len(first):
             break
         for i, j in zip(first.tolist(), second.tolist(), strict=True):

@@ -23,8 +23,6 @@ from kinform.form.tables import (
 from kinform.requirements import all_kinds
 from kinform.requirements.table import RequirementTable
 
-COUNT_MOST = 1_000_000
-"""The largest mobility that can be stated: more than six times the parts that a design may have."""
 COUPLED_MOST = 16
 """Joints of one stated coupling: a compound planetary train has at most as many; each is a column of its row."""
 
@@ -262,7 +260,8 @@ else:
 class FunctionTable(Table):
     """`[function]`: what the device is for."""
 
-    mobility: Annotated[int, Field(ge=0, le=COUNT_MOST)] | None = Field(
+    # The largest mobility that can be stated: more than six times the parts that a design may have.
+    mobility: Annotated[int, Field(ge=0, le=1_000_000)] | None = Field(
         None, description="compared with the effective mobility"
     )
     complete: bool = Field(

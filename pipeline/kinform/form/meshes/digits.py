@@ -14,18 +14,6 @@ import numpy as np
 
 from kinform.model.arrays import Array, Ints
 
-LARGE_COORDINATES = 0.1
-"""Share of the largest coordinate from which on a coordinate is as coarse as it: one decimal digit."""
-DIGITS_READ = 2000
-"""Coordinates of a text whose digits are looked at: at random they show the share that uses the last digit to 1 %."""
-DIGITS_LEAST = 5
-"""Digits from which on the largest coordinates can have been cut: no writer keeps fewer, and parts of whole or half
-millimetres, up to some metres, have fewer."""
-LAST_DIGIT_USED = 0.5
-"""Share of the coordinates that use the last digit, above which it is where they were rounded: nine in ten of rounded
-numbers do."""
-
-
 _NUMBER = re.compile(r"[+-]?(\d*)\.?(\d*)(?:[eEdD]([+-]?\d+))?$")
 
 
@@ -33,7 +21,8 @@ def written_step(blocks: Iterable[Sequence[bytes]], values: Array) -> float:
     """Unit of the last digit of the largest of the coordinates `values` (n,), which are written as the tokens of these
     blocks, in order; 0 where the digits do not look like rounded ones, or where there are not n of them."""
     size = np.abs(values)
-    is_large = size >= size.max(initial=0.0) * LARGE_COORDINATES
+    # Share of the largest coordinate from which on a coordinate is as coarse as it: one decimal digit.
+    is_large = size >= size.max(initial=0.0) * 0.1
     chosen = _sample(np.flatnonzero(is_large)), _sample(np.arange(len(values)))
     wanted, first = np.union1d(*chosen), 0
     picked: dict[int, str] = {}
@@ -54,15 +43,18 @@ def written_step(blocks: Iterable[Sequence[bytes]], values: Array) -> float:
     finest, longest = min(place for place, _ in coarse), max(count for _, count in coarse)
     used = sum(place == finest for place, _ in coarse) / len(coarse)
     # others that are written more finely show that neither decimals nor digits were cut
-    cut = longest >= DIGITS_LEAST and (
-        all(place >= finest for place, _ in every) or all(count <= longest for _, count in every)
-    )
-    return 10.0**finest if used > LAST_DIGIT_USED and cut else 0.0
+    # Digits from which on the largest coordinates can have been cut: no writer keeps fewer, and parts of whole or half
+    # millimetres, up to some metres, have fewer.
+    cut = longest >= 5 and (all(place >= finest for place, _ in every) or all(count <= longest for _, count in every))
+    # Share of the coordinates that use the last digit, above which it is where they were rounded: nine in ten of
+    # rounded numbers do.
+    return 10.0**finest if used > 0.5 and cut else 0.0
 
 
 def _sample(indices: Ints) -> Ints:
     """Some of the indices, evenly chosen."""
-    return indices[:: max(1, len(indices) // DIGITS_READ)]
+    # Coordinates of a text whose digits are looked at: at random they show the share that uses the last digit to 1 %.
+    return indices[:: max(1, len(indices) // 2000)]
 
 
 class _Shortest:

@@ -13,6 +13,7 @@ from kinform.form.meshes.raw import Fault, MeshError, RawMesh
 from kinform.form.meshes.repeated import taken_once
 from kinform.form.meshes.weld import merge_close, merge_exact, used_only
 from kinform.foundation.algebra.vectors import box, dot
+from kinform.foundation.constants import EPS32
 from kinform.foundation.meshes.boxes import bounds
 from kinform.foundation.meshes.edges import EdgeTable, unsorted_edge_table
 from kinform.foundation.meshes.shells import shells_of
@@ -24,12 +25,6 @@ from kinform.model.assembly import Mesh, MeshHealth
 
 SMALLEST_MESH = 1e-12
 """Diagonal (m) of the smallest mesh: an atom is a hundred times larger, and cubes of its lengths are still numbers."""
-EPS32 = 2.0**-23
-"""Relative step of single precision, in which STL files are written: no mesh is taken to be known better than that, at
-its own size."""
-WELD_STEPS = 2.0
-"""The same in steps of the last place of the largest coordinate, where that is more: copies of one corner that were
-rounded apart differ by one in each direction."""
 FAR = 8.0
 """A mesh whose middle lies this many of its diagonals from the origin of its file, along one axis, is moved to its own:
 nearer ones lose no more than four bits, of the 29 that doubles have more than single precision."""
@@ -66,6 +61,7 @@ def build_mesh(raw: RawMesh, metres: float, weld: float | None, *, path: str, bo
     health = _health(shape, centred, kept, edges, len(raw.faces), collapsed_facets, copies, distance)
     if health.watertight and health.consistent_winding and health.volume < 0.0:
         kept = np.ascontiguousarray(kept[:, ::-1])
+    # no mesh is taken to be known better than single precision, at its own size
     usual = EPS32 * float(np.abs(shape).max())
     known = np.float64(resolution).tobytes() if resolution > usual else b""
     digest = hashlib.sha256(shape.data)
@@ -104,7 +100,9 @@ def _welded(raw: RawMesh, metres: float, weld: float | None, resolution: float) 
     vertices -= origin
     vertices *= metres
     faces = place.take(raw.faces)
-    distance = max(SINGLE * _diagonal(vertices), WELD_STEPS * resolution) if weld is None else weld
+    # Vertices are welded within two steps of the last place of the largest coordinate, where that is more: copies of
+    # one corner that were rounded apart differ by one in each direction.
+    distance = max(SINGLE * _diagonal(vertices), 2.0 * resolution) if weld is None else weld
     leaders, close = merge_close(vertices, distance)
     if len(leaders) == len(vertices):
         return vertices, faces, origin, distance

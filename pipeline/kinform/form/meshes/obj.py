@@ -22,7 +22,7 @@ from kinform.form.meshes.polygons import CUT_CORNERS, triangulate
 from kinform.form.meshes.raw import REEXPORT, Fault, Labelling, LabellingKind, MeshError, RawMesh, is_coordinate
 from kinform.foundation.words import counted
 
-FACE_BYTES = 4 * 1024 * 1024
+FACE_BYTES = 4 << 20
 """Of one line of an OBJ that states a vertex or a face: a million corners. Each takes sixty bytes while it is read."""
 
 

@@ -13,9 +13,6 @@ from kinform.form.meshes.raw import RawMesh
 from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh
 
-PRIMITIVES_KEPT = 256
-"""Meshes of primitive solids that are kept for parts of the same shape: a sphere takes 0.1 s to make, and a design has
-few different ones. Chosen, not measured."""
 ROUND_FACETS = 96
 """Facets round a primitive cylinder, sphere or capsule: its vertices are exact, a fit of them gives the exact radius,
 and its volume is 0.07 % too small."""
@@ -26,7 +23,9 @@ def primitive(shape: ShapeTable, metres: float) -> Mesh:
     return _mesh(type(shape), shape.model_dump_json(), metres)
 
 
-@lru_cache(maxsize=PRIMITIVES_KEPT)
+# Meshes of primitive solids that are kept for parts of the same shape: a sphere takes 0.1 s to make, and a design has
+# few different ones. Chosen, not measured.
+@lru_cache(maxsize=256)
 def _mesh(kind: type[ShapeTable], said: str, metres: float) -> Mesh:
     shape: ShapeTable = kind.model_validate_json(said)
     if isinstance(shape, BoxShape):

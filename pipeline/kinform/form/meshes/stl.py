@@ -24,6 +24,7 @@ from kinform.foundation.words import counted
 _HEADER = 84
 """Bytes before the records of a binary STL: 80 of text, 4 for the number of facets."""
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+"""One facet of a binary STL, 50 bytes."""
 _SOLID = re.compile(rb"^[ \t]*(end)?solid\b[ \t]*([^\n]*)$", re.MULTILINE | re.IGNORECASE)
 _UNPRINTABLE = re.compile(rb"[\x00-\x08\x0e-\x1f\x7f]")
 _OTHERS = (
@@ -42,6 +43,7 @@ _WORDS = {
     19: b"endloop", 20: b"endfacet",
 }  # fmt: skip
 _COORDINATES = (8, 9, 10, 12, 13, 14, 16, 17, 18)
+"""Of the words of a facet in a text STL, those that are coordinates of its corners."""
 _written = itemgetter(*_COORDINATES)
 
 

@@ -16,17 +16,9 @@ from kinform.foundation.meshes.near_points import Near
 from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array, Ints
 
-SAMPLED_CROWDS = 500
-"""Vertices whose surroundings are counted before they are welded: enough for a mean to 5 %, and soon done. Chosen, not
-measured."""
-CROWD = 50
-"""Mean number of others within the welding distance of a vertex, above which a mesh would collapse: copies of one
-corner are as many as facets meet there, six on average. Chosen, not measured."""
-
-
+# Directions along which no designer lays an edge.
 _LINES = np.array([[0.57735, 0.51763, 0.63144], [-0.70143, 0.37291, 0.60741]])
 _LINES /= np.linalg.norm(_LINES, axis=1)[:, None]
-"""Directions along which no designer lays an edge."""
 
 
 def used_only(vertices: NDArray[np.floating], faces: Ints) -> tuple[NDArray[np.floating], Ints]:
@@ -68,8 +60,12 @@ def _close_pairs(vertices: Array, distance: float) -> Ints:
     if len(crowded) < 2:
         return np.zeros((0, 2), np.int64)
     near = Near(vertices[crowded], distance)
-    crowd = near.about(np.arange(0, len(crowded), max(1, len(crowded) // SAMPLED_CROWDS))).mean()
-    if crowd > CROWD:
+    # Vertices whose surroundings are counted before they are welded: enough for a mean to 5 %, and soon done. Chosen,
+    # not measured.
+    crowd = near.about(np.arange(0, len(crowded), max(1, len(crowded) // 500))).mean()
+    # Mean number of others within the welding distance of a vertex, above which a mesh would collapse: copies of one
+    # corner are as many as facets meet there, six on average. Chosen, not measured.
+    if crowd > 50:
         raise MeshError([Fault(
             f"would collapse: within the welding distance ({distance:.3g} m) of a vertex lie {crowd:.0f} "
             "others on average",

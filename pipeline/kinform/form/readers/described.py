@@ -30,7 +30,7 @@ from kinform.model.descriptions import Coverage, DescribedJoint, DescribedLink, 
 SIBLINGS_MOST = 300
 """Files of a package that are looked through for the names of meshes, at most: a package has a few dozen. Chosen, not
 measured."""
-SIBLING_BYTES = 4 * 1024 * 1024
+SIBLING_BYTES = 4 << 20
 """Of each of these files, at most: texts that name meshes have some 10 kB, and data the rest. Chosen, not measured."""
 
 

@@ -17,7 +17,7 @@ PACKAGE_LEVELS = 4
 `package/robots/variant/urdf`, and one. Chosen, not measured."""
 WORKSPACE_LEVELS = 4
 """Folders below the `src` of a workspace in which packages are looked for: `src/group/repository/package`, and one."""
-PACKAGE_BYTES = 64 * 1024
+PACKAGE_BYTES = 64 << 10
 """Of a package.xml, that are searched for its name, which stands near the beginning. Chosen, not measured."""
 ENTRIES_MOST = 20_000
 """Files and folders that are looked at for these, at most: about a second. The largest public package tried has 1,453;

@@ -10,16 +10,14 @@ import numpy as np
 from kinform.foundation.algebra.spatial import to_matrix
 from kinform.model.arrays import Array
 
-QUARTER_TURN = 1e-11
-"""Quarter turns by which an angle may miss a whole one and be taken for it: what eleven printed digits lose. The pose
-that "1.5708" states is kept as it is: it differs by more than forward kinematics is compared to."""
-
 
 def sine_cosine(angle: float) -> tuple[float, float]:
     """Of an angle in radians. Quarter turns, as far as printed digits say them, give exact zeros and ones."""
     quarters = angle / (0.5 * math.pi)
     nearest = round(quarters)
-    if abs(quarters - nearest) < QUARTER_TURN:
+    # Quarter turns by which an angle may miss a whole one and be taken for it: what eleven printed digits lose. The
+    # pose that "1.5708" states is kept as it is: it differs by more than forward kinematics is compared to.
+    if abs(quarters - nearest) < 1e-11:
         return ((0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0))[nearest % 4]
     return math.sin(angle), math.cos(angle)
 

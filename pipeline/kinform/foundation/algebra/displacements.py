@@ -12,6 +12,7 @@ from kinform.foundation.algebra.vectors import cross, cross_matrix
 from kinform.model.arrays import Array
 
 UNMOVED = np.eye(4)
+"""The displacement of what stays where it is."""
 
 
 def displacement(twist: Array) -> Array:

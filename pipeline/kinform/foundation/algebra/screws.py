@@ -16,10 +16,6 @@ from kinform.foundation.rounding import SINGLE, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
-ROUNDINGS = 8.0
-"""Spacings of doubles by which a coordinate that follows from a few others is off: positions of parts, what is measured
-on them, and twists each add one or two. Chosen, not measured."""
-
 
 @dataclass(frozen=True, eq=False)
 class Frame:
@@ -32,7 +28,9 @@ class Frame:
     def rounding(self) -> float:
         """Share of a unit scaled twist that is not known where it stems from coordinates of the world: these are
         rounded the more coarsely the farther the centre is from the origin."""
-        return ROUNDINGS * float(np.finfo(np.float64).eps) * norm(self.centre) / self.length
+        # Spacings of doubles by which a coordinate that follows from a few others is off: positions of parts, what is
+        # measured on them, and twists each add one or two. Chosen, not measured.
+        return 8.0 * float(np.finfo(np.float64).eps) * norm(self.centre) / self.length
 
     @staticmethod
     def of(points: Array) -> Frame:

@@ -10,6 +10,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import CROSS, cross_matrix
 from kinform.model.arrays import Array
 
+# a × … of each of six coordinates, as blocks of 6 × 6
 _BLOCKS = np.zeros((6, 6, 6))
 _BLOCKS[:3, :3, :3] = _BLOCKS[:3, 3:, 3:] = _BLOCKS[3:, 3:, :3] = CROSS.reshape(3, 3, 3)
 TWIST = _BLOCKS.reshape(6, 36)

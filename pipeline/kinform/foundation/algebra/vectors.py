@@ -15,6 +15,7 @@ from kinform.model.arrays import Array
 
 NEXT, _AFTER = np.array([1, 2, 0]), np.array([2, 0, 1])
 """Index that follows each of three, of a coordinate or a corner of a triangle, and the one after it."""
+# the signs of the permutations of three indices
 _CROSS = np.zeros((3, 3, 3))
 for _i in range(3):
     _CROSS[_i, (_i + 2) % 3, (_i + 1) % 3] = 1.0
@@ -23,6 +24,7 @@ CROSS = _CROSS.reshape(3, 9)
 """(3, 9): a @ CROSS is the matrix of a × …, row by row. A product is much faster than components."""
 
 _UNITS = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+"""x, y, z as plain tuples: arithmetic with single numbers is quicker than with arrays of three."""
 
 
 def cross(a: Array, b: Array) -> Array:

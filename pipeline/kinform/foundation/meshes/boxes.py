@@ -33,8 +33,6 @@ UNLISTED = 32
 """Comparisons of points with boxes a facet that together cost as much as making a grid."""
 COMPARED_MOST = 8000
 """Comparisons of points with boxes that take no longer than finding out which of them are not needed."""
-FOLLOWED_AT_ONCE = 500_000
-"""Comparisons of points with boxes that are made at once: 30 MB."""
 SIZE_OCTAVES = 20
 """Octaves of size that facets are sorted by: down to a millionth of the whole, where files end."""
 PLACE_BITS = 10
@@ -43,7 +41,8 @@ sorts in half of the time."""
 ROWS_TOGETHER = 64
 """Rows that are viewed as one wide row for the least and the greatest of each column. Chosen, not measured."""
 BOXES_MATRIX = 600_000
-"""Boxes times boxes up to which all of one kind are compared with all of another; of more, so many at once."""
+"""Boxes times boxes, or times points, up to which all of one kind are compared with all of another; of more, so many at
+once: 30 MB."""
 BOXES_A_BLOCK = 64
 """Neighbouring boxes that are compared together with what comes near them. Chosen, not measured."""
 
@@ -266,7 +265,7 @@ class FlatBoxes:
         that are so many `number` (m,) in their `order` (n,) from `begin` (m,) on, and are in it."""
         low, high = (self._sides[k + 1 - axis].take(near) for k in (0, 2))
         ends, out = np.cumsum(number), []
-        blocks = range(0, int(ends[-1]) if len(ends) else 0, FOLLOWED_AT_ONCE)
+        blocks = range(0, int(ends[-1]) if len(ends) else 0, BOXES_MATRIX)
         cuts = [*ends.searchsorted(list(blocks), side="right").tolist(), len(near)] if len(blocks) else [0, len(near)]
         for i, j in pairwise(cuts):
             box = np.repeat(np.arange(i, j), number[i:j])

@@ -24,22 +24,6 @@ from kinform.foundation.sorting import distinct, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 
-STANDOFF_LOOSE = 0.01
-"""Weight of no curvature among the polygons about one, each about one size of it away: what none of them tells of is
-none, and what they tell is less by a hundredth at most."""
-STANDOFF_CUT = 3.0
-"""Times what a polygon tells by itself that it stands off at most where its surface ends, if those beside it do: a cut
-that leaves half of a facet leaves about a third. Without, 4 of 300 random sockets overlap, of 41; without a limit, fans
-of long facets hide 0.6 mm of a motor in an arm."""
-STANDOFF_FAN = 300
-"""Polygons at a vertex up to which each of them speaks for all others there: pairs grow with the square, and a fan of
-more is the end of a cylinder. Chosen, not measured."""
-STANDOFF_ROUNDED = 4.0
-"""Roundings by which a sliver may leave the plane of the facet beside it and still lie in it: those of its vertices and
-of the plane. Chosen, not measured."""
-STANDOFF_SLIVER = 0.1
-"""Largest height of such a sliver, as a share of that of the facet beside it. Chosen, not measured."""
-
 
 def standoffs(vertices: Array, faces: Ints, smooth: float, coplanar: float, rounding: float) -> Array:
     """(m,) m of all facets (m, 3) of one surface, over vertices (V, 3) m, each rounded by `rounding`; facets that turn
@@ -64,7 +48,10 @@ def standoffs(vertices: Array, faces: Ints, smooth: float, coplanar: float, roun
     ends = met < 3 * np.bincount(polygon, minlength=len(own))
     out = own.copy()
     at = np.flatnonzero(ends[one])
-    np.maximum.at(out, one[at], np.minimum(own[other[at]], STANDOFF_CUT * own[one[at]]))
+    # Times what a polygon tells by itself that it stands off at most where its surface ends, if those beside it do: a
+    # cut that leaves half of a facet leaves about a third. Without, 4 of 300 random sockets overlap, of 41; without a
+    # limit, fans of long facets hide 0.6 mm of a motor in an arm.
+    np.maximum.at(out, one[at], np.minimum(own[other[at]], 3.0 * own[one[at]]))
     return out[polygon]
 
 
@@ -82,8 +69,11 @@ def _slivers(corners: Array, spans: Array, sides: Ints, turn: Array, rounding: f
     low = doubled / np.maximum(longest, TINY)
     first, second = sides
     lower = np.where(low[first] <= low[second], first, second)
-    rounded = low[lower] * turn < STANDOFF_ROUNDED * rounding
-    at = np.flatnonzero(rounded & (low[lower] < STANDOFF_SLIVER * np.sqrt(doubled[sides].max(axis=0))))
+    # Roundings by which a sliver may leave the plane of the facet beside it and still lie in it: those of its vertices
+    # and of the plane. Chosen, not measured.
+    rounded = low[lower] * turn < 4.0 * rounding
+    # Largest height of such a sliver, as a share of that of the facet beside it. Chosen, not measured.
+    at = np.flatnonzero(rounded & (low[lower] < 0.1 * np.sqrt(doubled[sides].max(axis=0))))
     at = at[np.lexsort((at, turn[at], lower[at]))]
     return at[heads(lower[at])]
 
@@ -140,7 +130,9 @@ class _Polygons:
         owner, corner = self.owner[order], self.corner[order]
         number = np.bincount(corner)[corner]
         begin = np.cumsum(np.bincount(corner)) - np.bincount(corner)
-        few = np.flatnonzero(number <= STANDOFF_FAN)
+        # Polygons at a vertex up to which each of them speaks for all others there: pairs grow with the square, and a
+        # fan of more is the end of a cylinder. Chosen, not measured.
+        few = np.flatnonzero(number <= 300)
         one = np.repeat(owner[few], number[few])
         ends = np.cumsum(number[few])
         other = owner[np.arange(len(one)) + np.repeat(begin[corner[few]] + number[few] - ends, number[few])]
@@ -167,7 +159,9 @@ class _Polygons:
         matrix = np.zeros((count, 3, 3))
         matrix[:, 0, 0], matrix[:, 1, 1], matrix[:, 2, 2] = uu, uu + vv, vv
         matrix[:, 0, 1] = matrix[:, 1, 0] = matrix[:, 1, 2] = matrix[:, 2, 1] = uv
-        matrix += STANDOFF_LOOSE * np.diag([1.0, 2.0, 1.0])
+        # Weight of no curvature among the polygons about one, each about one size of it away: what none of them tells
+        # of is none, and what they tell is less by a hundredth at most.
+        matrix += 0.01 * np.diag([1.0, 2.0, 1.0])
         first, second, third = np.linalg.solve(matrix, np.stack([up, mixed, vq], axis=1)[:, :, None])[:, :, 0].T
         H = np.stack([first, second, second, third], axis=1).reshape(count, 2, 2) / size[:, None, None]
         values, turned = np.linalg.eigh(H)

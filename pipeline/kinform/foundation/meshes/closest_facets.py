@@ -18,10 +18,6 @@ from kinform.foundation.rounding import SOLVED
 from kinform.foundation.sorting import heads
 from kinform.model.arrays import Array, Flags, Ints
 
-CLOSEST_ROUNDING = 1e-15
-"""Rounding of distances, as a share of the largest coordinate: facets within it are as near. Four spacings of doubles:
-more would name another of two near facets."""
-
 # meshes/closest
 CLOSEST_SOME = 60_000
 """Corners of facets, times points, whose distance bounds that of the nearest facet: more corners give closer bounds but
@@ -66,7 +62,9 @@ def _nearest(points: Array, triangles: Triangles) -> tuple[Array, Ints] | None:
     corners, (low, high) = triangles.corners, triangles.boxes
     some = corners[:: len(points) * len(corners) // CLOSEST_SOME + 1, 0]
     reach = (1.0 + SOLVED) * Nearest(some).away(points)[:, None]
-    rounding = CLOSEST_ROUNDING * triangles.largest
+    # Rounding of distances, as a share of the largest coordinate: facets within it are as near. Four spacings of
+    # doubles: more would name another of two near facets.
+    rounding = 1e-15 * triangles.largest
     least, most = points - reach, points + reach
     beside = meeting_box(low, high, least.min(axis=0), most.max(axis=0)).nonzero()[0]
     corners = corners.take(beside, axis=0)

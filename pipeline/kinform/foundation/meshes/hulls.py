@@ -8,10 +8,6 @@ from kinform.foundation.constants import ROWS
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
-HULL_THICKNESS = 1e-7
-"""Share of its size by which a flat set of points is thickened on each side, so that it has a hull: far below the
-resolution of any mesh file."""
-
 
 @dataclass(frozen=True, eq=False)
 class Hull:
@@ -50,7 +46,9 @@ def hull_of(points: Array) -> Hull | None:
     try:
         hull = ConvexHull(scaled)
     except QhullError:
-        steps = HULL_THICKNESS * np.array([*np.eye(3), *-np.eye(3)])
+        # Share of its size by which a flat set of points is thickened on each side, so that it has a hull: far below
+        # the resolution of any mesh file.
+        steps = 1e-7 * np.array([*np.eye(3), *-np.eye(3)])
         scaled = (scaled[:, None, :] + steps).reshape(-1, 3)
         hull = ConvexHull(scaled)
     normals, offsets = hull.equations[:, :3], hull.equations[:, 3] * size

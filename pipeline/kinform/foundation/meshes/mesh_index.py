@@ -31,12 +31,6 @@ from kinform.model.tolerances import Tolerances
 
 LARGE_MESH = 1_000_000
 """Facets from which on a model of all of them, half a gigabyte, is made only where a model of some does not do."""
-ABOUT = 0.02
-"""Distance from another part, in diagonals of a large mesh, within which its facets are expected to be asked for:
-motions that are tried stay within it. Chosen, not measured."""
-MOST_EXPECTED = 0.8
-"""Share of the facets above which a model of all is made instead, which serves all other parts too. Chosen, not
-measured."""
 
 
 class MeshIndex:
@@ -134,7 +128,9 @@ class MeshIndex:
 
     def expect(self, low: Array, high: Array) -> None:
         """What follows is asked about facets beside these boxes (n, 3) of the part frame: a model will be of them."""
-        boxes, apart = self.boxes, ABOUT * self.mesh.diagonal
+        # Distance from another part, in diagonals of a large mesh, within which its facets are expected to be asked
+        # for: motions that are tried stay within it. Chosen, not measured.
+        boxes, apart = self.boxes, 0.02 * self.mesh.diagonal
         about, _ = near_boxes(boxes.low, boxes.high, low, high, apart)
         if self._about is None or not self._about[about].all():
             self._about, self._local = about, None
@@ -154,7 +150,9 @@ class MeshIndex:
 
     def _suffice(self, some: Flags, low: Array, high: Array) -> bool:
         """Whether these boxes (n, 3) meet none but some facets (F,), which are not nearly all."""
-        if not 0.0 < np.count_nonzero(some) <= MOST_EXPECTED * len(some):
+        # Share of the facets above which a model of all is made instead, which serves all other parts too. Chosen, not
+        # measured.
+        if not 0.0 < np.count_nonzero(some) <= 0.8 * len(some):
             return False
         boxes, others = self.boxes, np.flatnonzero(~some)
         meeting = (boxes.low[others] <= high.max(axis=0)) & (boxes.high[others] >= low.min(axis=0))

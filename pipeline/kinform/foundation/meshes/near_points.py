@@ -20,8 +20,6 @@ LINE = np.array([0.57735, 0.51763, 0.63144, 0.44317])
 """(4,) direction that no designer lays an edge along: few points share a place on it."""
 FEW_PAIRS = 1 << 16
 """Pairs of points that share a place up to which all are measured, in all. Chosen, not measured."""
-SHARED_PAIRS = 2
-"""The same a point. Chosen, not measured."""
 MEASURED = 1 << 21
 """Distances to points of one set that are measured before a tree is made: 0.02 s, a tenth of what importing trees
 takes."""
@@ -66,7 +64,8 @@ class Near:
         ordered = place[order]
         beyond = np.searchsorted(ordered, ordered + distance * (1 + SOLVED), side="right")
         counts = beyond - np.arange(1, len(points) + 1)
-        if counts.sum() > max(FEW_PAIRS, SHARED_PAIRS * len(points)):
+        # Pairs a point up to which all are measured, where that is more. Chosen, not measured.
+        if counts.sum() > max(FEW_PAIRS, 2 * len(points)):
             return None
         first = np.repeat(np.arange(len(points)), counts)
         second = first + 1 + np.arange(len(first)) - np.repeat(np.cumsum(counts) - counts, counts)

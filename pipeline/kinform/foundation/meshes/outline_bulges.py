@@ -20,9 +20,6 @@ from kinform.model.arrays import Array, Flags, Ints
 BULGE = 0.35
 """Share of a chord by which a smooth curve may stand off it: cubic curves through 32° and lengths of one to three come
 to 0.3 at worst."""
-BENDS_MOST = 1.05
-"""Largest angle between two planes that may meet smoothly, in angles of a smooth edge: outlines are not quite across
-the edge."""
 
 
 def bulge_of(corners: Array, labels: Ints, table: SurfaceTable, exact: Flags, smooth: float) -> float:
@@ -45,4 +42,6 @@ def _bending(normals: Array, smooth: float) -> Flags:
     if len(normals) > 1000:
         return np.ones(len(normals), bool)
     cosine = normals @ normals.T
-    return np.asarray(((cosine < 1.0 - ARITHMETIC) & (cosine > math.cos(BENDS_MOST * smooth))).any(axis=1))
+    # Largest angle between two planes that may meet smoothly, in angles of a smooth edge: outlines are not quite across
+    # the edge.
+    return np.asarray(((cosine < 1.0 - ARITHMETIC) & (cosine > math.cos(1.05 * smooth))).any(axis=1))

@@ -30,9 +30,6 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 
-STEEP_LEAST = 1e-3
-"""Least cosine between a probe and the normal of a facet at which their intersection is known: below, rounding of the
-facet moves it by more than a thousand times as much."""
 KEPT_TRIANGLES = 50_000
 """Facets up to which the corners of a mesh, or of those near another part, are kept, and their boxes: 6 MB."""
 MET_AT_ONCE = 100_000
@@ -69,6 +66,7 @@ class Facets(Protocol):
 
 
 _UNITS = np.eye(3)
+"""x, y, z."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -265,7 +263,9 @@ def cast_all(casts: Sequence[Cast], width: float = SLIVER_WIDTH) -> list[Hits]:
     )
     facing = dot(normal, directions.take(probe, axis=0))
     height = dot(normal, corner - points.take(probe, axis=0))
-    steep = np.abs(facing) > STEEP_LEAST
+    # Least cosine between a probe and the normal of a facet at which their intersection is known: below, rounding of
+    # the facet moves it by more than a thousand times as much.
+    steep = np.abs(facing) > 1e-3
     along = height / facing if steep.all() else np.where(steep, height / np.where(steep, facing, 1.0), 0.0)
     far = reach.take(probe)
     along = np.minimum(np.maximum(along, -far), far)

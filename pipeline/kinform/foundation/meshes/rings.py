@@ -25,10 +25,6 @@ from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
 
-RING_FLAT = 1e-8
-"""Corners whose spread across their length is no more than the root of this share of it are on a line at first sight:
-beyond, sums about their middle keep eight digits."""
-
 RING_FEW = 6
 """Up to so many flats a ring is round only where ..."""
 RING_EVEN = 0.05
@@ -38,19 +34,12 @@ RING_SIDES = 3
 RING_TURN = (np.radians(20.0), np.radians(125.0))
 """rad between two neighbours of a ring: of a triangle they differ by 120°; below 32° strips are found to be round, but
 not where three of them are left."""
-RING_PARALLEL = np.radians(1.0)
-"""rad: largest angle between the ridges of one ring: far above what vertices scatter by. Chosen, not measured."""
-RING_ASKEW = np.radians(5.0)
-"""rad: largest angle between the edge of two flats and the intersection of their planes: scattered vertices turn short
-edges."""
 RING_ROUND = 5e-3
 """Largest relative difference of the distances from the axis of the corners of one ring: far above rounding, far below
 the corners of a rectangle. Chosen, not measured."""
 RING_OPEN = np.radians(200.0)
 """rad: widest angle about the axis without a flat: half a ring, as of a half-bearing, goes round enough, with 20° to
 spare."""
-RING_DIRECTIONS = 24
-"""Directions of ridges that are looked at, the longest first: parts have a few, crumpled meshes have thousands."""
 RING_SPARE = 1e-3
 """Relative margin by which a row of flats must miss a limit before it is left out at first sight: sums about a common
 middle are exact to far less."""
@@ -193,7 +182,9 @@ def _ridges(
     edges, one, two = edges.where(between.take(bent)), one.take(bent, axis=0), two.take(bent, axis=0)
     along = edges.along(vertices)
     length, direction = lengths(along), across.take(bent, axis=0) / np.maximum(sine.take(bent), TINY)[:, None]
-    straight = np.abs(dot(along, direction)) > np.cos(RING_ASKEW) * length
+    # rad: largest angle between the edge of two flats and the intersection of their planes: scattered vertices turn
+    # short edges.
+    straight = np.abs(dot(along, direction)) > np.cos(np.radians(5.0)) * length
     kept = (straight & (length > 0.0)).nonzero()[0]
     convex = edges.convexity(vertices, one, two) > 0.0
     ridges = _Ridges(piece.take(edges.sides).T, edges.ends, direction, length, convex)
@@ -205,11 +196,13 @@ def _families(ridges: _Ridges) -> Ints:
     those that too few share."""
     out = np.full(len(ridges.length), -1)
     left = np.argsort(-ridges.length, kind="stable")
-    for number in range(RING_DIRECTIONS):
+    # Directions of ridges that are looked at, the longest first: parts have a few, crumpled meshes have thousands.
+    for number in range(24):
         if len(left) < RING_SIDES:
             break
         directions = ridges.direction.take(left, axis=0)
-        along = np.abs(directions @ directions[0]) > np.cos(RING_PARALLEL)
+        # rad: largest angle between the ridges of one ring: far above what vertices scatter by. Chosen, not measured.
+        along = np.abs(directions @ directions[0]) > np.cos(np.radians(1.0))
         out[left[along]] = 2 * number
         left = left[~along]
     out[(out >= 0) & ~ridges.convex] += 1
@@ -311,7 +304,9 @@ def _circles(mesh: Mesh, rows: list[_Row]) -> _Circles:
     sums = np.add.reduceat(np.stack([x * x, x * y, y * y, x * square, y * square, square], axis=1), starts)
     xx, xy, yy, xs, ys, s = sums.T
     determinant = xx * yy - xy * xy
-    determinant[determinant <= RING_FLAT * (xx + yy) ** 2] = np.nan
+    # Corners whose spread across their length is no more than the root of this share of it are on a line at first
+    # sight: beyond, sums about their middle keep eight digits.
+    determinant[determinant <= 1e-8 * (xx + yy) ** 2] = np.nan
     one, two = 0.5 * (yy * xs - xy * ys) / determinant, 0.5 * (xx * ys - xy * xs) / determinant
     radius = np.sqrt(s / number + one * one + two * two)
     apart = np.hypot(x - one.take(row), y - two.take(row))

@@ -20,9 +20,6 @@ from kinform.foundation.meshes.slivers import sides_of
 from kinform.foundation.rounding import SINGLE
 from kinform.model.arrays import Array, Flags, Ints
 
-APART_MOST = 20
-"""Pairs of near triangles, per triangle, beyond which sets count as not separated without looking: the search for a
-contact then takes less. Chosen, not measured."""
 APART_SOME = 32
 """Pairs that are looked at first, at most: where sets are not separated, a few tell."""
 APART_TOGETHER = 50_000
@@ -51,7 +48,9 @@ def _near(first: Array, second: Array, distance: float) -> tuple[Ints, Ints] | N
     if len(first) * len(second) > BOXES_MATRIX:
         return None
     low, high = triangle_boxes(first)
-    most = APART_MOST * (len(first) + len(second))
+    # Pairs of near triangles, per triangle, beyond which sets count as not separated without looking: the search for a
+    # contact then takes less. Chosen, not measured.
+    most = 20 * (len(first) + len(second))
     return meeting_boxes((low - distance, high + distance), triangle_boxes(second), most)
 
 

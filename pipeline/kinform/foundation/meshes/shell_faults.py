@@ -18,9 +18,6 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
 
-SHELL_PROBES = 32
-"""Facets of a shell that are probed, each in the middles of nine triangles that it is divided into: they find overlaps
-of a few hundredths of a shell."""
 SHELL_DEPTH = 1e-3
 """How far from a facet it is probed, in the longest side of the shell's facets: fits are shallower, walls thicker."""
 CROSSING_SHARE = 0.02
@@ -62,7 +59,9 @@ def _chosen(shell: Ints) -> Ints:
     order = np.argsort(shell, kind="stable")
     counts = np.bincount(shell)
     rank = np.arange(len(shell)) - np.repeat(np.cumsum(counts) - counts, counts)
-    step = np.repeat(-(-counts // SHELL_PROBES), counts)
+    # Facets of a shell that are probed, each in the middles of nine triangles that it is divided into: they find
+    # overlaps of a few hundredths of a shell.
+    step = np.repeat(-(-counts // 32), counts)
     return np.asarray(order[rank % step == 0])
 
 

@@ -23,13 +23,8 @@ from kinform.model.arrays import Array, Flags, Ints
 CROSSED_FEW = 400_000
 """Triangles times triangles up to which all are asked whether they cross, of several pairs at once; beyond, one in so
 many first that it is this. Of 277 bolts in bores that share nothing, with 150,000 to 200,000 each, 40 % of the time."""
-CROSSED_SOME = 64
-"""... and no more than one in this many: where nothing crosses, all are asked after them."""
 CULLED_LEAST = 4000
 """Pairs of triangles from which on those that are clearly apart are removed first: nearly all are."""
-CLEARLY_STEEP = 0.1
-"""Sine between an edge and a triangle from which on the edge clearly passes through: rounding moves the intersection by
-no more than ten times its size, and no separating direction in which both are short is left."""
 MET_MOST = 10
 """Pairs of triangles, per triangle, from which on trees of FCL take less time than asking about each."""
 CROSSED_MOST = 60
@@ -223,7 +218,9 @@ def sides_of(triangles: Array, size: Array) -> tuple[Array, Array, Array, Array]
     spare = size * SOLVED * np.abs(axes).max(axis=0)
     spare[0] += rounded
     spare[1:] += rounded * long
-    square = CLEARLY_STEEP**2 * (normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2])
+    # Sine between an edge and a triangle from which on the edge clearly passes through: rounding moves the intersection
+    # by no more than ten times its size, and no separating direction in which both are short is left.
+    square = 0.1**2 * (normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2])
     return axes, reach, spare, square
 
 
@@ -297,7 +294,8 @@ def crossing(first: Array, second: Array) -> bool | None:
 def _crossing(first: Array, second: Array) -> bool | None:
     """The same of many that are within each other's boxes: some of the first are asked before all are, which settles
     it where much crosses."""
-    some = first[:: max(CROSSED_SOME, -(-len(first) * len(second) // CROSSED_FEW))]
+    # One triangle in 64 is asked first, or fewer: where nothing crosses, all are asked after them.
+    some = first[:: max(64, -(-len(first) * len(second) // CROSSED_FEW))]
     (met,) = meetings([_mutual(some, second)], CROSSED_MOST)
     if met is not None and len(met[0]):
         return True

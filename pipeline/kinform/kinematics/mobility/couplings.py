@@ -12,7 +12,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.meshes.edges import shared_edges
-from kinform.foundation.rounding import TINY
+from kinform.foundation.rounding import SINGLE, TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.axes.higher_pairs import is_higher
 from kinform.kinematics.joints.pair.touches import TOUCHING
@@ -25,13 +25,11 @@ from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, Coupling, CouplingKind, Joint, Meshing
 from kinform.model.names import BodyName, JointName, PartName
 
-FIXED_RATIO = 1e-6
-"""Relative: rates that keep their ratio to this are coupled."""
 TOOTHED_TURNS = 1.75
-"""Full turns of the convex edges of an outline from which on it has teeth."""
+"""Full turns of the convex edges of an outline from which on it has teeth. Chosen, not measured."""
 
 
-SINGLE = ("revolute", "prismatic", "screw")
+ONE_FREEDOM = ("revolute", "prismatic", "screw")
 """Joints of one freedom, whose values a ratio compares."""
 
 
@@ -67,22 +65,22 @@ def _sides(through: int, joints: Sequence[Joint], around: Mapping[str, list[int]
     for a in around[first]:
         for b in around[second]:
             thirds = {n for n in joints[a].bodies if n != first} & {n for n in joints[b].bodies if n != second}
-            if through not in (a, b) and thirds and all(joints[k].type in SINGLE for k in (a, b)):
+            if through not in (a, b) and thirds and all(joints[k].type in ONE_FREEDOM for k in (a, b)):
                 pairs.append((a, b) if joints[a].name < joints[b].name else (b, a))
     return sorted(pairs)
 
 
 def _ratio(a: Array, b: Array) -> float | None:
-    """a over b where all motions have one ratio, and both move at all."""
+    """a over b where all motions have one ratio, to the rounding of files, and both move at all."""
     if not len(a):
         return None
     size = np.array([np.abs(a).max(), np.abs(b).max()])
-    if (size <= FIXED_RATIO * max(np.abs(a).max(initial=0.0), np.abs(b).max(initial=0.0), TINY)).any():
+    if (size <= SINGLE * max(np.abs(a).max(initial=0.0), np.abs(b).max(initial=0.0), TINY)).any():
         return None
     _, values, right = np.linalg.svd(np.stack([a / size[0], b / size[1]], axis=1))
-    if len(values) > 1 and values[1] > FIXED_RATIO * values[0]:
+    if len(values) > 1 and values[1] > SINGLE * values[0]:
         return None
-    return float(right[0, 0] * size[0] / (right[0, 1] * size[1])) if abs(right[0, 1]) > FIXED_RATIO else None
+    return float(right[0, 0] * size[0] / (right[0, 1] * size[1])) if abs(right[0, 1]) > SINGLE else None
 
 
 def coupling_aside(
@@ -92,7 +90,7 @@ def coupling_aside(
     they move is no joint: it constrains nothing, but shows the ratio. None where no teeth touch, or they do not keep a
     ratio that can be counted."""
     common = set(pair[0].bodies) & set(pair[1].bodies)
-    if len(common) != 1 or any(joint.type not in SINGLE or not len(joint.twists) for joint in pair):
+    if len(common) != 1 or any(joint.type not in ONE_FREEDOM or not len(joint.twists) for joint in pair):
         return None
     names = [next(name for name in joint.bodies if name not in common) for joint in pair]
     sides = [next(body.parts for body in bodies if body.name == name) for name in names]

@@ -32,9 +32,9 @@ MOST_BATCH_NUMBERS = 200_000
 """Squares of freedoms of blocks that are tried in step: 10,000 four-bars, but no two blocks of 500 hinges, whose
 matrices would take the memory of both."""
 MOVING_JOINT = 1e-3
-"""Share of the fastest rate from which on a joint is named as moving."""
+"""Share of the fastest rate from which on a joint is named as moving. Chosen, not measured."""
 MOST_STATEMENTS = 4
-"""Blocks whose statements are told one by one."""
+"""Blocks whose statements are told one by one. Chosen, not measured."""
 
 
 Certified = Generator[LoopSystem, LocalMotions, FiniteCertificate | None]

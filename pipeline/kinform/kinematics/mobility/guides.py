@@ -14,9 +14,6 @@ from kinform.model.contacts import Contacts, Patch
 from kinform.model.kinematics import Joint
 from kinform.model.surfaces import MeshSurfaces
 
-PRESERVED_SHARE = 0.03
-"""A patch mates along a motion whose velocity is within this share of tangential to it."""
-
 
 def joint_twist(joint: Joint) -> Array:
     """(6,) twist of a joint's value: |ω| 1 for turns, |v| 1 for slides, in the sense of its axis."""
@@ -34,7 +31,8 @@ def preserved(patch: Patch, twists: Array) -> bool:
     for twist in twists:
         velocity = twist[3:] + cross(np.broadcast_to(twist[:3], patch.points.shape), patch.points)
         fastest = float(np.linalg.norm(velocity, axis=1).max(initial=0.0))
-        if np.any(np.abs(np.einsum("ij,ij->i", velocity, patch.normals)) > PRESERVED_SHARE * fastest):
+        # A patch mates along a motion whose velocity is within this share of tangential to it.
+        if np.any(np.abs(np.einsum("ij,ij->i", velocity, patch.normals)) > 0.03 * fastest):
             return False
     return True
 

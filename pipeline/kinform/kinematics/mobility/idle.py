@@ -30,17 +30,13 @@ from kinform.model.kinematics import Joint
 from kinform.model.names import BodyName, PartName
 from kinform.model.surfaces import MeshSurfaces
 
-IDLE_MIDDLE = 0.2
-"""Distance of the middle of a face from an axis, over that of its points, beyond which it does not turn onto itself,
-..."""
-IDLE_OPEN = math.radians(60.0)
-"""... and angle about the axis without any of it."""
 IDLE_AXIS = 1e-3
-"""Sine between axes, and part of a unit turn outside a joint's freedoms, that is none."""
+"""Sine between axes, and part of a unit turn outside a joint's freedoms, that is none. Chosen, not measured."""
 IDLE_PLACE = 1e-4
-"""Share of the assembly's size by which axes and centres may lie apart."""
+"""Share of the assembly's size by which axes and centres may lie apart. Chosen, not measured."""
 INTENDED_PLACE = 1e-2
-"""... and share of the assembly's size by which its place may."""
+"""Share of the assembly's size by which the place of an intended joint may be off an idle turn. Chosen, not
+measured."""
 
 
 def touching_balls(
@@ -190,9 +186,11 @@ def _goes_all_round(patch: Patch, axis: Array, point: Array) -> bool:
     arm = patch.points - point
     arm = arm - np.outer(arm @ axis, axis)
     reach = float(patch.weights @ np.sqrt(dot(arm, arm)))
-    if norm(patch.weights @ arm) > IDLE_MIDDLE * reach:
+    # Distance of the middle of a face from an axis, over that of its points, beyond which it does not turn onto itself.
+    if norm(patch.weights @ arm) > 0.2 * reach:
         return False
-    return widest_gap(arm, axis) < IDLE_OPEN
+    # Nor does it where a wider angle about the axis is without any of it.
+    return widest_gap(arm, axis) < math.radians(60.0)
 
 
 def _names(wanted: IntendedJoint, axis: Array, point: Array, leaf: bool, size: float) -> bool:

@@ -14,6 +14,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, rows, scaled, span
 from kinform.foundation.algebra.vectors import cross, dot, norm
 from kinform.foundation.graphs.graph import UnionFind
+from kinform.foundation.rounding import SOLVED
 from kinform.kinematics.joints.pair.evidence import COAXIAL
 from kinform.kinematics.screws.wording import Locked, locked_text, locked_wrenches, rows_too_many
 from kinform.model.arrays import Array
@@ -21,14 +22,8 @@ from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint, Redundancy, RedundancyKind
 from kinform.model.tolerances import Tolerances
 
-NAMED_CONTACT_AXIS = 0.02
-"""Directions of contacts this near (sine) to an axis of the world have its name: contacts are not snapped."""
-SITE_GAP = 0.25
-"""Patches whose gap is below this share of the radius of the smaller one belong together."""
 FEW_OF_SITE = 4
-"""One of so many samples is looked at before all are, where patches may lie together."""
-HELD_TWICE = 1e-9
-"""1 − cosine of directions that two sites both hold."""
+"""One of so many samples is looked at before all are, where patches may lie together. Chosen, not measured."""
 
 
 def redundancy(
@@ -85,7 +80,8 @@ def sites(patches: Sequence[Patch]) -> list[list[int]]:
         for n in range(k):
             if sets.find(k) == sets.find(n):
                 continue
-            near = SITE_GAP * min(radii[k], radii[n])
+            # Patches whose gap is below this share of the radius of the smaller one belong together.
+            near = 0.25 * min(radii[k], radii[n])
             if norm(centres[k] - centres[n]) - radii[k] - radii[n] > near:
                 continue
             a, b = patches[k].points - centres[k], patches[n].points - centres[k]
@@ -131,9 +127,10 @@ def _twice(spaces: Sequence[Array]) -> list[Locked]:
     before = spaces[0]
     for space in spaces[1:]:
         left, cosines, _ = np.linalg.svd(space.T @ before, full_matrices=False)
-        both = space @ left[:, cosines > 1.0 - HELD_TWICE]
+        both = space @ left[:, cosines > 1.0 - SOLVED]
         if both.shape[1]:
-            twice += locked_wrenches(both.T, NAMED_CONTACT_AXIS)
+            # Directions of contacts this near (sine) to an axis of the world have its name: contacts are not snapped.
+            twice += locked_wrenches(both.T, 0.02)
         before = span(np.hstack([before, space]))
     return twice
 

@@ -23,7 +23,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import bracket
 from kinform.foundation.algebra.vectors import norm
 from kinform.foundation.lockstep import run_in_lockstep
-from kinform.foundation.rounding import SOLVED, TINY
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.mobility.second_order import complement, independent, second_order, units
 from kinform.mechanism.closing import Closing, StepLimit, Task, Termination, close, close_each
@@ -35,46 +35,38 @@ from kinform.mechanism.rank import Rank
 from kinform.model.arrays import Array
 from kinform.model.kinematics import CurvatureVerdict
 
-UNBALANCED = 1e-4
-"""Curvature that is none."""
-SEED = 20000
-"""Of the random mixes of freedoms that are stepped along: the same in every run."""
 MIXES = 3
 """Mixes of the freedoms, all of which must be kept: one could by chance lie in a branch of its own."""
 MANY_MIXES = 6
-"""Mixes at a singular pose, beside the freedoms themselves."""
+"""Mixes at a singular pose, beside the freedoms themselves. Chosen, not measured."""
 BRANCH_MIXES = 2
-"""Mixes at a pose that lies on one branch, as far as is known."""
+"""Mixes at a pose that lies on one branch, as far as is known. Chosen, not measured."""
 STEP_SIZES = (0.05, 0.01, 0.002)
-"""rad, and shares of the block's size: near a singular pose a long step leaves the neighbourhood."""
-STEPPED_RANK = 1e-6
-"""Relative singular value below which a freedom counts as free at a stepped pose, whose loops are closed to
-rounding."""
-STEPPED_RANK_EXACT = 1e-9
-"""The same where the loops close to rounding over the whole step: nothing of the axes' misfit is in it."""
-CLOSURE_ROUNDING = 1e-13
-"""Rounding of a closure."""
+"""rad, and shares of the block's size: near a singular pose a long step leaves the neighbourhood. Chosen, not
+measured."""
 HIGHER_ORDER = 0.3
 """What a half stride leaves of a whole one's residual: more is misfit, which grows with the step, less an obstruction
-of higher order."""
+of higher order. Chosen, not measured."""
 STEP_KEPT = 0.9
-"""Share of a step that is left when the motion is real."""
+"""Share of a step that is left when the motion is real. Chosen, not measured."""
 STEP_LOST = 0.1
-"""Share that is left when it is none."""
+"""Share that is left when it is none. Chosen, not measured."""
 STEP_ASTRAY = 2.0
-"""Steps that end farther than this many steps away lead elsewhere."""
+"""Steps that end farther than this many steps away lead elsewhere. Chosen, not measured."""
 STEP_ASIDE = 0.2
-"""Share of a step that may go aside within a smooth branch."""
+"""Share of a step that may go aside within a smooth branch. Chosen, not measured."""
 CONE_SHARE = 0.05
-"""Relative singular value from which on the ends of steps span a direction of the tangent cone."""
+"""Relative singular value from which on the ends of steps span a direction of the tangent cone. Chosen, not
+measured."""
 MOST_BRANCHES = 8
-"""Branches that are told apart."""
+"""Branches that are told apart. Chosen, not measured."""
 SAME_BRANCH = 0.95
-"""Least cosine between the freedoms of two poses of one branch."""
+"""Least cosine between the freedoms of two poses of one branch. Chosen, not measured."""
 BRANCH_STEP = 0.1
-"""Share of the distance from the pose by which a branch is stepped along."""
+"""Share of the distance from the pose by which a branch is stepped along. Chosen, not measured."""
 MOST_STEP_WORK = 2e10
-"""Multiplications that the steps at a singular pose may take; a block that needs more stays undecided."""
+"""Multiplications that the steps at a singular pose may take; a block that needs more stays undecided. Chosen, not
+measured."""
 FULL_RANK = Rank(share=FINEST_VALUE)
 """At singular poses: whatever is more than rounding counts."""
 QUADRATIC = Termination(accepted=0.0, iterations=12, change=SOLVED)
@@ -83,7 +75,7 @@ LINEAR = Termination(accepted=0.0, iterations=60, change=1e-11)
 """Where convergence is linear: halving, at a simple singularity, from steps of 0.05 to 1e-11 in 32, and in twice as
 many where the singularity is of higher order."""
 CUT = 0.5
-"""Share of a step that one iteration may change at most: it may not leave for another branch."""
+"""Share of a step that one iteration may change at most: it may not leave for another branch. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +125,8 @@ def _local_motions(pose: Pose) -> Steps[LocalMotions]:
     count, none = pose.freedoms, np.zeros((0, pose.system.coordinates))
     if count == 0:
         return LocalMotions(0, 0, none, stepped=0)
-    rng = np.random.default_rng(SEED)
+    # A seed makes the random mixes of freedoms that are stepped along the same in every run.
+    rng = np.random.default_rng(20000)
     mixes = units(rng.normal(size=(1 if _submersion(pose) else MIXES, count)))
     if count == 1:
         mixes = np.unique(mixes, axis=0)  # forth and back are all that there is
@@ -141,7 +134,8 @@ def _local_motions(pose: Pose) -> Steps[LocalMotions]:
     bends = np.linalg.norm(pose.obstruction(mixes), axis=1)
     for step in STEP_SIZES:
         closed = yield from _regular(pose, mixes, step, STEP_SIZES[0])
-        if closed is not None and bends.max() > UNBALANCED:
+        # Curvature that is none.
+        if closed is not None and bends.max() > 1e-4:
             why = "steps close, but the second-order test finds an obstruction"
             return LocalMotions(count, None, none, (count,), step, *closed, count, "obstructed", why)
         if closed is not None:
@@ -177,7 +171,7 @@ def _regular(pose: Pose, mixes: Array, stride: float, step: float) -> Steps[tupl
             return None
     worst = float(residual.max())
     # where the numbers of the place leave more unknown, what is missed may be that
-    misfit = worst > max(CLOSURE_ROUNDING, pose.system.rounding * step)
+    misfit = worst > max(ARITHMETIC, pose.system.rounding * step)
     if misfit:
         # it grows with the step where axes are off, an obstruction of third or higher order with its powers
         half = yield _beside(pose, pose.q + 0.5 * stride * mixes, stride)
@@ -185,7 +179,8 @@ def _regular(pose: Pose, mixes: Array, stride: float, step: float) -> Steps[tupl
             return None
     values = np.linalg.svd(jacobian, compute_uv=False)
     beyond = values[:, pose.rank :].max(initial=0.0) / max(values.max(), TINY)
-    zero = STEPPED_RANK if misfit else STEPPED_RANK_EXACT
+    # where the loops close to rounding over the whole step, nothing of the axes' misfit is in the rank
+    zero = SINGLE if misfit else SOLVED
     return (kept, worst) if beyond < max(zero, pose.system.rounding) else None
 
 
@@ -286,13 +281,14 @@ def _explore(pose: Pose, directions: Array, step: float, rng: np.random.Generato
     doubt = "the loops did not close after a step" if spread.undecided else ""
     if _smooth(pose, spread.cone, step, rng):
         count = len(spread.cone)
-        stepped = [Pose.at(pose.system, q, STEPPED_RANK).freedoms for q in spread.ends[:1]]
+        # at stepped poses loops are closed to rounding, and freedoms are free to that of files
+        stepped = [Pose.at(pose.system, q, SINGLE).freedoms for q in spread.ends[:1]]
         measured = step, spread.kept, spread.residual, max(stepped, default=None)
         return LocalMotions(pose.freedoms, count, lost, (count,) if count else (), *measured, reason=doubt)
     poses: list[Pose] = []
     dimensions: list[int | None] = []
     for end in spread.ends:
-        there = Pose.at(pose.system, end, STEPPED_RANK)
+        there = Pose.at(pose.system, end, SINGLE)
         fresh = len(poses) < MOST_BRANCHES or all(there.freedoms != other.freedoms for other in poses)
         if fresh and not any(_same(there, other) for other in poses):
             poses.append(there)

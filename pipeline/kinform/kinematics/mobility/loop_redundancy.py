@@ -33,9 +33,9 @@ from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Redundancy
 
 MOST_SORTED_LOOPS = 60
-"""Up to so many loops in a block, what they hold together is told apart."""
+"""Up to so many loops in a block, what they hold together is told apart. Chosen, not measured."""
 MOST_NAMED = 12
-"""So many bodies or joints are named in a text."""
+"""So many bodies or joints are named in a text. Chosen, not measured."""
 
 
 def redundancies_of_loops(joints: Sequence[Joint], closure: Closure, size: float) -> tuple[Redundancy, ...]:

@@ -13,27 +13,14 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical, cross, foot, norm
 from kinform.foundation.graphs.graph import Forest, forest
-from kinform.foundation.rounding import SOLVED
+from kinform.foundation.rounding import ARITHMETIC, SOLVED
 from kinform.frozen import dataclass
-from kinform.mechanism.block_rates import RATE_ROUNDING, Solution
+from kinform.mechanism.block_rates import Solution
 from kinform.mechanism.first_order import Closure
 from kinform.mechanism.joint_graph import JointGraph
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Freedom, Kinematics, MotionKind
 from kinform.model.names import BodyName, JointName
-
-SAME_RATES = 1e-2
-"""An idle turn is one of the assembly's freedoms when it is within this share of one."""
-NO_TURN = 1e-10
-"""Turn (rad/s) that is none, as a share of a velocity over the size of the assembly; rounding."""
-NO_PITCH = 1e-6
-"""m a turn that is none, as a share of the size of the assembly; a choice: a fine thread has 1e-2 of its screw."""
-PITCH_ROUNDING = 1e-13
-"""The same as a share of the distance of the axis from the origin: what products of doubles lose."""
-EXCHANGED = 0.1
-"""Rate in an idle turn from which on a driver may give way to it."""
-NO_TWIST = 1e-12
-"""Largest component of a relative twist that is none."""
 
 
 def named_freedoms(
@@ -93,13 +80,14 @@ def _read(twist: Array, near: Array | None, place: Array, size: float) -> tuple[
     square = float(omega @ omega)
     beside = np.zeros(3) if near is None else near
     there = velocity + cross(omega, place if near is None else near)
-    if square * size**2 < NO_TURN**2 * float(there @ there):
+    if square * size**2 < SOLVED**2 * float(there @ there):
         return "slide", canonical(there), beside, 0.0
     axis = omega / np.sqrt(square)
     point = foot(cross(omega, velocity) / square, axis, beside)
     pitch = 2.0 * np.pi * float(omega @ velocity) / square
-    lost = PITCH_ROUNDING * norm(velocity) / np.sqrt(square)
-    if abs(pitch) < NO_PITCH * size + lost:
+    lost = ARITHMETIC * norm(velocity) / np.sqrt(square)
+    # m a turn that is none, as a share of the size of the assembly; a choice: a fine thread has 1e-2 of its screw.
+    if abs(pitch) < 1e-6 * size + lost:
         return "turn", canonical(axis), point, 0.0
     return "screw", canonical(axis), point, pitch
 
@@ -131,7 +119,8 @@ def _exchange(
             wanted = _rates(turn, node, around.get(node, []), graph, closure.offset)
             parts = {driven[c]: rate for c, rate in wanted.items() if c in driven}
             spun = _sum(closure.solutions, parts)
-            if _difference(spun, wanted) > SAME_RATES:
+            # An idle turn is one of the assembly's freedoms when it is within this share of one.
+            if _difference(spun, wanted) > 1e-2:
                 continue
             rest = dict(parts)
             while taken := sorted(set(rest) & set(reduced)):
@@ -140,7 +129,8 @@ def _exchange(
                 for n, value in reduced[pivot].items():
                     rest[n] = rest.get(n, 0.0) - factor * value
                 del rest[pivot]
-            drivers = {n: closure.solutions[n].driver for n, value in rest.items() if abs(value) > EXCHANGED}
+            # Rate in an idle turn from which on a driver may give way to it.
+            drivers = {n: closure.solutions[n].driver for n, value in rest.items() if abs(value) > 0.1}
             if not drivers:
                 continue
             chosen = min(drivers, key=lambda n: (near[drivers[n]], n))
@@ -170,7 +160,7 @@ def _sum(solutions: Sequence[Solution], parts: Mapping[int, float]) -> dict[int,
         for c, rate in zip(solutions[n].columns.tolist(), solutions[n].rates.tolist(), strict=True):
             out[c] = out.get(c, 0.0) + factor * rate
     largest = max((abs(rate) for rate in out.values()), default=0.0)
-    return {c: rate for c, rate in out.items() if abs(rate) > RATE_ROUNDING * largest}
+    return {c: rate for c, rate in out.items() if abs(rate) > SOLVED * largest}
 
 
 def _difference(one: Mapping[int, float], other: Mapping[int, float]) -> float:
@@ -267,7 +257,7 @@ class Motions:
                 edge = self._number[joint]
                 if edge in signs:
                     twist += signs[edge] * rate * self.graph.joints[edge].twists[coordinate]
-            if np.abs(twist).max() > NO_TWIST:
+            if np.abs(twist).max() > ARITHMETIC:
                 out.append(twist)
         return np.array(out).reshape(-1, 6)
 

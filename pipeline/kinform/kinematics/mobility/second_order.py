@@ -9,49 +9,46 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.rounding import SOLVED, TINY
+from kinform.foundation.rounding import SINGLE, SOLVED, TINY
 from kinform.mechanism.constants import FREE
 from kinform.mechanism.pose import Pose
 from kinform.model.arrays import Array
 from kinform.model.kinematics import CurvatureVerdict
 
-BALANCED = 1e-6
-"""Curvature (of unit freedoms) that is rounding."""
 MOST_TESTED_FREEDOMS = 40
-"""Freedoms of a block up to which directions that pass the second-order test are looked for."""
+"""Freedoms of a block up to which directions that pass the second-order test are looked for. Chosen, not measured."""
 TEST_ITERATIONS = 60
 """Gauss–Newton iterations for a common zero of the forms: where it is double they converge by halving."""
 MOST_PASSING = 12
-"""Directions that pass the second-order test that are followed."""
+"""Directions that pass the second-order test that are followed. Chosen, not measured."""
 SAME_LINE = 0.999
-"""Cosine above which two of them are one."""
-COMPLEMENT = 1e-6
-"""Singular value below which a direction has no part in a space."""
+"""Cosine above which two of them are one. Chosen, not measured."""
 
 
 def second_order(pose: Pose, rng: np.random.Generator) -> tuple[CurvatureVerdict, Array]:
     """What the second-order test says, and first-order freedoms (D, n) that pass it.
 
-    The forms wᵀ F''(u, u) are looked for common zeros on the unit sphere by Gauss–Newton from random starts.
+    The forms wᵀ F''(u, u) are looked for common zeros on the unit sphere by Gauss–Newton from random starts. Curvature
+    of unit freedoms below `SINGLE` is rounding: axes come from files in single precision.
     """
     count = pose.freedoms
     none = np.zeros((0, pose.free.shape[1]))
     if count > MOST_TESTED_FREEDOMS:
         bends = np.linalg.norm(pose.obstruction(units(rng.normal(size=(6, count))) @ pose.free), axis=1)
-        return ("extends" if bends.max() < BALANCED else "", none)
+        return ("extends" if bends.max() < SINGLE else "", none)
     i, j = np.triu_indices(count)
     bent = pose.obstruction(np.concatenate([pose.free[i] + pose.free[j], pose.free[i] - pose.free[j]]))
     flat = 0.25 * (bent[: len(i)] - bent[len(i) :])
     # fewer forms with the same zeros
     _, values, right = np.linalg.svd(flat.T, full_matrices=False)
-    flat = (values[:, None] * right)[values > BALANCED]
+    flat = (values[:, None] * right)[values > SINGLE]
     if not len(flat):
         return "extends", none
     forms = np.zeros((len(flat), count, count))
     forms[:, i, j] = forms[:, j, i] = flat
     if len(forms) == 1:
         values = np.linalg.eigvalsh(forms[0])
-        if values[0] > BALANCED or values[-1] < -BALANCED:
+        if values[0] > SINGLE or values[-1] < -SINGLE:
             return "obstructed", none
     u = units(rng.normal(size=(8 + 4 * count, count)))
     for _ in range(TEST_ITERATIONS):
@@ -59,7 +56,7 @@ def second_order(pose: Pose, rng: np.random.Generator) -> tuple[CurvatureVerdict
         slope = 2.0 * np.einsum("pij,dj->dpi", forms, u)
         u = units(u - np.einsum("dip,dp->di", np.linalg.pinv(slope, rcond=SOLVED), value))
     left = np.linalg.norm(np.einsum("pij,di,dj->dp", forms, u, u), axis=1)
-    passing = u[left < BALANCED]
+    passing = u[left < SINGLE]
     if not len(passing):
         return "obstructed", none
     distinct: list[Array] = []
@@ -80,7 +77,7 @@ def complement(space: Array, part: Array) -> Array:
     if not len(part):
         return space
     _, values, right = np.linalg.svd(part @ space.T)
-    return right[int(np.count_nonzero(values > COMPLEMENT)) :] @ space
+    return right[int(np.count_nonzero(values > SINGLE)) :] @ space
 
 
 def units(vectors: Array) -> Array:

@@ -12,15 +12,13 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.algebra.vectors import norm
+from kinform.foundation.rounding import SOLVED
 from kinform.mechanism.block_rates import Solution
 from kinform.mechanism.first_order import Closure
 from kinform.model.arrays import Array
 from kinform.model.function import Function, IntendedJoint
 from kinform.model.kinematics import Joint, Mobility
 from kinform.model.names import BodyName
-
-INDEPENDENT_ROW = 1e-9
-"""Share of the largest entry below which what is left of a row is rounding."""
 
 
 def coupling_rows(
@@ -60,7 +58,7 @@ def _sense(joint: Joint, intended: IntendedJoint, first: BodyName) -> float | No
     if joint.freedoms != 1 or intended.axis is None:
         return None
     twist = joint.twists[0]
-    turns = norm(twist[:3]) > INDEPENDENT_ROW * norm(twist[3:])
+    turns = norm(twist[:3]) > SOLVED * norm(twist[3:])
     along = float((twist[:3] if turns else twist[3:]) @ intended.axis)
     return (1.0 if along > 0.0 else -1.0) * (1.0 if first == joint.bodies[0] else -1.0)
 
@@ -78,11 +76,11 @@ def restrict_closure(closure: Closure, rows: Array) -> Closure:
         for pivot, before in zip(pivots, reduced, strict=False):
             row -= before * row[pivot]
         size = np.abs(row).max(initial=0.0)
-        if size <= INDEPENDENT_ROW:
+        if size <= SOLVED:
             row[:] = 0.0
             pivots.append(-1)
             continue
-        last = int(np.flatnonzero(np.abs(row) > INDEPENDENT_ROW * size)[-1])
+        last = int(np.flatnonzero(np.abs(row) > SOLVED * size)[-1])
         row /= row[last]
         for before in reduced[: len(pivots)]:
             before -= row * before[last]
@@ -93,7 +91,7 @@ def restrict_closure(closure: Closure, rows: Array) -> Closure:
         if k in follow:
             continue
         rates = every[k] - sum((row[k] * every[pivot] for pivot, row in follow.items()), np.zeros(every.shape[1]))
-        columns = np.flatnonzero(np.abs(rates) > INDEPENDENT_ROW * np.abs(rates).max())
+        columns = np.flatnonzero(np.abs(rates) > SOLVED * np.abs(rates).max())
         solutions.append(Solution(solution.driver, columns, rates[columns]))
         block_of.append(closure.block_of[k])
     return replace(closure, solutions=tuple(solutions), block_of=tuple(block_of))

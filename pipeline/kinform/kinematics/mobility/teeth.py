@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, norm, perpendicular
-from kinform.foundation.rounding import TINY
+from kinform.foundation.rounding import SOLVED, TINY
 from kinform.foundation.sorting import heads, median
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
@@ -25,17 +25,12 @@ EVEN_TEETH = 0.03
 """Share of the pitch by which teeth may stand elsewhere than at even distances, or leave the constant ratio:
 tessellated involutes of five points a flank stay below a third of it, straight flanks on wheels do not."""
 FEWEST_TEETH = 5
-"""Teeth of a whole wheel, and teeth in a row of a rack or a sector, from which on they are teeth and no cams."""
+"""Teeth of a whole wheel, and teeth in a row of a rack or a sector, from which on they are teeth and no cams. Chosen,
+not measured."""
 TOOTH_POSES = 24
-"""Poses in which the sections are held against each other while one tooth passes."""
+"""Poses in which the sections are held against each other while one tooth passes. Chosen, not measured."""
 IN_PLANE = 1e-3
-"""rad: axes that are parallel or perpendicular to this lie in one plane."""
-RATIO_AGREES = 0.01
-"""Relative: what the ratio at one pose, from the normals of the flanks, may differ from that of the teeth."""
-TIP_MARGIN = 1.02
-"""Teeth up to this share of the other wheel's tip radius are within its reach."""
-ROUNDED_LEVEL = 1e-9
-"""Share of the greatest radius by which the end of an edge may be beyond a level that it meets, for rounding."""
+"""rad: axes that are parallel or perpendicular to this lie in one plane. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +119,7 @@ class _Outline:
 def _within(levels: Array, low: Array, high: Array) -> tuple[Ints, Ints]:
     """(k,) levels (m,), ascending, and spans from `low` to `high` (n,) that they are in, but for rounding."""
     order = np.argsort(levels, kind="stable")
-    spare = ROUNDED_LEVEL * np.abs(high).max(initial=0.0)
+    spare = SOLVED * np.abs(high).max(initial=0.0)
     begin = levels[order].searchsorted(low - spare)
     count = levels[order].searchsorted(high + spare, side="right") - begin
     span = np.repeat(np.arange(len(low)), count)
@@ -156,7 +151,8 @@ def meshing(sides: tuple[Side, Side], axis: Array, place: Array, normal: Array, 
             return row
     first_row, second_row = (row for row in rows if not isinstance(row, str))
     mean = math.copysign(first_row.pitch / second_row.pitch, ratio)
-    if abs(ratio / mean - 1.0) > RATIO_AGREES:
+    # Relative: what the ratio at one pose, from the normals of the flanks, may differ from that of the teeth.
+    if abs(ratio / mean - 1.0) > 0.01:
         return (
             f"the ratio at this pose is {ratio:.5g}, that of {first_row.count} and {second_row.count} teeth {mean:.5g}"
         )
@@ -280,7 +276,8 @@ def _near(outline: _Outline, other: _Outline) -> Array:
     level = other.coordinates(other.edges.reshape(-1, 2))[0]
     reached = other.coordinates(outline.edges.reshape(-1, 2))[0].reshape(-1, 2)
     if other.turns:
-        return np.asarray(outline.edges[(reached <= TIP_MARGIN * level.max()).any(axis=1)])
+        # Teeth up to this share of the other wheel's tip radius are within its reach.
+        return np.asarray(outline.edges[(reached <= 1.02 * level.max()).any(axis=1)])
     return np.asarray(outline.edges[((reached >= level.min()) & (reached <= level.max())).any(axis=1)])
 
 

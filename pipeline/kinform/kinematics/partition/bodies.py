@@ -37,9 +37,6 @@ line up either way. On 17 robots the greatest of a part whose author put it else
 HELD_ACROSS = 250.0
 """Price beyond which contact that was parted, a flat beside the axis or more, says that bodies guessed from different
 names are not sure. Less than `FLAT_BESIDE`."""
-NEAREST_TRIED = 6
-"""Of so many parts whose boxes are nearest to one that touches nothing, the nearest surface is looked for. Chosen, not
-measured."""
 NAMED_HOLDS = 3
 """Of the parts that hold another in its body, or that it was parted from, so many are named. Chosen, not measured."""
 
@@ -227,7 +224,9 @@ def _nearest(
             apart.append((gap, middle, other))
     own = _object(assembly, name, models)
     best: tuple[float, PartName] | None = None
-    for gap, _, other in sorted(apart)[:NEAREST_TRIED]:
+    # The nearest surface is looked for on the six parts whose boxes are nearest to one that touches nothing. Chosen,
+    # not measured.
+    for gap, _, other in sorted(apart)[:6]:
         if best is None or gap <= best[0]:
             with working_on(name, other):
                 distance = fcl_distance(own, _object(assembly, other, models))

@@ -30,9 +30,6 @@ from kinform.model.contacts import Contacts
 from kinform.model.function import IntendedJoint
 from kinform.model.names import PartName
 
-SUBSTANTIAL = 0.002
-"""Share of the assembly's volume that either side of a joint has at least where it does not name its sides. Twice
-that of proposals (`sides.PROPOSED_SHARE`). Chosen, not measured."""
 ALIKE = 0.3
 """Share of the smallest side by which two splits may differ and count as one: a ring, a horn, screws. Chosen, not
 measured."""
@@ -220,7 +217,9 @@ class Splits:
         has the named part."""
         joint = self.joints[number]
         named = self.assembly.parts_of(joint.between[0])[0] if joint.between[0] else None
-        least = substantial(np.array(list(self.volume.values())), SUBSTANTIAL)
+        # Share of the assembly's volume that either side of a joint has at least where it does not name its sides.
+        # Twice that of proposals (`sides.PROPOSED_SHARE`). Chosen, not measured.
+        least = substantial(np.array(list(self.volume.values())), 0.002)
         out: list[Split] = []
         for split in sorted(splits, key=lambda one: (one.cost, one.names)):
             if named is not None and not any(named in side for side in split.bodies):

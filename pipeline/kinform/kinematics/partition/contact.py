@@ -27,8 +27,6 @@ SLOW = 1e-4
 OPPOSED_AREA = 0.05
 """Share of the area between two parts that may oppose a joint that parts them: scraps decide nothing. Chosen, not
 measured."""
-OPPOSED_SOME = 5
-"""One of so many points of a contact is asked about all joints before all are: a fifth has several times that share."""
 JOURNAL = 40.0
 """Price of parting a journal, a collar or a guide. Prices have no unit: only their order counts (`constants`)."""
 LOOSE_JOURNAL = 35.0
@@ -52,9 +50,8 @@ APART = 0.05
 JOURNAL_OFF = 0.7
 """Share of its reach by which the middle of a round patch may lie beside the axis that it goes round: half of one."""
 FACE_OFF = 0.5
-"""The same of other faces. Chosen, not measured."""
-GUIDED_ROUND = np.radians(181.0)
-"""rad: normals of a guide leave no wider gap round it than this."""
+"""Distance from the axis of a joint to the middle of a face that goes round it, as a share of the reach of the face.
+Chosen, not measured."""
 ROLLING = 1.0
 """Price of parting what touches at points or along lines only: balls, rollers, teeth hold nothing together."""
 NUMBERS_AT_ONCE = 8192
@@ -246,7 +243,9 @@ class Contact:
     def _surely_opposed(self, motions: Array) -> Flags:
         """(k,) of which of k motions (k, 6) some of the points tell that they press on, or leave, more than next to
         none of the area, or that it is not `_little`: of thousands of joints most are elsewhere, and do."""
-        some = slice(None, None, OPPOSED_SOME)
+        # One of so many points of a contact is asked about all joints before all are: a fifth has several times that
+        # share.
+        some = slice(None, None, 5)
         middle, radius = self.ball
         way = motions[:, 3:] + cross(motions[:, :3], np.broadcast_to(middle, (len(motions), 3)))
         # no point of the ball is faster
@@ -347,7 +346,8 @@ class Contact:
         assert joint.axis is not None
         axis = joint.axis / norm(joint.axis)
         gap = widest_gap(self.normals[~opposed], axis)
-        return JOURNAL if gap < GUIDED_ROUND else FLAT_BESIDE
+        # rad: normals of a guide leave no wider gap round it than this.
+        return JOURNAL if gap < np.radians(181.0) else FLAT_BESIDE
 
 
 def _squares(columns: Sequence[Array]) -> Array:

@@ -19,9 +19,9 @@ from kinform.kinematics.partition.elimination import clear_labels
 from kinform.model.arrays import Array
 
 JAMMED = 25.0
-"""Price of such a contact between two bodies that stated joints connect, beside: it is in the way of the joint, and
-that of others is not. Less than any face, so that it only decides between a face and a journal; what it decides is
-listed."""
+"""Price, beside `BROKEN`, of contact that no joint may part between two bodies that stated joints connect: it is in the
+way of the joint, and that of others is not. Less than any face, so that it only decides between a face and a journal;
+what it decides is listed."""
 MOST_SECONDS = 60.0
 """s: what the integer program may take before the best answer so far is taken and said to be unproven. Chosen, not
 measured."""

@@ -19,9 +19,6 @@ from kinform.kinematics.partition.labelling import Edge, Labels
 from kinform.kinematics.partition.loops import Loops
 from kinform.model.arrays import Array
 
-MOVES_TRIED = 6
-"""Of the bodies that a name may be moved to, so many are tried: those that contact joins most firmly. Chosen, not
-measured."""
 MOST_CUTS = 600
 """So many ways of joining names are cut at most; then the best so far is taken. Chosen, not measured."""
 LOOK_AHEAD = 4
@@ -132,7 +129,9 @@ class MergeSearch:
         sets = self.hanging(cut.now)
 
         def few(pairs: Iterable[Labels]) -> list[Labels]:
-            return list(islice((pair for pair in pairs if self.joins(cut, sets, pair)), MOVES_TRIED))
+            # Six of the bodies that a name may be moved to are tried: those that contact joins most firmly. Chosen, not
+            # measured.
+            return list(islice((pair for pair in pairs if self.joins(cut, sets, pair)), 6))
 
         across = sorted((-cost, pair) for pair, (_, cost) in cut.parted.items())
         return list(dict.fromkeys([*few(pair for _, pair in across), *few(self.firmest(cut))]))

@@ -41,8 +41,6 @@ the true ones of ten robots lie within 0.094 (0 mostly), the wrong one of the ha
 ROUNDS = 4
 """Rounds in which the splits of joints round a loop are searched, each given those of the others. Chosen, not
 measured."""
-SPLITS_NAMED = 4
-"""Splits that an error lists where several are possible: what fits a terminal."""
 
 
 def find_missing_sides(assembly: Assembly, contacts: Contacts) -> tuple[Assembly, tuple[FoundSides, ...]]:
@@ -165,7 +163,8 @@ def _problem(splits: Splits, joint: int, known: Mapping[int, Names]) -> Problem:
         return Problem(what, it.file or None, it.line, "name a part of either side in `between`, or correct its place")
     base = splits.bodies_for(known).cost
     lines = []
-    for split in found[:SPLITS_NAMED]:
+    # Splits that an error lists where several are possible: what fits a terminal.
+    for split in found[:4]:
         first, second = split.names
         far = f", {length(split.beyond, units, 3)} along the axis from its point" if split.beyond > 0.0 else ""
         breaks = split.cost - base >= BROKEN

@@ -41,7 +41,7 @@ BESIDE = 0.1
 """Of several pairs of bodies on one axis, those are proposed whose smaller side is at least this share of the largest
 such: legs on one hip axis, and not the rings of their bearings. Chosen, not measured."""
 SAME_AXIS_OFF = 0.02
-"""The same of their distance, as a share of the smaller journal's reach. Chosen, not measured."""
+"""Distance of journals that are on one axis, as a share of the smaller one's reach. Chosen, not measured."""
 SAME_CENTRE = 1e-6
 """m: balls on one pin that differ by less are one, seen from two contacts. Chosen, not measured."""
 

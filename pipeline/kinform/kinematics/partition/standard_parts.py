@@ -22,25 +22,15 @@ from kinform.model.assembly import Assembly, Part
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces, Surface
 
-BALL_AREA = 0.9
-"""Share of its area that is one sphere, of a ball. Chosen, not measured."""
 ALL_ROUND = np.radians(300.0)
 """rad: what of a cylinder is there at least where it tells what a part is. Chosen, not measured."""
 TURNED = 0.9
 """Share of its area that lies about one axis, across it or flat along it, of screws, nuts, washers and pins. Chosen,
 not measured."""
-WASHER_HEIGHT = 0.3
-"""Height of a washer at most, as a share of its outer radius. Chosen, not measured."""
-NUT_HEIGHT = 1.3
-"""Height of a nut at most, by its width across flats: beyond, it is a spacer. Standard nuts have 0.4 to 0.9."""
 HEAD = (1.25, 2.6)
 """Radius of a screw's head by that of its shank: 1.5 to 2.2 in the standards."""
 SHANK = 1.0
 """Length of a screw's shank at least, by its radius. Chosen, not measured."""
-PIN_LENGTH = 2.0
-"""Length of a pin at least, by its radius. Chosen, not measured."""
-HEXAGON = 0.02
-"""By how much the cosine between faces of a hexagon may be off. 1.3° on the angle of 60°."""
 
 
 HOLDERS = ("screw", "nut", "washer", "rivet", "circlip")
@@ -82,7 +72,8 @@ def _by_name(name: str) -> StandardPart | None:
 def by_shape(surfaces: Sequence[Surface], copies: int) -> StandardPart | None:
     """By its surfaces, and by how many parts are like it."""
     total = sum(surface.area for surface in surfaces)
-    if sum(s.area for s in surfaces if s.kind == "sphere" and s.side > 0) > BALL_AREA * total:
+    # Share of its area that is one sphere, of a ball. Chosen, not measured.
+    if sum(s.area for s in surfaces if s.kind == "sphere" and s.side > 0) > 0.9 * total:
         return StandardPart("ball", f"a sphere, {counted(copies, 'copy', 'copies')}") if copies >= 3 else None
     round_ = [s for s in surfaces if s.kind == "cylinder" and s.sweep > ALL_ROUND]
     if not round_:
@@ -97,13 +88,15 @@ def by_shape(surfaces: Sequence[Surface], copies: int) -> StandardPart | None:
     if not rods:
         flats = _flats(surfaces, main)
         wide = 2.0 * max(flats, default=0.0)
-        nut = len(bores) == 1 and hexagon and len(flats) == 6 and _reach(surfaces, main.axis) < NUT_HEIGHT * wide
+        # Height of a nut at most, by its width across flats: beyond, it is a spacer. Standard nuts have 0.4 to 0.9.
+        nut = len(bores) == 1 and hexagon and len(flats) == 6 and _reach(surfaces, main.axis) < 1.3 * wide
         return StandardPart("nut", f"a hexagon with a bore, {many}") if nut and copies >= 2 else None
     high, low = max(s.radius for s in rods), min(s.radius for s in rods)
     length = max(s.extent[1] - s.extent[0] for s in rods if s.radius == low)
     whole = _reach(surfaces, main.axis)
     if bores:
-        flat = whole < WASHER_HEIGHT * high and len(rods) == len(bores) == 1 and not hexagon
+        # Height of a washer at most, as a share of its outer radius. Chosen, not measured.
+        flat = whole < 0.3 * high and len(rods) == len(bores) == 1 and not hexagon
         return StandardPart("washer", f"a flat ring, {many}") if flat and copies >= 3 else None
     head = HEAD[0] * low <= high <= HEAD[1] * low and length >= SHANK * low
     if head and (hexagon or copies >= 3):
@@ -111,7 +104,8 @@ def by_shape(surfaces: Sequence[Surface], copies: int) -> StandardPart | None:
         return StandardPart("screw", f"a head and a shank, {drive}{many}")
     if hexagon and len(rods) == 1 and length >= SHANK * low and copies >= 2:
         return StandardPart("screw", f"a hexagon and a shank, {many}")
-    if len(rods) == 1 and whole >= PIN_LENGTH * high and copies >= 3 and not hexagon:
+    # Length of a pin at least, by its radius. Chosen, not measured.
+    if len(rods) == 1 and whole >= 2.0 * high and copies >= 3 and not hexagon:
         only = sum(s.area for s in surfaces if s.kind in ("cylinder", "plane", "cone", "torus"))
         plain = only > 0.98 * total and len([s for s in surfaces if s.kind == "plane"]) == 2
         return StandardPart("pin", f"a plain rod, {many}") if plain else None
@@ -159,7 +153,8 @@ def _hexagon(surfaces: Sequence[Surface], axis: Array) -> bool:
         return False
     for first in beside:
         turned = [float(s.axis @ first.axis) for s in beside]
-        if all(any(abs(t - c) < HEXAGON for t in turned) for c in (1.0, 0.5, -0.5, -1.0)):
+        # By how much the cosine between faces of a hexagon may be off. 1.3° on the angle of 60°.
+        if all(any(abs(t - c) < 0.02 for t in turned) for c in (1.0, 0.5, -0.5, -1.0)):
             return len(turned) >= 6
     return False
 

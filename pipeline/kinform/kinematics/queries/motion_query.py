@@ -22,9 +22,6 @@ from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint, body_of_part
 
-BLOCKING_SPEED = 0.02
-"""Share of a patch's speed along its normals from which on it is named as blocking. Chosen, not measured."""
-
 
 @dataclass(frozen=True, eq=False)
 class QueryBlocker:
@@ -170,7 +167,8 @@ def _blockers(patches: list[tuple[int, Patch]], twist: Array, frame: Frame) -> t
         speed = rows(patch.points, patch.normals, frame) @ twist
         arms = (patch.points - frame.centre) / frame.length
         motion = np.linalg.norm(twist[3:] + cross(twist[:3], arms), axis=1)
-        if np.sqrt((speed**2).mean()) > BLOCKING_SPEED * max(np.sqrt((motion**2).mean()), ARITHMETIC):
+        # Share of a patch's speed along its normals from which on it is named as blocking. Chosen, not measured.
+        if np.sqrt((speed**2).mean()) > 0.02 * max(np.sqrt((motion**2).mean()), ARITHMETIC):
             out.append(_blocker(k, patch))
     return tuple(sorted(out, key=lambda q: (-q.area, q.patch)))
 

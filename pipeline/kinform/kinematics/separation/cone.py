@@ -19,12 +19,6 @@ from kinform.frozen import dataclass
 from kinform.kinematics.separation.constants import CONE_FREE, CONE_HELD, HIGHS_FEASIBLE
 from kinform.model.arrays import Array, Flags, Ints
 
-LEAST_ROW = 1e-3
-"""Length below which what is left of a unit row says nothing. Chosen, not measured."""
-SURELY_HELD = 1e-5
-"""Singular value of what is held in a block from which on HiGHS, whose rows are good to 1e-7, moves nothing so."""
-NEWTON_STEPS = 25
-"""Newton steps; certificates are found within a few. Chosen, not measured."""
 LONGEST_STEP = 2.0
 """Change of an exponent that one Newton step may make at most. Rows weigh e² less or more after one, so that the
 quadratic model still holds roughly."""
@@ -57,7 +51,8 @@ def unit_rows(rows: Array) -> Array:
 def unit_rows_of(rows: Array, group: Ints) -> tuple[Array, Ints]:
     """As `unit_rows`, of rows (n, d) that each belong to a group (n,), and the groups of those that are left."""
     size = np.sqrt(np.einsum("ij,ij->i", rows, rows))
-    long = size > LEAST_ROW
+    # Length below which what is left of a unit row says nothing. Chosen, not measured.
+    long = size > 1e-3
     if not long.all():
         rows, size, group = rows[long], size[long], group[long]
     rows = rows / size[:, None]
@@ -106,7 +101,8 @@ def held_for_certain(pairs: Sequence[Array]) -> Flags:
     still = np.einsum("pik,pk,pjk->pij", vectors, loose.astype(float), vectors)
     size = rows.shape[1]
     at = np.zeros((len(active), size))
-    for step_number in range(NEWTON_STEPS):
+    # Newton steps; certificates are found within a few. Chosen, not measured.
+    for step_number in range(25):
         exponent = np.einsum("ij,ij->i", rows, np.repeat(at, counts, axis=0))
         weight = np.exp(-np.clip(exponent, -FAR_EXPONENT, FAR_EXPONENT))
         start = np.concatenate([[0], np.cumsum(counts)[:-1]])
@@ -161,7 +157,8 @@ def _free(programs: Sequence[tuple[Array, Array]]) -> list[Array]:
         members = [k for k, (_, fixed) in enumerate(programs) if fixed.shape == shape]
         _, values, right = np.linalg.svd(np.array([programs[k][1] for k in members]))
         free = np.ones(right.shape[:2], dtype=np.bool_)
-        free[:, : values.shape[1]] = values < SURELY_HELD
+        # Singular value of what is held in a block from which on HiGHS, whose rows are good to 1e-7, moves nothing so.
+        free[:, : values.shape[1]] = values < 1e-5
         for k, motions, chosen in zip(members, right, free, strict=True):
             out[k] = motions[chosen]
     return out

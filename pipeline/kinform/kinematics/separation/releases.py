@@ -20,10 +20,6 @@ from kinform.model.kinematics import Joint, Release
 
 MOST_RELEASES = 12
 """Extreme directions up to which each is told. Chosen, not measured."""
-MIDDLE_STEPS = 200
-"""Steps in which a direction inside a cone of very many extreme directions is looked for. Chosen, not measured."""
-MIDDLE_STRIDE = 0.1
-"""Speed that such a step gives to the worst row. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,12 +120,14 @@ def _slides(cone: Cone, straight: Array) -> tuple[Array, bool]:
 def _middle(normals: Array) -> Array:
     """The direction (1, t) farthest inside a cone of very many extreme directions; (0, t) where it has no inside."""
     mean = normals.mean(axis=0)
-    for _ in range(MIDDLE_STEPS):
+    # Steps in which a direction inside a cone of very many extreme directions is looked for. Chosen, not measured.
+    for _ in range(200):
         speed = normals @ mean
         worst = int(speed.argmin())
         if speed[worst] > CONE_HELD * norm(mean):
             return np.asarray(mean / norm(mean))[None]
-        mean = mean + normals[worst] * (MIDDLE_STRIDE - speed[worst])
+        # Speed that such a step gives to the worst row. Chosen, not measured.
+        mean = mean + normals[worst] * (0.1 - speed[worst])
     return np.zeros((0, normals.shape[1]))
 
 

@@ -20,11 +20,6 @@ FINER = 2
 OUTLINE_STEP = 6.0
 """px: where depth changes by more from one pixel to the next, there is an outline; and what is nearer by more,
 covers. Chosen by eye."""
-OUTLINE_COSINE = 0.86
-"""Cosine of the change of direction from one pixel to the next above which there is none (31°). Chosen
-by eye, with the brightness below."""
-OUTLINE_SHADE = 0.52
-"""Brightness of outlines."""
 
 
 Colour = tuple[float, float, float]
@@ -162,7 +157,9 @@ def _outline(image: Floats, near: Array, owner: NDArray[np.int16], normal: Float
         for axis in (0, 1):
             here = tuple(slice(None, -1) if k == axis else slice(None) for k in (0, 1))
             there = tuple(slice(1, None) if k == axis else slice(None) for k in (0, 1))
-            turned = dot(turn[:, *here], turn[:, *there]) < OUTLINE_COSINE
+            # Cosine of the change of direction from one pixel to the next above which there is none (31°). Chosen by
+            # eye, with the brightness below.
+            turned = dot(turn[:, *here], turn[:, *there]) < 0.86
             with np.errstate(invalid="ignore"):  # nothing beside nothing
                 turned |= np.abs(depth[here] - depth[there]) > step
             changed = (part[here] != part[there]) | (turned & (part[here] >= 0))
@@ -170,7 +167,8 @@ def _outline(image: Floats, near: Array, owner: NDArray[np.int16], normal: Float
             line[more][there] |= changed
     line &= owner >= 0
     for colour in image[:3]:
-        np.multiply(colour, np.float32(OUTLINE_SHADE), out=colour, where=line)
+        # Brightness of outlines.
+        np.multiply(colour, np.float32(0.52), out=colour, where=line)
 
 
 def over(front: Floats, back: Floats, weight: float, faint: float = 1.0) -> Floats:

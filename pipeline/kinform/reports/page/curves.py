@@ -17,18 +17,14 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
 PLOT_WIDTH, PLOT_HEIGHT = 380.0, 168.0
-"""px, of a plot."""
+"""px, of a plot. Chosen by eye."""
 PLOT_LEFT, PLOT_RIGHT, PLOT_TOP, PLOT_BOTTOM = 54.0, 366.0, 12.0, 142.0
-"""px, of the area of the curves."""
+"""px, of the area of the curves. Chosen by eye."""
 MOST_COLUMNS = 300
-"""Columns of a curve, about its pixels on the page; in each the least and the greatest value are kept."""
+"""Columns of a curve, about its pixels on the page; in each the least and the greatest value are kept. Chosen by
+eye."""
 MOST_EVENTS = 40
 """Collisions that are marked in a plot: more touch each other. Chosen, not measured."""
-TICKS = 4.0
-"""Steps of a scale at least about so many, before they are made round: what stands
-beside the axis without crowding. Chosen, not measured."""
-ROUND_STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
-"""Round steps of a scale, times a power of ten."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,9 +132,12 @@ def ticks_of(plot: Plot) -> list[float]:
     if high - low <= SOLVED * max(abs(low), abs(high), ARITHMETIC):
         pad = abs(high) * 0.5 or 1.0
         low, high = low - pad, high + pad
-    raw = (high - low) / TICKS
+    # Steps of a scale at least about so many, before they are made round: what stands beside the axis without crowding.
+    # Chosen, not measured.
+    raw = (high - low) / 4.0
     power = 10.0 ** math.floor(math.log10(raw))
-    step = next(m * power for m in ROUND_STEPS if m * power >= 0.999 * raw)
+    # Round steps of a scale, times a power of ten.
+    step = next(m * power for m in (1.0, 2.0, 2.5, 5.0, 10.0) if m * power >= 0.999 * raw)
     first, last = math.floor(low / step + SOLVED), math.ceil(high / step - SOLVED)
     return [k * step if k else 0.0 for k in range(first, last + 1)]
 

@@ -21,10 +21,7 @@ from kinform.reports.page.meshes import Shape
 from kinform.reports.page.raster import AXES, Buffers, View, rasterise
 
 MOST_SAMPLED = 4_000_000
-"""Samples of a whole shape: 80 MB. Chosen, not measured. Of larger ones, ..."""
-WHOLE_OF_SEEN = 4
-"""... and of those that have so many times as many as a picture shows of them, as of a machine beside the screw that it
-is about, only what the picture shows is drawn."""
+"""Samples of a whole shape: 80 MB. Chosen, not measured."""
 
 
 Floats = NDArray[np.float32]
@@ -88,7 +85,9 @@ class Figure:
         (_, _, width, height), (_, _, wide, high) = (
             self._grid(view.scale, box) for box in (self.box, self._seen(view))
         )
-        return width * height <= min(WHOLE_OF_SEEN * wide * high, MOST_SAMPLED)
+        # Nor is a shape sampled whole that has four times as many samples as a picture shows of them, as of a machine
+        # beside the screw that it is about, only what the picture shows is drawn.
+        return width * height <= min(4 * wide * high, MOST_SAMPLED)
 
     def _seen(self, view: View) -> Array:
         """(2, 2) what the view shows of the box; of nothing, a place."""

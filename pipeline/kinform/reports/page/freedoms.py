@@ -25,8 +25,6 @@ from kinform.reports.page.constants import SHOWN_TURN, SIDE_FRAMES
 
 FINEST_TURN = math.radians(3.0)
 """rad, of one step: the eye sees larger ones as jumps."""
-FULL_TURN = 2.0 * math.pi
-"""rad: no turn is shown further."""
 SHOWN_SLIDE = 0.14
 """Greatest slide of such a driver as a share of the assembly's size; a choice."""
 FOLLOWER_TURN = 1.4
@@ -35,9 +33,10 @@ LARGE_SHARE = 0.25
 """Share of the way that assemblies go whose motion is shown at first order only, so that what opens stays small; a
 choice."""
 MOST_COORDINATES = 240
-"""Assemblies with loops and more joint coordinates than this are shown at first order only: closing them is slow."""
+"""Assemblies with loops and more joint coordinates than this are shown at first order only: closing them is slow.
+Chosen, not measured."""
 MOST_FREEDOMS = 60
-"""Freedoms that are shown."""
+"""Freedoms that are shown. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +114,8 @@ def _reach(freedom: DrivenFreedom, size: float, end: float | None) -> float:
     """How far the driver goes to one side (rad or m, positive)."""
     angular = freedom.coordinate.turns
     if end is not None:
-        return float(min(abs(end), FULL_TURN if angular else size))
+        # no turn is shown further than once round
+        return float(min(abs(end), math.tau if angular else size))
     reach = float(SHOWN_TURN if angular else SHOWN_SLIDE * size)
     fastest = freedom.fastest_turn
     return min(reach, FOLLOWER_TURN * SHOWN_TURN / fastest) if fastest > 0.0 else reach

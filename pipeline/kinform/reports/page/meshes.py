@@ -22,9 +22,6 @@ from kinform.model.surfaces import MeshSurfaces
 CREASE = math.radians(32.0)
 """rad: facets that meet at more than this are not shaded as one surface; polygons of twelve sides still are, as with
 `Tolerances.smooth_edge`."""
-LINE_ANGLE = math.radians(18.0)
-"""rad: edges between two surfaces that meet at more than this are drawn. Chosen by eye: polygons of
-twenty sides, which stand for circles, have none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +79,9 @@ def _split(vertices: Array, faces: Ints, labels: Ints, loose: NDArray[np.bool_])
     corner = faces.astype(np.int64) * np.int64(region.max() + 1 if len(region) else 1) + region[:, None]
     keys, index = np.unique(corner.ravel(), return_inverse=True)
     at = keys // np.int64(region.max() + 1 if len(region) else 1)
-    drawn = (angle > LINE_ANGLE) & (~same | (loose[first] & (angle > CREASE)))
+    # rad: edges between two surfaces that meet at more than this are drawn. Chosen by eye: polygons of twenty sides,
+    # which stand for circles, have none.
+    drawn = (angle > math.radians(18.0)) & (~same | (loose[first] & (angle > CREASE)))
     # each line at the vertices of its first facet
     owner = first[drawn]
     lines = (

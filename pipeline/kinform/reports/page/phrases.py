@@ -9,10 +9,6 @@ from kinform.model.assembly import Assumption
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint
 
-LEAST_GAP = 1e-7
-"""m: smaller gaps are not told. A mesh of 100 mm in single precision has steps of 1e-8 m, and surfaces are fitted to
-some of them."""
-
 
 def joint_sentence(joint: Joint, units: str) -> str:
     """ "revolute about z through (0, 0, 21) mm"."""
@@ -44,7 +40,9 @@ def point_words(type: str, point: Iterable[float] | None, units: str) -> str:
 def patch_words(patch: Patch, units: str) -> str:
     """ "cylinder ⌀6 mm, clearance 0.05 mm, 88.2 mm²"."""
     side = " (surface on one side)" if patch.one_sided else ""
-    gap = "" if abs(patch.gap) < LEAST_GAP else f", gap {words.length(patch.gap, units, 3)}"
+    # m: smaller gaps are not told. A mesh of 100 mm in single precision has steps of 1e-8 m, and surfaces are fitted to
+    # some of them.
+    gap = "" if abs(patch.gap) < 1e-7 else f", gap {words.length(patch.gap, units, 3)}"
     return f"{patch.kind}{side}{_diameter(patch, units)}, {patch.fit}{gap}, {words.area(patch.area, units)}"
 
 

@@ -38,19 +38,20 @@ MOST_PICTURES = 24
 """Errors and warnings with a picture on the page; the others can be shown in the interactive view. Chosen,
 not measured: the page stays a few megabytes."""
 OVERVIEW_WIDTH, OVERVIEW_HEIGHT = 960, 600
-"""px, of the picture of the whole."""
+"""px, of the picture of the whole. Chosen by eye."""
 PICTURE_WIDTH, PICTURE_HEIGHT = 480, 320
-"""px, of the picture of a finding."""
+"""px, of the picture of a finding. Chosen by eye."""
 SIGNS_MARGIN = 1.5
-"""The same where only signs of joints are drawn, which have a size of their own. Chosen by eye."""
+"""Size of a picture over that of what it holds where only signs of joints are drawn, which have a size of their own.
+Chosen by eye."""
 FAINT = 0.22
 """Weight of what a finding is not about. Chosen by eye, as the next two."""
 GLASS = 0.35
 """Weight of a part that stands before the place where it meets another."""
 TINT = 0.4
-"""Share of red in parts that meet."""
+"""Share of red in parts that meet. Chosen by eye."""
 OVERLAP_WEIGHT, FINDING_OVERLAP_WEIGHT = 0.75, 0.8
-"""Weights of overlaps over the whole, and over what a finding is about."""
+"""Weights of overlaps over the whole, and over what a finding is about. Chosen by eye."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,6 +23,7 @@ VIEW_MARGIN = 1.08
 
 
 NOTHING = np.uint64(0xFFFFFFFFFFFFFFFF)
+"""Key of a pixel that nothing covers: farther than all depths."""
 
 
 def _axes() -> Array:

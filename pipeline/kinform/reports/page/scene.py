@@ -26,10 +26,8 @@ BODY_COLOURS = (
     "#6b9ac4", "#d39a5b", "#79ab83", "#b08abf", "#c9807a", "#6fb0ae", "#bda956", "#8a92cf", "#c78ca9", "#94a86a",
 )  # fmt: skip
 """Of the other bodies, one after the other and again from the first."""
-SIGN_SIZE = 1.25
-"""A joint's sign over half the extent of its contact, so that it stands out of the part. Chosen by eye."""
 LEAST_SIGN, MOST_SIGN = 0.045, 0.16
-"""Shares of the assembly's size between which a sign stays."""
+"""Shares of the assembly's size between which a sign stays. Chosen by eye."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,7 +139,8 @@ class Scene:
             point = centre if centre is not None else 0.5 * (self.box[0] + self.box[1])
         elif centre is not None and joint.axis is not None and joint.type in ("revolute", "cylindrical", "screw"):
             point = point + joint.axis * float(joint.axis @ (centre - point))
-        return point, float(np.clip(SIGN_SIZE * extent, LEAST_SIGN * self.size, MOST_SIGN * self.size))
+        # A joint's sign over half the extent of its contact, so that it stands out of the part. Chosen by eye.
+        return point, float(np.clip(1.25 * extent, LEAST_SIGN * self.size, MOST_SIGN * self.size))
 
 
 def _corners(mesh: Mesh) -> Array:

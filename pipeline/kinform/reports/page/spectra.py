@@ -26,14 +26,6 @@ from kinform.reports.page.curves import (
 )
 from kinform.simulation import Spectrum, amplitude_spectrum, envelope
 
-SPECTRUM_DECADES = 4
-"""Decades of amplitude that a spectrum shows: sensors are rarely better, and the lobes of the window fade
-below."""
-LEAST_FREQUENCIES = 24
-"""Frequencies that a spectrum shows at least; else twice as many as stand above its lowest decade. Chosen, not
-measured."""
-
-
 METHOD = (
     "Amplitudes of sines, of what is left without a straight line, under a Hann window over the whole run; between two "
     "frequencies of a spectrum a sine shows up to 15 % lower, its line is named as it is. What is faster than half the "
@@ -55,10 +47,13 @@ def spectrum_svg(plot: Plot, time: Array) -> str:
     if not top > SOLVED * size:
         return ""
     high = math.ceil(math.log10(top))
-    low = high - SPECTRUM_DECADES
+    # Decades of amplitude that a spectrum shows: sensors are rarely better, and the lobes of the window fade below.
+    low = high - 4
     whole = drawn[0][1].frequency
     seen = max(int(np.flatnonzero(spectrum.amplitude > 10.0**low).max(initial=0)) for _, spectrum in drawn)
-    last = float(whole[min(max(2 * seen, LEAST_FREQUENCIES), len(whole) - 1)])
+    # Frequencies that a spectrum shows at least; else twice as many as stand above its lowest decade. Chosen, not
+    # measured.
+    last = float(whole[min(max(2 * seen, 24), len(whole) - 1)])
     x, y = _scales(last, low, high)
     several, below = len(drawn) > 1, PLOT_HEIGHT + 8
     parts = _axes(x, y, last, low, high)

@@ -16,8 +16,6 @@ from kinform.reports.page.constants import PORTION
 
 SIGNAL_COLOUR = "#e8590c"
 """Of what a finding is about."""
-ARC_PIECES = 28
-"""Pieces of an arc: a circle of 150 px is off by half a pixel."""
 
 
 Image = NDArray[np.float32]
@@ -60,7 +58,8 @@ def _across(axis: Array) -> tuple[Array, Array]:
 
 def _arc(centre: Array, axis: Array, radius: float, start: float, end: float) -> Array:
     u, v = _across(axis)
-    angle = np.linspace(start, end, ARC_PIECES + 1)[:, None]
+    # Pieces of an arc: a circle of 150 px is off by half a pixel.
+    angle = np.linspace(start, end, 28 + 1)[:, None]
     return np.asarray(centre + radius * (np.cos(angle) * u + np.sin(angle) * v))
 
 
@@ -130,6 +129,7 @@ def ring(image: Image, centre: Array, radius: float, width: float) -> None:
 
 
 _SIGNAL = [*rgb(SIGNAL_COLOUR), 1.0]
+"""The colour of signals, opaque."""
 
 Pixels = tuple[NDArray[np.int64], NDArray[np.int64]]
 

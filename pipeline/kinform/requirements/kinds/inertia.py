@@ -17,9 +17,6 @@ from kinform.requirements.kind import Kind, Record
 from kinform.requirements.quantity import DIRECTION, PLACE, POINT, Quantity
 from kinform.requirements.table import RequirementTable, bound_faults
 
-INERTIA_SPREAD = 5.0 / 3.0
-"""Relative error of the inertia for that of the mass: at equal proportions mass grows with the third power of the
-size and inertia with the fifth."""
 KG_M2 = Quantity("number", "kg·m²")
 REMEDY = "Move material, or change the bound."
 
@@ -56,7 +53,9 @@ def judge(evidence: Evidence, wanted: InertiaRecord) -> Answer:
     through = "the centre of mass" if wanted.point is None else "the point"
     name = f"the moment of inertia of {whose(wanted.of)} about {direction(wanted.axis)} through {through}"
     compared = Compared(name, _shown, REMEDY, "kg·m²", whole.centre)
-    return beside_bounds(compared, value, INERTIA_SPREAD * whole.bound * value, wanted.minimum, wanted.maximum)
+    # Relative error of the inertia for that of the mass: at equal proportions mass grows with the third power of the
+    # size and inertia with the fifth.
+    return beside_bounds(compared, value, (5.0 / 3.0) * whole.bound * value, wanted.minimum, wanted.maximum)
 
 
 def _shown(value: float, digits: int) -> str:

@@ -25,10 +25,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Nums, Work,
 )  # fmt: skip
 
-CORNER_TURN = 0.05
-"""Curvature of the motion times the margin from which on it turns from one branch of the loops into another. At the
-tip of such a corner it is 0.2 to 3, wherever lengths differ by 1e-12 to 1e-3 of themselves; where branches cross it is
-the margin times the curvature of either, below 0.005."""
 WIDEST_GAP = 0.4667
 """Share of the step: middle of the widest gap between evaluations, from a third to three fifths."""
 CROSSING_CLEAR = 0.08
@@ -36,15 +32,6 @@ CROSSING_CLEAR = 0.08
 between evaluations leaves 0.13 to either side."""
 CROSSING_AHEAD = 1.2
 """A pose so far, in steps, is near the step's end: the next step would begin too near to it. A choice."""
-SLOPES_ALIKE = 0.5
-"""Slopes of a line agree when the lesser is more than this share of the greater: a choice; branches are nearly straight
-over a step."""
-CROSSING_PASSED = 0.05
-"""Share of the step: a pose nearer ahead than this counts as passed: a step laid across would be twenty times shorter.
-A choice."""
-NEAREST_APPROACH = 0.2
-"""Least share of the way to a singular pose that a step towards it goes: a choice, so that it is reached in a few
-steps."""
 
 
 def alike(a: float, b: float) -> float:
@@ -73,7 +60,9 @@ def tip(nums: Nums, clock: Row) -> bool:
         right, after = times[later] - x, clock[MARGINS + later]
         # The tip is on that side where one line falls to it and another rises from it as steeply.
         ahead, behind = alike((before - f) / left, (f + after) / right), alike((after - f) / right, (before + f) / left)
-        if max(ahead, behind) < SLOPES_ALIKE:
+        # Slopes of a line agree when the lesser is more than this share of the greater: a choice; branches are nearly
+        # straight over a step.
+        if max(ahead, behind) < 0.5:
             return False
         place = x + right * f / (f + after) if ahead > behind else x - left * f / (f + before)
         near = False
@@ -86,11 +75,15 @@ def tip(nums: Nums, clock: Row) -> bool:
 
 def laid(step: float, distance: float) -> float:
     """The step to take when `step` is wanted and a singular pose is `distance` ahead, negative behind."""
-    if distance <= CROSSING_PASSED * step or distance > (1.0 + WIDEST_GAP) * step:
+    # Share of the step: a pose nearer ahead than this counts as passed: a step laid across would be twenty times
+    # shorter. A choice.
+    if distance <= 0.05 * step or distance > (1.0 + WIDEST_GAP) * step:
         return step
     if distance <= WIDEST_GAP * step:
         return distance / WIDEST_GAP
-    return max(distance - WIDEST_GAP * step, NEAREST_APPROACH * distance)
+    # Least share of the way to a singular pose that a step towards it goes: a choice, so that it is reached in a few
+    # steps.
+    return max(distance - WIDEST_GAP * step, 0.2 * distance)
 
 
 def turns_corner(ints: Ints, nums: Nums, work: Work, clock: Row) -> bool:
@@ -112,4 +105,7 @@ def turns_corner(ints: Ints, nums: Nums, work: Work, clock: Row) -> bool:
     for k in range(ints[COUNTS][0][RATES]):
         across = (slopes[first + k] - along / size * state[first + k]) / nums[SCALE][k][0]
         bend += across * across
-    return math.sqrt(bend) * margin > CORNER_TURN * size
+    # Curvature of the motion times the margin from which on it turns from one branch of the loops into another. At the
+    # tip of such a corner it is 0.2 to 3, wherever lengths differ by 1e-12 to 1e-3 of themselves; where branches cross
+    # it is the margin times the curvature of either, below 0.005.
+    return math.sqrt(bend) * margin > 0.05 * size

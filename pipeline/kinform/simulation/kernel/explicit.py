@@ -35,17 +35,9 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Counts, Nums, Work,
 )  # fmt: skip
 
-SAFETY = 0.9
-"""Share of the step that would just keep the tolerance: that of Hairer's DOP853."""
-LEAST_SHRINK = 0.2
-"""Share of a step below which the next is not made after an error, however great: a choice; DOP853 has a third."""
-LEAST_SHRINK_AT_CROSSING = 0.6
-"""The same near a singular pose, where the error may be that of one evaluation: a choice."""
 GREATEST_GROWTH = 2.5
 """Greatest growth of a step: DOP853 allows 6, with which one can land far outside the region of stability
 unnoticed."""
-EASY_ERROR = 0.4
-"""Error over the tolerance below which a step that was cut short does not shorten the next: a choice."""
 SHORTEST_STEP = 1e-13
 """Share of the time (of 1 s at least) below which a step is none: 450 spacings of doubles, so that times within it are
 still apart."""
@@ -69,8 +61,6 @@ ROUNDINGS_EVERY = 20
 CROSSING_AROUND = 0.1
 """Share of the step about the place where a singular pose is expected, within which it is: as `CROSSING_CLEAR`, a
 little more. A choice."""
-CROSSING_NARROWINGS = 12
-"""Times that this is narrowed by the golden section, to 0.62 each: to 3e-3 of it, 3e-4 of the step."""
 
 
 def sample(ints: Ints, nums: Nums, work: Work, clock: Row, t: float, y: Row, out: Row) -> None:
@@ -143,7 +133,8 @@ def look(ints: Ints, nums: Nums, work: Work, clock: Row, y: Row) -> None:
     place = (clock[CROSSING] - clock[NOW]) / h
     low, high = max(0.0, place - CROSSING_AROUND), min(1.0, place + CROSSING_AROUND)
     first = 0.0
-    for k in range(2 * CROSSING_NARROWINGS):
+    # Twelve times this is narrowed by the golden section, to 0.62 each: to 3e-3 of it, 3e-4 of the step.
+    for k in range(2 * 12):
         # The two places of a golden section, one after the other.
         x = low + (0.382 if k % 2 == 0 else 0.618) * (high - low)
         for i in range(ints[COUNTS][0][SIZE]):
@@ -162,7 +153,8 @@ def look(ints: Ints, nums: Nums, work: Work, clock: Row, y: Row) -> None:
 def fitting(error: float) -> float:
     """Share of a step of that error over the tolerance that would keep it: the error of order 8 goes with the eighth
     power of the length."""
-    return float(SAFETY * error**-0.125)
+    # Share of the step that would just keep the tolerance: that of Hairer's DOP853.
+    return float(0.9 * error**-0.125)
 
 
 def shrink(error: float, least: float) -> float:
@@ -187,8 +179,9 @@ def lay_anew(nums: Nums, clock: Row, tally: Counts) -> bool:
     if not (error < FAILED and tally[LAYINGS] < MOST_LAYINGS and tip(nums, clock)):
         return False
     if error > 1.0:
-        # Perhaps the evaluation near the pose is to blame, perhaps the step is too long besides.
-        clock[STEP] *= shrink(error, LEAST_SHRINK_AT_CROSSING)
+        # Perhaps the evaluation near the pose is to blame, perhaps the step is too long besides. Near a singular pose,
+        # where the error may be that of one evaluation, a step shrinks to no less than 0.6: a choice.
+        clock[STEP] *= shrink(error, 0.6)
     again = laid(clock[STEP], clock[CROSSING] - clock[NOW])
     return abs(again - h) > LAID_ALIKE * h and clock[NOW] + again < clock[END]
 
@@ -205,7 +198,8 @@ def attempt(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Count
         return REJECTED
     tally[LAYINGS] = 0
     if not clock[ERROR] < 1.0:
-        clock[STEP] = clock[SPAN] * shrink(clock[ERROR], LEAST_SHRINK)
+        # Share of a step below which the next is not made after an error, however great: a choice; DOP853 has a third.
+        clock[STEP] = clock[SPAN] * shrink(clock[ERROR], 0.2)
         clock[GROWTH] = 1.0
         return REJECTED
     gap = project(ints, nums, work, clock[REACHED], slopes[NEW], clock[CLOSED], False)
@@ -283,7 +277,8 @@ def accept(ints: Ints, work: Work, y: Row, clock: Row, fastest: float) -> None:
     clock[NOW] = clock[REACHED]
     growth = clock[GROWTH]
     step = h * (min(growth, fitting(error)) if error > 0.0 else growth)
-    if h < wanted and error < EASY_ERROR:
+    # Error over the tolerance below which a step that was cut short does not shorten the next: a choice.
+    if h < wanted and error < 0.4:
         # Laid shorter than the error called for: the next need not be.
         step = max(step, wanted)
     if fastest * step > STABLE_DECAY:

@@ -17,10 +17,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Table, Index, Nums, Work,
 )  # fmt: skip
 
-PIVOT_SWAP = 1.5
-"""Rows change places for a pivot so many times as large: a choice. Any order gives the same motion; fewer changes keep
-rows sparse."""
-
 
 def line_of(frame: Row, tip: Row, length: float, axis: int) -> tuple[float, float, float, float, float, float]:
     """The wrench (τ; f) about the centre whose power is the rate of the gap along axis 0 to 5 of a loop,
@@ -131,7 +127,9 @@ def eliminate(ints: Ints, nums: Nums, work: Work) -> float:
         last = lowest[k] if lowest[k] > last else last
         lowest[k] = last
         for i in range(k + 1, last + 1):
-            if abs(rows[i][k]) > PIVOT_SWAP * abs(rows[best][k]):
+            # Rows change places for a pivot so many times as large: a choice. Any order gives the same motion; fewer
+            # changes keep rows sparse.
+            if abs(rows[i][k]) > 1.5 * abs(rows[best][k]):
                 best = i
         if best != k:
             # The same rows in an order that suits the pose, kept for the next: else a chain of loops

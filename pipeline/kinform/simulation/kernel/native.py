@@ -29,7 +29,9 @@ from numba.core import cgutils, types
 from numba.core.typing.templates import AbstractTemplate, infer_global
 from numba.extending import lower_builtin, models, register_model
 
+# 64-bit integers, to LLVM and to numba
 WORD, WHOLE = ir.IntType(64), types.int64
+# two 64-bit integers
 PAIR = types.UniTuple(WHOLE, 2)
 FIRST = {"target": "cpu"}
 """Of a template: numba asks it before those that are for any target."""

@@ -21,13 +21,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Nums, Work,
 )  # fmt: skip
 
-CLOSING_PIVOT = 0.3
-"""Pivots of the joints that close loops are taken first while they are larger than this: a choice. Entries are scaled
-to about 1; small pivots lose digits."""
-PASS = 200
-"""Multiplications a rate of one pass of articulated bodies along the tree (`choose_method`). Counted; with it the two
-ways take as long as each other where they are said to."""
-
 
 def choose_pivots(ints: Ints, nums: Nums, work: Work) -> None:
     """Picks rows and dependent rates by complete pivoting, those of closing joints first; writes the
@@ -47,7 +40,9 @@ def choose_pivots(ints: Ints, nums: Nums, work: Work) -> None:
     # of each row the largest rates that may be dependent, any and of closing joints: only rows that change are searched
     most = _Largest(rows, ~led), _Largest(rows, closing & ~led)
     for _ in range(rank):
-        best = most[1] if most[1].size.max() > CLOSING_PIVOT else most[0]
+        # Pivots of the joints that close loops are taken first while they are larger than this: a choice. Entries are
+        # scaled to about 1; small pivots lose digits.
+        best = most[1] if most[1].size.max() > 0.3 else most[0]
         row = int(np.argmax(best.size))
         column = int(best.place[row])
         work[VECTORS][REFERENCE][len(chosen)] = max(float(best.size[row]), TINY)
@@ -105,7 +100,9 @@ def choose_method(ints: Ints, nums: Nums) -> None:
     # Multiplications, of either: reduced mass matrices, or passes along the tree and a matrix of the rows.
     through_rows = 2 * depth.sum() * rest + rank * rest**2 / 2 + rest**3 / 6
     reduced = through_rows if rank or led else (depth**2).sum() / 2
-    passes = PASS * n * (rows + 2) + rows * n * rows / 2 + rows**3 / 6
+    # Multiplications a rate of one pass of articulated bodies along the tree (`choose_method`). Counted; with it the
+    # two ways take as long as each other where they are said to.
+    passes = 200 * n * (rows + 2) + rows * n * rows / 2 + rows**3 / 6
     wanted = passes < reduced and set(loose.tolist()) <= set(np.array(mode[ORDER])[:rank].tolist())
     mode[STANDING][:n] = standing.tolist()
     mode[WAY][0] = int(wanted)

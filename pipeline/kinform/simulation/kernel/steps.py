@@ -25,10 +25,6 @@ CLOSED_SHARE = 1e-4
 none of its error."""
 DISTURBANCE = 2.0**-51
 """Share of a number by which it is disturbed to see what roundings do: twice the spacing of doubles."""
-ROUGHER_SLOPES = 4.0
-"""Times what one disturbance does to the slopes that is allowed for: others do more. A choice."""
-THIRD_ORDER_SHARE = 0.01
-"""Weight of the estimate of order 3 beside that of order 5 in the error of a step: that of Hairer's DOP853."""
 ROUNDING_NOISE = 1e-13
 """Relative rounding of accelerations, times the margin: loops are closed to 1e-14 (`SolverSettings.closed`), and a few
 such gaps remain in them. Not a level of rounding: steps near singular poses are as long as it allows."""
@@ -112,7 +108,8 @@ def try_step(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: R
         # Work is the small difference of great energies where a heavy thing goes on at its speed.
         least = clock[ATOL] * max(1.0, clock[ENERGY]) if i == size - 1 else clock[ATOL]
         # What rounding does to a slope no step can do better than.
-        allowed = least + clock[RTOL] * max(abs(y[i]), abs(new[i])) + h * ROUGHER_SLOPES * slopes[ROUND][i]
+        # Times what one disturbance does to the slopes that is allowed for: others do more. A choice.
+        allowed = least + clock[RTOL] * max(abs(y[i]), abs(new[i])) + h * 4.0 * slopes[ROUND][i]
         three, five = three / allowed, five / allowed
         third += three * three
         fifth += five * five
@@ -120,7 +117,8 @@ def try_step(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: R
         return 0.0
     # Near a singular pose rounding errors of the accelerations grow: no step can do better than they.
     noise = max(1.0, ROUNDING_NOISE / max(clock[LEAST], LEAST_NOISY_MARGIN) / clock[RTOL])
-    return float(h * fifth / math.sqrt((fifth + THIRD_ORDER_SHARE * third) * (size - meters)) / noise)
+    # Weight of the estimate of order 3 beside that of order 5 in the error of a step: that of Hairer's DOP853.
+    return float(h * fifth / math.sqrt((fifth + 0.01 * third) * (size - meters)) / noise)
 
 
 def prepare(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: Row) -> None:

@@ -10,13 +10,10 @@ import numpy as np
 from kinform.behaviour.components import RigidBody, System
 from kinform.behaviour.joints import JointGeometry
 from kinform.behaviour.primitives import Ball, OneFreedom, Primitive
+from kinform.foundation.rounding import SINGLE
 from kinform.model.arrays import Array
 from kinform.simulation.mechanism.mechanism import BallLink, Mechanism, Slot
 from kinform.simulation.mechanism.topology import Topology, arrange
-
-ONE_PLACE = 1e-6
-"""Share of the greatest radius of gyration within which joints and centres of mass are at one place: rounding, and what
-fits of axes differ by."""
 
 
 @dataclass
@@ -105,7 +102,8 @@ def _extent(system: System) -> tuple[Array, float]:
     low, high = np.min(points, axis=0), np.max(points, axis=0)
     length = 0.5 * float(np.linalg.norm(high - low))
     gyration = max((_gyration(body) for body in system.bodies if isinstance(body, RigidBody)), default=0.0)
-    if length <= ONE_PLACE * gyration:
+    # joints and centres of mass at one place, but for what fits of axes differ by
+    if length <= SINGLE * gyration:
         length = gyration
     return 0.5 * (low + high), length if length > 0.0 else 1.0
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.behaviour.components import RigidBody, System
-from kinform.foundation.rounding import TINY
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, TINY
 from kinform.mechanism.rank import factor
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.kernel import equations, layout, masses, motion, pivoting
@@ -16,11 +16,6 @@ from kinform.simulation.mechanism.actuation import Actuation
 from kinform.simulation.mechanism.kernel_tables import tabulate
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.states import States
-
-NO_MASS = 1e-13
-"""Share of the greatest inertia of a free motion below which one has none."""
-MOVES_WITHOUT_MASS = 1e-6
-"""Share (rad, or lengths) of a joint in such a motion from which on it is named."""
 
 
 class Dynamics:
@@ -74,8 +69,9 @@ class Dynamics:
             return ()
         inner = null.T @ self.mass_matrix(q)[np.ix_(free, free)] @ null
         values, vectors = np.linalg.eigh(inner)
-        empty = null @ vectors[:, values <= NO_MASS * max(float(values.max()), TINY)]
-        moving = free[np.abs(empty / scale[:, None]).max(axis=1, initial=0.0) > MOVES_WITHOUT_MASS]
+        # motions without mass, and the joints that take part in them, but for rounding
+        empty = null @ vectors[:, values <= ARITHMETIC * max(float(values.max()), TINY)]
+        moving = free[np.abs(empty / scale[:, None]).max(axis=1, initial=0.0) > SINGLE]
         return mechanism.joints_of(moving)
 
     def energy(self, q: Array, v: Array, states: States) -> tuple[Array, Array]:

@@ -10,11 +10,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from kinform.foundation.graphs.graph import UnionFind
+from kinform.foundation.rounding import ARITHMETIC
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.mechanism.mechanism import Mechanism
-
-UNSEEN = 1e-13
-"""Of the most that a condition sees of a wrench in a loop: less of a direction of it is rounding, and none is seen."""
 
 
 def systems_of_loops(shares: Array) -> tuple[Ints, Ints]:
@@ -76,7 +74,7 @@ def _short(rows: Array, share: Array) -> Array:
         return rows
     own = np.argsort(share == 0.0, axis=2, kind="stable")[None, :, :, None, :count]
     _, values, right = np.linalg.svd(np.take_along_axis(rows, own, axis=4), full_matrices=False)
-    least = UNSEEN * values.max(axis=(1, 2, 3), initial=0.0, keepdims=True)
+    least = ARITHMETIC * values.max(axis=(1, 2, 3), initial=0.0, keepdims=True)
     many = max(1, int(np.count_nonzero(values > least, axis=3).max()))
     out = np.zeros((*rows.shape[:3], many, rows.shape[4]))
     np.put_along_axis(out, own, values[..., :many, None] * right[..., :many, :], axis=4)

@@ -17,22 +17,17 @@ import numpy as np
 
 from kinform.behaviour.joints import JointKind
 from kinform.behaviour.primitives import OneFreedom
+from kinform.foundation.algebra.displacements import UNMOVED
 from kinform.foundation.algebra.spatial import along_motion, multiply, rotation_vector, to_matrix
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
-CORNER_MARGIN = 2.0
-"""Margin of a corner over the root of the difference in lengths that makes it, as a share of the mechanism's length:
-at most."""
 LENGTHS_ROUNDED = 1e-13
 """Share of the mechanism's length by which lengths that are exact in double precision may be off: a few hundred
 roundings, as poses are products of many factors."""
 AT_LIMIT, AT_LIMIT_SHARE = 0.05, 0.1
 """Margin of the loops for what is not led, and its share of that for all rates, below which a run that cannot go on
 has come to the end of what the loops let be led. Runs end at margins of a hundredth and less. A choice."""
-
-
-IDENTITY = np.eye(4)
 
 
 @dataclass(frozen=True)
@@ -121,7 +116,9 @@ class Mechanism:
     def narrow(self) -> float:
         """The margin (smallest singular value or pivot of the loops over the largest) below which what is known of
         lengths does not tell whether branches of the motion meet, or part just before."""
-        return CORNER_MARGIN * float(np.sqrt(max(self.uncertain, LENGTHS_ROUNDED)))
+        # Margin of a corner over the root of the difference in lengths that makes it, as a share of the mechanism's
+        # length: at most.
+        return 2.0 * float(np.sqrt(max(self.uncertain, LENGTHS_ROUNDED)))
 
     def folds(self, q: Array, rank: int) -> bool:
         """Whether branches of the motion meet at positions q (nq,), or part just before, as far as is known of lengths:
@@ -166,14 +163,14 @@ class Mechanism:
         values = q[self.screw_q]
         factors = np.empty((len(values), 1, 3))
         factors[:, 0, 0], factors[:, 0, 1], factors[:, 0, 2] = values, np.sin(values), 1.0 - np.cos(values)
-        motions = IDENTITY + (factors @ self.screw_terms.reshape(-1, 3, 16)).reshape(-1, 4, 4)
-        own: list[Array] = [IDENTITY] * len(self.parent)
+        motions = UNMOVED + (factors @ self.screw_terms.reshape(-1, 3, 16)).reshape(-1, 4, 4)
+        own: list[Array] = [UNMOVED] * len(self.parent)
         for link, motion in zip(self.screw_link, motions, strict=True):
             own[link] = motion
         for ball in self.balls:
             own[ball.link] = _ball_motion(ball, q)
         X = np.empty((len(self.parent), 4, 4))
-        X[0] = IDENTITY
+        X[0] = UNMOVED
         for link in range(1, len(self.parent)):
             np.matmul(X[self.parent[link]], own[link], out=X[link])
         return X

@@ -7,13 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.constants import COVERAGE
 from kinform.foundation.graphs.graph import blocks
+from kinform.foundation.rounding import ARITHMETIC
 from kinform.model.kinematics import Joint, Kinematics
-
-LENGTH_SIGMAS = 3.0
-"""Standard uncertainties by which lengths may be off: beyond it chance is below 1 %."""
-ONE_DIRECTION = 1e-12
-"""Sine between axes that were made parallel: rounding."""
 
 
 def loop_uncertainty(kinematics: Kinematics, length: float) -> float:
@@ -29,11 +26,11 @@ def loop_uncertainty(kinematics: Kinematics, length: float) -> float:
         if len(members) > 1:
             places = [joint.point_uncertainty / length for joint in members]
             turns = [] if _planar(members) else [joint.axis_uncertainty for joint in members]
-            worst = max(worst, LENGTH_SIGMAS * float(np.linalg.norm([*places, *turns])))
+            worst = max(worst, COVERAGE * float(np.linalg.norm([*places, *turns])))
     return worst
 
 
 def _planar(joints: Sequence[Joint]) -> bool:
     """Whether all turns are about one direction: tilts of such axes change lengths by their squares only."""
     axes = [joint.axis for joint in joints if joint.type != "prismatic"]
-    return not any(a is None or axes[0] is None or np.linalg.norm(cross(a, axes[0])) > ONE_DIRECTION for a in axes)
+    return not any(a is None or axes[0] is None or np.linalg.norm(cross(a, axes[0])) > ARITHMETIC for a in axes)

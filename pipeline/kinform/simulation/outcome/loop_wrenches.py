@@ -13,10 +13,10 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross_matrix
-from kinform.foundation.rounding import SINGLE, TINY
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.simulation.mechanism.loop_systems import UNSEEN, alike, systems_of_loops
+from kinform.simulation.mechanism.loop_systems import alike, systems_of_loops
 from kinform.simulation.outcome.loop_freedoms import least_wrenches
 
 
@@ -140,7 +140,9 @@ def _conditions(shares: Shares, stack: _Stack, S: Array, points: Array, rest: Ar
     share = shares.by_loops[shares.owner[stack.rates][:, None, :], stack.loops[:, :, None]]
     passed = share[..., None] * (S[:, stack.rates][:, :, None] @ lever)
     values, basis = _seen_from(passed, share)
-    taken = np.arange(6) < np.count_nonzero(values > UNSEEN * values.max(initial=0.0), axis=3).max(axis=(0, 1))[:, None]
+    taken = (
+        np.arange(6) < np.count_nonzero(values > ARITHMETIC * values.max(initial=0.0), axis=3).max(axis=(0, 1))[:, None]
+    )
     wrenches = lever @ basis
     seen, unseen = (
         _Directions(which[0], wrenches[:, :, which[0], :, which[1]].transpose(1, 2, 0, 3))

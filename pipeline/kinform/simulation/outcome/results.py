@@ -24,12 +24,6 @@ from kinform.simulation.outcome.reactions import Reactions, reactions
 from kinform.simulation.record import Record
 from kinform.simulation.settings import SolverSettings
 
-TRUSTED_DRIFT = 1e-5
-"""Drift of the energy over the energy exchanged up to which a run is trusted: runs at the default tolerances stay a
-hundred times below."""
-SUMMED_DRIFT = 1e-8
-"""Drift of the energy over the kinetic energy up to which it is rounding of sums: ten times that of sound runs."""
-
 
 def while_in_mesh(mechanism: Mechanism, system: System, record: Record) -> Record:
     """The record up to where the last teeth of a gear let go: from there on nothing couples its shafts."""
@@ -117,8 +111,11 @@ def _notes_of_energy(times: Array, energy: Array) -> tuple[str, ...]:
     total = energy @ np.array([1.0, 1.0, -1.0])
     exchanged = float(np.ptp(energy, axis=0).max(initial=0.0)) if len(energy) else 0.0
     # Where bodies exchange energy only among each other, all that can be seen is that the sum of it stays.
-    least = ARITHMETIC + SUMMED_DRIFT * float(np.abs(energy[:, 0]).max(initial=0.0))
-    wrong = np.flatnonzero(np.abs(total - total[:1]) > TRUSTED_DRIFT * exchanged + least)
+    # Drift of the energy over the kinetic energy up to which it is rounding of sums: ten times that of sound runs.
+    least = ARITHMETIC + 1e-8 * float(np.abs(energy[:, 0]).max(initial=0.0))
+    # Drift of the energy over the energy exchanged up to which a run is trusted: runs at the default tolerances stay a
+    # hundred times below.
+    wrong = np.flatnonzero(np.abs(total - total[:1]) > 1e-5 * exchanged + least)
     if not len(wrong) or exchanged == 0.0:
         return ()
     share = float(np.abs(total - total[0]).max()) / exchanged

@@ -21,9 +21,6 @@ from kinform.model.arrays import Array
 from kinform.simulation.solver.constants import CONVERGED
 from kinform.simulation.solver.run_state import Run
 
-COLLOCATION_ROUNDS = 40
-"""Iterations of the stages: five to ten are usual. A choice."""
-
 
 @dataclass(frozen=True, eq=False)
 class Passage:
@@ -51,7 +48,8 @@ def pass_over(run: Run, start: Array, begin: float, span: float, slopes: Array) 
     """The step from the state `start`, with slopes (s, size) to begin with; None where it cannot be made."""
     stages = len(slopes)
     nodes, slopes, before = places_of(stages), slopes.copy(), np.inf
-    for _ in range(COLLOCATION_ROUNDS):
+    # Iterations of the stages: five to ten are usual. A choice.
+    for _ in range(40):
         change = 0.0
         for i, place in enumerate(nodes):
             state = start + span * _sum(_integrals(place, stages), slopes)

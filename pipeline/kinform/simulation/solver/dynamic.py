@@ -26,11 +26,6 @@ from kinform.simulation.solver.stops import Contact
 PLAIN = 20_000
 """Evaluations times links that are made without the compiled functions: 25 μs each, 60 in loops, so 0.5 to 1.2 s, about
 as long as loading them takes."""
-UNREADY = 10
-"""Times more where they would have to be compiled first, which takes ten seconds."""
-LONGER = 1.5
-"""Times the plain evaluations that a run must promise to take before it is compiled early: its pace may change. A
-choice."""
 SHOWN = 60
 """Steps from which on the length of the whole run can be told: the first dozen grow from a short one. A choice."""
 LARGE = 1000
@@ -72,7 +67,8 @@ class _Driver:
         self.contact = Contact(run)
         self.looked = 0
         self.mark = (0, float(run.times[0]))
-        share = PLAIN if ready(run.dynamics.tables) else PLAIN * UNREADY
+        # Times more where they would have to be compiled first, which takes ten seconds.
+        share = PLAIN if ready(run.dynamics.tables) else PLAIN * 10
         self.plain = max(1, share // len(run.dynamics.mechanism.parent))
         """Evaluations."""
         if run.dynamics.mechanism.rates * run.dynamics.rank > LARGE:
@@ -126,7 +122,9 @@ class _Driver:
         run, tally = self.run, self.run.tally
         made = int(tally[layout.SLOPES] + tally[layout.NEXT])
         done = (run.clock[layout.NOW] - run.times[0]) / (run.times[-1] - run.times[0])
-        return made >= self.plain or (int(tally[layout.STEPS]) >= SHOWN and made > LONGER * self.plain * done)
+        # Times the plain evaluations that a run must promise to take before it is compiled early: its pace may change.
+        # A choice.
+        return made >= self.plain or (int(tally[layout.STEPS]) >= SHOWN and made > 1.5 * self.plain * done)
 
     def _looks(self) -> bool:
         """Whether it is time to ask if the implicit method is to go on."""

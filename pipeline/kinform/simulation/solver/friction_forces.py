@@ -34,11 +34,6 @@ from kinform.simulation.solver.constants import CONVERGED, MOST_ROUNDS
 from kinform.simulation.solver.normal_loads import Responses, Sight, normal_loads, pressing_teeth
 from kinform.simulation.solver.run_state import Run
 
-SLIP_STEEPEST = 1.0 - SOLVED
-"""Growth of friction with itself, by the loads that it causes, from which on its answer is not unique: 1, but for
-rounding of what is solved for (`rounding.SOLVED`)."""
-
-
 _FLANKS: WeakKeyDictionary[Dynamics, list[int]] = WeakKeyDictionary()
 """With which sides the teeth of their gears pushed last: where to begin."""
 
@@ -139,7 +134,9 @@ def _settled(
         least = least + leaning * passed[:, 0]
         share = np.linalg.inv(left) if np.linalg.det(left) > 0.0 else np.full(left.shape, np.inf)
         steep = np.abs(share) @ steep if np.all(np.isfinite(share)) else np.full(left.shape, 2.0)
-    if float(np.abs(np.linalg.eigvals(steep)).max()) >= SLIP_STEEPEST:
+    # Growth of friction with itself, by the loads that it causes, from which on its answer is not unique: 1, but for
+    # rounding of what is solved for (`rounding.SOLVED`).
+    if float(np.abs(np.linalg.eigvals(steep)).max()) >= 1.0 - SOLVED:
         joints = [one.joint for one, _ in pairs]
         raise NotDeterminedError(_doubt(joints, t), joints)
     for _ in range(MOST_ROUNDS):  # below `SLIP_STEEPEST` there is one answer; they reach it at up to 0.98 a round

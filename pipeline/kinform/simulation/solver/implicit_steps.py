@@ -27,8 +27,6 @@ from kinform.simulation.solver.stiffness import jacobian, vibration
 DAMPING_STEP = 100.0
 """Phase (rad) of the fastest vibration in a step that damps it, by 3/100; one of a tenth of its frequency by 0.3, one
 of a thousandth by 1e-9 of itself. Steps that are cut short count as damping from 0.3 of it on, by 0.1."""
-DAMPING_STEPS = 16
-"""Steps that damp: a vibration to 0.1^16, the last bit, at least of what it was."""
 WITHOUT_CONTROL = 1e3
 """Relative and absolute error a step that no step has: errors do not control the steps that damp. Any great number."""
 DAMPING_SETTLED = 1e-10
@@ -36,17 +34,6 @@ DAMPING_SETTLED = 1e-10
 (`SolverSettings.implicit_atol`)."""
 DAMPING_NEWTON = 0.03
 """The same as a share of the change by the step before: what such a step leaves of the vibration, 3/100."""
-STIFF_NEWTON = 0.01
-"""Newton's last correction over the error allowed, where rates are known to roundings only: a third of what Radau takes
-otherwise, 0.03. A choice."""
-DAMPING_GAIN = 1e-6
-"""Share of the kinetic energy that such steps may add: they never add to what they damp, and keep slow motion far
-better than that. A choice."""
-DAMPED_AHEAD = 2000
-"""Implicit steps still to go from which on a vibration that has come up again is damped again: a choice, a hundredth of
-the budget."""
-FIRST_IMPLICIT_STEP = 1e-6
-"""s: short enough for decays that begin; Radau lengthens it tenfold a step."""
 
 
 Rates = Callable[[float, Array], Array]
@@ -61,9 +48,12 @@ class ErrorControlled:
     def solver(self, rates: Rates, longest: float) -> Any:
         """The method from the present state to the end of the stretch, with steps of `longest` (s) at most."""
         run, settings = self.run, self.run.settings
-        solver = _radau(run, rates, settings.implicit_rtol, _finest(run), FIRST_IMPLICIT_STEP, longest)
+        # s: short enough for decays that begin; Radau lengthens it tenfold a step.
+        solver = _radau(run, rates, settings.implicit_rtol, _finest(run), 1e-6, longest)
         if run.dampings:
-            solver.newton_tol = STIFF_NEWTON
+            # Newton's last correction over the error allowed, where rates are known to roundings only: a third of what
+            # Radau takes otherwise, 0.03. A choice.
+            solver.newton_tol = 0.01
         return solver
 
     def corrected(self, y: Array) -> Array:
@@ -115,7 +105,8 @@ class VibrationDamping:
         settled = max(DAMPING_SETTLED, DAMPING_NEWTON * change)
         solver.newton_tol = settled / WITHOUT_CONTROL
         self.made += int(self.fastest * span > 0.3 * DAMPING_STEP)
-        return self.made == DAMPING_STEPS
+        # Steps that damp: a vibration to 0.1^16, the last bit, at least of what it was.
+        return self.made == 16
 
     def fault(self) -> str:
         """Why the run cannot be trusted after these steps; "" where it can. Steps that damp must not add energy, and
@@ -123,7 +114,9 @@ class VibrationDamping:
         run, lost = self.run, self.run.dampings[-1].energy
         _, v = run.dynamics.tables.unpack(run.y)
         way = float(np.abs(v / run.dynamics.mechanism.scale).max(initial=0.0)) * DAMPING_STEP / self.fastest
-        added = lost < -(ARITHMETIC + DAMPING_GAIN * (self.moving + _kinetic(run, run.y)))
+        # Share of the kinetic energy that such steps may add: they never add to what they damp, and keep slow motion
+        # far better than that. A choice.
+        added = lost < -(ARITHMETIC + 1e-6 * (self.moving + _kinetic(run, run.y)))
         if not added and way <= run.settings.stride:
             return ""
         hertz = self.fastest / (2.0 * np.pi)
@@ -140,7 +133,9 @@ def lasting_vibration(run: Run) -> float:
     """Angular frequency (1/s) of the vibration that still keeps steps short, in a run that damps them; else 0."""
     if not 0 < len(run.dampings) < MOST_EVENTS:
         return 0.0
-    return vibration(run, float(run.clock[layout.STEP]), DAMPED_AHEAD)
+    # Implicit steps still to go from which on a vibration that has come up again is damped again: a choice, a hundredth
+    # of the budget.
+    return vibration(run, float(run.clock[layout.STEP]), 2000)
 
 
 def _radau(run: Run, rates: Rates, rtol: float, atol: Array, first: float, longest: float) -> Any:

@@ -39,9 +39,6 @@ CROSSING_ERROR = 1e-8
 CROSSING_NEARER = 100.0
 """A step that errs so many times as much as one that is shorter is too long, and longer ones are not tried: twice as
 long leaves out 2^12 times as much. A choice."""
-CROSSING_TURNED = 0.1
-"""Share of itself that the least singular value must have as its negative behind the pose: straight on it has all,
-turned back none. A choice."""
 
 
 def cross_singular_pose(run: Run) -> str | None:
@@ -183,7 +180,9 @@ def _goes_straight(run: Run, passage: Passage) -> bool:
     left, values, right = np.linalg.svd(_scaled_rows(run, passage.start))
     k = run.dynamics.rank - 1
     after = float(left[:, k] @ _scaled_rows(run, passage.end) @ right[k])
-    return after < -CROSSING_TURNED * float(values[k])
+    # Share of itself that the least singular value must have as its negative behind the pose: straight on it has all,
+    # turned back none. A choice.
+    return after < -0.1 * float(values[k])
 
 
 def _stopped(run: Run, passage: Passage) -> bool:

@@ -22,9 +22,6 @@ from kinform.simulation.solver.continuation import Follower, Led
 START_SHARE = 0.03
 """Of a motion (rad, or lengths) from the start that shows whether the loops bear it: a choice, so long that what opens
 them stands out from rounding, so short that Newton closes what does not."""
-START_GAP = 0.01
-"""Share of the square of that motion: loops that stay open by more do not bear it. The curvature of a motion that they
-bear opens them by about its square, and Newton closes that."""
 
 
 OVERDRIVEN = (
@@ -203,7 +200,9 @@ def torn_at_start(mechanism: Mechanism, actuation: Actuation, start: Start, rank
     steps = np.zeros((len(motions), mechanism.rates))
     steps[:, free] = START_SHARE * motions / np.abs(motions / mechanism.scale[free]).max(axis=1)[:, None]
     moved = np.array([mechanism.advance(start.q, step) for step in steps])
-    most = START_GAP * START_SHARE**2
+    # Share of the square of that motion: loops that stay open by more do not bear it. The curvature of a motion that
+    # they bear opens them by about its square, and Newton closes that.
+    most = 0.01 * START_SHARE**2
     for k in np.flatnonzero(~_bear(mechanism, moved, free, held, most, settings.newton)):
         motion = motions[k]
         if closed(mechanism, moved[k], free, rank).residual[0] > most:

@@ -22,9 +22,6 @@ stability, which ends at 6."""
 VIBRATES = 0.05
 """Phase (rad) of a vibration within a step from which on it is what limits the step: with the tolerances it is 0.3 to
 1, whatever the amplitude, as that of a vibration which matters is far above them."""
-JACOBIAN_STEP = 1e-6
-"""Share of a number of the state (of 1 at least) by which it is changed for the derivative: the third root of a
-rounding, at which rounding and curvature disturb central differences alike, but for a factor of six."""
 
 
 def is_stiff(run: Run) -> bool:
@@ -67,7 +64,9 @@ def jacobian(run: Run, t: float, at: Array) -> Array:
     out = np.zeros((size, size))
     ends = np.zeros((2, size))
     for k in range(metered.start):
-        h = JACOBIAN_STEP * max(1.0, abs(at[k]))
+        # Share of a number of the state (of 1 at least) by which it is changed for the derivative: the third root of a
+        # rounding, at which rounding and curvature disturb central differences alike, but for a factor of six.
+        h = 1e-6 * max(1.0, abs(at[k]))
         for side, sign in enumerate((1.0, -1.0)):
             y = at.copy()
             y[k] += sign * h

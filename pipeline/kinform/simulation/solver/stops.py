@@ -26,9 +26,6 @@ from kinform.simulation.solver.run_state import Run
 SLOW_REBOUND = 1e-7
 """rad/s or m/s: rebounds so slow count as the end of a sequence of ever smaller ones without end (Zeno impacts). A
 choice: under gravity such a rebound lasts 2e-8 s and goes 5e-16 m."""
-REPEATED_STEPS = 1000
-"""Steps in which to go again from the start of a step to a time within it, which one or two usually do: a choice, so
-that a run which cannot ends."""
 
 
 class Contact:
@@ -181,7 +178,9 @@ class Contact:
         run = self.run
         run.y[:], run.clock[layout.NOW], run.tally[layout.NEXT] = self._before
         run.clock[layout.END], run.clock[layout.STEP], run.tally[layout.FRESH] = t, 1.0, 1
-        run.tally[layout.BUDGET] = REPEATED_STEPS
+        # Steps in which to go again from the start of a step to a time within it, which one or two usually do: a
+        # choice, so that a run which cannot ends.
+        run.tally[layout.BUDGET] = 1000
         run.tally[layout.PAUSE] = len(run.times) + 1
         if t > self._before[1]:
             run.advance()

@@ -26,10 +26,6 @@ from kinform.surfaces.kinds.constants import LARGEST, LEAST_POINTS, SAGITTA
 from kinform.surfaces.kinds.ruled import Ruled
 from kinform.surfaces.polygons.noise import Scales
 
-CIRCLE_OF_NORMALS = 1e-2
-"""Variance of the normals along the axis, as a share of the next, below which they lie on the circle of a cone. Chosen,
-not measured."""
-
 
 class Cone(Ruled):
     """Axis from the small circle of the normals, then radius linear along the axis, then least squares."""
@@ -49,7 +45,9 @@ class Cone(Ruled):
         matrix = group_moments(batch.region, offset.T, count, weight)
         values, vectors = np.linalg.eigh(np.nan_to_num(matrix))
         axis = np.ascontiguousarray(vectors[:, :, 0])
-        circle = values[:, 0] < CIRCLE_OF_NORMALS * values[:, 1]
+        # Variance of the normals along the axis, as a share of the next, below which they lie on the circle of a cone.
+        # Chosen, not measured.
+        circle = values[:, 0] < 1e-2 * values[:, 1]
         region, edge, inner = batch.edges
         rows = (inner & work.smooth.take(edge) & circle.take(region)).nonzero()[0]
         region, edge = region.take(rows), edge.take(rows)

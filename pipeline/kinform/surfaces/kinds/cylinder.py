@@ -15,13 +15,6 @@ from kinform.surfaces.kinds.constants import LARGEST, LEAST_POINTS, SAGITTA
 from kinform.surfaces.kinds.ruled import Ruled, generators
 from kinform.surfaces.polygons.noise import Scales
 
-RIDGES_AGREE = 0.98
-"""Share of the squared lengths of the inner edges that lies along one direction, above which these edges are the ridges
-of a cylinder. Chosen, not measured."""
-EQUAL_STEPS = 1.02
-"""Ratio of the angles of strips and ridges up to which their steps are equal: 2 % is far above rounding. Chosen, not
-measured."""
-
 
 class Cylinder(Ruled):
     """Axis from the ridges (or the normals, where ridges are short), then a circle, then least squares."""
@@ -37,7 +30,9 @@ class Cylinder(Ruled):
         """Circle through the ends of the ridges, seen along the axis."""
         work = batch.patchwork
         axis, agreement = _axis_of_edges(batch)
-        vague, number = batch.select(~(agreement > RIDGES_AGREE).take(batch.region)).compact()
+        # Share of the squared lengths of the inner edges that lies along one direction, above which these edges are the
+        # ridges of a cylinder. Chosen, not measured.
+        vague, number = batch.select(~(agreement > 0.98).take(batch.region)).compact()
         axis[number] = _axis_of_normals(vague)
         params = np.zeros((batch.count, 8))
         params[:, :3], params[:, 6] = axis, np.inf
@@ -69,7 +64,9 @@ class Cylinder(Ruled):
         whole = among(batch.keys, key[times >= 2])
         angle = np.concatenate([self.widths(batch, params)[whole], work.angle[edge]])
         low, high = group_range(np.concatenate([batch.region[whole], region]), angle, count)
-        return np.asarray((np.bincount(batch.region[whole], minlength=count) >= 2) & (high < EQUAL_STEPS * low))
+        # Ratio of the angles of strips and ridges up to which their steps are equal: 2 % is far above rounding. Chosen,
+        # not measured.
+        return np.asarray((np.bincount(batch.region[whole], minlength=count) >= 2) & (high < 1.02 * low))
 
 
 def _axis_of_edges(batch: Batch) -> tuple[Array, Array]:

@@ -34,14 +34,8 @@ from kinform.surfaces.kinds.kind import DAMPING, Kind, Moving, Probe, distinct_a
 from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 
-KEPT_FITS = 3.0
-"""Tolerances within which the vertices of a surface lie, by their root mean square, that is kept where a step of its
-fit leads away: where they would be off by more than the tolerance, and KEPT_RISE times as much as before."""
 KEPT_RISE = 2.0
 """Least squares that converge bring vertices nearer; rounding alone does not double what they are off."""
-LEAP = 1e-3
-"""Change of the parameters (rad, spans) by a last step after which the vertices are looked at again: a fit that
-closes in on its end moves by a thousandth of that."""
 ALONG: float = float(np.cos(np.radians(10.0)))
 """Cosine of the angle between an edge and a generator, above which it is one."""
 BOW = 1e-5
@@ -49,8 +43,6 @@ BOW = 1e-5
 but a cut between them does not."""
 APEX = 0.05
 """Distance from the axis, in radii, within which a vertex of a cone is its apex. Chosen, not measured."""
-SECOND_STRIP = 0.4
-"""Least angle of a strip that counts as like the widest, as a share of it. Chosen, not measured."""
 STEEPEST_CONE = 1.567
 """rad: largest half-angle of a cone, 0.2° short of a plane. Chosen, not measured."""
 
@@ -75,7 +67,10 @@ class _Kept:
         mean = squares / np.maximum(sizes, 1)
         if self._before is not None:
             worse = mean > np.maximum(KEPT_RISE**2 * self._squares, self._square)
-            near = self._squares <= KEPT_FITS**2 * self._square
+            # Tolerances within which the vertices of a surface lie, by their root mean square, that is kept where a
+            # step of its fit leads away: where they would be off by more than the tolerance, and KEPT_RISE times as
+            # much as before.
+            near = self._squares <= 3.0**2 * self._square
             lost = worse & near & (sizes > 0) & ~self._lost
             if lost.any():
                 self._best = params.copy() if self._best is None else self._best
@@ -146,7 +141,9 @@ class Ruled(Kind, Protocol):
         self, batch: Batch, kept: _Kept, params: Params, change: Array, region: Ints, vertex: Ints
     ) -> Params:
         """The surfaces after a last step by `change` (R, k) with these vertices."""
-        leapt = (np.abs(change).max(axis=1) > LEAP).nonzero()[0]
+        # Change of the parameters (rad, spans) by a last step after which the vertices are looked at again: a fit that
+        # closes in on its end moves by a thousandth of that.
+        leapt = (np.abs(change).max(axis=1) > 1e-3).nonzero()[0]
         if not len(leapt) or not len(region):
             return params
         rows = among(region, leapt).nonzero()[0]
@@ -346,7 +343,8 @@ class Ruled(Kind, Protocol):
         even = np.zeros(count, bool)
         several = batch.size >= 2
         last = batch.size.cumsum()[several] - 1
-        even[several] = ordered[last - 1] >= SECOND_STRIP * ordered[last]
+        # Least angle of a strip that counts as like the widest, as a share of it. Chosen, not measured.
+        even[several] = ordered[last - 1] >= 0.4 * ordered[last]
         region, vertex = self.defining(batch, params, scale.fit)
         if not len(region):
             return np.zeros(count, np.int64), sweep, even

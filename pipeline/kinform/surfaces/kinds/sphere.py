@@ -15,14 +15,6 @@ from kinform.surfaces.kinds.kind import DoublyCurved, Probe
 from kinform.surfaces.kinds.quadrics import distance_from_second
 from kinform.surfaces.polygons.noise import Scales
 
-SECOND_QUADRIC = 0.5
-"""Fits by which the vertices of a sphere are off every other quadric in the mean, at least: two rings lie on one to
-the last digits, to a fifth of a fit where vertices scatter; three rings of a cap whose sagitta is just enough are half
-a fit off."""
-ONE_PLANE = 1e-4
-"""Variance of vertices across their plane, as a share of that along it, below which they are one ring: any sphere about
-its axis goes through it."""
-
 
 class Sphere(DoublyCurved):
     """Centre and radius are linear in the squares of the distances; then least squares."""
@@ -122,7 +114,9 @@ def _one_ring(batch: Batch) -> Flags:
     # products of two and of all three of the eigenvalues
     pairs = np.trace(moments, axis1=1, axis2=2) ** 2 - (moments * moments).sum(axis=(1, 2))
     volume = dot(cross(first, second), moments[:, 2])
-    return np.asarray(several & (2 * volume < ONE_PLANE * pairs * np.trace(moments, axis1=1, axis2=2)))
+    # Variance of vertices across their plane, as a share of that along it, below which they are one ring: any sphere
+    # about its axis goes through it.
+    return np.asarray(several & (2 * volume < 1e-4 * pairs * np.trace(moments, axis1=1, axis2=2)))
 
 
 def _determined(batch: Batch, params: Params, scale: Scales) -> Flags:
@@ -130,7 +124,10 @@ def _determined(batch: Batch, params: Params, scale: Scales) -> Flags:
     enough where they do not; those at its border, which a third ring may be, have to lie on the sphere as exactly as
     vertices do: three rings are only one more than fit anyway."""
     centre, radius = params[:, 3:6], params[:, 6]
-    least = SECOND_QUADRIC * scale.fit
+    # Fits by which the vertices of a sphere are off every other quadric in the mean, at least: two rings lie on one to
+    # the last digits, to a fifth of a fit where vertices scatter; three rings of a cap whose sagitta is just enough are
+    # half a fit off.
+    least = 0.5 * scale.fit
     known = np.zeros(batch.count, bool)
     for shared, near in ((3, scale.fit), (2, np.minimum(scale.noise, scale.fit))):
         region, vertex = batch.inner_vertices(shared)

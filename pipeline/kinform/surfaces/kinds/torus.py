@@ -21,8 +21,6 @@ from kinform.surfaces.slippage import slippage
 
 TORUS_PITCH = 0.05
 """Advance of the motion of a torus, per arm and one, below which it is a rotation. Chosen, not measured."""
-LEAST_MAJOR = 0.02
-"""Least radius of the middle circle, in radii of the tube: less is a sphere. Chosen, not measured."""
 
 
 class Torus(DoublyCurved):
@@ -111,7 +109,8 @@ class Torus(DoublyCurved):
         # three rings of vertices lie on a circle anyway, and four that are symmetric; three places around the axis
         bent = (rings >= 5) & (places >= 3) & (bow > SAGITTA * scale.fit)
         # a middle circle of less than ten fits is that of a sphere
-        return np.asarray(bent & (params[:, 6] > 10 * scale.fit) & (params[:, 6] > LEAST_MAJOR * params[:, 7]))
+        # Least radius of the middle circle, in radii of the tube: less is a sphere. Chosen, not measured.
+        return np.asarray(bent & (params[:, 6] > 10 * scale.fit) & (params[:, 6] > 0.02 * params[:, 7]))
 
 
 def _rotation_axes(batch: Batch) -> tuple[Array, Array, Flags]:

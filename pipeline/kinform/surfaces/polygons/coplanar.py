@@ -25,19 +25,11 @@ from kinform.surfaces.polygons.noise import Scale, departures
 COPLANAR_ANGLE = 0.06
 """rad up to which facets whose heights differ by no more than the noise are coplanar: 3.4°, above what noise turns
 short facets by and below the steps of round strips. Chosen, not measured."""
-COPLANAR_ROUNDINGS = 0.75
-"""The same for vertices that are only rounded, in roundings: half of one in each direction, √3 times."""
 MOST_TURNED = 0.5
 """rad beyond which facets are never coplanar, whatever the scatter. Chosen, not measured."""
 PEELS = 60
 """Planes that are taken off a cluster before the rest of it falls into its facets: a limit of the work on crumpled
 meshes. Chosen, not measured."""
-PEELED = 0.1
-"""Share of a cluster that the rest of the planes would take if all were as large as the largest of those, at least:
-what is less is curved."""
-OUTWARD = 0.99
-"""Least cosine between the plane through the vertices and the mean normal of the facets: below, the vertices of a
-sliver determine no plane. Chosen, not measured."""
 
 
 Moments: TypeAlias = tuple[Array, Array, Array]
@@ -107,7 +99,9 @@ def _flat_edges(
     solid = ~(thin.take(f0) | thin.take(f1))
     strict = solid & (angle < tolerances.coplanar) & (height < scale.fit)
     flat = strict | (solid & (height < scale.noise) & (angle < COPLANAR_ANGLE))
-    lost = max(COVERAGE * scale.scatter, COPLANAR_ROUNDINGS * scale.rounding)
+    # Heights up to which facets of vertices that are only rounded are coplanar, in roundings: half of one in each
+    # direction, √3 times.
+    lost = max(COVERAGE * scale.scatter, 0.75 * scale.rounding)
     narrow0, narrow1 = (1 / np.maximum(mesh.altitude.take(f), TINY) for f in (f0, f1))
     turned = COPLANAR_ANGLE + SCATTERED * lost / COVERAGE * (narrow0 + narrow1)
     open_ = np.flatnonzero(solid & ~flat & (angle < np.minimum(turned, MOST_TURNED)))
@@ -223,7 +217,9 @@ def _peel(mesh: Facets, label: Ints, f0: Ints, f1: Ints, scale: Scale) -> Ints:
         whole[label[done]] = True
         # every eighth plane it is checked whether planes make up the cluster
         if number % 8 == 0:
-            vain = most * (PEELS - number) < PEELED * size[label]
+            # Share of a cluster that the rest of the planes would take if all were as large as the largest of those, at
+            # least: what is less is curved.
+            vain = most * (PEELS - number) < 0.1 * size[label]
             whole[label[vain]] = True
             most[:] = 0
     return label
@@ -267,5 +263,7 @@ def fit_planes(group: Ints, points: Array, outward: Array) -> tuple[Array, Array
     covariance = group_moments(group, offset.T, count) / size[:, None, None]
     values, vectors = np.linalg.eigh(covariance)
     normal = vectors[:, :, 0] * np.sign(dot(vectors[:, :, 0], outward))[:, None]
-    vague = np.abs(dot(normal, outward)) < OUTWARD
+    # Least cosine between the plane through the vertices and the mean normal of the facets: below, the vertices of a
+    # sliver determine no plane. Chosen, not measured.
+    vague = np.abs(dot(normal, outward)) < 0.99
     return np.where(vague[:, None], outward, normal), centre, np.maximum(values, 0.0)

@@ -21,13 +21,6 @@ from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.groups import columns_of
 from kinform.surfaces.polygons.patchwork import Patchwork
 
-ALIKE_WIDTHS = 3.0
-"""Ratio of widths up to which neighbours look like facets of one surface. Chosen, not measured."""
-ALIKE_STRONG = 0.35
-"""Difference of the larger principal curvatures of neighbours on one surface, as a share of the largest: what coarse
-facets of unequal width make of equal ones."""
-ALIKE_WEAK = 0.3
-"""The same of the smaller principal curvatures. Chosen, not measured."""
 SIMPLE_RATIO = 0.12
 """Ratio of the two curvatures below which a polygon bends one way only. Chosen, not measured."""
 TURNED_ALONG = 0.03
@@ -36,6 +29,7 @@ not measured."""
 
 
 _PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+"""Rows and columns of the six entries of a symmetric 3 × 3 matrix."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +73,8 @@ def links(work: Patchwork, free: Flags) -> Links:
     shared = np.maximum(np.bincount(number, work.length[edge])[number] if len(key) else np.zeros(0), TINY)
     wide = np.maximum(work.area[a], work.area[b]) / shared
     narrow = np.minimum(work.area[a], work.area[b]) / shared
-    return Links(edge, a, b, wide < ALIKE_WIDTHS * narrow)
+    # Ratio of widths up to which neighbours look like facets of one surface. Chosen, not measured.
+    return Links(edge, a, b, wide < 3.0 * narrow)
 
 
 def curvature(work: Patchwork, link: Links) -> Curvature:
@@ -140,8 +135,11 @@ def bends_like(bent: Curvature, link: Links) -> Flags:
     """Whether the two polygons of each link have like curvatures."""
     strong_a, strong_b = bent.strong[link.a], bent.strong[link.b]
     larger = np.maximum(np.abs(strong_a), np.abs(strong_b))
-    like = np.abs(strong_a - strong_b) <= ALIKE_STRONG * larger
-    return np.asarray(like & (np.abs(bent.weak[link.a] - bent.weak[link.b]) <= ALIKE_WEAK * larger))
+    # Difference of the larger principal curvatures of neighbours on one surface, as a share of the largest: what coarse
+    # facets of unequal width make of equal ones.
+    like = np.abs(strong_a - strong_b) <= 0.35 * larger
+    # Of the smaller principal curvatures it may be less. Chosen, not measured.
+    return np.asarray(like & (np.abs(bent.weak[link.a] - bent.weak[link.b]) <= 0.3 * larger))
 
 
 def continues(work: Patchwork, bent: Curvature, link: Links) -> Flags:

@@ -27,8 +27,6 @@ from kinform.surfaces.polygons.facets import Facets
 FITS_PER_NOISE = 10
 """The tolerance of fits, in noises that are expected of vertices, and the noise as such a part of the tolerance.
 Chosen, not measured."""
-NOISE_ROUNDINGS = 1.5
-"""Noise in roundings of the largest coordinate: a vertex is off by half of one in each of three directions."""
 SCATTER_SHOWS = 2
 """Vertices scatter where twice the standard deviation that is read exceeds the expected noise."""
 FIT_SIGMAS = 5
@@ -43,8 +41,6 @@ RIPPLE = 0.05
 (0.12 to 0.4 against 0.01 to 0.02 where tried)."""
 MIXED_PER_SIGMA = 1.2
 """What is read there, in standard deviations of one coordinate (tried on noisy copies of robots' parts)."""
-REPEATED = 1e-2
-"""Relative difference of what neighbours show that is no accident in a long row of them. Chosen, not measured."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +60,8 @@ class Scale:
     def of(cls, mesh: Facets, rounding: float, tolerances: Tolerances) -> Scale:
         """Those of a mesh that was stored with this rounding: vertices that scatter more widen everything to four
         standard deviations."""
-        noise = max(tolerances.fit / FITS_PER_NOISE, NOISE_ROUNDINGS * rounding)
+        # Noise in roundings of the largest coordinate: a vertex is off by half of one in each of three directions.
+        noise = max(tolerances.fit / FITS_PER_NOISE, 1.5 * rounding)
         sigma = scatter(mesh, tolerances.smooth_edge, noise / SCATTER_SHOWS)
         fit = max(tolerances.fit, FITS_PER_NOISE * noise)
         if SCATTER_SHOWS * sigma > noise:
@@ -165,7 +162,8 @@ def _irregular(mesh: Facets, inner: Ints, above: Array, below: Array) -> Array:
     a, b = mesh.ends[inner].T
     alike = np.ones(len(a), bool)
     for value in (above, below):
-        alike &= np.abs(value[a] - value[b]) <= REPEATED * np.maximum(value[a], value[b])
+        # Relative difference of what neighbours show that is no accident in a long row of them. Chosen, not measured.
+        alike &= np.abs(value[a] - value[b]) <= 1e-2 * np.maximum(value[a], value[b])
     # an edge shows at its four vertices: so few are alike anyway
     label = components(a[alike], b[alike], len(above))
     # a row of a dozen equal values is no accident

@@ -25,8 +25,6 @@ from kinform.surfaces.polygons.coplanar import coplanar_facets
 from kinform.surfaces.polygons.facets import Facets, angles
 from kinform.surfaces.polygons.noise import Scale
 
-SLACK_ROUNDINGS = 2
-"""Roundings, over the altitude, by which the normal of a polygon may be turned: one at either end."""
 MOST_SLACK = 0.3
 """rad by which rounding may turn a normal, at most: beyond, the normal means nothing. Chosen, not measured."""
 
@@ -132,7 +130,8 @@ class Patchwork:
         count = len(area)
         widest = np.zeros(count)
         np.maximum.at(widest, polygon, mesh.altitude)
-        slack = np.minimum(SLACK_ROUNDINGS * scale.rounding / np.maximum(widest, TINY), MOST_SLACK)
+        # Roundings, over the altitude, by which the normal of a polygon may be turned: one at either end.
+        slack = np.minimum(2 * scale.rounding / np.maximum(widest, TINY), MOST_SLACK)
         a = polygon[mesh.f0]
         b = np.where(mesh.inner, polygon[mesh.f1], -1)
         keep = np.flatnonzero(a != b)

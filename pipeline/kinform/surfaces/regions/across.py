@@ -27,7 +27,8 @@ TURNS_ON = (0.03, 0.56)
 """Angle by which a ridge turns where it goes on round an axis: more than lines of one direction differ, and no more
 than a smooth edge."""
 GOES_ON = 2.05
-"""Ratio of lengths up to which the next edge goes on with a ridge: a fillet is longer than the edges of its corners."""
+"""Ratio of lengths up to which the next edge goes on with a ridge: a fillet is longer than the edges of its corners.
+Chosen, not measured."""
 
 
 def along(territory: Territory, kind: Cylinder, growth: Growth) -> tuple[Growth, Ints]:

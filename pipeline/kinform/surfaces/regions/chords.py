@@ -26,9 +26,6 @@ from kinform.surfaces.regions.territory import Territory
 
 ROUND_CHORDS: float = float(np.radians(170.0))
 """Angle about its axis that it covers at least: arcs of less are flanks of teeth as well."""
-TURNED_CHORDS: float = (ROUND_CHORDS - WIDEST) / 2
-"""Angle to the middle normal of a piece that one of its normals makes at least where a round is in it: they are those
-of the middles of strips, the outermost of which are no wider than WIDEST."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +51,9 @@ def _turns(batch: Batch) -> Flags:
     middle = normalised(group_sum(batch.region, normal * work.area.take(batch.polygon)[:, None], count))
     least = np.ones(count)
     np.minimum.at(least, batch.region, dot(normal, columns_of(middle, batch.region)))
-    return np.asarray(least <= np.cos(TURNED_CHORDS))
+    # Angle to the middle normal of a piece that one of its normals makes at least where a round is in it: they are
+    # those of the middles of strips, the outermost of which are no wider than WIDEST.
+    return np.asarray(least <= np.cos((ROUND_CHORDS - WIDEST) / 2))
 
 
 def decimated(territory: Territory, kind: Cylinder, rounds: Rounds, factor: float) -> Growth:

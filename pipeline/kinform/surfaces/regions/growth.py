@@ -27,11 +27,6 @@ LOOSE = 2.5
 """Fits within which a first guess is held to its region: it comes from few polygons. Chosen, not measured."""
 MAJORITY = 0.6
 """Share of a piece that must conform at the first look. Chosen, not measured."""
-UNSHARED = 0.4
-"""Least share of the polygons of a region that belong to no larger one: with less it is dropped. Chosen, not
-measured."""
-TOLERANCE_MEDIANS = 6
-"""Tolerance of a region in middle distances of its vertices: four standard deviations."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,7 +207,9 @@ def _drop_shared(kind: Kind, batch: Batch) -> Batch:
     polygon = polygon.take(order)
     first = order.take(heads(polygon).nonzero()[0])
     unshared = np.bincount(batch.region.take(first), minlength=batch.count)
-    return batch.where(unshared > UNSHARED * batch.size)
+    # Least share of the polygons of a region that belong to no larger one: with less it is dropped. Chosen, not
+    # measured.
+    return batch.where(unshared > 0.4 * batch.size)
 
 
 def _conforming(surfaces: Candidates, batch: Batch) -> Batch:
@@ -237,7 +234,8 @@ def _settle(territory: Territory, surfaces: Candidates, batch: Batch, whole: Int
 
 def _justify(surfaces: Candidates, batch: Batch, scale: Scales) -> Array:
     """The tolerance that each region's own vertices justify, between the noise and the fit."""
-    return np.clip(TOLERANCE_MEDIANS * surfaces.scatter(batch), scale.noise, scale.fit)
+    # Tolerance of a region in middle distances of its vertices: four standard deviations.
+    return np.clip(6 * surfaces.scatter(batch), scale.noise, scale.fit)
 
 
 def _credible(territory: Territory, surfaces: Candidates, batch: Batch, origin: Ints) -> Growth:

@@ -18,14 +18,6 @@ from kinform.surfaces.polygons.noise import Scale, Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.candidates import FACET_ROUNDING, Candidates
 
-PARALLEL_PLANES = 5e-3
-"""Difference of normals (rad) and offsets (spans) of planes that may be one: a first sieve, the fit decides. Chosen,
-not measured."""
-MERGED_SHAPE = 2e-3
-"""Difference of radii (spans) and half-angles (rad) of surfaces that may be one: a first sieve, the fit decides.
-Chosen, not measured."""
-MERGED_SHAPE_FITS = 10
-"""The same in fits, where that is more. Chosen, not measured."""
 MERGING_FITS = 20
 """Fits within which the vertices of the smaller surface lie on the larger, before both are fitted as one. Chosen, not
 measured."""
@@ -45,7 +37,9 @@ def coincident_planes(work: Patchwork, number: Ints, scale: Scale) -> Ints:
     normal, centre = np.zeros((count, 3)), np.zeros((count, 3))
     normal[number[member]], centre[number[member]] = work.normal[member], work.centre[member]
     offset = dot(normal, centre)
-    pairs = Near(np.c_[normal, offset], PARALLEL_PLANES).pairs
+    # Difference of normals (rad) and offsets (spans) of planes that may be one: a first sieve, the fit decides. Chosen,
+    # not measured.
+    pairs = Near(np.c_[normal, offset], 5e-3).pairs
     if not len(pairs):
         return number
     larger, smaller = _by_size(pairs, area)
@@ -154,7 +148,9 @@ def _partners(surfaces: Candidates, batch: Batch, size: Array | Ints, scale: Sca
 
 def _alike(shape: Array, regions: Ints, scale: Scales) -> Ints:
     """(n, 2) regions, among those of one mesh, of nearly the same shape."""
-    distance = max(MERGED_SHAPE, MERGED_SHAPE_FITS * float(scale.fit[regions[0]]))
+    # Difference of radii (spans) and half-angles (rad) of surfaces that may be one: a first sieve, the fit decides.
+    # Chosen, not measured. Or ten fits, where that is more. Chosen, not measured.
+    distance = max(2e-3, 10 * float(scale.fit[regions[0]]))
     return regions[Near(shape[regions], distance).pairs]
 
 

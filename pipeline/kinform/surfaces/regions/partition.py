@@ -35,9 +35,6 @@ from kinform.surfaces.regions.territory import Territory
 ROUNDS = 8
 """Most rounds of searching from seeds: each must explain something, and typical meshes need three. Chosen, not
 measured."""
-EXPLAINED = 0.98
-"""Share of a piece that one kind explains, above which the others are not tried: it saves work. Chosen, not
-measured."""
 FRESH = 0.9
 """Least share of a region that no larger one has taken. Chosen, not measured."""
 STRAIGHT = {"cylinder": 0.985, "cone": 0.85, "sphere": 0.0}
@@ -209,7 +206,9 @@ def _whole_pieces(
         growths.append(along(territory, CYLINDER, growth)[0] if kind is CYLINDER else growth)
         size = np.zeros(batch.count)
         size[number[growths[-1].origin]] = growths[-1].batch.size
-        batch = batch.where(size < EXPLAINED * batch.size)
+        # Share of a piece that one kind explains, above which the others are not tried: it saves work. Chosen, not
+        # measured.
+        batch = batch.where(size < 0.98 * batch.size)
     return growths
 
 

@@ -24,12 +24,8 @@ STILL = 6e-3
 along itself: 0.3°, which the normals of facets scatter by. Chosen, not measured."""
 ACROSS = 0.1
 """Least spread of the normals of an extrusion about its direction: less is flat. Chosen, not measured."""
-UNIQUE = 5.0
-"""Least ratio to the next motion: what nearly slides in two ways is too flat to tell. Chosen, not measured."""
 TURNS = 0.15
 """Share of rotation in a motion (patch of radius 1) above which it is a rotation. Chosen, not measured."""
-SCREW_ADVANCE = 0.01
-"""Advance a radian, in radii of the patch about the axis, below which a rotation is no screw. Chosen, not measured."""
 
 
 def sliding(work: Patchwork, number: Ints, scales: Scales) -> list[Description]:
@@ -94,7 +90,8 @@ def _turning(work: Patchwork, patches: list[Ints], rounding: Array) -> list[Desc
         return []
     patch = np.repeat(np.arange(len(patches)), [len(polygons) for polygons in patches])
     motion = slippage(work, patch, np.concatenate(patches), len(patches))
-    unique = (motion.speed < STILL) & (motion.next_speed > UNIQUE * np.maximum(motion.speed, STILL / 2))
+    # Least ratio to the next motion: what nearly slides in two ways is too flat to tell. Chosen, not measured.
+    unique = (motion.speed < STILL) & (motion.next_speed > 5.0 * np.maximum(motion.speed, STILL / 2))
     return [
         _surface_of_turn(work, polygons, motion, k, float(rounding[polygons[0]])) if unique[k] else None
         for k, polygons in enumerate(patches)
@@ -138,7 +135,8 @@ def _surface_of_turn(work: Patchwork, polygons: Ints, motion: Slippage, k: int, 
     rho = np.linalg.norm(radial, axis=1)
     radius = float(np.average(rho, weights=work.area[polygons]))
     outward = np.average(dot(work.normal[polygons], radial) / np.maximum(rho, TINY), weights=work.area[polygons])
-    screws = abs(advance) > SCREW_ADVANCE * radius
+    # Advance a radian, in radii of the patch about the axis, below which a rotation is no screw. Chosen, not measured.
+    screws = abs(advance) > 0.01 * radius
     return Description(
         "helicoid" if screws else "revolution", polygons, axis, point, radius=radius, side=1 if outward >= 0 else -1,
         extent=(float(span.min()), float(span.max())), axis_uncertainty=angular, point_uncertainty=angular * size,

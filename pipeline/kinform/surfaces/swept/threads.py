@@ -48,8 +48,6 @@ ALIKE_ADVANCE = 5e-3
 """Relative spread of the advance along the edges of one thread, besides the rounding of each. Chosen, not measured."""
 TURNED = 0.7
 """Fewest turns of helix, counted along all polylines of a thread. Chosen, not measured."""
-HELIX_MEDIANS = 1.5
-"""A standard deviation in median magnitudes of a normal distribution: 1.4826, rounded up."""
 TILT = 0.12
 """Largest root mean square of the normals' share of the speed of the screw, over the facets of a thread. Chosen, not
 measured."""
@@ -286,7 +284,8 @@ def _solve(work: Patchwork, helices: _Helices, screw: _Screw, scale: Scale) -> t
     columns = np.stack(
         [(_residuals(work, helices, _step(screw, step * e), vertex, group) - base) / step for e in np.eye(5)], axis=1
     )
-    scatter = max(HELIX_MEDIANS * median(np.abs(base)), scale.rounding)
+    # A standard deviation in median magnitudes of a normal distribution: 1.4826, rounded up.
+    scatter = max(1.5 * median(np.abs(base)), scale.rounding)
     weight = 1.0 / np.maximum(np.abs(base) / (COVERAGE * scatter), 1.0) ** 2
     matrix = (columns * weight[:, None]).T @ columns
     size = np.sqrt(np.maximum(np.diag(matrix), TINY))

@@ -24,12 +24,10 @@ from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
 from kinform.version import __version__
 
-FLOAT, UNSIGNED = 5126, 5125
-VERTICES, INDICES = 34962, 34963
-LINES = 1
-"""Numbers of glTF 2.0: types of components, targets of buffers, mode of a primitive."""
-AXIS_COLOUR = (0.85, 0.15, 0.1, 1.0)
-"""Of the axes of joints: red, which no material has."""
+# Numbers of glTF 2.0:
+FLOAT, UNSIGNED = 5126, 5125  # types of components
+VERTICES, INDICES = 34962, 34963  # targets of buffers
+LINES = 1  # mode of a primitive
 
 
 @dataclass
@@ -133,7 +131,8 @@ class _Meshes:
 
     def line(self, length: float) -> int:
         """A line along z."""
-        material = self.material("axis", AXIS_COLOUR)
+        # The axes of joints are red, which no material has.
+        material = self.material("axis", (0.85, 0.15, 0.1, 1.0))
         if ("line", material) not in self._meshes:
             ends = np.array([[0.0, 0.0, -0.5 * length], [0.0, 0.0, 0.5 * length]])
             positions = self.file.accessor(ends, "VEC3", VERTICES, bounds=True)

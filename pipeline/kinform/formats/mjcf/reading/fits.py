@@ -15,11 +15,6 @@ from kinform.foundation.meshes.hulls import hull_of
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 
-FITTED_FLAT = 1e-6
-"""Thickness of a mesh over its length below which no primitive is fitted to it: MuJoCo refuses sizes of nearly zero,
-and meshes in single precision have no less."""
-
-
 FITTED = ("sphere", "capsule", "cylinder", "ellipsoid", "box")
 """Types of geoms that are fitted to a mesh."""
 
@@ -56,7 +51,9 @@ def fitted(kind: str, vertices: Array, faces: Ints, inertia: str, scale: float, 
         local = (vertices - X[:3, 3]) @ X[:3, :3]
         low, high = local.min(axis=0), local.max(axis=0)
         half, X = 0.5 * (high - low), X @ pose(np.eye(3), 0.5 * (low + high))
-    if half.min() <= FITTED_FLAT * half.max():
+    # Thickness of a mesh over its length below which no primitive is fitted to it: MuJoCo refuses sizes of nearly zero,
+    # and meshes in single precision have no less.
+    if half.min() <= 1e-6 * half.max():
         return None
     sizes = tuple(scale * size for size in _sizes(kind, half, around=around))
     if sizes[-1] == 0.0:  # a capsule of nothing but its caps

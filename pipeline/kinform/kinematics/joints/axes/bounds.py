@@ -18,15 +18,12 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import box, norm
+from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
 from kinform.mechanism.constants import SIGMAS
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint, Move
-
-EXACT_AXIS = 1e-9
-"""Uncertainty (rad, and relative to the reach) of exact geometry in double precision."""
-
 
 CARRIERS = ("cylinder", "cone", "sphere")
 """Kinds of patches whose fits say best where a joint is."""
@@ -84,7 +81,7 @@ def _uncertainty(joint: Joint, touching: Sequence[Patch], reach: float) -> tuple
     angle = min((p.uncertainty[0] for p in carriers if any(p.axis.tolist())), default=0.0)
     position = min((p.uncertainty[1] for p in carriers), default=0.0)
     away = 0.0 if joint.point is None else Frame(joint.point, 1.0).rounding
-    return max(angle, EXACT_AXIS), max(position, EXACT_AXIS * reach, away)
+    return max(angle, SOLVED), max(position, SOLVED * reach, away)
 
 
 def _extent(touching: Sequence[Patch], reach: float) -> float:

@@ -19,9 +19,7 @@ from kinform.kinematics.joints.axes.constants import MET
 from kinform.model.arrays import Array, Flags, Ints
 
 LEAST_CROSSING = 0.05
-"""Lines at a smaller angle (sine) meet nowhere in particular."""
-FIRST_LOOK = 1.001
-"""Slack of the first look at which lines may meet, which must not lose any to rounding."""
+"""Lines at a smaller angle (sine) meet nowhere in particular. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,7 +163,8 @@ class _Lines:
         reach = 2.0 * along / np.where(skew, sine, 1.0)
         spread = sigmas * (self.position[i] + self.position[others] + (self.angle[i] + self.angle[others]) * reach)
         # a centre and a line, or two centres, are few: no test
-        return np.asarray(self.centre[i] | self.centre[others] | (skew & (near <= FIRST_LOOK * spread)))
+        # Slack of the first look at which lines may meet, which must not lose any to rounding.
+        return np.asarray(self.centre[i] | self.centre[others] | (skew & (near <= 1.001 * spread)))
 
 
 def _reach(locus: Locus, place: Array) -> float:

@@ -21,10 +21,10 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, norm, perpendicular
 from kinform.foundation.graphs.graph import blocks
-from kinform.foundation.rounding import SINGLE, TINY
+from kinform.foundation.rounding import ARITHMETIC, SINGLE, TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.axes.bounds import MoveBounds
-from kinform.kinematics.joints.axes.constants import EXACTLY_PARALLEL, FITTING_ROUNDS, MET
+from kinform.kinematics.joints.axes.constants import FITTING_ROUNDS, MET
 from kinform.kinematics.joints.axes.snapping import LINES
 from kinform.kinematics.joints.pair.joint import twists_of
 from kinform.mechanism.joint_graph import JointGraph
@@ -32,12 +32,7 @@ from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
 
 MOST_COMPARED_JOINTS = 400
-"""Blocks with more joints are left as they are: loops of four bodies grow with their square."""
-ONE_PIN = 1e-13
-"""Share of the assembly's size by which lines that were made coaxial may be apart: rounding."""
-LEAST_SIDE = 100.0
-"""Times what the pins of a loop may be shifted by in all that each of its sides is long at least: shorter sides are
-equal to anything."""
+"""Blocks with more joints are left as they are: loops of four bodies grow with their square. Chosen, not measured."""
 EQUAL_SIDES = 4e-15
 """Share of the assembly's size by which sides that are equal differ: a few roundings of its coordinates."""
 
@@ -90,7 +85,7 @@ def _parallel(candidates: Sequence[int], joints: Sequence[Joint]) -> list[list[i
     bundles: list[list[int]] = []
     for k in candidates:
         for bundle in bundles:
-            if norm(cross(_axis(joints[bundle[0]]), _axis(joints[k]))) < EXACTLY_PARALLEL:
+            if norm(cross(_axis(joints[bundle[0]]), _axis(joints[k]))) < ARITHMETIC:
                 bundle.append(k)
                 break
         else:
@@ -129,7 +124,8 @@ def _pins(members: Sequence[int], joints: Sequence[Joint], bounds: MoveBounds, p
         place = plane @ _point(joints[k])
         sigma, most = float(bounds.sigma[k, 1]), float(bounds.most[k, 1])
         for n, pin in enumerate(pins):
-            if norm(pin.place - place) <= ONE_PIN * size:
+            # lines that were made coaxial are apart by rounding only
+            if norm(pin.place - place) <= ARITHMETIC * size:
                 pins[n] = _Pin((*pin.joints, k), pin.place, min(pin.sigma, sigma), min(pin.most, most))
                 break
         else:
@@ -167,7 +163,9 @@ def _equalities(cycle: Sequence[int], pins: Sequence[_Pin]) -> Iterator[_Equalit
     places = [pins[n].place for n in cycle]
     sides = [places[(k + 1) % 4] - places[k] for k in range(4)]
     lengths = [norm(side) for side in sides]
-    if min(lengths) <= LEAST_SIDE * slack:
+    # Times what the pins of a loop may be shifted by in all that each of its sides is long at least: shorter sides are
+    # equal to anything.
+    if min(lengths) <= 100.0 * slack:
         return
 
     def equal(i: int, j: int) -> bool:

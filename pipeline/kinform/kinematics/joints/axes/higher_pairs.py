@@ -28,11 +28,6 @@ from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, Joint
 
-DOUBTFUL_MOTION = 3.0
-"""A motion that the rows miss by less than this many times what is allowed is doubtful."""
-NEARLY_LEFT = 0.02
-"""Share of what rows hold of other motions below which holding one is doubtful: chamfers and reliefs of teeth lean by
-degrees more than their facets show. Two flanks of a pinion in a ring with chamfered tips disagreed by 0.5 %."""
 MOST_TURNED = 0.1
 """Share of a motion that may lie outside the space of a pair that nearly contains it: up to the alignment the space is
 turned, beyond it the pair is ambiguous. Of the fixtures and twelve robots none is turned by more than 1e-14."""
@@ -146,10 +141,14 @@ def _preserved_motions(pairs: Sequence[_Pair], motions: list[int]) -> tuple[Arra
             missed = np.abs(pair.rows[:, motions] @ combination)
             share = max(share, float((missed / np.maximum(allowed, TINY)).max()) if missed.max() > 0.0 else 0.0)
         if share > 1.0:
-            if share < DOUBTFUL_MOTION:
+            # A motion that the rows miss by less than this many times what is allowed is doubtful.
+            if share < 3.0:
                 return kept, "teeth or cams hold a motion by hardly more than their uncertainty"
             nearly = f"teeth or cams leave a motion of the joints around them but for {100.0 * miss / misses[0]:.2g} %"
-            return kept, nearly if miss < NEARLY_LEFT * misses[0] else ""
+            # Share of what rows hold of other motions below which holding one is doubtful: chamfers and reliefs of
+            # teeth lean by degrees more than their facets show. Two flanks of a pinion in a ring with chamfered tips
+            # disagreed by 0.5 %.
+            return kept, nearly if miss < 0.02 * misses[0] else ""
         kept = np.vstack([kept, combination])
     return kept, ""
 

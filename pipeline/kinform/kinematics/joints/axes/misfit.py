@@ -7,14 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot, lengths
+from kinform.foundation.rounding import ARITHMETIC
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Misfit, Move
 
-UNMOVED = 1e-14
-"""Relative: smaller moves are rounding, no misfit."""
-
-
 _NONE = np.zeros(3)
+"""Stands for the axis or point of a joint that has none."""
 
 
 def moves_between(before: Sequence[Joint], after: Sequence[Joint]) -> tuple[Move, ...]:
@@ -34,9 +32,9 @@ def moves_between(before: Sequence[Joint], after: Sequence[Joint]) -> tuple[Move
     placed = np.array([old.point is not None and new.point is not None for old, new in joints], dtype=bool)
     shifts = np.where(placed[:, None], point_now - point, 0.0)
     distances = lengths(shifts - dot(axis_now, shifts)[:, None] * axis_now)
-    rounding = UNMOVED * np.abs(point).max(axis=1, initial=0.0)
+    rounding = ARITHMETIC * np.abs(point).max(axis=1, initial=0.0)
     moves = zip(
-        joints, (angles * (angles > UNMOVED)).tolist(), (distances * (distances > rounding)).tolist(), strict=True
+        joints, (angles * (angles > ARITHMETIC)).tolist(), (distances * (distances > rounding)).tolist(), strict=True
     )
     return tuple(Move(old.name, angle, distance) for (old, _), angle, distance in moves if angle or distance)
 

@@ -24,7 +24,7 @@ from kinform.foundation.graphs.graph import blocks
 from kinform.foundation.rounding import ARITHMETIC, SINGLE, SOLVED, TINY
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.axes.bounds import MoveBounds
-from kinform.kinematics.joints.axes.constants import EXACTLY_PARALLEL, FITTING_ROUNDS, MET
+from kinform.kinematics.joints.axes.constants import FITTING_ROUNDS, MET
 from kinform.kinematics.joints.pair.joint import twists_of
 from kinform.mechanism.closing import Closing, Termination, close
 from kinform.mechanism.frame import joint_frame
@@ -37,23 +37,24 @@ from kinform.model.kinematics import Joint
 CLOSED_GAP = ARITHMETIC
 """rad, and shares of the size: loops that stay closed to this need nothing."""
 GLANCE = 0.1
-"""Share of that gap below which one look ahead is enough."""
+"""Share of that gap below which one look ahead is enough. Chosen, not measured."""
 IMPROVED = 0.01
-"""Share of the gap before that moved axes may leave."""
+"""Share of the gap before that moved axes may leave. Chosen, not measured."""
 STRIDE = 0.12
-"""rad (of the joint that turns most) from one pose to the next."""
+"""rad (of the joint that turns most) from one pose to the next. Chosen, not measured."""
 STRIDES = 16
-"""Poses on each side of the start."""
+"""Poses on each side of the start. Chosen, not measured."""
 MOST_FITTED_FREEDOMS = 3
-"""Blocks with more freedoms are left as they are."""
+"""Blocks with more freedoms are left as they are. Chosen, not measured."""
 MOST_FITTED_RATES = 48
-"""So are blocks with more joint rates."""
+"""So are blocks with more joint rates. Chosen, not measured."""
 SOUND_POSE = 0.01
-"""Relative singular value that must be left: nearer to singular poses gaps say more of the pose than of the axes."""
+"""Relative singular value that must be left: nearer to singular poses gaps say more of the pose than of the axes.
+Chosen, not measured."""
 POSES = Termination(closed=MET, accepted=SINGLE)
 """Poses are closed as far as numbers go: what is left open is what axes have to be moved for."""
 WAY_LOST = 1e-3
-"""Share of a direction that must be left among the freedoms of the next pose."""
+"""Share of a direction that must be left among the freedoms of the next pose. Chosen, not measured."""
 
 
 def fit_proportions(graph: JointGraph, bounds: MoveBounds, size: float) -> tuple[Joint, ...]:
@@ -146,7 +147,7 @@ def _planar(joints: Sequence[Joint]) -> bool:
         return False
     crossed = np.linalg.norm(cross(np.array(turns), turns[0]), axis=1).max()
     tilted = [min(abs(float(s @ turns[0])), norm(cross(s, turns[0]))) for s in slides]
-    return bool(max([float(crossed), *tilted]) < EXACTLY_PARALLEL)
+    return bool(max([float(crossed), *tilted]) < ARITHMETIC)
 
 
 def _along(system: LoopSystem, start: Array, ways: Array, rank: int) -> tuple[Closing, Flags, list[Array]]:

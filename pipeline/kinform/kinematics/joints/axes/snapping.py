@@ -27,10 +27,6 @@ from kinform.mechanism.constants import SIGMAS
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.kinematics import Joint
 
-DIRECTION_DECIMALS = 12
-"""Decimals of a direction that several axes have in common: the rounding of one is not carried to all others."""
-
-
 LINES = ("revolute", "cylindrical", "screw")
 """Joints whose axis is a line, not only a direction."""
 
@@ -252,7 +248,8 @@ def _mean_direction(bundle: Sequence[_Axis]) -> Array:
     lead = bundle[0].direction
     signed = [a.direction / a.angle**2 * (1.0 if float(a.direction @ lead) > 0.0 else -1.0) for a in bundle]
     # far below any uncertainty: the rounding of one axis is not carried to all others
-    return canonical(np.round(canonical(np.sum(signed, axis=0)), DIRECTION_DECIMALS))
+    # Decimals of a direction that several axes have in common: the rounding of one is not carried to all others.
+    return canonical(np.round(canonical(np.sum(signed, axis=0)), 12))
 
 
 def _mean_foot(group: Sequence[_Axis], direction: Array) -> Array:

@@ -39,10 +39,6 @@ from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint, ReadingCause, body_of_part
 from kinform.model.names import PartName
 
-POINT_REACH = 1e-3
-"""Of its distance from a stated joint, a contact at a point has at least this size: what blocks a turn there must not
-seem small beside what a metre would. Chosen, not measured."""
-
 
 @dataclass(frozen=True, eq=False)
 class JointsInForce:
@@ -228,7 +224,9 @@ def _in_bowls(joint: Joint, patches: Sequence[Patch]) -> bool:
 def _reach(corners: Array, place: Array) -> float:
     """m: how far a contact reaches, with corners (n, 3) and asked about at a place (3,). One at a point has no size,
     and its distance counts."""
-    return max(norm(np.ptp(corners, axis=0)), POINT_REACH * norm(corners.mean(axis=0) - place)) or 1.0
+    # Of its distance from a stated joint, a contact at a point has at least this size: what blocks a turn there must
+    # not seem small beside what a metre would. Chosen, not measured.
+    return max(norm(np.ptp(corners, axis=0)), 1e-3 * norm(corners.mean(axis=0) - place)) or 1.0
 
 
 def _unknown(joint: Joint, patches: Sequence[Patch]) -> bool:

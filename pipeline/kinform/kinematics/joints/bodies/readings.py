@@ -24,11 +24,6 @@ from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
 from kinform.model.names import BodyName, PartName
 
-READING_PLACE = 0.1
-"""Share of the size of a contact by which the place of an intended joint may be off that of the reading that it
-chooses. Chosen, not measured."""
-
-
 Decided = Mapping[Pair, tuple[Answer, Joint]]
 
 
@@ -91,7 +86,9 @@ def _is(joint: Joint, intended: IntendedJoint, patches: Sequence[Patch]) -> bool
         return True
     apart = joint.point - foot(intended.point, joint.axis, joint.point)
     low, high = box(np.concatenate([patches[k].points for k in joint.patches]))
-    return norm(apart) <= READING_PLACE * norm(high - low)
+    # Share of the size of a contact by which the place of an intended joint may be off that of the reading that it
+    # chooses. Chosen, not measured.
+    return norm(apart) <= 0.1 * norm(high - low)
 
 
 def _pins(decided: Decided, size: float) -> set[BodyName]:
