@@ -129,8 +129,8 @@ def _consistent_axes(
     pairs: Pairs, bodies: tuple[Body, ...], joints: Sequence[Joint]
 ) -> tuple[tuple[Joint, ...], tuple[Move, ...]]:
     """The joints with axes that agree exactly where they agree within what contact tells, and by how much each moved:
-    coaxial and parallel axes, then equal lengths, then proportions in which loops close. At last the spaces of teeth and
-    cams are turned to agree with these (up to `MOST_TURNED`): no axis moves, and no move is recorded."""
+    coaxial and parallel axes, then equal lengths, then proportions in which loops close. At last the spaces of teeth
+    and cams are turned to agree with these (up to `MOST_TURNED`): no axis moves, and no move is recorded."""
     size, alignment = pairs.size, pairs.assembly.tolerances.alignment
     bounds = move_bounds(joints, pairs.patches, alignment, size)
     snapped = snap_axes(joints, bounds)
