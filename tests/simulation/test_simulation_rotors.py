@@ -96,7 +96,7 @@ def test_a_load_turns_the_rotor_by_what_comes_back():
 @pytest.mark.parametrize(("efficiency", "back"), [(0.75, 0.6), pytest.param(0.45, -0.2, marks=pytest.mark.sweep)])
 def test_the_rotor_in_the_motor_is_the_rotor_as_a_body(efficiency, back):
     """Friction, loss and load as the voltage swings: sticking and slipping at the same times."""
-    law, asked = Sine(1.0, 18.0, 14.0, 0.0), {"load": -1.0, "until": 0.2, "step": 0.02}
+    law, asked = Sine(1.0, 14.0, 14.0, 0.0), {"load": -1.0, "until": 0.2, "step": 0.02}
     one, two = _one(efficiency, back, volts=law, **asked), _two(efficiency, back, volts=law, **asked)
     _sound(one)
     _sound(two)

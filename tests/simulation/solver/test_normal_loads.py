@@ -69,7 +69,7 @@ def test_at_rest_it_holds_what_the_bearings_take():
 
 def _swung(way):
     """A drive that swings against a load, with signs turned round for −1."""
-    return _pair(Sine(0.0, 4.0 * way, 24.0, 0.0), Constant(0.4 * way), until=0.3)
+    return _pair(Sine(0.0, 4.0 * way, 24.0, -0.5), Constant(0.1 * way), until=0.16, step=0.02)
 
 
 def test_teeth_that_change_sides_press_on():
