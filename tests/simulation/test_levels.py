@@ -97,8 +97,8 @@ def test_a_level_can_be_forced_by_argument_and_by_manifest(level):
     assert simulate(*massless(*made), level="kinematic").not_dynamic == ()
 
 
-def test_an_unknown_level_is_an_error_that_lists_the_known_ones():
-    with pytest.raises(ValueError, match=r"functional.*kinematic.*dynamic"):
+def test_an_unknown_level_is_an_error():
+    with pytest.raises(ValueError, match='"quantum"'):
         simulate(*hinge(), level="quantum")
 
 

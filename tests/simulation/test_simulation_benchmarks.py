@@ -110,7 +110,7 @@ def test_the_bricard_linkage_agrees_with_two_other_programs():
 
 def test_a_stiff_governor_takes_the_implicit_path_and_agrees_with_fine_explicit_steps():
     model, start = governor().system(), {"spin": (0.0, 2 * np.pi)}
-    course = Course(10.0, 0.5, DOWN)
+    course = Course(3.0, 0.5, DOWN)
     stiff = simulate_system(model, course, initial=start, settings=SolverSettings(method="implicit"))
     sound(stiff)
     fine = simulate_system(model, course, initial=start, settings=SolverSettings(method="explicit"))

@@ -80,7 +80,7 @@ def test_a_wheel_runs_up_by_what_rotor_and_gear_leave():
 
 
 def test_a_gear_that_turns_the_sense_round_gives_the_opposite_motion():
-    one, other = _one(0.7, volts=Constant(6.0), load=-1.0), _one(0.7, volts=Constant(6.0), load=1.0, gear=-GEAR)
+    one, other = (_one(0.7, volts=Constant(6.0), load=-way, gear=way * GEAR, until=0.1) for way in (1.0, -1.0))
     _sound(other)
     np.testing.assert_allclose(one.joint_position, -other.joint_position, atol=1e-11)
 
@@ -96,7 +96,7 @@ def test_a_load_turns_the_rotor_by_what_comes_back():
 @pytest.mark.parametrize(("efficiency", "back"), [(0.75, 0.6), pytest.param(0.45, -0.2, marks=pytest.mark.sweep)])
 def test_the_rotor_in_the_motor_is_the_rotor_as_a_body(efficiency, back):
     """Friction, loss and load as the voltage swings: sticking and slipping at the same times."""
-    law, asked = Sine(1.0, 9.0, 7.0, 0.0), {"load": -1.0, "until": 0.4, "step": 0.02}
+    law, asked = Sine(1.0, 14.0, 14.0, 0.0), {"load": -1.0, "until": 0.2, "step": 0.02}
     one, two = _one(efficiency, back, volts=law, **asked), _two(efficiency, back, volts=law, **asked)
     _sound(one)
     _sound(two)

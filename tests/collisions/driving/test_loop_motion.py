@@ -18,9 +18,9 @@ def jack():
     base, the table 50 below the end of the post."""
     post = box(36, 52, -8, 8, -1, 90)
     return {
-        "base": box(-30, 60, -20, 20, -20, 0) - rod(5, -30, 10, 48) + post,
-        "spindle": rod(5, -90, 53, 48) + rod(8, 30, 40, 48) + rod(8, 50, 53, 48),
-        "table": box(-20, 60, -20, 20, 40, 50) - rod(5, 30, 60, 48) - box(36, 52, -8, 8, 30, 60),
+        "base": box(-30, 60, -20, 20, -20, 0) - rod(5, -30, 10, 24) + post,
+        "spindle": rod(5, -90, 53, 24) + rod(8, 30, 40, 24) + rod(8, 50, 53, 24),
+        "table": box(-20, 60, -20, 20, 40, 50) - rod(5, 30, 60, 24) - box(36, 52, -8, 8, 30, 60),
     }
 
 
@@ -59,8 +59,8 @@ def test_a_jack_goes_from_its_collar_to_the_end_of_its_post(pitch, seed):
 @pytest.mark.parametrize("pitch", first(1, [1e-3, 2e-4]))
 def test_the_head_of_a_fine_screw_stops_on_its_plate(pitch):
     solids = {
-        "plate": box(-20, 20, -20, 20, -10, 0) - rod(5, -20, 10, 48),
-        "screw": rod(5, -12, 10, 48) + rod(8, 2, 6, 48),
+        "plate": box(-20, 20, -20, 20, -10, 0) - rod(5, -20, 10, 24),
+        "screw": rod(5, -12, 10, 24) + rod(8, 2, 6, 24),
     }
     made, known, touching, kin = derived(solids, ground="plate")
     kin = threaded(kin, pitch, {"plate", "screw"})

@@ -60,25 +60,38 @@ def touched(x, y):
     return atan2(y, x) - asin(4 / hypot(x, y))
 
 
-def everywhere(solids, along, expected, within, scale=1e-3):
-    """The upper end, in both orders and at two places."""
-    for X in (None, random_pose(np.random.default_rng(3))):
-        for names in ({}, {"base": "zz", "mover": "aa"}):
+OTHER_ORDER = {"base": "zz", "mover": "aa"}
+
+
+@pytest.fixture(
+    params=[
+        pytest.param(({}, OTHER_ORDER), id="straight"),
+        pytest.param((OTHER_ORDER, {}), id="turned", marks=pytest.mark.sweep),
+    ]
+)
+def everywhere(request):
+    """Tests the upper end at two places, at either in one order of the parts and turned round in the other."""
+    placed = None, random_pose(np.random.default_rng(3))
+
+    def stops(solids, along, expected, within, scale=1e-3):
+        for X, names in zip(placed, request.param, strict=True):
             assert ends(solids, along, X, scale, names)[1] == pytest.approx(expected, abs=within)
+
+    return stops
 
 
 x, z = np.eye(3)[[0, 2]]
 
 
 @diagonal(clear=[0.0, 0.05, 0.3, 1.0, 10.0], thick=[5.0, 0.1, 0.03], scale=SCALES)
-def test_a_lever_stops_at_the_corner_of_a_bar_however_thin_and_near(clear, thick, scale):
+def test_a_lever_stops_at_the_corner_of_a_bar_however_thin_and_near(clear, thick, scale, everywhere):
     """Points on a thin bar come in far from the corner that the lever meets first."""
     bar = box(20, 30, 4 + clear, 4 + clear + thick, -1, 8)
     everywhere({"base": plate() + bar, "mover": lever()}, z, touched(30, 4 + clear), WITHIN, scale)
 
 
 @pytest.mark.parametrize("turn", first(1, [10, 90, 170]))
-def test_a_lever_stops_at_a_wire_that_is_in_it_within_a_step(turn):
+def test_a_lever_stops_at_a_wire_that_is_in_it_within_a_step(turn, everywhere):
     across = lambda s, t: (radians(turn) + atan2(t, 30 + s), hypot(30 + s, t))
     meets = min(a - asin(4 / r) for a, r in (across(s, t) for s in (-0.05, 0.05) for t in (-0.05, 0.05)))
     wire = box(29.95, 30.05, -0.05, 0.05, -1, 8).rotate((0, 0, turn))
@@ -86,7 +99,7 @@ def test_a_lever_stops_at_a_wire_that_is_in_it_within_a_step(turn):
 
 
 @pytest.mark.parametrize("clear", first(2, [1.0, 10.0, 3.0]))
-def test_a_flush_slider_stops_where_its_corner_meets_a_wall_askew(clear):
+def test_a_flush_slider_stops_where_its_corner_meets_a_wall_askew(clear, everywhere):
     """What they share there is flat, and no depth tells of it: the points beside it do, later."""
     wall = box(0, 5, -11, 11, -1, 10).rotate((0, 0, 3)).translate((25 + clear, 0, 0))
     slider = box(-10, 25, -10, 10, 0, 8)
@@ -95,7 +108,7 @@ def test_a_flush_slider_stops_where_its_corner_meets_a_wall_askew(clear):
 
 
 @pytest.mark.parametrize("into", first(1, [0.01, 0.001, 0.03]))
-def test_what_is_drawn_in_its_stop_by_less_than_parts_may_scrape_is_at_its_stop(into):
+def test_what_is_drawn_in_its_stop_by_less_than_parts_may_scrape_is_at_its_stop(into, everywhere):
     bar = box(20, 30, 4 - into, 9, -1, 8)
     everywhere({"base": plate() + bar, "mover": lever()}, z, 0.0, WITHIN)
     wall = box(25 - into, 30, -11, 11, -1, 10)

@@ -94,9 +94,9 @@ def test_a_box_that_stays_out_of_another_between_two_poses_is_in_it_nowhere_betw
     rng = np.random.default_rng(seed)
     fine = turned(rng, 24 * 20 + 1)
     relative = fine[::20]
-    share = rng.uniform(size=(400, 3))
+    share = rng.uniform(size=(150, 3))
     told = meets = 0
-    for fixed, moved in zip(boxes(rng, 60, 0.4), boxes(rng, 60, 0.4), strict=True):
+    for fixed, moved in zip(boxes(rng, 40, 0.3), boxes(rng, 40, 0.3), strict=True):
         low, high = moved.min(axis=0), moved.max(axis=0)
         points = np.concatenate([moved, low + share * (high - low)])
         way = np.einsum("tij,nj->tni", fine[:, :3, :3], points) + fine[:, None, :3, 3]
@@ -105,8 +105,8 @@ def test_a_box_that_stays_out_of_another_between_two_poses_is_in_it_nowhere_betw
         apart = posed_pairs._apart(*posed_pairs._moved(relative, moved), fixed)
         assert not (apart & inside).any()
         told, meets = told + apart.sum(), meets + inside.sum()
-    assert told > 600
-    assert meets > 20
+    assert told > 300
+    assert meets > 10
 
 
 @pytest.mark.parametrize("seed", first(8, range(20)))

@@ -111,15 +111,15 @@ def test_points_are_as_deep_up_to_a_limit_as_they_are(seed):
     rng = np.random.default_rng(seed)
     mesh = mesh_of(perforated()) if seed % 2 else strewn(rng, 900)
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
-    on = samples(rng, mesh.vertices, mesh.faces, 40)
-    points = np.concatenate([rng.uniform(low, high, (60, 3)), on, on + 1e-9 * mesh.diagonal, [3 * high]])
+    on = samples(rng, mesh.vertices, mesh.faces, 20)
+    points = np.concatenate([rng.uniform(low, high, (30, 3)), on, on + 1e-9 * mesh.diagonal, [3 * high]])
     index = MeshIndex(mesh)
     depth = index.depths(points)
     each = mesh.diagonal * rng.uniform(0.0, 0.3, len(points))
     for enough in (1e-8 * mesh.diagonal, 1e-3 * mesh.diagonal, 0.1 * mesh.diagonal, each):
         told = index.depths_up_to(points, enough)
         assert told == pytest.approx(np.minimum(depth, enough), rel=1e-9, abs=1e-12 * mesh.diagonal)
-        assert (told < enough).sum() >= 20
+        assert (told < enough).sum() >= 10
 
 
 def test_points_that_many_facets_are_about_are_as_deep_by_a_model_of_all():

@@ -41,7 +41,7 @@ def _sound(run):
 def test_the_force_between_the_teeth_brakes_both_bearings(way):
     """F (r_b cos α - μ ρ_b) = I_b α_b + L,  I_a α_a = T - F (r_a cos α + μ ρ_a)."""
     torque, load = 2.0, 1.5
-    run = _pair(Constant(way * torque), Constant(way * load))
+    run = _pair(Constant(way * torque), Constant(way * load), until=0.2)
     _sound(run)
     lever = np.cos(PRESSURE)
     share = (RADII[0] * lever + MU * JOURNALS[0]) / (RADII[1] * lever - MU * JOURNALS[1])
@@ -59,17 +59,17 @@ def test_at_rest_it_holds_what_the_bearings_take():
     load, lever, static = 1.5, np.cos(PRESSURE), 0.25
     for way in (1.0, -1.0):
         limit = load * (RADII[0] * lever + way * static * JOURNALS[0]) / (RADII[1] * lever - way * static * JOURNALS[1])
-        held = _pair(Constant(limit * (1.0 - way * 1e-6)), Constant(load), static=static)
+        held = _pair(Constant(limit * (1.0 - way * 1e-6)), Constant(load), static=static, until=0.05)
         assert held.status == "done", held.reason
         assert np.all(held.joint_position == 0.0)
-        moved = _pair(Constant(limit * (1.0 + way * 1e-6)), Constant(load), static=static)
+        moved = _pair(Constant(limit * (1.0 + way * 1e-6)), Constant(load), static=static, until=0.05)
         _sound(moved)
         assert way * moved.joint_position[-1, 0] > 0.0
 
 
 def _swung(way):
     """A drive that swings against a load, with signs turned round for −1."""
-    return _pair(Sine(0.0, 4.0 * way, 12.0, 0.0), Constant(0.4 * way), until=0.6)
+    return _pair(Sine(0.0, 4.0 * way, 24.0, -0.5), Constant(0.1 * way), until=0.16, step=0.02)
 
 
 def test_teeth_that_change_sides_press_on():
@@ -87,7 +87,7 @@ def test_a_lossy_gear_on_such_bearings_loses_both():
     """In slow motion: what the teeth lose comes on top."""
     torque = 2.0
     lever = np.cos(PRESSURE)
-    run = _pair(Constant(torque), Constant(0.0), efficiency=0.9)
+    run = _pair(Constant(torque), Constant(0.0), efficiency=0.9, until=0.2)
     _sound(run)
     share = (RADII[0] * lever / 0.9 + MU * JOURNALS[0]) / (RADII[1] * lever - MU * JOURNALS[1])
     rate = torque / (A + B * RADII[0] / RADII[1] * share)

@@ -76,7 +76,7 @@ def test_a_stop_lets_go_in_every_period_of_a_fast_law(method):
     model.effort("e", "j0", Sine(level, amplitude, speed, 0.0))
     system = model.system("slider")
     run = simulate_system(
-        system, Course(1.0, 0.002, NOTHING), initial={"j0": (0.0, 0.0)}, settings=SolverSettings(method=method)
+        system, Course(0.5, 0.002, NOTHING), initial={"j0": (0.0, 0.0)}, settings=SolverSettings(method=method)
     )
     off = np.arcsin(-level / amplitude) / speed
 
