@@ -43,7 +43,7 @@ COMPILE = "from kinform.simulation.kernel.calls import engine; engine(compiled=T
 def started(caches, *command):
     """Python on the command with caches of its own: seconds by the clock, of all processors, and stderr."""
     environment = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
-    environment |= {"PYTHONPYCACHEPREFIX": str(caches / "bytecode"), "NUMBA_CACHE_DIR": str(caches / "numba")}
+    environment |= {"PYTHONPYCACHEPREFIX": str(caches / "bytecode"), "XDG_CACHE_HOME": str(caches / "user")}
     environment["PYTHONPATH"] = os.pathsep.join([str(ROOT / "pipeline"), str(ROOT / "cli")])
     start, before = time.perf_counter(), os.times()
     ran = subprocess.run(

@@ -101,7 +101,10 @@ def rows(quick: bool) -> Iterator[Row]:
     found = {}
     with tempfile.TemporaryDirectory() as scratch:
         for way in WAYS:
-            environment = os.environ | {"NUMBA_CACHE_DIR": str(Path(scratch) / way)}
+            environment = os.environ | {
+                "XDG_CACHE_HOME": str(Path(scratch) / way),
+                "NUMBA_CACHE_DIR": str(Path(scratch) / way),
+            }
             command = [sys.executable, __file__, "--one", way]
             found[way] = [
                 json.loads(subprocess.run(command, capture_output=True, text=True, check=True, env=environment).stdout)

@@ -1,8 +1,8 @@
-"""The kernel's functions compiled by numba, from its cache where there is one.
+"""The kernel's functions compiled by numba, from the user's cache where they are there.
 
-Units are functions that others call by name, as C does: each is compiled once and kept in the cache. All
+Units are functions that others call by name, as C does: each is compiled once and kept (`unit_cache`). All
 other functions are compiled into the units that use them, when such a unit has to be compiled. The names
-under which numba caches units carry a digest of all the kernel's source: a change of one function
+under which units are kept carry a digest of all the kernel's source: a change of one function
 compiles all of them afresh.
 
 Few mechanisms are so large that articulated bodies are the way to solve (`pivoting.choose_method`), and a fifth of the
@@ -16,7 +16,6 @@ import ctypes
 import gc
 import hashlib
 import inspect
-import os
 import sys
 import types
 from collections.abc import Callable
@@ -36,8 +35,10 @@ from kinform.simulation.kernel import (
     reduction,
     steps,
     tables,
+    unit_cache,
     vectors,
 )
+from kinform.simulation.kernel.load_numba import load_numba
 from kinform.simulation.kernel.numba_patches import no_machine_code, operators_looked_up_once, variables_listed_directly
 
 _MODULES = (vectors, motion, masses, forces, loops, articulated, reduction, equations, crossings, steps, explicit)
@@ -85,7 +86,7 @@ class _Copy:
 
 def _kinds() -> dict[str, tuple[Any, Any]]:
     """What the annotations of the kernel are to numba and, where units have them, to ctypes."""
-    import numba
+    numba = load_numba()
 
     from kinform.simulation.kernel.native import Row, Table, Tables
 
@@ -104,8 +105,7 @@ def _kinds() -> dict[str, tuple[Any, Any]]:
 def compiled_units(*, articulated_bodies: bool) -> types.SimpleNamespace:
     """The units, compiled, with articulated bodies or without; where they take arrays, they take addresses
     (`tables`)."""
-    import numba
-
+    numba = load_numba()
     config: Any = numba.config
     collecting = gc.isenabled()
     before = {name: getattr(config, name) for name in ("OPT", "LOOP_VECTORIZE", "SLP_VECTORIZE")}
@@ -170,20 +170,16 @@ def _nowhere() -> int:
 
 
 def is_cached(*, articulated_bodies: bool = False) -> bool:
-    """Whether numba's cache holds the kernel compiled, with articulated bodies or without: where its variable says,
-    else beside the kernel or, where that cannot be written, in the user's own."""
-    named = os.environ.get("NUMBA_CACHE_DIR")
-    user = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "numba"
-    places = [Path(named)] if named else [Path(__file__).parent / "__pycache__", user]
-    pattern = f"*.advance_{_mark(explicit, articulated_bodies)}-*.nbi"
-    return any(any(place.glob(f"{depth}{pattern}")) for place in places for depth in ("", "*/"))
+    """Whether the user's cache holds the kernel compiled, with articulated bodies or without."""
+    return unit_cache.has(f"advance_{_mark(explicit, articulated_bodies)}")
 
 
 def _unit(numba: Any, signature: Any, function: Any, options: dict[str, Any]) -> Any:
-    """Compile, with the cache where the machine allows one."""
-    try:
-        return numba.cfunc(signature, cache=True, **options)(function)
-    except RuntimeError as error:
-        if "cache" not in str(error):
-            raise
-        return numba.cfunc(signature, **options)(function)
+    """Compile, or take from the cache what was compiled before."""
+    from numba.core import ccallback, sigutils
+
+    forms: Any = sigutils
+    unit: Any = ccallback.CFunc(function, forms.normalize_signature(signature), locals={}, options=options)
+    unit._cache = unit_cache.UnitCache(function.__qualname__)
+    unit.compile()
+    return unit

@@ -9,8 +9,9 @@ must lie within, and nothing keeps the arrays but who calls.
 This rests on numba's internals, which nobody promises to keep: `types.Type`, the models of `numba.extending`
 (`register_model`, `PrimitiveModel`, `StructModel`), the templates that are asked for the types of operators
 (`AbstractTemplate`, `infer_global`, and that `metadata = {"target": "cpu"}` puts one before those for any target),
-`lower_builtin` and `cgutils`; in `compiled` besides on `ExternalFunction`, on the option `_nrt`, and on the names and
-places of the files of the cache. numba 0.60 to 0.68 were tried, and `pyproject.toml` admits no other.
+`lower_builtin` and `cgutils`; in `compiled` and `unit_cache` besides on `ExternalFunction`, on the option `_nrt`, on
+`CFunc._cache` and on `CompileResult._reduce` and `_rebuild`. numba 0.60 to 0.68 were tried, and `pyproject.toml`
+admits no other.
 
 When numba moves, an ImportError here, a TypingError ("No implementation of function … getitem") or an AssertionError of
 its lowering say that one of these has changed. test_compiled.py and test_reduction.py in tests/simulation/kernel
