@@ -17,6 +17,7 @@ from kinform.model.checks import CheckSettings
 from kinform.model.contacts import Interference
 from kinform.model.function import Requirement
 from kinform.reports import FORMATS, render
+from kinform.reports.phrases import verdict_told
 
 HINGE = FIXTURES / "pairs" / "revolute_collars" / "revolute_collars.toml"
 
@@ -59,6 +60,17 @@ def test_only_selected_rules_run(hinge):
     assert "KF402" in ran
     assert "KF201" not in found(report)
     assert outcome(report, "KF201").outcome == "skipped"
+
+
+def test_rules_that_are_left_out_by_selection_are_told(hinge):
+    report = check(controlled(hinge, select=("KF3",)))
+    assert {"KF101", "KF201"} <= set(report.unselected)
+    assert not any(code.startswith("KF3") for code in report.unselected)
+    assert json.loads(render(report, hinge, "json"))["unselected"] == list(report.unselected)
+    assert str(len(report.unselected)) in verdict_told(report, stated=True)
+    everything = check(hinge)
+    assert everything.unselected == ()
+    assert "left out" not in verdict_told(everything, stated=True)
 
 
 def test_when_no_rule_runs_the_gate_does_not_pass(hinge):

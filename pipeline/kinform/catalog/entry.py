@@ -209,7 +209,7 @@ def _requirement(wanted: Requirement, report: CheckReport | None) -> CatalogRequ
         for finding in (*report.findings, *accepted)
         if finding.subject[:1] == (wanted.name,) and (finding.file, finding.line) == (wanted.file, wanted.line)
     }
-    narrowed = any(rule.reason == "not selected by [check]" and rule.code.startswith(_KINDS) for rule in report.rules)
+    narrowed = any(code.startswith(_KINDS) for code in report.unselected)
     met = not codes
     return CatalogRequirement(wanted.name, wanted.kind, None if _UNDECIDED in codes or (met and narrowed) else met)
 

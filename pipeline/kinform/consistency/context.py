@@ -272,8 +272,9 @@ class Context:
 
     def with_play(self, parts: Iterable[str] | None = None) -> CaptivePart | None:
         """The first part with play between two bodies, of some parts or of all, that it does not both touch: what these
-        leave free may be held by it. None where the function states all joints, which decide then."""
-        if self.kinematics.membership:
+        leave free may be held by it. None where the function states all joints, which decide then, or no part has a
+        mesh."""
+        if self.kinematics.membership or self.lacks("contacts") is not None:
             return None
         number = {str(part): k for k, body in enumerate(self.kinematics.bodies) for part in body.parts}
         some = self.afloat.units if parts is None else {name: self.afloat.units[name] for name in parts}

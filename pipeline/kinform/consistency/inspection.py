@@ -16,7 +16,7 @@ from kinform.consistency.rules.kf440_setting_without_effect import RULE as CONTR
 from kinform.consistency.rules.kf450_behaviour_differs_from_lock import RULE as LOCKED
 from kinform.design import Design
 from kinform.model.checks import CheckSettings
-from kinform.model.findings import CheckReport, Finding, RuleOutcome
+from kinform.model.findings import NOT_SELECTED, CheckReport, Finding, RuleOutcome
 from kinform.requirements.answer import Margin
 
 
@@ -98,7 +98,7 @@ def _judged(rule: Rule, settings: CheckSettings) -> bool:
 def _run(rule: Rule, context: Context) -> Applied:
     """The rule under the settings of the manifest."""
     settings = context.assembly.check
-    outcome = rule.outcome(context) if _asked(rule, settings) else skipped("not selected by [check]")
+    outcome = rule.outcome(context) if _asked(rule, settings) else skipped(NOT_SELECTED)
     findings = tuple(with_place(context, finding) for finding in outcome.findings)
     return apply(rule, replace(outcome, findings=findings), settings)
 

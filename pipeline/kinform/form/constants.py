@@ -28,6 +28,18 @@ MANIFEST_BYTES = 2 << 20
 TEXT_BYTES = 64 << 20
 """Bytes of the XML of a robot description and of the JSON of a glTF: descriptions of robots with a thousand links, and
 scenes of 10,000 nodes, have a tenth of it. What is parsed takes ten times as much memory."""
+UNPACKED_TIMES = 100
+"""Bytes of XML in one packed byte of a 3MF, at most: repeated lattices have thirty, and blanks a thousand. Chosen, not
+measured."""
+UNPACKED_FREELY = 16 << 20
+"""Bytes of the XML of a 3MF that need no such ratio."""
+TREE_TIMES = 250
+"""Bytes of memory that parsed XML takes, by its elements and attributes, for one packed byte of a 3MF, at most:
+vertices and triangles of meshes, five times packed, take a hundred. Chosen, not measured."""
+TREE_FREELY = 200 << 20
+"""Bytes of memory of parsed XML that need no such ratio."""
+ELEMENT_BYTES, ATTRIBUTE_BYTES = 120, 220
+"""Bytes of memory that an element and an attribute take in libxml2 2.9, their texts of a few characters included."""
 UNPACKED_BYTES = 512 << 20
 """Bytes of the XML of a 3MF, unpacked, and of a DAE: ten million facets, which take ten times as much memory."""
 FRAME_ROUNDING = 1e-5

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
+from contextvars import ContextVar
 
 NAME_SHOWN = 255
 """Characters of a name that a message shows: the longest name that file systems allow."""
@@ -15,6 +16,15 @@ MEANT_NAMES = 2
 """Most names that are suggested. Chosen, not measured."""
 LISTED_NAMES = 12
 """Most known names that are listed where none is close. Chosen, not measured."""
+COMPARISONS_MOST = 50_000
+"""Names that the wrong ones of one reading are compared with: half a second in all. Hundreds of names that are wrong
+have one cause."""
+_comparisons_left: ContextVar[int | None] = ContextVar("comparisons_left", default=None)
+
+
+def bound_comparisons() -> None:
+    """Let `did_you_mean` compare so many names from now on, and no more: at the start of reading a file."""
+    _comparisons_left.set(COMPARISONS_MOST)
 
 
 def in_quotes(name: object) -> str:
@@ -33,9 +43,15 @@ def first_names(names: Iterable[str], limit: int = LISTED_NAMES) -> str:
 
 
 def did_you_mean(name: str, names: Iterable[str], what: str) -> str:
-    """A remedy for a name that is none of the `names`: the closest of them, else all."""
+    """A remedy for a name that is none of the `names`: the closest of them, else all. Where a reading has compared too
+    many already (`bound_comparisons`) it names none."""
+    left = _comparisons_left.get()
+    if left is not None and left <= 0:
+        return f"name one of {what}"
     choices = sorted(set(names))
     compared = choices if len(choices) <= CHOICES_COMPARED else [k for k in choices if k[:1] == name[:1]]
+    if left is not None:
+        _comparisons_left.set(left - len(compared[:CHOICES_COMPARED]) - len(choices))
     close: list[str] = []
     if len(name) <= NAME_SHOWN:
         close = difflib.get_close_matches(name, compared[:CHOICES_COMPARED], n=MEANT_NAMES, cutoff=CLOSE_NAMES)

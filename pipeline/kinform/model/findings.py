@@ -44,6 +44,10 @@ class Ignored:
     reason: str = ""
 
 
+NOT_SELECTED = "not selected by [check]"
+"""The reason of rules that `[check] select` leaves out."""
+
+
 @dataclass(frozen=True)
 class RuleOutcome:
     """What became of one rule: passed, failed, inconclusive, skipped (does not apply, or not selected), or
@@ -72,6 +76,11 @@ class CheckReport:
     def ran(self) -> int:
         """How many rules were decided: passed, failed or inconclusive."""
         return sum(rule.outcome not in ("skipped", "ignored") for rule in self.rules)
+
+    @property
+    def unselected(self) -> tuple[str, ...]:
+        """Codes of the rules that `[check] select` leaves out."""
+        return tuple(rule.code for rule in self.rules if rule.outcome == "skipped" and rule.reason == NOT_SELECTED)
 
     @property
     def inconclusive(self) -> int:

@@ -65,6 +65,9 @@ FREEDOMS: dict[str, int] = {
     "spherical": 3, "planar": 3,
 }  # fmt: skip
 """Freedoms of each type of joint but `general`."""
+REASONS_SHOWN = 12
+"""Reasons why parts are one body that a sentence has: bodies of robots have two or three, and every joint between the
+parts of a body says them all. Chosen, not measured."""
 
 
 @dataclass(frozen=True)
@@ -77,6 +80,13 @@ class Body:
     ground: bool
     merged: tuple[str, ...] = ()
     """Why the parts are one body: "group shoulder", "contact a~b of rank 6", "assumed: reason"."""
+
+    @cached_property
+    def why_one(self) -> str:
+        """`merged` in a sentence, with the number of those beyond `REASONS_SHOWN`."""
+        shown = "; ".join(self.merged[:REASONS_SHOWN])
+        more = len(self.merged) - REASONS_SHOWN
+        return f"{shown}; and {more} more" if more > 0 else shown
 
 
 @dataclass(frozen=True, eq=False)

@@ -39,5 +39,6 @@ def document(report: CheckReport, design: Design, fail_on: str = "error") -> dic
         "ignored": [
             dataclasses.asdict(item.finding) | {"ignored_by": item.by, "reason": item.reason} for item in report.ignored
         ],
+        "unselected": list(report.unselected),
         "rules": [dataclasses.asdict(r) for r in report.rules],
     }

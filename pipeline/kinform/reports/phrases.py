@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 from kinform.foundation import words
-from kinform.foundation.words import counted, one_line
+from kinform.foundation.words import counted, few, one_line
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
 
 
@@ -65,7 +65,9 @@ def rule_counts(report: CheckReport) -> str:
     """ "30 rules ran, 8 skipped, 1 inconclusive"."""
     skipped = sum(rule.outcome == "skipped" for rule in report.rules)
     ignored = f", {counted(len(report.ignored), 'finding')} ignored" if report.ignored else ""
-    return f"{counted(report.ran, 'rule')} ran, {skipped} skipped, {report.inconclusive} inconclusive{ignored}"
+    selected = f" ({len(report.unselected)} by select)" if report.unselected else ""
+    ran = counted(report.ran, "rule")
+    return f"{ran} ran, {skipped} skipped{selected}, {report.inconclusive} inconclusive{ignored}"
 
 
 def verdict_line(report: CheckReport, fail_on: str = "error") -> str:
@@ -82,6 +84,13 @@ def verdict_line(report: CheckReport, fail_on: str = "error") -> str:
 def verdict_told(report: CheckReport, stated: bool, fail_on: str = "error") -> str:
     """The verdict for people: what was compared, and what is wrong with what. "inconsistent" is a design that does not
     do what is stated; where only meshes or contacts are faulty, or no function is `stated`, that is said."""
+    told = _verdict_told(report, stated, fail_on)
+    left_out = report.unselected
+    return f"{told}; {counted(len(left_out), 'rule')} left out by select: {few(left_out)}" if left_out else told
+
+
+def _verdict_told(report: CheckReport, stated: bool, fail_on: str) -> str:
+    """The verdict, whatever rules were selected."""
     line = verdict_line(report, fail_on)
     if line != "inconsistent":
         return line if stated or report.ran == 0 else f"{line}; {GEOMETRY_ONLY}"

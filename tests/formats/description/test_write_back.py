@@ -365,3 +365,13 @@ def test_an_sdf_whose_includes_mean_something_else_in_place_is_made_anew(tmp_pat
     assert description.format == "sdf" and description.text == ""
     with pytest.raises(ExportError):
         back(path, "sdf", fix=["inertia"])
+
+
+def test_a_range_that_is_open_on_one_side_is_written_back_without_warning(tmp_path):
+    limit = "<limit><lower>-1e16</lower><upper>1</upper></limit>"
+    path = written(tmp_path, f"""<sdf version="1.9"><model name="r"><link name="a"/><link name="b"/>
+<joint name="j" type="revolute"><parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz>{limit}</axis></joint></model>
+</sdf>""", "r.sdf")  # fmt: skip
+    with np.errstate(all="raise"):
+        (text,) = export(Design(form.load(path)), "sdf").files.values()
+    assert b"-1e16" in text

@@ -41,7 +41,7 @@ def _compared(
     first, second = (kinematics.body_of(assembly.parts_of(name)[0]) for name in intended.between)
     bodies = (first, second)
     if first.name == second.name:
-        reason = "; ".join(first.merged)
+        reason = first.why_one
         one = loose_joint(assembly, kinematics, intended)
         if one is None:
             return Comparison(intended, bodies, "one body", reason, type="fixed")

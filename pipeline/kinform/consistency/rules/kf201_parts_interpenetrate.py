@@ -5,6 +5,9 @@ pressed or screwed parts are often drawn so), a note where `[[assume]] ignore = 
 description, of which the meshes are for looking at, a warning; a note between parts of one link, and between links that
 a joint joins where the overlap is at most 2 % of the smaller one.
 
+Copies of a part in one place are an error wherever they are, inside a group or a sub-assembly too, unless their mass is
+stated: it counts twice. Other overlaps inside a group are meant.
+
 A shaft that is larger than its bore is a fit where it can be pressed: by up to 3 % of the diameter, beyond what the
 facets leave open. More is an overlap like any other, and the message says by how much it is more.
 
@@ -19,9 +22,11 @@ Example: a gimbal ring whose lug reaches 1.5 mm into the housing wall.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
+from kinform.consistency.questions.copies_in_place import copies_in_place
 from kinform.consistency.rule import Findings, Rule
 from kinform.contacts.presses import PRESS_SHARE, beyond_press, press_limit
 from kinform.foundation.words import length, quoted, volume
+from kinform.model.assembly import Part
 from kinform.model.contacts import Interference
 from kinform.model.findings import Finding
 from kinform.model.names import PartName
@@ -35,7 +40,21 @@ def check(context: Context) -> Findings:
     """Overlaps that are not mated fits."""
     overlaps = [overlap for overlap in context.contacts.interferences if not overlap.mated]
     overlaps.sort(key=lambda overlap: (-overlap.depth, overlap.parts))
-    return [_finding(context, overlap) for overlap in overlaps]
+    copies = {(first.name, second.name): second for first, second in copies_in_place(context.assembly)}
+    others = [_finding(context, overlap) for overlap in overlaps if overlap.parts not in copies]
+    return [_copies(parts, part) for parts, part in copies.items()] + others
+
+
+def _copies(parts: tuple[PartName, PartName], copy: Part) -> Finding:
+    return RULE.finding(
+        parts,
+        f"{quoted(parts)} are two copies of one shape in one place: its mass counts twice",
+        found="two copies",
+        intended="one part",
+        place=copy.X_WP[:3, 3],
+        declared=copy.source,
+        remedy="Remove one of them, or move it to its place.",
+    )
 
 
 def _finding(context: Context, overlap: Interference) -> Finding:

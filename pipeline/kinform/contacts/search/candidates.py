@@ -12,16 +12,31 @@ from kinform.model.names import PartName
 Pair = tuple[PartName, PartName]
 
 
-def excluded_pairs(assembly: Assembly) -> frozenset[Pair]:
-    """Pairs (sorted names) that are not looked at: one group, or assumed not to touch."""
-    excluded: set[Pair] = set()
-    for group in assembly.groups:
-        excluded |= {(a, b) for a in group.parts for b in group.parts if a < b}
-    for assumption in assembly.assumptions:
-        if assumption.ignore:
-            first, second = (assembly.parts_of(name) for name in assumption.between)
-            excluded |= {(min(a, b), max(a, b)) for a in first for b in second if a != b}
-    return frozenset(excluded)
+class _Excluded:
+    """Pairs that are not looked at: one group, or assumed not to touch. They are told from the names that stand for a
+    part, not listed: a group of 10,000 parts has 50 million pairs."""
+
+    def __init__(self, assembly: Assembly):
+        self._group = {part: group.name for group in assembly.groups for part in group.parts}
+        self._ignored: dict[str, set[str]] = {}
+        for assumption in assembly.assumptions:
+            if assumption.ignore:
+                first, second = map(str, assumption.between)
+                self._ignored.setdefault(first, set()).add(second)
+                self._ignored.setdefault(second, set()).add(first)
+
+    def __contains__(self, pair: Pair) -> bool:
+        first, second = pair
+        group = self._group.get(first)
+        if group is not None and group == self._group.get(second):
+            return True
+        others = set(self._names(second))
+        return any(not others.isdisjoint(self._ignored.get(name, ())) for name in self._names(first))
+
+    def _names(self, part: PartName) -> tuple[str, ...]:
+        """The names that stand for a part: its own, and that of its group."""
+        group = self._group.get(part)
+        return (str(part),) if group is None else (str(part), group)
 
 
 def _collect(first: fcl.CollisionObject, second: fcl.CollisionObject, met: list[tuple[int, int]]) -> bool:
@@ -61,7 +76,7 @@ def candidate_pairs(assembly: Assembly) -> dict[Pair, float]:
     manager.setup()
     met: list[tuple[int, int]] = []
     manager.collide(met, _collect)
-    excluded = excluded_pairs(assembly)
+    excluded = _Excluded(assembly)
     pairs: dict[Pair, float] = {}
     for first, second in met:
         i, j = sorted((owner[first], owner[second]), key=lambda number: parts[number].name)

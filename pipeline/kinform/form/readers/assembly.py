@@ -29,7 +29,7 @@ from kinform.form.readers.springs import springs_of
 from kinform.form.sources import AS_IT_IS, Reading, is_source
 from kinform.form.tables import Posed
 from kinform.foundation.memory import keep_heap
-from kinform.foundation.name_hints import did_you_mean, in_quotes
+from kinform.foundation.name_hints import bound_comparisons, did_you_mean, in_quotes
 from kinform.foundation.regular_files import AS_A_FILE, not_a_file
 from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.foundation.units import metres_per
@@ -71,6 +71,7 @@ def load_with_contents(
         remedy = AS_A_FILE if not_a_file(path) else "name a manifest (TOML); see kinform init"
         raise InputError([Problem(fault, str(path), None, remedy)])
     keep_heap()
+    bound_comparisons()
     problems = Problems()
     meshes = {} if earlier is None else earlier_meshes(earlier, files or {})
     design = DesignFiles(path.parent, problems, allow_outside, meshes, reading)

@@ -84,9 +84,9 @@ class Scope:
         for k, table in enumerate(value or ()):
             yield (*keys, k), table
 
-    def local_names(self, names: Iterable[str]) -> list[str]:
+    def local_names(self, names: Iterable[str]) -> Iterator[str]:
         """Those of the full names that this manifest can say, as it says them."""
-        return [name.removeprefix(self.prefix) for name in names if name.startswith(self.prefix)]
+        return (name.removeprefix(self.prefix) for name in names if name.startswith(self.prefix))
 
     def source(self, *path: str | int) -> Source:
         """File and line of a key, as the model keeps them."""

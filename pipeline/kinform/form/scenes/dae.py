@@ -18,7 +18,7 @@ import numpy as np
 from kinform.form.constants import LARGEST_NUMBER, UNPACKED_BYTES
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate, prevailing
 from kinform.form.scenes.declarations import refuse_declarations
-from kinform.form.scenes.scene import EXPORT, SCENE_DEEP, SCENE_NODES, Node, Scene
+from kinform.form.scenes.scene import EXPORT, SCENE_DEEP, SCENE_NODES, Node, Scene, refuse_facets
 from kinform.form.sources import AS_IT_IS, Reading
 from kinform.formats.description.poses import about, pose
 from kinform.foundation.colours import told
@@ -58,6 +58,7 @@ def read_dae_mesh(data: bytes) -> RawMesh:
 def _as_one(data: bytes) -> RawMesh:
     reader = _Reader(data)
     roots = [reader.node(node, 0) for node in reader.roots]
+    refuse_facets(Scene(tuple(reader.meshes), tuple(reader.nodes), tuple(roots), "m"))
     vertices, faces, count = [], [], 0
     colours: list[str | None] = []
     for k, X in _placed(reader.nodes, roots, np.eye(4)):
@@ -105,6 +106,7 @@ class _Reader:
         self.nodes: list[Node] = []
         self.skins = 0
         self._number: dict[tuple[Any, ...], int | None] = {}
+        self._nodes: dict[int, int] = {}
 
     def notes(self) -> Iterator[str]:
         """What was left out."""
@@ -115,7 +117,13 @@ class _Reader:
             yield f"{counted(len(errors), 'element')} that cannot be read: {errors[0]}"
 
     def node(self, node: Any, deep: int) -> int:
-        """The number of a node of the file, with all below it."""
+        """The number of a node of the file, with all below it; the same for each place that names the node."""
+        stated = getattr(node, "node", node)  # an <instance_node> names another node
+        if id(stated) not in self._nodes:
+            self._nodes[id(stated)] = self._new_node(stated, deep)
+        return self._nodes[id(stated)]
+
+    def _new_node(self, node: Any, deep: int) -> int:
         import collada
 
         if deep > SCENE_DEEP or len(self.nodes) > SCENE_NODES:

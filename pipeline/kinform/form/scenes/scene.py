@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from kinform.form.constants import FRAME_ROUNDING, PARTS_MOST
+from kinform.form.constants import FRAME_ROUNDING, NAME_LENGTH, PARTS_MOST
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, prevailing
 from kinform.formats.description.tree import distinct
 from kinform.foundation.name_hints import in_quotes
@@ -81,70 +81,129 @@ def plain(name: str) -> str:
 
 
 def parts_of(scene: Scene) -> list[ScenePart]:
-    """The parts in the order of the file. Raises MeshError where a node scales askew, or there are too many."""
-    return list(_Walk(scene).parts())
+    """The parts in the order of the file. Raises MeshError where a node scales askew, a name is longer than a part may
+    have, or there are too many; these are counted before any is placed."""
+    counts = count_placed(scene)
+    if counts.meshes > PARTS_MOST:
+        raise MeshError([Fault(f"has {many(counts.meshes)} parts, and {PARTS_MOST:,} are the most", "divide it")])
+    return list(_Walk(scene, named=True).parts())
+
+
+COUNTED_MOST = 10**15
+"""Copies up to which a number of them is printed: what doubles at every level soon has hundreds of digits."""
+
+
+def many(count: int) -> str:
+    """The number of copies that a scene places, as messages show it."""
+    return f"{count:,}" if count < COUNTED_MOST else f"more than {COUNTED_MOST:,}"
+
+
+@dataclass(frozen=True)
+class Placed:
+    """How much a scene places, each thing counted as often as it is placed."""
+
+    nodes: int
+    meshes: int
+    facets: int
+
+
+def count_placed(scene: Scene) -> Placed:
+    """How much a scene places, from what is below each node, without placing any of it. Raises MeshError where nodes
+    are in each other in a circle or too deep, or where more are placed than a scene may have."""
+    below: dict[int, tuple[int, int, int, int]] = {}
+    held = _held(scene)
+    entered: set[int] = set()
+    todo = [k for k in scene.roots if held[k]]
+    while todo:
+        k = todo[-1]
+        if k in below:
+            todo.pop()
+            continue
+        node = scene.nodes[k]
+        children = [child for child in node.children if held[child]]
+        if k not in entered:
+            entered.add(k)
+            todo += [child for child in dict.fromkeys(children) if child not in below]
+            continue
+        if any(child not in below for child in children):  # a child that waits for this node
+            raise MeshError([_DEEP])
+        of = [below[child] for child in children]
+        facets = 0 if node.mesh is None else len(scene.meshes[node.mesh][1].faces)
+        below[k] = (
+            1 + sum(counts[0] for counts in of),
+            (node.mesh is not None) + sum(counts[1] for counts in of),
+            facets + sum(counts[2] for counts in of),
+            1 + max((counts[3] for counts in of), default=0),
+        )
+        todo.pop()
+    roots = [below[k] for k in scene.roots if held[k]]
+    if max((counts[3] for counts in roots), default=0) > SCENE_DEEP + 1:
+        raise MeshError([_DEEP])
+    placed = Placed(*(sum(counts[n] for counts in roots) for n in range(3)))
+    if placed.nodes > SCENE_NODES:
+        message = f"places {many(placed.nodes)} nodes, and {SCENE_NODES:,} are the most"
+        raise MeshError([Fault(message, "divide it")])
+    return placed
+
+
+_DEEP = Fault(f"has nodes more than {SCENE_DEEP} deep in each other, or in a circle", EXPORT)
+
+
+def _held(scene: Scene) -> list[bool]:
+    """Whether there is a mesh in or below each node."""
+    nodes = scene.nodes
+    above: list[list[int]] = [[] for _ in nodes]
+    for k, node in enumerate(nodes):
+        for child in set(node.children):
+            above[child].append(k)
+    held = [False] * len(nodes)
+    todo = [k for k, node in enumerate(nodes) if node.mesh is not None]
+    while todo:
+        k = todo.pop()
+        if not held[k]:
+            held[k] = True
+            todo += above[k]
+    return held
 
 
 class _Walk:
-    """Goes through the tree, depth first, in the order of the file."""
+    """Goes through a tree that `count_placed` has let pass, depth first, in the order of the file. Parts have names
+    where these are asked for."""
 
-    def __init__(self, scene: Scene):
-        self.scene = scene
-        self.visited = 0
-        self.held = self._held()
-
-    def _held(self) -> list[bool]:
-        """Whether there is a mesh in or below each node."""
-        nodes = self.scene.nodes
-        above: list[list[int]] = [[] for _ in nodes]
-        for k, node in enumerate(nodes):
-            for child in node.children:
-                above[child].append(k)
-        held = [False] * len(nodes)
-        todo = [k for k, node in enumerate(nodes) if node.mesh is not None]
-        while todo:
-            k = todo.pop()
-            if not held[k]:
-                held[k] = True
-                todo += above[k]
-        return held
+    def __init__(self, scene: Scene, named: bool):
+        self.scene, self.named = scene, named
+        self.held = _held(scene)
 
     def parts(self) -> Iterator[ScenePart]:
         roots, X = [k for k in self.scene.roots if self.held[k]], np.eye(4)
-        deep = 0
         while len(roots) == 1 and self.scene.nodes[roots[0]].mesh is None:
             node = self.scene.nodes[roots[0]]
             roots, X = [k for k in node.children if self.held[k]], X @ node.X
-            deep += 1
-            self._count(deep)
-        yield from self._below(roots, "", "", X, deep)
+        yield from self._below(roots, "", "", X)
 
-    def _count(self, deep: int) -> None:
-        self.visited += 1
-        if deep > SCENE_DEEP:
-            raise MeshError([Fault(f"has nodes more than {SCENE_DEEP} deep in each other, or in a circle", EXPORT)])
-        if self.visited > SCENE_NODES:
-            raise MeshError([Fault(f"places more than {SCENE_NODES:,} nodes", "divide it")])
-
-    def _below(self, nodes: list[int], prefix: str, original: str, X: Array, deep: int) -> Iterator[ScenePart]:
+    def _below(self, nodes: list[int], prefix: str, original: str, X: Array) -> Iterator[ScenePart]:
         free = distinct(set())
         for k in nodes:
-            self._count(deep)
             node = self.scene.nodes[k]
-            said = node.name or ("" if node.mesh is None else self.scene.meshes[node.mesh][0])
-            own = free(plain(said) or ("group" if node.mesh is None else "part"))
+            said = ""
+            if self.named:
+                said = node.name or ("" if node.mesh is None else self.scene.meshes[node.mesh][0])
+            own = free(plain(said) or ("group" if node.mesh is None else "part")) if self.named else ""
             name, told, X_here = prefix + own, original + said, X @ node.X
+            if len(name) > NAME_LENGTH:
+                message = f"has names of more than {NAME_LENGTH} characters: {in_quotes(name)}"
+                raise MeshError([Fault(message, "shorten them")])
             inner = [child for child in node.children if self.held[child]]
             if inner:
-                below = list(self._below(inner, f"{name}/", f"{told}/", X_here, deep + 1))
+                deeper = (f"{name}/", f"{told}/") if self.named else ("", "")
+                below = list(self._below(inner, *deeper, X_here))
                 yield from below
-                taken = {"/".join(part.name.split("/")[: name.count("/") + 2]) for part in below}
-                own_name = distinct(taken)(f"{name}/{own}")
-            else:
-                own_name = name
             if node.mesh is not None:
+                if inner and self.named:
+                    taken = {"/".join(part.name.split("/")[: name.count("/") + 2]) for part in below}
+                    name = distinct(taken)(f"{name}/{own}")
                 pose, scale = _pose_and_scale(X_here, name)
-                yield ScenePart(own_name, told, node.mesh, pose, scale)
+                yield ScenePart(name, told, node.mesh, pose, scale)
 
 
 def _pose_and_scale(X: Array, name: str) -> tuple[Array, tuple[float, float, float]]:
@@ -169,11 +228,24 @@ def _pose_and_scale(X: Array, name: str) -> tuple[Array, tuple[float, float, flo
     return pose, (float(near[0]), float(near[1]), float(near[2]))
 
 
+FACETS_MOST = 10_000_000
+"""Facets of the copies that become one mesh: as many as the largest file of one has (`UNPACKED_BYTES`)."""
+
+
+def refuse_facets(scene: Scene) -> None:
+    """Raise MeshError where a scene places more facets than one mesh may have."""
+    facets = count_placed(scene).facets
+    if facets > FACETS_MOST:
+        message = f"places {many(facets)} facets, and {FACETS_MOST:,} are the most in one mesh"
+        raise MeshError([Fault(message, "divide it")])
+
+
 def whole(scene: Scene) -> RawMesh:
-    """All parts of a scene in one mesh, where they stand. Raises MeshError where it has none."""
+    """All parts of a scene in one mesh, where they stand. Raises MeshError where it has none, or too many."""
     from kinform.form.meshes.raw import scaled
 
-    parts = parts_of(scene)
+    refuse_facets(scene)
+    parts = list(_Walk(scene, named=False).parts())
     if not parts:
         raise MeshError([Fault("is empty: it has no triangle", EXPORT)])
     vertices, faces, count = [], [], 0
@@ -186,7 +258,5 @@ def whole(scene: Scene) -> RawMesh:
         colours.append(raw.colour)
         written = max(written, raw.written)
         count += len(raw.vertices)
-        if sum(map(len, faces)) > PARTS_MOST * 1000:
-            raise MeshError([Fault("places more than a hundred million facets", "divide it")])
     every = np.concatenate(vertices)
     return RawMesh(every, np.concatenate(faces), written=written, colour=prevailing(every, faces, colours))

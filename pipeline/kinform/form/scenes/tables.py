@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from kinform.form.constants import NAME_LENGTH, PARTS_MOST
 from kinform.form.meshes.raw import MeshError
 from kinform.form.readers.places import Places
 from kinform.form.scenes.reading import scene_once
@@ -36,7 +35,8 @@ def tables(source: Source) -> SourceTables | None:
         for told in error.faults:
             source.problems.add(told.message, source.file, told.line, told.remedy)
         return None
-    if not _can_be(parts, source):
+    if not parts:
+        source.problems.add("has no part: no mesh of triangles stands in its scene", source.file, None, EXPORT)
         return None
     unit = scene.units or source.units
     if unit is None:
@@ -52,20 +52,6 @@ def tables(source: Source) -> SourceTables | None:
     }
     notes = tuple(f"{source.file}: {note}" for note in (*scene.notes, *_renamed(parts)))
     return SourceTables(raw, Places({(): (source.file, 1)}), notes, scene.files, described=False)
-
-
-def _can_be(parts: list[ScenePart], source: Source) -> bool:
-    """Whether these can be parts; else it is noted why not."""
-    if not parts:
-        source.problems.add("has no part: no mesh of triangles stands in its scene", source.file, None, EXPORT)
-    elif len(parts) > PARTS_MOST:
-        message = f"has {len(parts):,} parts, and {PARTS_MOST:,} are the most"
-        source.problems.add(message, source.file, None, "divide it")
-    long = [part.name for part in parts if len(part.name) > NAME_LENGTH]
-    if long:
-        message = f"has names of more than {NAME_LENGTH} characters: {in_quotes(long[0])}"
-        source.problems.add(message, source.file, None, "shorten them")
-    return bool(parts) and len(parts) <= PARTS_MOST and not long
 
 
 def _part_tables(parts: list[ScenePart], scene: Scene, source: Source, unit: str, said: str) -> list[dict[str, Any]]:

@@ -13,11 +13,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinform.form.constants import UNPACKED_BYTES
+from kinform.form.constants import (
+    ATTRIBUTE_BYTES,
+    ELEMENT_BYTES,
+    PARTS_MOST,
+    TREE_FREELY,
+    TREE_TIMES,
+    UNPACKED_BYTES,
+    UNPACKED_FREELY,
+    UNPACKED_TIMES,
+)
 from kinform.form.meshes.digits import written_step
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate, prevailing
 from kinform.form.scenes.declarations import refuse_declarations
-from kinform.form.scenes.scene import EXPORT, Node, Scene
+from kinform.form.scenes.scene import EXPORT, SCENE_DEEP, Node, Scene
 from kinform.form.sources import AS_IT_IS, Reading
 from kinform.foundation.name_hints import in_quotes
 from kinform.foundation.words import counted
@@ -30,6 +39,8 @@ _UNITS = {"micron": "um", "millimeter": "mm", "centimeter": "cm", "inch": "in", 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/"
 _KNOWN = ("/material/", "/production/", "/core/")
 """What the name spaces of extensions contain that do not change where anything is, or that are read."""
+_PACKED = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+"""The methods of packing that 3MF has. Others unpack slowly, or with gigabytes of memory."""
 _HEX = re.compile(r"#[0-9A-Fa-f]{6}([0-9A-Fa-f]{2})?")
 _Key = tuple[str, str]
 """The file in the archive, and the number of an object in it."""
@@ -42,21 +53,23 @@ def read_3mf(data: bytes, path: Path, reading: Reading = AS_IT_IS) -> Scene:
     except zipfile.BadZipFile:
         raise MeshError([Fault("is no 3MF: it is no zip archive, or cut short", EXPORT)]) from None
     with archive:
-        return _Reader(archive).scene()
+        return _Reader(archive, len(data)).scene()
 
 
 class _Reader:
-    def __init__(self, archive: zipfile.ZipFile):
+    def __init__(self, archive: zipfile.ZipFile, packed: int):
         self.archive = archive
         self.names = {f"/{name.lstrip('/')}".lower(): name for name in archive.namelist()}
-        self.left = UNPACKED_BYTES
+        self.most = min(UNPACKED_BYTES, max(UNPACKED_FREELY, UNPACKED_TIMES * packed))
+        self.left = self.most
+        self.tree_left = max(TREE_FREELY, TREE_TIMES * packed)
         self.objects: dict[_Key, Any] = {}
         self.roots: dict[str, Any] = {}
         self.colours: dict[_Key, list[str]] = {}
         self.meshes: list[tuple[str, RawMesh]] = []
         self.nodes: list[Node] = []
         self.number: dict[_Key, int] = {}
-        self.skipped = 0
+        self.skipped = self.placed = 0
 
     def scene(self) -> Scene:
         """All that the build places."""
@@ -89,14 +102,19 @@ class _Reader:
         if name not in self.names:
             raise MeshError([Fault(f"has no {name[1:]} in it", EXPORT)])
         info = self.archive.getinfo(self.names[name])
+        if info.compress_type not in _PACKED:
+            raise MeshError([Fault("is packed by another method than 3MF has, which is deflate", EXPORT)])
         self.left -= info.file_size
         if self.left < 0:
-            raise MeshError([Fault(f"has more than {UNPACKED_BYTES:,} bytes of XML in it", "divide it")])
+            raise MeshError([Fault(f"unpacks to more than {self.most:,} bytes of XML", "divide it")])
         try:
             text = self.archive.read(info)
         except (zipfile.BadZipFile, RuntimeError, NotImplementedError, EOFError, OSError) as error:
             raise MeshError([Fault(f"cannot be unpacked: {error}", EXPORT)]) from None
         refuse_declarations(text)
+        self.tree_left -= ELEMENT_BYTES * text.count(b"<") + ATTRIBUTE_BYTES * text.count(b"=")
+        if self.tree_left < 0:
+            raise MeshError([Fault("has far more elements in it than its size lets expect", "divide it")])
         parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False)
         try:
             return etree.fromstring(text, parser)
@@ -112,6 +130,10 @@ class _Reader:
             if not any(word in space for word in _KNOWN):
                 raise MeshError([Fault(f"needs the extension {in_quotes(space)}, which is not read",
                                        "export it as plain meshes")])  # fmt: skip
+        self.placed += sum(1 for _ in root.iter("{*}component", "{*}item"))
+        if self.placed > PARTS_MOST:
+            message = f"has {self.placed:,} components and items, and {PARTS_MOST:,} are the most"
+            raise MeshError([Fault(message, "divide it")])
         for table in root.iterfind("{*}resources/{*}object"):
             self.objects[name, table.get("id", "")] = table
         return root
@@ -125,6 +147,8 @@ class _Reader:
         table = self.objects.get(key)
         if table is None:
             raise MeshError([Fault(f"places object {in_quotes(key[1])}, which it does not have", EXPORT)])
+        if len(above) > SCENE_DEEP:
+            raise MeshError([Fault(f"has objects more than {SCENE_DEEP} deep in each other", EXPORT)])
         if key in above:
             raise MeshError([Fault(f"has object {in_quotes(key[1])} in itself", EXPORT)])
         if table.get("type", "model") not in ("model", "surface"):

@@ -8,7 +8,7 @@ import numpy as np
 
 from kinform.form.problems import Problems
 from kinform.formats.description.robot import At, Ratio
-from kinform.foundation.name_hints import did_you_mean, first_names, in_quotes
+from kinform.foundation.name_hints import LISTED_NAMES, did_you_mean, first_names, in_quotes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 
@@ -53,7 +53,7 @@ def tree_of(links: Mapping[str, At], edges: Sequence[Edge], at: At, problems: Pr
     circle = _circle({link: parent[link][1] for link in links if link in parent})
     if circle is not None:
         where = parent[circle[0]][4]
-        problems.add("the joints form a cycle: " + " → ".join(map(in_quotes, [*circle, circle[0]])),
+        problems.add(f"the joints form a cycle: {_told(circle)}",
                      where.file, where.line, "remove one of these joints")  # fmt: skip
         return None
     if not roots:
@@ -66,15 +66,23 @@ def _circle(above: Mapping[str, str]) -> list[str] | None:
     """Names that are above each other in a circle; None where there is none."""
     done: set[str] = set()
     for start in above:
-        way: list[str] = []
+        way: dict[str, None] = {}
         here: str | None = start
         while here is not None and here not in done and here not in way:
-            way.append(here)
+            way[here] = None
             here = above.get(here)
         if here is not None and here in way:
-            return way[way.index(here) :][::-1]
+            names = list(way)
+            return names[names.index(here) :][::-1]
         done.update(way)
     return None
+
+
+def _told(circle: Sequence[str]) -> str:
+    """The names of a circle, from the first round to it; of a long one its first."""
+    shown = [in_quotes(name) for name in circle[:LISTED_NAMES]]
+    left_out = ["…"] if len(circle) > LISTED_NAMES else []
+    return " → ".join([*shown, *left_out, in_quotes(circle[0])])
 
 
 def refuse_circle(mimics: Sequence[Ratio], problems: Problems) -> None:
@@ -82,8 +90,9 @@ def refuse_circle(mimics: Sequence[Ratio], problems: Problems) -> None:
     circle = _circle({mimic.joints[0]: mimic.joints[1] for mimic in mimics})
     if circle is not None:
         at = next(mimic.at for mimic in mimics if mimic.joints[0] == circle[0])
-        told = " → ".join(map(in_quotes, [*circle, circle[0]]))
-        problems.add(f"joints mimic each other in a circle: {told}", at.file, at.line, "remove one <mimic> of these")
+        problems.add(
+            f"joints mimic each other in a circle: {_told(circle)}", at.file, at.line, "remove one <mimic> of these"
+        )
 
 
 def _poses(root: str, edges: Sequence[Edge]) -> dict[str, Array]:
@@ -121,12 +130,15 @@ class Count:
 
 def distinct(taken: set[str]) -> Callable[[str], str]:
     """Gives names that are not taken yet: repeated ones get #2, #3."""
+    last: dict[str, int] = {}
 
     def free(name: str) -> str:
-        out, number = name, 2
+        out, number = name, last.get(name, 1)
         while out in taken:
-            out, number = f"{name}#{number}", number + 1
+            number += 1
+            out = f"{name}#{number}"
         taken.add(out)
+        last[name] = number
         return out
 
     return free

@@ -31,6 +31,13 @@ _TYPES = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "
 _COLUMNS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
 _HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_mesh_quantization", "KHR_xmp")
 """Extensions, by how they begin, that do not change where anything is; or that are read."""
+NUMBER_BYTES = 8
+"""Of a coordinate or an index once it is read."""
+DECODED_TIMES = 64
+"""Bytes of coordinates and indices, once they are read, for one of the buffers, at most: two where nothing is shared,
+and ten where meshes share their vertices. Chosen, not measured."""
+DECODED_FREELY = 100 << 20
+"""Bytes of coordinates and indices that need no such ratio."""
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 """Modes of primitives whose facets are read."""
 
@@ -81,6 +88,7 @@ class _Reader:
         self.files: list[Path] = []
         self.notes: list[str] = []
         self._buffers: dict[int, bytes] = {}
+        self._decoded = 0
 
     def scene(self) -> Scene:
         """All of it."""
@@ -219,6 +227,10 @@ class _Reader:
             raise MeshError([Fault(f"is cut short: a view ends at byte {start + length:,} of {len(data):,}", EXPORT)])
         if count == 0:
             return np.zeros((0, columns), kind)
+        self._decoded += NUMBER_BYTES * count * columns
+        if self._decoded > max(DECODED_FREELY, DECODED_TIMES * sum(map(len, self._buffers.values()))):
+            raise MeshError([Fault("reads the same vertices or indices again and again for other triangles",
+                                   "give each mesh vertices of its own")])  # fmt: skip
         if stride < row or inner + (count - 1) * stride + row > length:
             raise MeshError([Fault(f"has an accessor that goes beyond its view (accessor {stated})", EXPORT)])
         steps = (stride, kind.itemsize)
