@@ -1,10 +1,10 @@
 """xacro's macro processor with an evaluator, a lexer and a reader of files of kinform's own.
 
 The package `xacro` (written for 2.1.1) expands macros, blocks, conditions and includes on an XML tree. What of it
-evaluates, reads files or asks the system is replaced here (`_REPLACED`), for as long as one file is expanded: expressions
-go to `expressions`, files come from `ask`, and the environment is not there. `unfit` says why a version of the package
-cannot be confined in this way: a replaced function is not there with its parameters, or another one uses a name of
-`_FORBIDDEN`.
+evaluates, reads files or asks the system is replaced here (`_REPLACED`), for as long as one file is expanded:
+expressions go to `expressions`, files come from `ask`, and the environment is not there. `unfit` says why a version of
+the package cannot be confined in this way: a replaced function is not there with its parameters, or another one uses a
+name of `_FORBIDDEN`.
 """
 
 from __future__ import annotations
@@ -42,7 +42,9 @@ TEXTS_LENGTH = 16_000_000
 """Characters of all texts together that are expanded."""
 FRAMES = 3000
 """Calls inside each other, of which macros that are nested take some ten each."""
-RUNS_CODE = "write the value in its place, or allow this with --allow-xacro, which runs code of the file"
+RUN_ALL = "allow this with --allow-xacro, which runs code of the file"
+"""The remedy for what only xacro itself does."""
+RUNS_CODE = f"write the value in its place, or {RUN_ALL}"
 """The remedy for what is only evaluated by xacro itself."""
 
 _REPLACED: Mapping[str, tuple[str, ...]] = {
@@ -110,10 +112,10 @@ def _names(code: CodeType) -> set[str]:
 
 def prepare() -> None:
     """Import whatever an expansion may need: afterwards nothing is imported."""
-    import xml.dom.expatbuilder  # noqa: F401
+    import xml.dom.expatbuilder
     import xml.dom.minidom
 
-    import xacro  # noqa: F401
+    import xacro
     import xacro.substitution_args  # noqa: F401
 
     xml.dom.minidom.parseString("<a/>")
@@ -412,8 +414,8 @@ class _Expansion:
         """Raise NotAllowed for a text, or for texts, without end."""
         self.characters += many
         if many > TEXT_LENGTH or self.characters > TEXTS_LENGTH:
-            raise Refused(f"makes a text of more than {TEXT_LENGTH if many > TEXT_LENGTH else TEXTS_LENGTH:,} characters",
-                          "shorten it")  # fmt: skip
+            most = TEXT_LENGTH if many > TEXT_LENGTH else TEXTS_LENGTH
+            raise Refused(f"makes a text of more than {most:,} characters", "shorten it")
 
 
 class _InPlace:

@@ -2,9 +2,9 @@
 
 The processor runs in a process of its own (`foundation.confined`), where expressions are evaluated by kinform
 (`expansion`, `expressions`). It has no environment and no files but those that `_Host` hands it: the file itself, files
-of the design's folder, and files of packages that are found. With `--allow-xacro` the package expands the file by itself,
-with everything that its expressions may do. Lines are those of the text as written, as far as an element of that name
-stands there; else the first.
+of the design's folder, and files of packages that are found. With `--allow-xacro` the package expands the file by
+itself, with everything that its expressions may do. Lines are those of the text as written, as far as an element of
+that name stands there; else the first.
 """
 
 from __future__ import annotations
@@ -19,12 +19,13 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+from kinform.form.constants import TEXT_BYTES
 from kinform.form.problems import Problems
-from kinform.formats.description.elements import TEXT_BYTES, declares_entities
+from kinform.formats.description.elements import declares_entities
 from kinform.formats.description.mesh_files import MeshFiles, files_below, package_name
 from kinform.formats.description.robot import Robot
 from kinform.formats.urdf.reading import reader
-from kinform.formats.urdf.reading.expansion import RUNS_CODE, expand, prepare, unfit
+from kinform.formats.urdf.reading.expansion import RUN_ALL, RUNS_CODE, expand, prepare, unfit
 from kinform.foundation.confined import Confined, confined
 from kinform.foundation.processes import Crash, in_own_process
 from kinform.foundation.regular_files import not_a_file
@@ -59,7 +60,7 @@ def read(path: Path, data: bytes, file: str, problems: Problems, meshes: MeshFil
     try:
         if why is not None:
             words = f"cannot be expanded safely by xacro {getattr(xacro, '__version__', '')}".rstrip() + f": {why}"
-            done: _Expanded | _Fault = _Fault(words, f"pip install xacro==2.1.1, or {RUNS_CODE.split(', or ')[1]}")
+            done: _Expanded | _Fault = _Fault(words, f"pip install xacro==2.1.1, or {RUN_ALL}")
         elif meshes.runs_xacro:
             done = _by_xacro(path, data, meshes)
         else:
@@ -169,7 +170,7 @@ class _Host:
     def _outside(self, name: str) -> bytes:
         shown = Path(os.path.relpath(name, self.path.parent)).as_posix()
         return _no(f"includes {shown}, which lies outside of the design's folder",
-                   "copy it into that folder, or name its package with --package; --allow-xacro allows everything")  # fmt: skip
+                   f"copy it into that folder, name its package with --package, or {RUN_ALL}")  # fmt: skip
 
     def _fitting(self, pattern: str) -> bytes:
         """Names of the files that a pattern fits, sorted, in JSON."""
@@ -224,9 +225,7 @@ def _by_xacro(path: Path, data: bytes, meshes: MeshFiles) -> _Expanded | _Fault:
     from xacrodoc import packages  # xacro asks it where packages are
 
     wanted = _packages_of(data, meshes.home)
-    packages.update_package_cache(
-        {name: folder for name in wanted if (folder := _package(name, meshes)) is not None}
-    )
+    packages.update_package_cache({name: folder for name in wanted if (folder := _package(name, meshes)) is not None})
     return in_own_process(lambda: _in_the_fork(path))
 
 
