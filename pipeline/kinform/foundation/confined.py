@@ -139,6 +139,7 @@ def _work(
             size = int.from_bytes(heard.read(8), "big")
             return heard.read(size)
 
+        signal.alarm(10 * seconds)  # of the clock: whoever waits takes no processor time
         _close(hear, say)
         _limit(seconds, memory)
         sys.addaudithook(_end_at_harm)

@@ -34,8 +34,10 @@ from kinform.formats.urdf.reading.expressions import (
 from kinform.formats.urdf.reading.yaml_data import load_plain
 from kinform.foundation.confined import Ask
 
-NODES = 200_000
-"""Nodes (elements, texts, comments) that are expanded, at most: about two seconds. Public robots have up to 30,000."""
+NODES = 100_000
+"""Nodes (elements, texts, comments) that are expanded, at most: about two seconds. Public robots have up to 20,000."""
+SIBLINGS = 10_000
+"""Nodes inside one element, at most: adding one looks through all. Public robots have up to 2,000."""
 TEXT_LENGTH = 1_000_000
 """Characters of one text or attribute. The longest of a public robot has some 1,000."""
 TEXTS_LENGTH = 16_000_000
@@ -136,15 +138,18 @@ def expand(path: str, text: bytes, ask: Ask) -> bytes:
             reply: dict[str, Any] = {"text": str(xacro.process_file(path).toxml())}
             if len(reply["text"]) > 2 * TEXTS_LENGTH:
                 raise too_large()
+            reply["text"].encode()
     except RecursionError:
         reply = {"words": "macros or includes contain themselves", "remedy": "remove one of them"}
     except MemoryError:
         reply = {"memory": True}
+    except UnicodeEncodeError:
+        reply = {"words": "makes a text that is no Unicode", "remedy": "remove halves of surrogate pairs"}
     except (Exception, SystemExit) as error:  # xacro raises whatever its expressions raise
         reply = _fault(error)
     if "text" not in reply and xacro.filestack:
         reply["file"] = str(xacro.filestack[-1])
-    return json.dumps(reply).encode("utf-8", "surrogatepass")
+    return json.dumps(reply).encode()
 
 
 def _fault(error: BaseException) -> dict[str, Any]:
@@ -217,7 +222,7 @@ class _Expansion:
             else:
                 out.append(said[1:] if token[1] else said)
         if len(out) == 1:
-            return out[0]
+            return out[0] if type(out[0]) is str else self.language.checked(out[0], self.budget)
         texts = [one if type(one) is str else self.written(one) for one in out]
         self.spend_characters(sum(map(len, texts)))
         return "".join(texts)
@@ -287,9 +292,11 @@ class _Expansion:
     def eval_all(self, node: Any, macros: Any, symbols: Any) -> None:
         """As xacro's; counts what is expanded."""
         self.nodes += 1 + len(node.childNodes)
-        if self.nodes > NODES:
+        siblings = max(len(node.childNodes), len(node.parentNode.childNodes) if node.parentNode else 0)
+        if self.nodes > NODES or siblings > SIBLINGS:
+            what = f"{NODES:,} nodes" if self.nodes > NODES else f"{SIBLINGS:,} nodes in one element"
             raise Refused(
-                f"expands to more than {NODES:,} nodes: do its macros call each other more than once?",
+                f"expands to more than {what}: do its macros call each other more than once?",
                 "call them in turn; or expand it yourself: xacro F.urdf.xacro > F.urdf",
             )
         self.eval_all_of_xacro(node, macros, symbols)
@@ -330,7 +337,7 @@ class _Expansion:
     def parse_macro_arg(self, s: str) -> tuple[str, tuple[str | None, str | None] | None, str]:
         """The first parameter of a macro, its default, and the others, as xacro's."""
         self.spend_characters(len(s))
-        return first_parameter(s)
+        return first_parameter(s, self.budget)
 
     def is_valid_name(self, name: str) -> bool:
         """Whether a property may have the name."""
@@ -464,12 +471,12 @@ _BREAK = re.compile(r"\s|$")
 _PLAIN = re.compile(r"[^\s'\"]+")
 
 
-def first_parameter(s: str) -> tuple[str, tuple[str | None, str | None] | None, str]:
+def first_parameter(s: str, budget: Budget) -> tuple[str, tuple[str | None, str | None] | None, str]:
     """The first of the parameters of a macro, as in `name:=default`; what is forwarded and the default, None without;
-    and the other parameters. It reads as xacro's pattern does, in linear time where that takes exponential."""
+    and the other parameters. It reads as xacro's pattern does, in square time where that takes exponential."""
     stated = _PARAMETER.match(s)
     if stated is not None:
-        end = _end_of_default(s, stated.end())
+        end = _end_of_default(s, stated.end(), budget)
         start, forwards = stated.end(), bool(stated[3])
         if end is None and stated[2]:  # no default can be read: it is empty, and what follows is a parameter
             start = end = stated.end(2) - 1
@@ -482,7 +489,7 @@ def first_parameter(s: str) -> tuple[str, tuple[str | None, str | None] | None, 
     return first, None, others[0] if others else ""
 
 
-def _end_of_default(s: str, start: int) -> int | None:
+def _end_of_default(s: str, start: int, budget: Budget) -> int | None:
     """Where the default ends that begins at `start`: after a braced expression, else after quoted and plain texts, of
     which a quote may go on beyond the next one; what follows is a space or the end. None where it ends nowhere."""
     for opening, closing in (("${", "}"), ("$(", ")")):
@@ -494,6 +501,7 @@ def _end_of_default(s: str, start: int) -> int | None:
     places, trail = [start], [_pieces(s, start)]
     while trail:
         end = next(trail[-1], -1)
+        budget.spend(1)
         if end < 0:
             trail.pop()
             place = places.pop()

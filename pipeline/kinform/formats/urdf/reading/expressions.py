@@ -70,12 +70,15 @@ class Function:
     call: Callable[..., Any]
     kind: type | None = None
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         return f"<function {self.name}>"
 
 
 class Names(dict[str, Any]):
     """A namespace of functions and constants, such as `math`."""
+
+    def __repr__(self) -> str:
+        return "<namespace>"
 
 
 class Language:
@@ -104,7 +107,10 @@ class Language:
         if text not in self._trees:
             if len(text) > EXPRESSION_LENGTH:
                 raise NotAllowed(f"has an expression of {len(text):,} characters: {EXPRESSION_LENGTH:,} are the most")
-            self._trees[text] = ast.parse(text, "<expression>", "eval").body
+            try:
+                self._trees[text] = ast.parse(text, "<expression>", "eval").body
+            except (MemoryError, RecursionError):  # the parser's own limits
+                raise _too_deep() from None
         return self._trees[text]
 
     def checked(self, value: Any, budget: Budget) -> Any:
@@ -127,13 +133,17 @@ class Language:
                 size = 2 * len(one)
                 waiting.extend(dict.keys(one))
                 waiting.extend(dict.values(one))
-            elif kind not in self.known:
-                raise NotAllowed(f"makes {_a_kind(kind)}, which kinform does not take")
+            elif kind in self.spaces or kind not in self.known:
+                raise NotAllowed(f"uses {_a_kind(kind)} as a value, which kinform does not take")
             weight += 1 + (size >> 3 if kind is str else size)
             if weight > WEIGHT or size > WEIGHT:
                 raise too_large()
-        budget.spend(weight)
+        budget.spend(1 + (weight >> 2))
         return value
+
+
+def _too_deep() -> NotAllowed:
+    return NotAllowed(f"has an expression that is nested more than {DEPTH} deep", "use properties for its parts")
 
 
 def too_large() -> NotAllowed:
@@ -162,7 +172,7 @@ class _Walk:
         self.budget.spend(1)
         self.depth += 1
         if self.depth > DEPTH:
-            raise NotAllowed(f"has an expression that is nested more than {DEPTH} deep", "use properties for its parts")
+            raise _too_deep()
         out = step(self, node)
         self.depth -= 1
         return out
@@ -402,8 +412,8 @@ _UNKNOWN: Mapping[type[ast.expr], str] = {
 }  # fmt: skip
 """What is refused, as messages have it."""
 
-_SMALL = frozenset((float, bool, NoneType, Function, Names))
-"""Types of which a value has always the same size, or was made here."""
+_SMALL = frozenset((float, bool, NoneType, Function))
+"""Types of which a value has always the same size."""
 _DATA = frozenset((*_SMALL, int, str, range, datetime.date, datetime.datetime))
 """Types of plain data; dates come from YAML."""
 

@@ -34,7 +34,7 @@ from kinform.frozen import dataclass
 XACRO_FILES = 500
 """Files that one file includes, and files of a package that are looked through for the names of other packages, at
 most: a package has a few dozen. Chosen, not measured."""
-XACRO_SECONDS = 20
+XACRO_SECONDS = 10
 """Seconds of processor time that the expansion of a xacro file may take: robots take one or two."""
 XACRO_MEMORY = 400 << 20
 """Bytes of memory that it may take beside what kinform has; robots take some 50 MB."""
@@ -68,7 +68,8 @@ def read(path: Path, data: bytes, file: str, problems: Problems, meshes: MeshFil
     except Confined:
         done = _Fault("does what kinform does not allow while it is expanded", RUNS_CODE)
     except Crash as crash:
-        done = _too_long() if "SIGXCPU" in crash.cause or "SIGKILL" in crash.cause else _Fault(crash.cause)
+        ended = any(signal in crash.cause for signal in ("SIGXCPU", "SIGKILL", "SIGALRM"))
+        done = _too_long() if ended else _Fault(crash.cause)
     except MemoryError:
         done = _too_large()
     if isinstance(done, _Fault):

@@ -11,10 +11,12 @@ from typing import Any
 
 from kinform.formats.urdf.reading.expressions import NotAllowed
 
-BYTES = 1 << 20
+BYTES = 256 << 10
 """Of a YAML file, of which PyYAML reads some 100 kB in a second. The largest of a public robot has 30 kB."""
 MERGED = 10_000
 """Keys of a mapping after merging."""
+DEPTH = 100
+"""Brackets inside each other, which PyYAML reads in square time."""
 
 
 def load_plain(data: bytes, units: Mapping[str, float], evaluate: Callable[[str], Any]) -> Any:
@@ -25,6 +27,11 @@ def load_plain(data: bytes, units: Mapping[str, float], evaluate: Callable[[str]
         raise NotAllowed(f"loads a YAML file of more than {BYTES:,} bytes", "split it")
 
     class Loader(yaml.SafeLoader):  # type: ignore[misc]
+        def fetch_flow_collection_start(self, kind: Any) -> None:
+            if self.flow_level >= DEPTH:
+                raise NotAllowed(f"loads YAML with more than {DEPTH} brackets inside each other", "nest it less")
+            super().fetch_flow_collection_start(kind)
+
         def flatten_mapping(self, node: Any) -> None:
             super().flatten_mapping(node)
             if len(node.value) > MERGED:
