@@ -99,7 +99,9 @@ def cores(jobs: int | None) -> int:
     return jobs or os.cpu_count() or 1
 
 
-def reading(geometry: GeometryKind, packages: list[str] | None, deviation: str | None = None) -> Reading:
+def reading(
+    geometry: GeometryKind, packages: list[str] | None, deviation: str | None = None, *, allow_xacro: bool
+) -> Reading:
     """How sources are read, by the options of the command line; a usage error where one is none."""
     from kinform.form.sources import Reading
 
@@ -111,7 +113,8 @@ def reading(geometry: GeometryKind, packages: list[str] | None, deviation: str |
         if not Path(folder).is_dir():
             raise typer.BadParameter(f"there is no folder {folder}", param_hint="--package")
         pairs.append((name, folder))
-    return Reading(geometry.value, tuple(pairs), None if deviation is None else _length(deviation, "--deviation"))
+    chordal = None if deviation is None else _length(deviation, "--deviation")
+    return Reading(geometry.value, tuple(pairs), chordal, allow_xacro=allow_xacro)
 
 
 def _length(stated: str, hint: str) -> float:
@@ -257,6 +260,13 @@ LookedAt = Annotated[
 ]
 Output = Annotated[Path, option("--output -o", "F.h5", "Results file to write; may be the one that is read.")]
 AllowOutside = Annotated[bool, typer.Option("--allow-outside", help="Accept meshes outside the manifest's folder.")]
+AllowXacro = Annotated[
+    bool,
+    typer.Option(
+        "--allow-xacro",
+        help="Expand xacro files with xacro itself. This runs code: their expressions can do whatever you can.",
+    ),
+]
 Geometry = Annotated[
     GeometryKind, typer.Option("--geometry", help="Which geometry of a robot description its parts are.")
 ]

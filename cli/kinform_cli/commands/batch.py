@@ -14,7 +14,7 @@ import typer
 from kinform.foundation.words import counted
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
-from kinform_cli.options import AllowOutside, FailOn, Jobs, Severity, argument, cores, examples, option
+from kinform_cli.options import AllowOutside, AllowXacro, FailOn, Jobs, Severity, argument, cores, examples, option
 from kinform_cli.progress import Working
 
 if TYPE_CHECKING:
@@ -73,6 +73,7 @@ def batch(
     seconds: Annotated[float | None, option("--time", "SECONDS", "What one design may take.")] = None,
     memory: Annotated[str | None, option("--memory", "SIZE", "What one design may take, as in 500MB or 2GB.")] = None,
     allow_outside: AllowOutside = False,
+    allow_xacro: AllowXacro = False,
     catalog: Annotated[
         Path | None,
         option("--catalog -c", "FILE", "Also add all results to this catalog (SQLite), made where there is none."),
@@ -109,7 +110,7 @@ def batch(
     found = many.discover(paths, include=include or (), exclude=exclude or (), ignored=ignored, results=output)
     if changed_since is not None:
         found = _touched(found, changed_since)
-    settings = many.Settings(cores(jobs), scheduler, send, limits, allow_outside)
+    settings = many.Settings(cores(jobs), scheduler, send, limits, allow_outside, allow_xacro)
     began = time.monotonic()
     with Pace("batch", began) as pace:
         rows = many.run(found, output, settings, pace) if found else ()

@@ -6,6 +6,7 @@ from kinform.foundation.words import counted
 from kinform_cli import console, files
 from kinform_cli.options import (
     AllowOutside,
+    AllowXacro,
     Depfile,
     Deviation,
     Geometry,
@@ -32,6 +33,7 @@ def import_(
     output: Output,
     units: Units = None,
     allow_outside: AllowOutside = False,
+    allow_xacro: AllowXacro = False,
     geometry: Geometry = GeometryKind.visual,
     packages: Packages = None,
     deviation: Deviation = None,
@@ -46,7 +48,7 @@ def import_(
 
     with Working("import"):
         if manifest:
-            how = reading(geometry, packages, deviation)
+            how = reading(geometry, packages, deviation, allow_xacro=allow_xacro)
             design = stages.import_(sources[0], allow_outside=allow_outside, reading=how)
         else:
             assert units is not None

@@ -10,7 +10,18 @@ import typer
 from kinform.foundation.words import counted
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
-from kinform_cli.options import Geometry, GeometryKind, Packages, Units, argument, cores, examples, option, reading
+from kinform_cli.options import (
+    AllowXacro,
+    Geometry,
+    GeometryKind,
+    Packages,
+    Units,
+    argument,
+    cores,
+    examples,
+    option,
+    reading,
+)
 from kinform_cli.progress import Working
 from kinform_cli.text import command
 
@@ -46,6 +57,7 @@ def init(
     ] = True,
     geometry: Geometry = GeometryKind.visual,
     packages: Packages = None,
+    allow_xacro: AllowXacro = False,
     force: Annotated[bool, typer.Option("--force", help="Overwrite a manifest that exists.")] = False,
 ) -> None:
     """Write a manifest: for meshes and CAD files, ready to be completed; of a robot description, all that it says."""
@@ -66,7 +78,7 @@ def init(
             text = init_from_source(
                 meshes[0],
                 relative_to=folder,
-                reading=reading(geometry, packages),
+                reading=reading(geometry, packages, allow_xacro=allow_xacro),
                 fastened=hints.groups,
                 jointed=hints.joints,
             )

@@ -13,6 +13,7 @@ from kinform_cli.designs import whole_design
 from kinform_cli.errors import refuse
 from kinform_cli.options import (
     AllowOutside,
+    AllowXacro,
     Deviation,
     Geometry,
     GeometryKind,
@@ -60,6 +61,7 @@ def report(
     ] = False,
     units: Units = None,
     allow_outside: AllowOutside = False,
+    allow_xacro: AllowXacro = False,
     geometry: Geometry = GeometryKind.visual,
     packages: Packages = None,
     deviation: Deviation = None,
@@ -79,7 +81,7 @@ def report(
     design = whole_design(
         sources,
         units=units,
-        reading=reading(geometry, packages, deviation),
+        reading=reading(geometry, packages, deviation, allow_xacro=allow_xacro),
         allow_outside=allow_outside,
         jobs=cores(jobs),
         as_it_is=as_it_is,

@@ -11,6 +11,7 @@ from kinform_cli import console, files
 from kinform_cli.gate import Gate, next_look
 from kinform_cli.options import (
     AllowOutside,
+    AllowXacro,
     Depfile,
     Deviation,
     FailOn,
@@ -53,6 +54,7 @@ def run(
     ] = None,
     units: Units = None,
     allow_outside: AllowOutside = False,
+    allow_xacro: AllowXacro = False,
     geometry: Geometry = GeometryKind.visual,
     packages: Packages = None,
     deviation: Deviation = None,
@@ -89,7 +91,7 @@ def run(
             units=units,
             say=console.say,
             ranges=ranges,
-            reading=reading(geometry, packages, deviation),
+            reading=reading(geometry, packages, deviation, allow_xacro=allow_xacro),
         )
     if depfile is not None and output is not None:
         files.write_rule(depfile, output, outcome.gist, sources)

@@ -17,6 +17,7 @@ from kinform_cli.errors import refuse
 from kinform_cli.gate import Gate
 from kinform_cli.options import (
     AllowOutside,
+    AllowXacro,
     Deviation,
     FailOn,
     FindingsFormat,
@@ -54,6 +55,7 @@ def watch(
     manifest: Annotated[Path, argument("SOURCE", "Manifest or robot description of the design.")],
     output: Annotated[Path, option("--output -o", "F.h5", "Results file; what is valid is reused.")],
     allow_outside: AllowOutside = False,
+    allow_xacro: AllowXacro = False,
     geometry: Geometry = GeometryKind.visual,
     packages: Packages = None,
     deviation: Deviation = None,
@@ -85,7 +87,7 @@ def watch(
         raise refuse(fault, file=manifest, remedy=AS_A_FILE)
     files.check_output(output, inputs=[manifest])
     files.check_findings(shown.files, [manifest, output])
-    how = reading(geometry, packages, deviation)
+    how = reading(geometry, packages, deviation, allow_xacro=allow_xacro)
     gate = Gate(shown, fail_on, manifest.parent)
     with contextlib.ExitStack() as stack:
         server = stack.enter_context(PageServer(port or 0)) if report else None

@@ -29,6 +29,7 @@ class Settings:
     """Whether inputs are sent to the workers and results back; else they see the same files."""
     limits: Limits = UNLIMITED
     allow_outside: bool = False
+    allow_xacro: bool = False
 
 
 def run(
@@ -87,13 +88,13 @@ def _run(
 def _answers(left: Sequence[Found], folder: Path, settings: Settings, crew: Crew) -> Iterator[Answer]:
     """The answers as they come: a result is the fields of a row."""
     code = code_of_here()
-    outside = {"allow_outside": settings.allow_outside}
+    allowed = {"allow_outside": settings.allow_outside, "allow_xacro": settings.allow_xacro}
     if not settings.send:
         for one in left:  # here, for a file in the place of a folder would stop a worker without words
             _make((folder / one.results).parent)
         yield from crew.answers(
             Task(one.name, "kinform.batch.work:run",
-                 {"source": str(one.source.absolute()), "output": str((folder / one.results).absolute()), **outside},
+                 {"source": str(one.source.absolute()), "output": str((folder / one.results).absolute()), **allowed},
                  settings.limits, code)
             for one in left
         )  # fmt: skip
@@ -110,7 +111,8 @@ def _sent(left: Sequence[Found], folder: Path, settings: Settings, crew: Crew, c
 
     def tasks() -> Iterator[Task]:
         for one in left:
-            source = {"source": str(one.source.absolute()), "allow_outside": settings.allow_outside}
+            allowed = {"allow_outside": settings.allow_outside, "allow_xacro": settings.allow_xacro}
+            source = {"source": str(one.source.absolute()), **allowed}
             answer = perform(Task(one.name, "kinform.batch.work:imported", source, settings.limits))
             if answer.failure is not None:
                 refused.append(answer)

@@ -11,19 +11,22 @@ from typing import Any
 
 from kinform import method, results, stages
 from kinform.design import Design
+from kinform.form.sources import Reading
 
 
-def run(source: str, output: str, *, allow_outside: bool = False) -> dict[str, Any]:
+def run(source: str, output: str, *, allow_outside: bool = False, allow_xacro: bool = False) -> dict[str, Any]:
     """Run the design at `source`, with its results at `output`; gives the fields of its row."""
     said: list[str] = []
     os.makedirs(os.path.dirname(output), exist_ok=True)
-    method.run(source, output, allow_outside=allow_outside, say=said.append)
+    reading = Reading(allow_xacro=allow_xacro)
+    method.run(source, output, allow_outside=allow_outside, say=said.append, reading=reading)
     return summary_of(results.read_gist(output), Path(output).read_bytes(), said)
 
 
-def imported(source: str, *, allow_outside: bool = False) -> bytes:
+def imported(source: str, *, allow_outside: bool = False, allow_xacro: bool = False) -> bytes:
     """The imported design, as bytes to be sent to a worker that sees none of its files."""
-    return pickle.dumps(stages.import_(source, allow_outside=allow_outside), protocol=pickle.HIGHEST_PROTOCOL)
+    design = stages.import_(source, allow_outside=allow_outside, reading=Reading(allow_xacro=allow_xacro))
+    return pickle.dumps(design, protocol=pickle.HIGHEST_PROTOCOL)
 
 
 def derive(design: bytes) -> tuple[bytes, list[str]]:

@@ -54,6 +54,8 @@ class Reading:
     """Largest distance (m) of the facets of a STEP file from its surfaces; None: a share of its edges."""
     changes: tuple[tuple[tuple[str, ...], Any], ...] = ()
     """Other values for keys of the top manifest: paths as of `kinform.form.keys`, and values."""
+    allow_xacro: bool = False
+    """Whether xacro files are expanded by xacro itself, which runs what their expressions say."""
 
     @property
     def of_files(self) -> Reading:

@@ -93,7 +93,7 @@ def _nominal(
     """What is measured of the design as it stands, with its results at `base`, and the units; and the hashes of its
     files."""
     arguments = {"design": str(plan.design.absolute()), "output": str(base), "measured": measured,
-                 "allow_outside": settings.allow_outside}  # fmt: skip
+                 "allow_outside": settings.allow_outside, "allow_xacro": settings.allow_xacro}  # fmt: skip
     answer = perform(Task("nominal", "kinform.study.work:nominal", arguments, settings.limits))
     if answer.failure is not None:
         if answer.failure.kind == INPUT:
@@ -115,7 +115,7 @@ def _task(
     arguments = {
         "design": str(plan.design.absolute()), "base": None if base is None else str(base.absolute()),
         "changes": changes, "measured": measured, "commands": commands, "allow_outside": settings.allow_outside,
-        "folder": str(plan.path.parent.absolute()),
+        "allow_xacro": settings.allow_xacro, "folder": str(plan.path.parent.absolute()),
     }  # fmt: skip
     return Task(f"sample {k}", "kinform.study.work:sample", arguments, settings.limits, code_of_here())
 

@@ -44,6 +44,7 @@ def sample(
     measured: Sequence[tuple[str, ...]],
     commands: Sequence[tuple[str, Sequence[str], str]] = (),
     allow_outside: bool = False,
+    allow_xacro: bool = False,
     folder: str | None = None,
 ) -> tuple[float | None, ...]:
     """The values at these paths of the design with these changes; None where a value is not known.
@@ -56,7 +57,7 @@ def sample(
         made = [
             _made(part, words, Path(place) / f"mesh{k}{end}", folder) for k, (part, words, end) in enumerate(commands)
         ]
-        reading = Reading(changes=(*changes, *made))
+        reading = Reading(changes=(*changes, *made), allow_xacro=allow_xacro)
         outside = allow_outside or bool(made)
         outcome = method.run(design, base=base, reading=reading, allow_outside=outside)
         try:
@@ -66,11 +67,15 @@ def sample(
 
 
 def nominal(
-    design: str, output: str, measured: Sequence[tuple[str, ...]], allow_outside: bool = False
+    design: str,
+    output: str,
+    measured: Sequence[tuple[str, ...]],
+    allow_outside: bool = False,
+    allow_xacro: bool = False,
 ) -> tuple[tuple[float | None, ...], tuple[str, ...], dict[str, str]]:
     """The values at these paths of the design as it stands, whose results are written, and their units; and the hashes
     of its files."""
-    done = method.run(design, output, allow_outside=allow_outside).design
+    done = method.run(design, output, allow_outside=allow_outside, reading=Reading(allow_xacro=allow_xacro)).design
     try:
         _refuse_what_is_no_number(done, measured)
         return measure(done, measured), units(done, measured), dict(done.fingerprints.files)

@@ -93,6 +93,37 @@ def test_what_is_wrong_is_told_with_file_line_and_remedy(tmp_path, case):
     form.load(write(tmp_path))  # nothing of it is left behind
 
 
+CODE = (
+    "${(lambda: [c for c in ().__class__.__base__.__subclasses__() if c.__name__ == '_wrap_close'][0]"
+    ".__init__.__globals__['system']('touch MARK'))()}"
+)
+
+
+def test_code_runs_only_where_the_user_allows_it(tmp_path):
+    path, mark = write(tmp_path), tmp_path / "mark"
+    path.write_text(path.read_text().replace("$(arg reach)", CODE.replace("MARK", str(mark))))
+    with pytest.raises(InputError) as caught:
+        form.load(path)
+    assert caught.value.problems[0].line == 5 and "--allow-xacro" in caught.value.problems[0].remedy
+    assert not mark.exists()
+    with pytest.raises(InputError):  # a bar of length 0
+        form.load(path, reading=Reading(allow_xacro=True))
+    assert mark.exists()
+
+
+@pytest.mark.parametrize("said", ["$(env SECRET)", "$(optenv SECRET)[::-1]", "$(optenv NONE 1)", "$(eval optenv)"])
+def test_the_environment_is_read_only_where_the_user_allows_it(tmp_path, monkeypatch, said):
+    monkeypatch.setenv("SECRET", "12345")
+    path = write(tmp_path, mass=said)
+    with pytest.raises(InputError) as caught:
+        form.load(path)
+    (problem,) = caught.value.problems
+    assert problem.line == 4 and "--allow-xacro" in problem.remedy and "12345" not in str(problem)
+    if said == "$(env SECRET)":
+        assembly = form.load(path, reading=Reading(allow_xacro=True))
+        assert next(g.override.mass for g in assembly.groups if g.name == "base") == 12345
+
+
 def test_entities_are_refused_before_anything_is_expanded(tmp_path):
     path = write(tmp_path)
     path.write_text(

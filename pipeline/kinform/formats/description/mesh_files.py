@@ -46,6 +46,9 @@ class Found:
 class MeshFiles:
     """Resolves what one description names. `packages` are folders by name, as the user states them."""
 
+    runs_xacro = False
+    """Whether the package xacro may expand a file by itself, which runs what its expressions say."""
+
     def __init__(self, description: Path, packages: Mapping[str, Path], environment: Mapping[str, str] | None = None):
         self.folder = description.parent
         self.packages = packages

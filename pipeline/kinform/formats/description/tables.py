@@ -50,6 +50,7 @@ def tables(source: Source) -> SourceTables | None:
         return None
     packages = {name: Path(folder) for name, folder in source.reading.packages}
     meshes = MeshFiles(source.path, packages)
+    meshes.runs_xacro = source.reading.allow_xacro
     before = len(source.problems)
     robot = read(source.path, data, source.file, source.problems, meshes)
     if robot is None or len(source.problems) > before:

@@ -1,57 +1,80 @@
-"""xacro: expanded by the program of that name, which the optional package xacrodoc brings, then read as URDF.
+"""xacro: expanded by the macro processor of the package `xacro`, confined, then read as URDF.
 
-It runs in a process of its own, which is bounded in time and memory: a few macros can ask for more than there is.
-Lines are those of the text as written, as far as an element of that name stands there; else the first.
+The processor runs in a process of its own (`foundation.confined`), where expressions are evaluated by kinform
+(`expansion`, `expressions`). It has no environment and no files but those that `_Host` hands it: the file itself, files
+of the design's folder, and files of packages that are found. With `--allow-xacro` the package expands the file by
+itself, with everything that its expressions may do. Lines are those of the text as written, as far as an element of
+that name stands there; else the first.
 """
 
 from __future__ import annotations
 
+import glob
+import json
 import os
 import re
+from collections.abc import Iterable
 from dataclasses import replace
+from html import escape
 from pathlib import Path
 from typing import Any
 
+from kinform.form.constants import TEXT_BYTES
 from kinform.form.problems import Problems
 from kinform.formats.description.elements import declares_entities
 from kinform.formats.description.mesh_files import MeshFiles, files_below, package_name
 from kinform.formats.description.robot import Robot
 from kinform.formats.urdf.reading import reader
+from kinform.formats.urdf.reading.expansion import RUN_ALL, RUNS_CODE, expand, prepare, unfit
+from kinform.foundation.confined import Confined, confined
 from kinform.foundation.processes import Crash, in_own_process
+from kinform.foundation.regular_files import not_a_file
 from kinform.frozen import dataclass
 
 XACRO_FILES = 500
-"""Files of a package that are looked through for the names of other packages, at most: a package has a few dozen.
-Chosen, not measured."""
-XACRO_SECONDS = 20
-"""Seconds of processor time that the expansion of a xacro file may take: robots take one or two, and macros that call
-each other twice, thirty deep, never end."""
-XACRO_MEMORY = 4 << 30
-"""Bytes of memory that it may take, which an expression can ask for with a few letters; robots take some MB."""
+"""Files that one file includes, and files of a package that are looked through for the names of other packages, at
+most: a package has a few dozen. Chosen, not measured."""
+XACRO_SECONDS = 10
+"""Seconds of processor time that the expansion of a xacro file may take: robots take one or two."""
+XACRO_MEMORY = 400 << 20
+"""Bytes of memory that it may take beside what kinform has; robots take some 50 MB."""
+UNCONFINED_MEMORY = 4 << 30
+"""Bytes of memory that all of the process may take where xacro runs by itself."""
+_QUESTIONS = 20 * XACRO_FILES
+"""Questions of one expansion, most of which are for packages."""
 
 
 def read(path: Path, data: bytes, file: str, problems: Problems, meshes: MeshFiles) -> Robot | None:
     """The robot of a xacro file; None where nothing can be made of it, after noting why."""
     try:
-        import xacro  # noqa: F401
-        from xacrodoc import packages  # xacro asks it where packages are
+        import xacro
     except ImportError:
         remedy = "pip install 'kinform[xacro]', or expand it: xacro F.urdf.xacro > F.urdf"
         problems.add("is xacro, and the package that expands it is not installed", file, None, remedy)
         return None
     if declares_entities(data, file, problems):
         return None
-    wanted = _packages_of(data, meshes.home)
-    folders = {name: folder for name in wanted if (folder := _package(name, meshes)) is not None}
-    packages.update_package_cache(folders)
+    host = _Host(path, data, file, problems, meshes)
+    before = len(problems)
+    why = None if meshes.runs_xacro else unfit(xacro)
     try:
-        done = in_own_process(lambda: _in_the_fork(path))
+        if why is not None:
+            words = f"cannot be expanded safely by xacro {getattr(xacro, '__version__', '')}".rstrip() + f": {why}"
+            done: _Expanded | _Fault = _Fault(words, f"pip install xacro==2.1.1, or {RUN_ALL}")
+        elif meshes.runs_xacro:
+            done = _by_xacro(path, data, meshes)
+        else:
+            done = host.expanded()
+    except Confined:
+        done = _Fault("does what kinform does not allow while it is expanded", RUNS_CODE)
     except Crash as crash:
-        done = _too_long() if "SIGXCPU" in crash.cause or "SIGKILL" in crash.cause else _Fault(crash.cause)
+        ended = any(signal in crash.cause for signal in ("SIGXCPU", "SIGKILL", "SIGALRM"))
+        done = _too_long() if ended else _Fault(crash.cause)
     except MemoryError:
         done = _too_large()
     if isinstance(done, _Fault):
-        _complain(done, file, path, problems)
+        if len(problems) == before:
+            _complain(done, file, path, problems, host.texts)
         return None
     robot = reader.read_text(path, done.text.encode(), file, problems, meshes, data.decode("utf-8", "replace"))
     included = dict.fromkeys(Path(name) for name in done.includes)
@@ -71,6 +94,8 @@ class _Fault:
     remedy: str | None = None
     at: str | None = None
     """The file that it was in."""
+    expression: str | None = None
+    """The text at which it is."""
 
 
 def _too_long() -> _Fault:
@@ -79,8 +104,130 @@ def _too_long() -> _Fault:
 
 
 def _too_large() -> _Fault:
-    words = f"takes more than {XACRO_MEMORY >> 30} GB of memory to expand: is there a text or a number without end?"
+    words = "takes too much memory to expand: is there a text or a number without end?"
     return _Fault(words, "shorten what its expressions make; or expand it yourself: xacro F.urdf.xacro > F.urdf")
+
+
+class _Host:
+    """What an expansion is given by the process that asked for it. `texts` are the files that it had, by name."""
+
+    def __init__(self, path: Path, data: bytes, file: str, problems: Problems, meshes: MeshFiles):
+        self.path, self.data, self.file, self.problems, self.meshes = path, data, file, problems, meshes
+        self.roots = [design_folder(path.parent)]
+        self.texts = {str(path): data}
+        self.questions = 0
+
+    def expanded(self) -> _Expanded | _Fault:
+        """The text with macros expanded. Raises Crash."""
+        reply = confined(lambda ask: expand(str(self.path), self.data, ask), self.answer, prepare,
+                         seconds=XACRO_SECONDS, memory=XACRO_MEMORY)  # fmt: skip
+        said = json.loads(reply)
+        if "text" in said:
+            return _Expanded(said["text"], tuple(name for name in self.texts if name != str(self.path)))
+        if said.get("memory"):
+            return _too_large()
+        remedy = said.get("remedy")
+        if said.get("refused") and remedy is None:
+            remedy = RUNS_CODE
+        return _Fault(said["words"], remedy, said.get("file"), said.get("expression"))
+
+    def answer(self, question: bytes) -> bytes:
+        """The answer to a question of the expansion: with + what it asks for, with - why not."""
+        asked = json.loads(question)
+        kind, name = str(asked["kind"]), str(asked["name"])
+        self.questions += 1
+        if self.questions > _QUESTIONS or len(self.texts) > XACRO_FILES:
+            return _no(f"includes more than {XACRO_FILES} files, or asks for too many packages", "include fewer")
+        if kind == "cwd":
+            return b"+" + os.fsencode(Path.cwd())
+        if kind == "package":
+            return self._package(name)
+        if "\0" in name:
+            return _no("includes a file whose name no file can have", "correct the name")
+        if kind == "glob":
+            return self._fitting(name)
+        return self._content(name, self.file_at(str(asked.get("at"))), xml=kind == "xml")
+
+    def file_at(self, at: str) -> str:
+        """A file as messages show it."""
+        if at == str(self.path):
+            return self.file
+        return f"{Path(self.file).parent / os.path.relpath(at, self.path.parent)}"
+
+    def _package(self, name: str) -> bytes:
+        folder = _package(name, self.meshes)
+        if folder is None:
+            return _no(f"package {name} is not found", f"add --package {name}=FOLDER, or set ROS_PACKAGE_PATH")
+        folder = folder.resolve()
+        if folder not in self.roots:
+            self.roots.append(folder)
+        return b"+" + os.fsencode(folder.as_posix())
+
+    def _inside(self, name: str) -> bool:
+        """Whether a file, wherever links lead, is in the design's folder or in a package that was found."""
+        full = Path(os.path.realpath(name))
+        return any(full.is_relative_to(root) for root in self.roots)
+
+    def _outside(self, name: str) -> bytes:
+        shown = Path(os.path.relpath(name, self.path.parent)).as_posix()
+        return _no(f"includes {shown}, which lies outside of the design's folder",
+                   f"copy it into that folder, name its package with --package, or {RUN_ALL}")  # fmt: skip
+
+    def _fitting(self, pattern: str) -> bytes:
+        """Names of the files that a pattern fits, sorted, in JSON."""
+        parts = pattern.split("/")
+        first = next((k for k, part in enumerate(parts) if glob.has_magic(part)), len(parts))
+        folder = "/".join(parts[:first]) or ("/" if pattern.startswith("/") else ".")
+        if ".." in parts[first:] or not self._inside(folder):
+            return self._outside(pattern)
+        names = sorted(glob.glob(pattern))
+        strange = next((name for name in names if not self._inside(name)), None)
+        return b"+" + json.dumps(names[: XACRO_FILES + 1]).encode() if strange is None else self._outside(strange)
+
+    def _content(self, name: str, at: str, *, xml: bool) -> bytes:
+        """The content of a file."""
+        if not self._inside(name):
+            return self._outside(name)
+        path = Path(os.path.realpath(name))
+        fault = not_a_file(path) or ("is a folder" if path.is_dir() else None)
+        shown = Path(os.path.relpath(name, self.path.parent)).as_posix()
+        if fault is not None:
+            return _no(f"includes {shown}, which {fault}", "name a file")
+        try:
+            with open(path, "rb") as stream:
+                data = stream.read(TEXT_BYTES + 1)
+        except FileNotFoundError:
+            return b"-" + json.dumps({"missing": True}).encode()
+        except OSError as error:
+            return _no(f"includes {shown}, which cannot be read: {error.strerror}", "check its permissions")
+        if sum(map(len, self.texts.values())) + len(data) > TEXT_BYTES:
+            return _no(f"includes more than {TEXT_BYTES:,} bytes", "include fewer files")
+        self.texts[name] = data
+        if xml and declares_entities(data, self.file_at(name), self.problems):
+            return _no("", "")
+        return b"+" + data
+
+
+def _no(words: str, remedy: str) -> bytes:
+    return b"-" + json.dumps({"words": words, "remedy": remedy}).encode()
+
+
+def design_folder(folder: Path) -> Path:
+    """The nearest folder, from this one upwards, with a package.xml or the root of a repository; else this one."""
+    full = folder.resolve()
+    for above in (full, *full.parents):
+        if (above / "package.xml").is_file() or (above / ".git").exists():
+            return above
+    return full
+
+
+def _by_xacro(path: Path, data: bytes, meshes: MeshFiles) -> _Expanded | _Fault:
+    """What the package xacro itself makes of the file, in a fork that is bounded in time and memory only."""
+    from xacrodoc import packages  # xacro asks it where packages are
+
+    wanted = _packages_of(data, meshes.home)
+    packages.update_package_cache({name: folder for name in wanted if (folder := _package(name, meshes)) is not None})
+    return in_own_process(lambda: _in_the_fork(path))
 
 
 def _in_the_fork(path: Path) -> _Expanded | _Fault:
@@ -112,17 +259,14 @@ def _bound() -> None:
         import resource
     except ImportError:
         return
-    for kind, most in ((resource.RLIMIT_CPU, XACRO_SECONDS), (resource.RLIMIT_AS, XACRO_MEMORY)):
+    for kind, most in ((resource.RLIMIT_CPU, XACRO_SECONDS), (resource.RLIMIT_AS, UNCONFINED_MEMORY)):
         soft, hard = resource.getrlimit(kind)
         if soft == resource.RLIM_INFINITY or soft > most:
             resource.setrlimit(kind, (most, hard))
 
 
-def _complain(fault: _Fault, file: str, path: Path, problems: Problems) -> None:
+def _complain(fault: _Fault, file: str, path: Path, problems: Problems, texts: dict[str, bytes]) -> None:
     """Note what went wrong, at the line of the file on which it is written as far as the message tells that."""
-    at = path if fault.at is None else Path(fault.at)
-    if at != path:
-        file = f"{Path(file).parent / os.path.relpath(at, path.parent)}"
     words, remedy = fault.words, fault.remedy
     unknown = _NO_PACKAGE.search(words)
     if unknown is not None:
@@ -130,17 +274,32 @@ def _complain(fault: _Fault, file: str, path: Path, problems: Problems) -> None:
         remedy = f"add --package {unknown[1]}=FOLDER, or set ROS_PACKAGE_PATH"
     elif remedy is None:
         words, remedy = _told(words, path)
-    try:
-        written = at.read_text("utf-8", "replace")
-    except OSError:
-        written = ""
     stated = _LINE.search(fault.words)
-    searched = (_EXPRESSION, _FILE, _NO_PACKAGE, *(pattern for pattern, *_ in _SAID))
-    said = [m[1] for m in (pattern.search(fault.words) for pattern in searched) if m is not None]
-    said += [unknown[1]] if unknown is not None else []
-    places = [written.find(Path(text).name if "/" in text else text) for text in said]
-    line = int(stated[1]) if stated else next((written.count("\n", 0, k) + 1 for k in places if k >= 0), 1)
+    patterns = (_EXPRESSION, _FILE, _NO_PACKAGE, _ABSENT, _INCLUDED, _ENVIRONMENT, *(pattern for pattern, *_ in _SAID))
+    said = [m[1] for m in (pattern.search(fault.words) for pattern in patterns) if m is not None]
+    if fault.expression is not None:
+        said = [fault.expression]
+    at = fault.at or str(path)
+    if stated:
+        name, line = at, int(stated[1])
+    else:
+        name, line = _place(said, at, texts)
+    if name != str(path):
+        file = f"{Path(file).parent / os.path.relpath(name, path.parent)}"
     problems.add(words, file, line, remedy)
+
+
+def _place(said: Iterable[str], at: str, texts: dict[str, bytes]) -> tuple[str, int]:
+    """The file and the line at which one of the texts is written, the file `at` before others; else its first line."""
+    for name in sorted(texts, key=lambda name: name != at):
+        written = texts[name].decode("utf-8", "replace")
+        for text in said:
+            text = Path(text).name if "/" in text and text not in written else text
+            for spelled in (text, escape(text, quote=False), escape(text)):
+                place = written.find(spelled) if spelled else -1
+                if place >= 0:
+                    return name, written.count("\n", 0, place) + 1
+    return at, 1
 
 
 def _told(words: str, path: Path) -> tuple[str, str]:
@@ -172,11 +331,19 @@ _LINE = re.compile(r"line (\d+), column")
 _EXPRESSION = re.compile(r"evaluating expression '(.+)'")
 _FILE = re.compile(r"No such file or directory: '?([^' ]+)")
 _NO_PACKAGE = re.compile(r"Package not found: (\S+)")
+_ABSENT = re.compile(r"package (\S+) is not found")
+_INCLUDED = re.compile(r"includes (.+), which ")
+_ENVIRONMENT = re.compile(r"reads the environment: (\S+)")
 
 
 def _package(name: str, meshes: MeshFiles) -> Path | None:
-    """The folder of a package: that of the description, where its package.xml says so, else as for meshes."""
-    return meshes.home if package_name(meshes.home) == name else meshes.package(name)
+    """The folder of a package: that of the description, where its package.xml says so, else as for meshes; it has a
+    package.xml, or the user names it."""
+    if package_name(meshes.home) == name:
+        return meshes.home
+    folder = meshes.package(name)
+    known = folder is not None and (name in meshes.packages or package_name(folder) is not None)
+    return folder if known else None
 
 
 _FIND = re.compile(rb"\$\(find ([^)\s]+)\)")
