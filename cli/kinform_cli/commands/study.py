@@ -12,7 +12,17 @@ import typer
 from kinform_cli import console, files
 from kinform_cli.commands.batch import Pace, limits_of, need_extra
 from kinform_cli.errors import refuse
-from kinform_cli.options import AllowOutside, Jobs, PrintedTable, TableFormat, argument, cores, examples, option
+from kinform_cli.options import (
+    AllowOutside,
+    Jobs,
+    PrintedTable,
+    TableFormat,
+    TrustResults,
+    argument,
+    cores,
+    examples,
+    option,
+)
 
 if TYPE_CHECKING:
     from kinform.study import Plan
@@ -40,6 +50,7 @@ def study(
         bool, typer.Option("--allow-commands", help="Run the commands of the study that make meshes.")
     ] = False,
     allow_outside: AllowOutside = False,
+    trust_results: TrustResults = False,
     format: PrintedTable = TableFormat.table,
 ) -> None:
     """Vary numbers of a design, and measure what becomes of it.
@@ -64,7 +75,8 @@ def study(
     _check_commands(plan, allow_commands)
     began = time.monotonic()
     with Pace("study", began) as pace:
-        outcome = studies.run(plan, output, Settings(cores(jobs), scheduler, False, limits, allow_outside), pace)
+        settings = Settings(cores(jobs), scheduler, False, limits, allow_outside, trust_results)
+        outcome = studies.run(plan, output, settings, pace, console.warn)
     table.write(outcome, output)
     files.write_text(beside[0], table.as_csv(outcome))
     files.write_text(beside[1], page.page_html(outcome))

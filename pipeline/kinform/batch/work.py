@@ -13,12 +13,13 @@ from kinform import method, results, stages
 from kinform.design import Design
 
 
-def run(source: str, output: str, *, allow_outside: bool = False) -> dict[str, Any]:
+def run(source: str, output: str, *, allow_outside: bool = False, trust_results: bool = False) -> dict[str, Any]:
     """Run the design at `source`, with its results at `output`; gives the fields of its row."""
     said: list[str] = []
     os.makedirs(os.path.dirname(output), exist_ok=True)
-    method.run(source, output, allow_outside=allow_outside, say=said.append)
-    return summary_of(results.read_gist(output), Path(output).read_bytes(), said)
+    done = method.run(source, output, allow_outside=allow_outside, say=said.append, trust_results=trust_results)
+    gist = results.read_gist(output, recorded=done.gist.recorded)
+    return summary_of(gist, Path(output).read_bytes(), said)
 
 
 def imported(source: str, *, allow_outside: bool = False) -> bytes:
@@ -46,5 +47,7 @@ def summary_of(gist: Design, data: bytes, said: list[str]) -> dict[str, Any]:
         "notes": tuple(said),
         "lineage": gist.fingerprints.lineage.get("findings", ""),
         "files": dict(gist.fingerprints.files),
+        "recorded": gist.recorded,
+        "seal": results.digest_in(data),
         "digest": hashlib.sha256(data).hexdigest(),
     }
