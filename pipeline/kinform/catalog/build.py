@@ -59,7 +59,7 @@ def add(catalog: Catalog, sources: Sequence[str | Path], folder: str | Path) -> 
 
 
 def fill(
-    catalog: Catalog, designs: Mapping[Path, str], source: str | Path, folder: str | Path, *, reuse: bool
+    catalog: Catalog, designs: Mapping[Path, str], source: str | Path, folder: str | Path, *, reuse: bool = True
 ) -> tuple[Catalog, tuple[Refused, ...]]:
     """The catalog with these results files below the folder `source`, each with its SHA-256 (hex): with `reuse` one
     that the catalog has with the same bytes is not read. `folder` is that of the catalog. What cannot be read is left
