@@ -48,6 +48,8 @@ def whole_design(
         if results.read_if_current(beside, sources[0], allow_outside=allow_outside) is not None:
             console.say(f"{beside} holds this design as it is now: nothing is computed")
             return results.read(beside)
+        if results.is_unknown(beside):
+            console.warn(f"{beside}: {results.unknown_origin(beside)}: computed anew; name that file to look at it")
     with Working("run") as working:
         outcome = method.run(
             sources[0] if manifest else list(sources),

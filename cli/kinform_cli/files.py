@@ -137,6 +137,14 @@ def read(path: Path, *, at_need: bool = False) -> Design:
     return results.read_at_need(path) if at_need else results.read(path)
 
 
+def warn_of_origin(design: Design, path: Path) -> None:
+    """Say that a results file that the command relies on is not one that this user's kinform wrote."""
+    if not design.recorded:
+        from kinform import results
+
+        console.warn(f"{path}: {results.unknown_origin(path)}")
+
+
 @contextlib.contextmanager
 def needing(path: Path) -> Iterator[None]:
     """Name the file and the command to run next when a stage misses what it needs."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +18,9 @@ if TYPE_CHECKING:
     from kinform.api import Outcome
     from kinform.design import Design
 
+NOTHING_REUSED = ("no earlier results", "earlier results of unknown origin")
+"""How accounts of runs begin that take nothing over; of the origin a line says more than the account."""
+
 
 @dataclass(frozen=True)
 class Gate:
@@ -26,6 +30,8 @@ class Gate:
     fail_on: Severity
     manifest_folder: Path | None = None
     """Formats that a repository's host reads name files as seen from here: this goes before them."""
+    strict: bool = False
+    """Whether results of unknown origin verify nothing."""
 
     def judge_run(self, outcome: Outcome) -> int:
         """What a run says on its own account, then its findings; returns the exit code of the gate."""
@@ -46,12 +52,15 @@ class Gate:
         """
         report, fail_on = design.report, self.fail_on.value
         assert report is not None
+        if self.strict and report.origin == "unknown":
+            report = replace(report, origin="refused")
+            design = replace(design, report=report)
         from kinform.model.findings import SEVERITIES, verdict
 
         run = None
         if outcome is not None:
             run = {"account": outcome.account, "reused": outcome.reused, "recomputed": outcome.recomputed}
-            afresh = outcome.account.startswith("no earlier results")
+            afresh = outcome.account.startswith(NOTHING_REUSED)
             brief = self.printed.format is FindingsFormat.brief
             for sentence in () if afresh or brief else outcome.recomputed:
                 console.say(f"computed: {sentence}")

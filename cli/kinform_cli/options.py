@@ -259,6 +259,13 @@ LookedAt = Annotated[
     argument("F.h5", "Results file; of a manifest, robot description or scene all is computed, and not kept."),
 ]
 Output = Annotated[Path, option("--output -o", "F.h5", "Results file to write; may be the one that is read.")]
+TrustResults = Annotated[
+    bool,
+    typer.Option(
+        "--trust-results",
+        help="Reuse earlier results whoever wrote them: only where strangers cannot write them.",
+    ),
+]
 AllowOutside = Annotated[bool, typer.Option("--allow-outside", help="Accept meshes outside the manifest's folder.")]
 AllowXacro = Annotated[
     bool,

@@ -300,11 +300,14 @@ class Outcome(Results):
         return self.design if self._gist is None else self._gist
 
     @classmethod
-    def unchanged(cls, manifest: Path, output: Path, *, allow_outside: bool = False) -> Outcome | None:
-        """The results in `output`, if a run of the manifest would give these very bytes; their file gets a new time."""
+    def unchanged(
+        cls, manifest: Path, output: Path, *, allow_outside: bool = False, trust: bool = False
+    ) -> Outcome | None:
+        """The results in `output`, if a run of the manifest would give these very bytes, as this user's kinform
+        recorded, or `trust` takes for granted; their file gets a new time."""
         from kinform import results
 
-        gist = results.read_if_current(output, manifest, allow_outside=allow_outside)
+        gist = results.read_if_current(output, manifest, allow_outside=allow_outside, trust=trust)
         if gist is None:
             return None
         try:
@@ -315,12 +318,17 @@ class Outcome(Results):
 
         def read() -> Design:
             design = results.read(output)
-            if design.fingerprints.lineage != gist.fingerprints.lineage:
+            if design.fingerprints.lineage != gist.fingerprints.lineage or design.recorded != gist.recorded:
                 raise ResultsError(Problem("was replaced after the run that found it unchanged", str(output)))
             return design
 
         reused = ("surfaces", "contacts", "joints", "mass", "simulation", "findings")
-        return cls(read, reused, account="nothing changed: everything is reused", gist=gist)
+        account = "nothing changed: everything is reused"
+        if not gist.recorded:
+            from kinform.reuse.ledger import TRUSTED
+
+            account = f"everything is reused: {TRUSTED}"
+        return cls(read, reused, account=account, gist=gist)
 
 
 _MASS = ("name", "mass", "centre_of_mass", "principal_moments", "reason")

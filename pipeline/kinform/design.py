@@ -40,6 +40,15 @@ class Design:
         return getattr(self, field) is not None
 
     @property
+    def recorded(self) -> bool:
+        """Whether this user's kinform computed all of it, or wrote the files that it was read from."""
+        return self.fingerprints.recorded
+
+    def of_origin(self, recorded: bool) -> Design:
+        """The design, `recorded` or not."""
+        return replace(self, fingerprints=replace(self.fingerprints, recorded=recorded))
+
+    @property
     def contact_counts(self) -> tuple[int, int] | None:
         """How many patches and interferences there are; None before contacts are known."""
         contacts = self.contacts

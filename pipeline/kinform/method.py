@@ -36,34 +36,35 @@ def run(
     changed: bool = False,
     reading: Reading = AS_IT_IS,
     base: str | Path | None = None,
+    trust_results: bool = False,
 ) -> Outcome:
     """Everything about a design, from its manifest to the findings.
 
-    `manifest` is a TOML file, a robot description or a CAD or scene file (URDF, xacro, SDF, MJCF, STEP,
-    GLB, glTF; `reading` says how it is read), or one or several mesh files, which need `units`; or what a
-    program holds: {name: mesh or (mesh, pose)} with `units`, a scene of trimesh, or an assembly made of such. With
-    `output` the results are written there in one step, and what is still valid in an earlier file is reused; the result
-    is the same, byte for byte, as one made from nothing. `jobs` processes share the work. Meshes outside the
-    manifest's folder need `allow_outside`. `say` is told what takes long besides, and of an earlier file that is no
-    longer whole. `ranges`: whether it is found how far each joint goes; None: unless that would take long and the
-    function states no ranges or requirements. `base`: results of a design that is nearly the same, of which is taken
-    what holds, where there is no `output`. `changed`: an earlier file is known not to be what a run would give, and is
-    not asked.
+    `manifest` is a TOML file, a robot description or a CAD or scene file (URDF, xacro, SDF, MJCF, STEP, GLB, glTF;
+    `reading` says how it is read), or one or several mesh files, which need `units`; or what a program holds: {name:
+    mesh or (mesh, pose)} with `units`, a scene of trimesh, or an assembly made of such. With `output` the results are
+    written there in one step, and what is still valid in an earlier file is reused, if this user's kinform wrote it or
+    `trust_results`; the result is the same, byte for byte, as one made from nothing. `jobs` processes share the work.
+    Meshes outside the manifest's folder need `allow_outside`. `say` is told what takes long besides, and of an earlier
+    file that is no longer whole or not reused because of its origin. `ranges`: whether it is found how far each joint
+    goes; None: unless that would take long and the function states no ranges or requirements. `base`: results of a
+    design that is nearly the same, of which is taken what holds, whoever wrote them, where there is no `output`.
+    `changed`: an earlier file is known not to be what a run would give, and is not asked.
 
     Raises InputError with every problem of the input, ResultsError when `output` cannot be written.
     """
     plain = units is None and ranges is None and not changed and reading == AS_IT_IS
     if output is not None and plain and isinstance(manifest, str | Path):
-        unchanged = Outcome.unchanged(Path(manifest), Path(output), allow_outside=allow_outside)
+        unchanged = Outcome.unchanged(Path(manifest), Path(output), allow_outside=allow_outside, trust=trust_results)
         if unchanged is not None:
             return unchanged
     from kinform import ahead, stages  # not before: seeing that nothing changed takes less time than importing them
     from kinform.reuse.ledger import Ledger
 
-    earlier = _earlier(output or base, say)
+    earlier, absent = _earlier(output or base, say, trust_results or output is None)
 
     def derived(ledger: Ledger) -> Design:
-        design = _import(manifest, units, allow_outside, reading, ledger)
+        design = _import(manifest, units, allow_outside, reading, ledger).of_origin(ledger.recorded)
         ready = ahead.of(design.assembly)
         design = stages.contacts(design, jobs=jobs, progress=_steps(progress, "contacts"), ledger=ledger, ahead=ready)
         design = stages.joints(design, ledger=ledger)
@@ -74,7 +75,7 @@ def run(
         )  # fmt: skip
         return stages.check(design, ledger=ledger)
 
-    ledger = Ledger(earlier)
+    ledger = Ledger(earlier, absent)
     try:
         design = derived(ledger)
     except ResultsError as error:  # an earlier file that makes no sense: seen where it was read
@@ -145,13 +146,26 @@ def _import(
     return stages.import_(paths[0], allow_outside=allow_outside, reading=reading, ledger=ledger)
 
 
-def _earlier(output: str | Path | None, say: Callable[[str], None] | None) -> Earlier | None:
-    """What an earlier run has left whole in `output`, if anything. Raises ResultsError where it cannot be written."""
+def _earlier(output: str | Path | None, say: Callable[[str], None] | None, trust: bool) -> tuple[Earlier | None, str]:
+    """What an earlier run has left whole in `output`, if anything, and why it is not reused where it is not. Raises
+    ResultsError where it cannot be written."""
+    from kinform.reuse.ledger import NONE, UNKNOWN
+
     if output is None:
-        return None
+        return None, NONE
     from kinform import results
 
-    return results.earlier(output, None if say is None else lambda text: say(f"warning: {text}"))
+    unknown = False
+
+    def strange(text: str) -> None:
+        nonlocal unknown
+        unknown = True
+        if say is not None:
+            say(f"warning: {text}")
+
+    warn = None if say is None else lambda text: say(f"warning: {text}")
+    found = results.earlier(output, warn, strange, trust=trust)
+    return found, UNKNOWN if unknown else NONE
 
 
 def _tell_absent(error: ResultsError, say: Callable[[str], None] | None) -> None:

@@ -211,7 +211,10 @@ def check(design: Design, *, ledger: Ledger | None = None) -> Design:
 
         return Result({"report": consistency.check(without(FINDINGS, design))})
 
-    return advance(FINDINGS, design, judge, ledger or Ledger())
+    done = advance(FINDINGS, design, judge, ledger or Ledger())
+    if done.recorded or done.report is None:
+        return done
+    return replace(done, report=replace(done.report, origin="unknown"))
 
 
 def _needed(result: Computed | None, stage: str, command: str) -> Computed:

@@ -18,8 +18,9 @@ from support.places import FIXTURES
 
 import kinform
 from kinform import catalog
-from kinform.batch import Settings, discover, render
+from kinform.batch import Found, Settings, discover, render, session
 from kinform.batch import run as run_batch
+from kinform.batch.renderings import summary_line
 
 pytest.importorskip("distributed")
 pytest.importorskip("pathspec")
@@ -120,6 +121,22 @@ def test_unchanged_designs_need_no_worker_and_are_not_touched(done, monkeypatch)
     good = discover([designs], exclude=["bad.toml"])
     assert all(row.unchanged for row in run_batch(good, results, Settings()))
     assert {path: path.stat().st_mtime_ns for path in results.rglob("*.h5")} == before
+
+
+def test_results_of_unknown_origin_are_run_again_and_said_once(done, tmp_path, monkeypatch):
+    designs, kept, _ = done
+    shutil.copytree(kept, tmp_path / "results")
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    said: list[str] = []
+    asked: list[Found] = []
+    good = [one for one in discover([designs]) if one.name.startswith(GOOD[0])]
+    monkeypatch.setattr(session, "_run", lambda left, *_: asked.extend(left) or [])
+    with pytest.raises(KeyError):  # of a design that was not run
+        run_batch(good, tmp_path / "results", Settings(), say=said.append)
+    assert len(asked) == len(good) == 1 and len(said) == 1
+    (row,) = run_batch(good, tmp_path / "results", Settings(trust_results=True), say=said.append)
+    assert row.unchanged and not row.recorded and len(said) == 1
+    assert "unchanged" not in summary_line([row]).replace("0 unchanged", "")
 
 
 def test_without_dask_the_extra_is_named(done, monkeypatch):

@@ -21,6 +21,7 @@ from kinform.errors import InputError
 from kinform.form.sources import Reading
 from kinform.study import read_plan, run
 from kinform.study import session as module
+from kinform.study.session import Journal
 from kinform.study.work import measure, nominal, sample, units
 
 pytest.importorskip("distributed")
@@ -229,3 +230,18 @@ def test_a_measure_that_is_not_there_is_refused_before_samples_are_measured(done
     (tmp_path / "s.toml").write_text(STUDY.replace("joints.guide", "joints.guid"))
     ran = ran_here("study", "s.toml", "-o", "s.h5", cwd=tmp_path)
     assert ran.returncode == 2 and "guid" in ran.stderr and "guide" in ran.stderr
+
+
+def test_samples_that_somebody_else_has_noted_are_measured_again(tmp_path):
+    path = tmp_path / "s.h5.part"
+    with Journal(path, "key") as journal:
+        journal.note(0, (1.0,), "")
+        journal.note(1, (2.0,), "")
+    text = path.read_text()
+    assert Journal(path, "key").read() == {0: ((1.0,), ""), 1: ((2.0,), "")}
+    path.write_text(text.replace("[2.0]", "[3.0]"))
+    forged = Journal(path, "key")
+    assert forged.read() == {0: ((1.0,), "")} and forged.unknown == 1
+    assert Journal(path, "key", trust=True).read() == {0: ((1.0,), ""), 1: ((3.0,), "")}
+    path.write_text(text.replace("key", "other"))  # measured of another study
+    assert not Journal(path, "other").read()

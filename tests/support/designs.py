@@ -267,8 +267,13 @@ def behaviours(draw: Any) -> Behaviour:
     return Behaviour(system, nest(system, homes), draw(reasons), draw(reasons))
 
 
+def reports() -> st.SearchStrategy[CheckReport]:
+    """Reports of results that this user's kinform wrote: the file does not say where it comes from."""
+    return of(CheckReport, origin=st.just("recorded"))
+
+
 SPECIAL: dict[Any, Any] = {
-    StatedMass: stated_masses, StatedSpring: stated_springs,
+    CheckReport: reports, StatedMass: stated_masses, StatedSpring: stated_springs,
     DescribedLink: links,
     Law: laws, MassOverride: masses, Patch: patches, Contacts: contacts, Joint: joints, ConstraintMatrix: matrices,
     Behaviour: behaviours, Meshing: meshings, Mobility: mobilities, Redundancy: redundancies,

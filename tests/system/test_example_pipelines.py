@@ -131,3 +131,21 @@ def test_many_designs_have_one_gate_and_keep_results_and_reports_when_it_is_red(
     assert all(name.startswith("reports/") for name in written) and "reports/findings.sarif" in written
     assert re.findall(r"pip install (.*)", text) == ['"kinform[batch] @ git+$KINFORM"']
     assert re.search(r"^\s+KINFORM: https://\S+\.git@\S+$", text, re.MULTILINE)
+
+
+@pytest.mark.parametrize("path", EVERY, ids=lambda path: path.name)
+def test_earlier_results_are_trusted_only_where_no_pull_request_writes_them(path):
+    text = path.read_text()
+    lines = [line for line in text.splitlines() if not line.strip().startswith("#")]
+    gate = next(k for k, line in enumerate(lines) if re.search(r"kinform (run|batch) ", line))
+    assert "$TRUST" in lines[gate]  # empty, unless a line before says otherwise
+    if "gitlab" in path.name:
+        (trusting,) = (line for line in lines if "--trust-results" in line)
+        assert re.search(r'if \[ "\$CI_COMMIT_REF_PROTECTED" = "true" \].*; else TRUST=; rm -rf build; fi', trusting)
+        assert any("git -c" in line and "test -z" in line for line in lines[:gate])
+        return
+    steps = re.split(r"\n      - ", text)
+    trusting = [step for step in steps if "--trust-results" in step or "cache/restore" in step]
+    only = "if: ${{ github.event_name == 'push' && github.ref_name == github.event.repository.default_branch }}"
+    assert len(trusting) == 2 and all(only in step for step in trusting)
+    assert any(step.startswith("run: rm -rf") for step in steps[: steps.index(trusting[0])])

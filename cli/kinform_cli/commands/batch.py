@@ -14,7 +14,18 @@ import typer
 from kinform.foundation.words import counted
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
-from kinform_cli.options import AllowOutside, AllowXacro, FailOn, Jobs, Severity, argument, cores, examples, option
+from kinform_cli.options import (
+    AllowOutside,
+    AllowXacro,
+    FailOn,
+    Jobs,
+    Severity,
+    TrustResults,
+    argument,
+    cores,
+    examples,
+    option,
+)
 from kinform_cli.progress import Working
 
 if TYPE_CHECKING:
@@ -74,6 +85,7 @@ def batch(
     memory: Annotated[str | None, option("--memory", "SIZE", "What one design may take, as in 500MB or 2GB.")] = None,
     allow_outside: AllowOutside = False,
     allow_xacro: AllowXacro = False,
+    trust_results: TrustResults = False,
     catalog: Annotated[
         Path | None,
         option("--catalog -c", "FILE", "Also add all results to this catalog (SQLite), made where there is none."),
@@ -110,26 +122,30 @@ def batch(
     found = many.discover(paths, include=include or (), exclude=exclude or (), ignored=ignored, results=output)
     if changed_since is not None:
         found = _touched(found, changed_since)
-    settings = many.Settings(cores(jobs), scheduler, send, limits, allow_outside, allow_xacro)
+    settings = many.Settings(
+        cores(jobs), scheduler, send, limits, allow_outside=allow_outside, allow_xacro=allow_xacro,
+        trust_results=trust_results,
+    )  # fmt: skip
     began = time.monotonic()
     with Pace("batch", began) as pace:
-        rows = many.run(found, output, settings, pace) if found else ()
+        rows = many.run(found, output, settings, pace, console.warn) if found else ()
     _tell(rows, output, fail_on.value, shown, written)
     if catalog is not None:
-        _fill(catalog, rows, output)
+        _fill(catalog, rows, output, trust_results)
     from kinform.batch.renderings import exit_code, summary_line
 
     console.say(f"{summary_line(rows, fail_on.value)}; {time.monotonic() - began:.1f} s")
     raise typer.Exit(exit_code(rows, fail_on.value) if found else 0)
 
 
-def _fill(file: Path, rows: tuple[Row, ...], output: Path) -> None:
-    """Add what has results to the catalog; what it has already with the same bytes is not read again."""
+def _fill(file: Path, rows: tuple[Row, ...], output: Path, trust: bool) -> None:
+    """Add what has results to the catalog; what it has already with the same bytes is not read again, if this user's
+    kinform wrote the catalog, or `trust`."""
     from kinform import catalog
 
     old = catalog.read(file) if file.exists() else catalog.Catalog()
     designs = {output / row.results: row.digest for row in rows if not row.failure}
-    kept, refused = catalog.fill(old, designs, output, file.parent)
+    kept, refused = catalog.fill(old, designs, output, file.parent, reuse=trust or catalog.is_recorded(file))
     catalog.write(kept, file)
     for item in refused:
         console.warn(f"left out {item.path}: {item.reason}")

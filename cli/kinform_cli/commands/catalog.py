@@ -20,6 +20,7 @@ from kinform_cli.options import (
     Packages,
     PrintedTable,
     TableFormat,
+    TrustResults,
     argument,
     cores,
     examples,
@@ -65,6 +66,7 @@ def add(
     file: File = _DEFAULT,
     packages: Packages = None,
     allow_xacro: AllowXacro = False,
+    trust_results: TrustResults = False,
 ) -> None:
     """Add designs to the catalog: all results files below these folders.
 
@@ -72,14 +74,14 @@ def add(
     run first, with its results beside it: robot.urdf gives robot.h5.
     """
     files.check_text_output(file, inputs=sources)
-    results = [_results_of(source, packages, allow_xacro) for source in sources]
+    results = [_results_of(source, packages, allow_xacro, trust_results) for source in sources]
     from kinform import catalog
 
     old = catalog.read(file) if file.exists() else catalog.Catalog()
     _keep(*catalog.add(old, results, file.parent), file)
 
 
-def _results_of(source: Path, packages: Packages, allow_xacro: bool) -> Path:
+def _results_of(source: Path, packages: Packages, allow_xacro: bool, trust: bool) -> Path:
     """The results of a source, which are made where they are not; another path as it is."""
     if not (source.is_file() and is_design(source)):
         return source
@@ -94,7 +96,7 @@ def _results_of(source: Path, packages: Packages, allow_xacro: bool) -> Path:
     with Working("run") as working:
         kinform.run(
             source, output, jobs=cores(None), progress=working.step, say=console.say,
-            reading=reading(GeometryKind.visual, packages, allow_xacro=allow_xacro),
+            reading=reading(GeometryKind.visual, packages, allow_xacro=allow_xacro), trust_results=trust,
         )  # fmt: skip
     console.say(f"{output}: results of {source}")
     return output

@@ -63,12 +63,17 @@ def check(
     ] = None,
     manifest_folder: ManifestFolder = None,
     lock: Annotated[Path | None, option("--lock", "FILE", "Also compare the behaviour with this lock (KF450).")] = None,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Exit with 2 where your kinform did not write the results file.")
+    ] = False,
 ) -> None:
     """Check form, behaviour and function against each other.
 
     Exit code 0: every rule that applies ran and passed.
     1: findings at or above --fail-on.
     2: not verified: a rule could not decide, none ran, or the input is bad.
+
+    A results file that your kinform did not write is checked, and the verdict says so.
     """
     how = printed(format, verbose)
     files.check_findings(how.files, [source, *filter(None, (output, write_baseline))])
@@ -97,7 +102,7 @@ def check(
     design = replace(design, report=report)
     if lock is not None:
         design = _with_lock(design, lock, manifest_folder)
-    code = Gate(how, fail_on, manifest_folder).judge(design)
+    code = Gate(how, fail_on, manifest_folder, strict).judge(design)
     if code and how.format is FindingsFormat.brief:
         console.say(next_look(source if output is None else output))
     raise typer.Exit(code)

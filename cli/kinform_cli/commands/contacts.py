@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from kinform.foundation.words import counted
 from kinform_cli import console, files
-from kinform_cli.options import Jobs, Output, Results, cores, examples
+from kinform_cli.options import Jobs, Output, Results, TrustResults, cores, examples
 from kinform_cli.progress import Working
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ EXAMPLES = examples(
 )
 
 
-def contacts(source: Results, output: Output, jobs: Jobs = None) -> None:
+def contacts(source: Results, output: Output, jobs: Jobs = None, trust_results: TrustResults = False) -> None:
     """Find the analytic surfaces of each part, and where parts touch or overlap.
 
     What is still valid in an earlier output is reused.
@@ -29,7 +29,10 @@ def contacts(source: Results, output: Output, jobs: Jobs = None) -> None:
 
     def stage(design: Design, working: Working) -> Design:
         try:
-            earlier = results.earlier(output)
+            named = output.exists() and output.samefile(source)  # then it is the input
+            earlier = results.earlier(output, None, console.warn, trust=trust_results or named)
+            if earlier is not None and not earlier.recorded:
+                design = design.of_origin(False)
             found = stages.contacts(design, jobs=cores(jobs), progress=working, ledger=Ledger(earlier))
         except ResultsError:  # it makes no sense, which was told: it counts as absent
             return stages.contacts(design, jobs=cores(jobs), progress=working)

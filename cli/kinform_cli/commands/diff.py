@@ -54,6 +54,8 @@ def diff(
     if report is not None:
         files.check_page(report, inputs=[before, after])
     old, new = looked_at(before), looked_at(after)
+    files.warn_of_origin(old, before)
+    files.warn_of_origin(new, after)
     result = changes.compare_designs(old, new, within)
     if report is not None:
         files.write_text(report, changes.diff_page(result, old, new, (before.name, after.name)))

@@ -32,7 +32,9 @@ def lock(
     files.check_text_output(output, inputs=[source])
     from kinform import changes
 
-    behaviour = changes.snapshot(files.read(source))
+    design = files.read(source)
+    files.warn_of_origin(design, source)
+    behaviour = changes.snapshot(design)
     if behaviour.joints is None:
         raise refuse("has no joints to lock", file=source, remedy=command("kinform", "joints", source, "-o", source))
     files.write_text(output, changes.write_lock(behaviour) if within is None else changes.write_lock(behaviour, within))

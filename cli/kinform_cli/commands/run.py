@@ -24,6 +24,7 @@ from kinform_cli.options import (
     Ranges,
     Severity,
     Sources,
+    TrustResults,
     Units,
     Verbose,
     cores,
@@ -64,6 +65,7 @@ def run(
     ranges: Ranges = None,
     jobs: Jobs = None,
     depfile: Depfile = None,
+    trust_results: TrustResults = False,
 ) -> None:
     """Import, contacts, joints, mass, simulate and check in one go.
 
@@ -92,6 +94,7 @@ def run(
             say=console.say,
             ranges=ranges,
             reading=reading(geometry, packages, deviation, allow_xacro=allow_xacro),
+            trust_results=trust_results,
         )
     if depfile is not None and output is not None:
         files.write_rule(depfile, output, outcome.gist, sources)

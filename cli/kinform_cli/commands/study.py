@@ -18,6 +18,7 @@ from kinform_cli.options import (
     Jobs,
     PrintedTable,
     TableFormat,
+    TrustResults,
     argument,
     cores,
     examples,
@@ -51,6 +52,7 @@ def study(
     ] = False,
     allow_outside: AllowOutside = False,
     allow_xacro: AllowXacro = False,
+    trust_results: TrustResults = False,
     format: PrintedTable = TableFormat.table,
 ) -> None:
     """Vary numbers of a design, and measure what becomes of it.
@@ -75,9 +77,11 @@ def study(
     _check_commands(plan, allow_commands)
     began = time.monotonic()
     with Pace("study", began) as pace:
-        outcome = studies.run(
-            plan, output, Settings(cores(jobs), scheduler, False, limits, allow_outside, allow_xacro), pace
-        )
+        settings = Settings(
+            cores(jobs), scheduler, False, limits, allow_outside=allow_outside, allow_xacro=allow_xacro,
+            trust_results=trust_results,
+        )  # fmt: skip
+        outcome = studies.run(plan, output, settings, pace, console.warn)
     table.write(outcome, output)
     files.write_text(beside[0], table.as_csv(outcome))
     files.write_text(beside[1], page.page_html(outcome))

@@ -27,6 +27,7 @@ from kinform_cli.options import (
     Packages,
     PrintedFindings,
     Severity,
+    TrustResults,
     argument,
     cores,
     examples,
@@ -73,6 +74,7 @@ def watch(
     ] = None,
     open_: Annotated[bool, option("--open", None, "With --report: open the page in the browser.")] = False,
     max_runs: Annotated[int | None, option("--max-runs", "N", "Leave after so many runs.", min=1)] = None,
+    trust_results: TrustResults = False,
 ) -> None:
     """Run on every save of the manifest or of a file that it names, until Ctrl-C.
 
@@ -95,7 +97,7 @@ def watch(
             console.say(f"the page: {server.address}   (for this machine only)")
         if server is not None and open_:
             show_page(server.address)
-        once = lambda: _run(manifest, output, allow_outside, how, cores(jobs), gate, server)
+        once = lambda: _run(manifest, output, allow_outside, how, cores(jobs), gate, server, trust_results)
         code = _watch(manifest, output, once, period, max_runs)
     raise typer.Exit(code)
 
@@ -124,7 +126,14 @@ def _watch(manifest: Path, output: Path, once: Callable[[], int | None], period:
 
 
 def _run(
-    manifest: Path, output: Path, allow_outside: bool, how: Reading, jobs: int, gate: Gate, server: PageServer | None
+    manifest: Path,
+    output: Path,
+    allow_outside: bool,
+    how: Reading,
+    jobs: int,
+    gate: Gate,
+    server: PageServer | None,
+    trust: bool,
 ) -> int | None:
     """One run: prints its findings or its errors, and serves its page; the exit code that it is due, None where the
     input is bad."""
@@ -140,6 +149,7 @@ def _run(
                 allow_outside=allow_outside,
                 reading=how,
                 say=console.say,
+                trust_results=trust,
             )
     except (kinform.KinformError, OSError) as error:
         errors.report(error)

@@ -4,17 +4,19 @@ what needs nothing."""
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import field, replace
 from pathlib import Path
 from typing import Any, Literal
 
 from kinform.batch.task import FailureKind
 from kinform.errors import InputError, Problem
+from kinform.foundation import provenance
 from kinform.frozen import dataclass
 from kinform.model.findings import SEVERITIES
-from kinform.results import replace_file
+from kinform.results import computed_anew, replace_file
 
 SCHEMA = "kinform/batch-record/1"
 NAME = "batch.json"
@@ -51,6 +53,8 @@ class Row:
     """SHA-256 of every file that was read, relative to the design's folder."""
     digest: str = ""
     """SHA-256 of the results file."""
+    recorded: bool = True
+    """Whether this user's kinform computed the results, or had recorded what was reused."""
     unchanged: bool = False
     """Whether nothing had to be done."""
 
@@ -75,10 +79,14 @@ class Record:
     """Rows by name of the design."""
 
     rows: dict[str, Row] = field(default_factory=dict)
+    note: str = ""
+    """Why it has no rows, where it stands there and is not used."""
 
 
-def read(folder: Path) -> Record:
+def read(folder: Path, *, trust: bool = False) -> Record:
     """The record of a folder of results; an empty one where there is none, or it makes no sense: then all is looked at.
+    A record that this user's kinform did not write is not used, unless `trust`; nor are rows of results of unknown
+    origin in one that it wrote.
 
     Raises InputError where another kind of file stands in its place.
     """
@@ -87,18 +95,23 @@ def read(folder: Path) -> Record:
         return Record()
     other = Problem("is not the record of a batch, and would be overwritten", str(path), None, "name another folder")
     try:
-        whole = json.loads(path.read_text(encoding="utf-8"))
+        data = path.read_bytes()
+        whole = json.loads(data)
     except (OSError, ValueError):
         raise InputError([other]) from None
     if not isinstance(whole, dict) or not str(whole.get("schema", "")).startswith("kinform/batch-record/"):
         raise InputError([other])
     if whole["schema"] != SCHEMA:
         return Record()
+    recorded = provenance.is_recorded(hashlib.sha256(data).hexdigest(), path)
+    if not (recorded or trust):
+        return Record(note=f"{path}: {computed_anew(path)}")
     try:
         rows = [_row(values) for values in whole["designs"]]
     except (TypeError, KeyError, ValueError, AttributeError):
         return Record()
-    return Record({row.name: row for row in rows})
+    kept = (replace(row, recorded=row.recorded and recorded) for row in rows)
+    return Record({row.name: row for row in kept if row.recorded or trust})
 
 
 def write(record: Record, folder: Path) -> None:
@@ -107,9 +120,13 @@ def write(record: Record, folder: Path) -> None:
     for name in sorted(record.rows):
         values = dataclasses.asdict(record.rows[name])
         del values["unchanged"]
+        if values["recorded"]:
+            del values["recorded"]
         rows.append(values)
     text = json.dumps({"schema": SCHEMA, "designs": rows}, indent=1, ensure_ascii=True) + "\n"
-    replace_file(folder / NAME, text.encode())
+    data = text.encode()
+    provenance.record(hashlib.sha256(data).hexdigest())
+    replace_file(folder / NAME, data)
 
 
 def _row(values: Mapping[str, Any]) -> Row:

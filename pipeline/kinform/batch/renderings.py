@@ -18,7 +18,7 @@ from kinform.foundation.words import counted, number, one_line
 from kinform.model.findings import SEVERITIES, CheckReport
 from kinform.reports import as_json, concise, github, junit, markdown, sarif
 from kinform.reports.from_here import seen_from_here
-from kinform.reports.phrases import verdict_line
+from kinform.reports.phrases import UNKNOWN, verdict_word
 from kinform.version import __version__
 
 SCHEMA = "kinform/batch/1"
@@ -47,7 +47,7 @@ class _Whole:
                 yield row, None
                 continue
             try:
-                gist = results.read_gist(self.folder / row.results)
+                gist = results.read_gist(self.folder / row.results, recorded=row.recorded)
             except KinformError as error:
                 gone = Problem(str(error).splitlines()[0])
                 yield dataclasses.replace(row, failure="input", problems=(gone,)), None
@@ -59,15 +59,18 @@ def totals(rows: Sequence[Row], fail_on: str = "error") -> dict[str, int]:
     """How many designs are consistent, inconsistent, not verified; and how many of them nothing was done for."""
     codes = [row.code(fail_on) for row in rows]
     words = {"consistent": 0, "inconsistent": 1, "not verified": 2}
-    return {word: codes.count(code) for word, code in words.items()} | {"unchanged": sum(r.unchanged for r in rows)}
+    unchanged = sum(row.unchanged and row.recorded for row in rows)
+    return {word: codes.count(code) for word, code in words.items()} | {"unchanged": unchanged}
 
 
 def summary_line(rows: Sequence[Row], fail_on: str = "error") -> str:
-    """ "25 designs: 23 consistent, 0 inconsistent, 2 not verified; 20 unchanged"."""
+    """ "25 designs: 23 consistent, 0 inconsistent, 2 not verified; 20 unchanged"; and how many are trusted."""
     told = totals(rows, fail_on)
     unchanged = told.pop("unchanged")
     counts = ", ".join(f"{many} {word}" for word, many in told.items())
-    return f"{counted(len(rows), 'design')}: {counts}; {unchanged} unchanged"
+    unknown = sum(not row.failure and not row.recorded for row in rows)
+    trusted = f"; {unknown} with {UNKNOWN}" if unknown else ""
+    return f"{counted(len(rows), 'design')}: {counts}; {unchanged} unchanged{trusted}"
 
 
 def exit_code(rows: Sequence[Row], fail_on: str = "error") -> int:
@@ -79,7 +82,7 @@ def exit_code(rows: Sequence[Row], fail_on: str = "error") -> int:
 def _json(whole: _Whole) -> str:
     designs = []
     for row, gist in whole.designs():
-        verdict = row.verdict(whole.fail_on) if gist is None else verdict_line(_report(gist), whole.fail_on)
+        verdict = row.verdict(whole.fail_on) if gist is None else verdict_word(_report(gist), whole.fail_on)
         designs.append({
             "design": row.name, "source": row.source, "results": row.results if gist is not None else None,
             "verdict": verdict, "exit_code": row.code(whole.fail_on), "mobility": row.mobility,
@@ -220,7 +223,7 @@ def _counts(row: Row) -> tuple[str, ...]:
 
 
 def _seconds(row: Row) -> str:
-    return "unchanged" if row.unchanged else number(row.seconds, 3)
+    return ("unchanged" if row.recorded else "trusted") if row.unchanged else number(row.seconds, 3)
 
 
 def table_row(row: Row, fail_on: str = "error") -> tuple[str, ...]:

@@ -16,6 +16,7 @@ from kinform.batch.record import Record, Row
 from kinform.batch.task import INPUT, UNLIMITED, Answer, Failure, Limits, Task
 from kinform.batch.unchanged import row_if_unchanged
 from kinform.errors import InputError, Problem, ResultsError
+from kinform.foundation import provenance
 from kinform.frozen import dataclass
 
 
@@ -30,6 +31,8 @@ class Settings:
     limits: Limits = UNLIMITED
     allow_outside: bool = False
     allow_xacro: bool = False
+    trust_results: bool = False
+    """Whether earlier results are reused whoever wrote them."""
 
 
 def run(
@@ -37,15 +40,19 @@ def run(
     folder: Path,
     settings: Settings,
     progress: Callable[[int, int], None] | None = None,
+    say: Callable[[str], None] | None = None,
 ) -> tuple[Row, ...]:
     """Run all designs, with results below `folder`; gives their rows, in the order of `found`.
 
-    What is unchanged is not touched. A design that fails stops no other. The record is written as rows come, also
-    where this is interrupted. `progress(done, to be done)` counts designs that are run. Raises InputError where Dask
-    is missing and something is to be run, or nothing can be written.
+    What is unchanged is not touched. `say` is told where earlier results are not used because of their origin. A design
+    that fails stops no other. The record is written as rows come, also where this is interrupted. `progress(done, to be
+    done)` counts designs that are run. Raises InputError where Dask is missing and something is to be run, or nothing
+    can be written.
     """
     _make(folder)
-    kept = record.read(folder)
+    kept = record.read(folder, trust=settings.trust_results)
+    if kept.note and say is not None:
+        say(kept.note)
     rows: dict[str, Row] = {}
     for one in found:
         row = row_if_unchanged(one, kept, folder, allow_outside=settings.allow_outside)
@@ -88,13 +95,17 @@ def _run(
 def _answers(left: Sequence[Found], folder: Path, settings: Settings, crew: Crew) -> Iterator[Answer]:
     """The answers as they come: a result is the fields of a row."""
     code = code_of_here()
-    allowed = {"allow_outside": settings.allow_outside, "allow_xacro": settings.allow_xacro}
+    how = {
+        "allow_outside": settings.allow_outside,
+        "allow_xacro": settings.allow_xacro,
+        "trust_results": settings.trust_results,
+    }
     if not settings.send:
         for one in left:  # here, for a file in the place of a folder would stop a worker without words
             _make((folder / one.results).parent)
         yield from crew.answers(
             Task(one.name, "kinform.batch.work:run",
-                 {"source": str(one.source.absolute()), "output": str((folder / one.results).absolute()), **allowed},
+                 {"source": str(one.source.absolute()), "output": str((folder / one.results).absolute()), **how},
                  settings.limits, code)
             for one in left
         )  # fmt: skip
@@ -140,12 +151,11 @@ def _kept(answer: Answer, output: Path) -> Answer:
     data, said = answer.result
     try:
         _make(output.parent)
-        results.check_output(output)
-        results.replace_file(output, data)
+        results.write_bytes(data, output)
     except (ResultsError, InputError) as error:
         problems = error.problems if isinstance(error, InputError) else (error.problem,)
         return Answer(answer.key, failure=Failure(INPUT, problems), seconds=answer.seconds, tries=answer.tries)
-    fields = summary_of(results.read_gist(output), data, said)
+    fields = summary_of(results.read_gist(output, recorded=True), data, said)
     return Answer(answer.key, fields, seconds=answer.seconds, tries=answer.tries)
 
 
@@ -156,7 +166,11 @@ def _row(one: Found, answer: Answer) -> Row:
     }  # fmt: skip
     if answer.failure is not None:
         return Row(**start, failure=answer.failure.kind, problems=answer.failure.problems)
-    return Row(**start, **answer.result)
+    fields = dict(answer.result)
+    seal = fields.pop("seal")
+    if fields["recorded"]:  # a worker elsewhere keeps records of its own
+        provenance.record(seal)
+    return Row(**start, **fields)
 
 
 def _make(folder: Path) -> None:

@@ -14,13 +14,18 @@ from kinform.design import Design
 from kinform.form.sources import Reading
 
 
-def run(source: str, output: str, *, allow_outside: bool = False, allow_xacro: bool = False) -> dict[str, Any]:
+def run(
+    source: str, output: str, *, allow_outside: bool = False, allow_xacro: bool = False, trust_results: bool = False
+) -> dict[str, Any]:
     """Run the design at `source`, with its results at `output`; gives the fields of its row."""
     said: list[str] = []
     os.makedirs(os.path.dirname(output), exist_ok=True)
-    reading = Reading(allow_xacro=allow_xacro)
-    method.run(source, output, allow_outside=allow_outside, say=said.append, reading=reading)
-    return summary_of(results.read_gist(output), Path(output).read_bytes(), said)
+    done = method.run(
+        source, output, allow_outside=allow_outside, say=said.append, reading=Reading(allow_xacro=allow_xacro),
+        trust_results=trust_results,
+    )  # fmt: skip
+    gist = results.read_gist(output, recorded=done.gist.recorded)
+    return summary_of(gist, Path(output).read_bytes(), said)
 
 
 def imported(source: str, *, allow_outside: bool = False, allow_xacro: bool = False) -> bytes:
@@ -49,5 +54,7 @@ def summary_of(gist: Design, data: bytes, said: list[str]) -> dict[str, Any]:
         "notes": tuple(said),
         "lineage": gist.fingerprints.lineage.get("findings", ""),
         "files": dict(gist.fingerprints.files),
+        "recorded": gist.recorded,
+        "seal": results.digest_in(data),
         "digest": hashlib.sha256(data).hexdigest(),
     }

@@ -6,7 +6,7 @@ It holds nothing that the results files do not say, and can be rebuilt from them
 from kinform.catalog.build import Refused, add, fill, rebuild
 from kinform.catalog.entry import CatalogJoint, CatalogRequirement, Entry, entry_of
 from kinform.catalog.search import Wanted, distance, find, joint_count, like, source_state
-from kinform.catalog.store import SCHEMA, Catalog, read, write
+from kinform.catalog.store import SCHEMA, Catalog, is_recorded, read, write
 
 __all__ = [
     "SCHEMA",
@@ -21,6 +21,7 @@ __all__ = [
     "entry_of",
     "fill",
     "find",
+    "is_recorded",
     "joint_count",
     "like",
     "read",

@@ -59,15 +59,16 @@ def add(catalog: Catalog, sources: Sequence[str | Path], folder: str | Path) -> 
 
 
 def fill(
-    catalog: Catalog, designs: Mapping[Path, str], source: str | Path, folder: str | Path
+    catalog: Catalog, designs: Mapping[Path, str], source: str | Path, folder: str | Path, *, reuse: bool = True
 ) -> tuple[Catalog, tuple[Refused, ...]]:
-    """The catalog with these results files below the folder `source`, each with its SHA-256 (hex): one that the catalog
-    has with the same bytes is not read. `folder` is that of the catalog. What cannot be read is left out and listed."""
+    """The catalog with these results files below the folder `source`, each with its SHA-256 (hex): with `reuse` one
+    that the catalog has with the same bytes is not read. `folder` is that of the catalog. What cannot be read is left
+    out and listed."""
     entries = {entry.path: entry for entry in catalog.entries}
     refused = []
     for path, digest in sorted(designs.items()):
         name = _relative(path, folder)
-        if name in entries and entries[name].digest == digest:
+        if reuse and name in entries and entries[name].digest == digest:
             continue
         try:
             entries[name] = _entry(path, folder)

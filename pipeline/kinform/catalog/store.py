@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import hashlib
 import sqlite3
 from collections import Counter
 from collections.abc import Iterator
@@ -17,6 +18,7 @@ from typing import Any
 
 from kinform.catalog.entry import CatalogJoint, CatalogRequirement, Entry, Triple
 from kinform.errors import InputError, Problem
+from kinform.foundation import provenance
 from kinform.foundation.regular_files import not_a_file
 from kinform.frozen import dataclass
 from kinform.results import replace_file
@@ -76,7 +78,18 @@ def write(catalog: Catalog, path: str | Path) -> None:
     if Path(path).exists() and Path(path).stat().st_size:
         with open_catalog(path):
             pass
-    replace_file(path, _bytes(catalog))
+    data = _bytes(catalog)
+    provenance.record(hashlib.sha256(data).hexdigest())
+    replace_file(path, data)
+
+
+def is_recorded(path: str | Path) -> bool:
+    """Whether this user's kinform wrote the file at `path`."""
+    try:
+        with open(path, "rb") as stream:
+            return provenance.is_recorded(hashlib.file_digest(stream, "sha256").hexdigest(), path)
+    except OSError:
+        return False
 
 
 _DAMAGE = (sqlite3.DatabaseError, UnicodeDecodeError, MemoryError)

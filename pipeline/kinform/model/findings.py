@@ -13,6 +13,10 @@ SEVERITIES: tuple[Severity, ...] = get_args(Severity)
 OutcomeName = Literal["passed", "failed", "inconclusive", "skipped", "ignored"]
 OUTCOMES: tuple[OutcomeName, ...] = get_args(OutcomeName)
 
+Origin = Literal["recorded", "unknown", "refused"]
+"""Where results come from that findings rest on: this user's kinform computed them, or recorded the file that they were
+read from; it did not, and they count; it did not, and nothing is verified by them."""
+
 
 @dataclass(frozen=True)
 class Finding:
@@ -71,6 +75,8 @@ class CheckReport:
     """Codes and subjects of a baseline that are not found any more; None where no baseline was compared."""
     answers: tuple[Annotated[tuple[str, int], columns("answer", "joints")], ...] = ()
     """How many intended joints geometry gives each answer to; empty where there are none, or nothing was derived."""
+    origin: Origin = "recorded"
+    """No part of results files: it is another on another machine."""
 
     @property
     def ran(self) -> int:
@@ -99,10 +105,10 @@ def severity_of(word: str) -> Severity:
 def verdict(report: CheckReport, fail_on: str = "error") -> int:
     """Exit code of the gate: 0 verified, 1 findings at or above `fail_on`, 2 not verified.
 
-    Not verified: no rule ran, or one was inconclusive. Where 1 and 2 both apply, 1. `fail_on`: note,
-    warning or error; ValueError otherwise.
+    Not verified: no rule ran, one was inconclusive, or results of unknown origin are refused. Where 1 and 2 both apply,
+    1. `fail_on`: note, warning or error; ValueError otherwise.
     """
     level = SEVERITIES.index(severity_of(fail_on))
     if any(SEVERITIES.index(finding.severity) >= level for finding in report.findings):
         return 1
-    return 2 if report.ran == 0 or report.inconclusive else 0
+    return 2 if report.ran == 0 or report.inconclusive or report.origin == "refused" else 0

@@ -31,3 +31,6 @@ class Fingerprints:
     made of, to say what changed."""
     decisions: dict[str, tuple[str, str]] = field(default_factory=dict)
     """What single pairs, bodies and loops come out as, packed, and a seal on it, by the hash of all that decides it."""
+    recorded: bool = True
+    """Whether this user's kinform computed all results, or wrote the files that they were read from; no part of results
+    files, and of no fingerprint."""

@@ -9,7 +9,7 @@ from typing import Any
 
 from kinform.design import Design
 from kinform.model.findings import SEVERITIES, CheckReport
-from kinform.reports.phrases import verdict_line
+from kinform.reports.phrases import verdict_word
 
 SCHEMA = "kinform/findings/1"
 
@@ -33,7 +33,8 @@ def document(report: CheckReport, design: Design, fail_on: str = "error") -> dic
     return {
         "schema": SCHEMA,
         "assembly": design.assembly.name,
-        "verdict": verdict_line(report, fail_on),
+        "verdict": verdict_word(report, fail_on),
+        **({} if report.origin == "recorded" else {"origin": "unknown"}),
         "counts": counts | {o: sum(r.outcome == o for r in report.rules) for o in outcomes},
         "findings": [dataclasses.asdict(f) for f in report.findings],
         "ignored": [

@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 
 from kinform.design import Design
 from kinform.model.findings import SEVERITIES, CheckReport, Finding, Ignored, RuleOutcome
-from kinform.reports.phrases import details, verdict_line
+from kinform.reports.phrases import UNKNOWN, details, verdict_line
 
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
@@ -39,6 +39,12 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     if report.ran == 0:
         case = ElementTree.SubElement(suite, "testcase", classname="kinform", name="rules ran")
         ElementTree.SubElement(case, "error", type="inconclusive", message=verdict_line(report, fail_on))
+    if report.origin != "recorded":
+        case = ElementTree.SubElement(suite, "testcase", classname="kinform", name="origin of results")
+        if report.origin == "unknown":
+            ElementTree.SubElement(case, "skipped", message=UNKNOWN)
+        else:
+            ElementTree.SubElement(case, "error", type="origin", message=UNKNOWN)
     found = Counter(child.tag for case in suite for child in case)
     counts = {"tests": len(suite), "failures": found["failure"], "errors": found["error"], "skipped": found["skipped"]}
     whole = ElementTree.Element("testsuites", name="kinform")

@@ -72,26 +72,37 @@ def rule_counts(report: CheckReport) -> str:
 
 def verdict_line(report: CheckReport, fail_on: str = "error") -> str:
     """The verdict in one line, by the least severity that fails; silence is never a pass."""
+    return _with_origin(verdict_word(report, fail_on), report)
+
+
+def verdict_word(report: CheckReport, fail_on: str = "error") -> str:
+    """As verdict_line, without where results come from that do not decide the verdict: for programs."""
     if any(finding.severity in SEVERITIES[SEVERITIES.index(fail_on) :] for finding in report.findings):
         return "inconsistent"
     if report.ran == 0:
         return "not verified: no rule ran"
     if report.inconclusive:
         return "not verified: " + counted(report.inconclusive, "rule") + " could not decide"
-    return "consistent"
+    return f"not verified: {UNKNOWN}" if report.origin == "refused" else "consistent"
+
+
+def _with_origin(verdict: str, report: CheckReport) -> str:
+    """The verdict, which says where it rests on results of unknown origin."""
+    return verdict if report.origin == "recorded" or UNKNOWN in verdict else f"{verdict} ({UNKNOWN})"
 
 
 def verdict_told(report: CheckReport, stated: bool, fail_on: str = "error") -> str:
     """The verdict for people: what was compared, and what is wrong with what. "inconsistent" is a design that does not
     do what is stated; where only meshes or contacts are faulty, or no function is `stated`, that is said."""
-    told = _verdict_told(report, stated, fail_on)
+    told = _told(report, stated, fail_on)
     left_out = report.unselected
-    return f"{told}; {counted(len(left_out), 'rule')} left out by select: {few(left_out)}" if left_out else told
+    told += f"; {counted(len(left_out), 'rule')} left out by select: {few(left_out)}" if left_out else ""
+    return _with_origin(told, report)
 
 
-def _verdict_told(report: CheckReport, stated: bool, fail_on: str) -> str:
-    """The verdict, whatever rules were selected."""
-    line = verdict_line(report, fail_on)
+def _told(report: CheckReport, stated: bool, fail_on: str) -> str:
+    """The verdict, whatever rules were selected and whoever wrote the results."""
+    line = verdict_word(report, fail_on)
     if line != "inconsistent":
         return line if stated or report.ran == 0 else f"{line}; {GEOMETRY_ONLY}"
     level = SEVERITIES.index(fail_on)
@@ -122,6 +133,9 @@ def _severities(findings: Sequence[Finding], subject: str) -> str:
 def _family(code: str) -> str:
     return next((subject for start, subject in FAMILIES.items() if code.startswith(start)), "other")
 
+
+UNKNOWN = "results of unknown origin"
+"""Of results that this user's kinform neither computed nor recorded."""
 
 GEOMETRY_ONLY = "no function stated: geometry only"
 

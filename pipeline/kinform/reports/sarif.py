@@ -17,7 +17,7 @@ from urllib.parse import quote
 
 from kinform.design import Design
 from kinform.model.findings import CheckReport, Finding, Ignored, RuleOutcome
-from kinform.reports.phrases import verdict_line
+from kinform.reports.phrases import verdict_word
 from kinform.version import __version__
 
 if TYPE_CHECKING:
@@ -50,7 +50,8 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
         "results": results,
         "properties": {
             "assembly": design.assembly.name,
-            "verdict": verdict_line(report, fail_on),
+            "verdict": verdict_word(report, fail_on),
+            **({} if report.origin == "recorded" else {"origin": "unknown"}),
             "rules": [_present({"code": r.code, "outcome": r.outcome, "reason": r.reason}) for r in report.rules],
         },
     }

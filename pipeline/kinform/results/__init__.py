@@ -9,18 +9,23 @@ from kinform.results.at_need import Earlier
 from kinform.results.file import (
     as_absent,
     check_output,
+    computed_anew,
     earlier,
     fault_of,
     files_of,
+    is_unknown,
     read,
     read_at_need,
     read_gist,
     read_if_current,
     to_bytes,
+    unknown_origin,
     write,
+    write_bytes,
 )
 from kinform.results.opening import SCHEMA, NotWholeError
 from kinform.results.replacement import replace_file
+from kinform.results.seal import digest_in
 
 __all__ = [
     "SCHEMA",
@@ -28,14 +33,19 @@ __all__ = [
     "NotWholeError",
     "as_absent",
     "check_output",
+    "computed_anew",
+    "digest_in",
     "earlier",
     "fault_of",
     "files_of",
+    "is_unknown",
     "read",
     "read_at_need",
     "read_gist",
     "read_if_current",
     "replace_file",
     "to_bytes",
+    "unknown_origin",
     "write",
+    "write_bytes",
 ]

@@ -15,7 +15,7 @@ from kinform.errors import ResultsError
 from kinform.model.fingerprints import Fingerprints
 from kinform.results.conformity import check_group
 from kinform.results.groups import assembly
-from kinform.results.held import HeldGroup
+from kinform.results.held import HeldFile, HeldGroup
 from kinform.results.opening import not_whole, opened
 from kinform.results.table import row_count
 
@@ -50,7 +50,7 @@ class Earlier:
         """With `open_on` the file stays open, and what few ask for is read later than what it belongs to."""
         self._path, self._open_on = path, open_on
         self._open = contextlib.ExitStack()
-        self.file: HeldGroup = self._open.enter_context(opened(path))
+        self.file: HeldFile = self._open.enter_context(opened(path))
 
     def __enter__(self) -> Earlier:
         return self
@@ -61,6 +61,11 @@ class Earlier:
     def close(self) -> None:
         """Let go of the file; what was not asked for can no longer be read."""
         self._open.close()
+
+    @property
+    def recorded(self) -> bool:
+        """As of Design."""
+        return self.file.recorded
 
     def _read(self, name: str) -> Any:
         """What a group holds; None where it is not there."""
@@ -134,7 +139,7 @@ class Earlier:
 
     @cached_property
     def report(self) -> CheckReport | None:
-        return cast("CheckReport | None", self._read("findings"))
+        return of_origin(cast("CheckReport | None", self._read("findings")), self.recorded)
 
     @cached_property
     def fingerprints(self) -> Fingerprints:
@@ -152,6 +157,7 @@ class Earlier:
                 lineage=marks_of(file, "lineage"),
                 inputs={name: _inputs(text) for name, text in marks_of(file, "inputs").items()},
                 decisions=joints.read_decisions(file.group("joints")) if "joints" in file else {},
+                recorded=file.recorded,
             )
         except NONSENSE as error:
             raise self._damaged(error) from error
@@ -182,6 +188,11 @@ class Earlier:
 def codec(group: str) -> Any:
     """The module that writes and reads a group."""
     return importlib.import_module(f"kinform.results.groups.{group}")
+
+
+def of_origin(report: CheckReport | None, recorded: bool) -> CheckReport | None:
+    """The report, which says so where it was not `recorded`, as of Design."""
+    return report if recorded or report is None else dataclasses.replace(report, origin="unknown")
 
 
 def marks_of(file: HeldGroup, attribute: str) -> dict[str, str]:

@@ -17,14 +17,15 @@ import h5py
 
 from kinform.design import Design
 from kinform.errors import ResultsError
+from kinform.foundation import provenance
 from kinform.model.fingerprints import Fingerprints
-from kinform.results.at_need import NONSENSE, STAGE_OF, Earlier, codec, marks_of
+from kinform.results.at_need import NONSENSE, STAGE_OF, Earlier, codec, marks_of, of_origin
 from kinform.results.conformity import check_group
 from kinform.results.groups import assembly
 from kinform.results.held import HeldGroup
 from kinform.results.opening import DAMAGE, SCHEMA, NotWholeError, check_replaceable, not_whole, opened
 from kinform.results.replacement import check_target, refuse, replace_file
-from kinform.results.seal import BLOCK, block_of, seal
+from kinform.results.seal import BLOCK, block_of, digest_in, seal
 from kinform.reuse import lineage
 from kinform.version import __version__
 
@@ -40,12 +41,25 @@ times. Chosen, not measured."""
 def write(design: Design, path: str | Path) -> None:
     """Write the design to `path`, whole or not at all.
 
-    Identical bytes keep the file and touch its time. Raises ResultsError when `path` cannot be written,
+    Identical bytes keep the file and touch its time. The file is recorded as written by this user's kinform, unless the
+    design rests on results that are not. Raises ResultsError when `path` cannot be written,
     or holds something that is not a results file of this schema: that is never overwritten.
     """
     check_output(path)
     image = _image(design)
-    replace_file(path, block_of(image, SCHEMA), image)
+    _replace(path, block_of(image, SCHEMA), image, recorded=design.recorded)
+
+
+def write_bytes(data: bytes, path: str | Path) -> None:
+    """Write to `path` what another process made with `to_bytes` for this one, and record it; raises as `write`."""
+    check_output(path)
+    _replace(path, data[:BLOCK], data[BLOCK:], recorded=True)
+
+
+def _replace(path: str | Path, block: bytes, image: bytes, *, recorded: bool) -> None:
+    if recorded:
+        provenance.record(digest_in(block))
+    replace_file(path, block, image)
 
 
 def check_output(path: str | Path) -> None:
@@ -78,22 +92,55 @@ def read_at_need(path: str | Path) -> Design:
     return cast(Design, Earlier(path, open_on=True))
 
 
-def earlier(path: str | Path, say: Callable[[str], None] | None = None) -> Earlier | None:
+def earlier(
+    path: str | Path,
+    say: Callable[[str], None] | None = None,
+    say_unknown: Callable[[str], None] | None = None,
+    *,
+    trust: bool = False,
+) -> Earlier | None:
     """What an earlier run has left at `path`, which is about to be written; None where there is nothing.
 
-    What is no longer whole counts as nothing, and `say` is told; what makes no sense raises NotWholeError where it is
-    read. Raises ResultsError when `write` would refuse this path.
+    What is no longer whole counts as nothing, of which `say` is told, and so does what this user's kinform did not
+    write, unless `trust`, of which `say_unknown` is told. What makes no sense raises NotWholeError where it is read.
+    Raises ResultsError when `write` would refuse this path.
     """
     check_output(path)
     target = Path(path)
     if not target.exists() or target.stat().st_size == 0:
         return None
     try:
-        return Earlier(path)
+        found = Earlier(path)
     except NotWholeError as error:
         if say is not None:
             say(as_absent(error))
         return None
+    if found.recorded or trust:
+        return found
+    found.close()
+    if say_unknown is not None:
+        say_unknown(f"{path}: {computed_anew(path)}")
+    return None
+
+
+def is_unknown(path: str | Path) -> bool:
+    """Whether there are results at `path` that this user's kinform did not record."""
+    try:
+        with opened(path) as file:
+            return not file.recorded
+    except (ResultsError, *DAMAGE):
+        return False
+
+
+def computed_anew(path: str | Path) -> str:
+    """What is said of earlier results that are not used for that."""
+    return f"{unknown_origin(path)}: computed anew; --trust-results uses them"
+
+
+def unknown_origin(path: str | Path) -> str:
+    """What is said of a file that this user's kinform did not record, and why it did not where that is known."""
+    why = provenance.fault(path)
+    return f"results of unknown origin ({why})" if why else "results of unknown origin"
 
 
 def fault_of(path: str | Path) -> ResultsError | None:
@@ -166,15 +213,18 @@ def files_of(path: str | Path) -> tuple[str, ...]:
         return ()
 
 
-def read_if_current(path: str | Path, manifest: Path, *, allow_outside: bool) -> Design | None:
-    """What findings are told with, of results that are what a run of the manifest would give; None of others.
+def read_if_current(path: str | Path, manifest: Path, *, allow_outside: bool, trust: bool = False) -> Design | None:
+    """What findings are told with, of results that are what a run of the manifest would give; None of others, and of
+    those that this user's kinform did not write, unless `trust`.
 
     The assembly is without parts, the kinematics without joints. Raises nothing: whatever is wrong with the file or
     its inputs, a run will tell.
     """
     try:
         with opened(path) as file:
-            marks = Fingerprints(lineage=marks_of(file, "lineage"))
+            if not (file.recorded or trust):
+                return None
+            marks = Fingerprints(lineage=marks_of(file, "lineage"), recorded=file.recorded)
             contents = assembly.read_contents(file.group("assembly"))
             written_from = marks.lineage.get("findings")
             if not written_from or written_from != lineage.current(manifest, contents, allow_outside=allow_outside):
@@ -182,15 +232,16 @@ def read_if_current(path: str | Path, manifest: Path, *, allow_outside: bool) ->
             for name in file.groups():
                 check_group(file, name)
             gist = assembly.read_header(file.group("assembly"))
-            report = codec("findings").read(file.group("findings"))
+            report = of_origin(codec("findings").read(file.group("findings")), file.recorded)
             return Design(gist, kinematics=_bodies(file, gist), report=report, fingerprints=marks)
     except (ResultsError, *DAMAGE):
         return None
 
 
-def read_gist(path: str | Path) -> Design:
+def read_gist(path: str | Path, *, recorded: bool | None = None) -> Design:
     """What findings are told with, of results as they are: the assembly without parts, the kinematics with its bodies
-    and mobility alone; of fingerprints lineage and files. Raises ResultsError as `read` does."""
+    and mobility alone; of fingerprints lineage and files. `recorded` as of Design, where the caller knows. Raises
+    ResultsError as `read` does."""
     from kinform.model.kinematics import only_bodies
     from kinform.results.groups import joints, mobility
 
@@ -202,10 +253,11 @@ def read_gist(path: str | Path) -> Design:
             contents = assembly.read_contents(file.group("assembly"))
             bodies = only_bodies(joints.read_bodies(file.group("joints")))
             kinematics = dataclasses.replace(bodies, mobility=mobility.read(file.group("mobility")))
-            report = codec("findings").read(file.group("findings"))
+            known = file.recorded if recorded is None else recorded
+            report = of_origin(codec("findings").read(file.group("findings")), known)
         except NONSENSE as error:
             raise not_whole(path, f"the results file is damaged ({error})") from error
-        marks = Fingerprints(lineage=marks_of(file, "lineage"), files=contents)
+        marks = Fingerprints(lineage=marks_of(file, "lineage"), files=contents, recorded=known)
         return Design(gist, kinematics=kinematics, report=report, fingerprints=marks)
 
 

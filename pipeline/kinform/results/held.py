@@ -124,6 +124,15 @@ class HeldGroup:
                 yield from (f"{name}/{inner}" for inner in item.datasets())
 
 
-def hold(file: h5py.File) -> HeldGroup:
+class HeldFile(HeldGroup):
     """The content of an open file."""
-    return HeldGroup("/", h5g.open(file.id, b"/"))
+
+    def __init__(self, made: Any, recorded: bool):
+        super().__init__("/", made)
+        self.recorded = recorded
+        """Whether this user's kinform wrote the file."""
+
+
+def hold(file: h5py.File, *, recorded: bool = False) -> HeldFile:
+    """The content of an open file."""
+    return HeldFile(h5g.open(file.id, b"/"), recorded)

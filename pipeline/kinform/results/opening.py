@@ -12,8 +12,9 @@ from pathlib import Path
 import h5py
 
 from kinform.errors import ResultsError
+from kinform.foundation import provenance
 from kinform.foundation.regular_files import not_a_file
-from kinform.results.held import HeldGroup, hold
+from kinform.results.held import HeldFile, hold
 from kinform.results.replacement import refuse
 from kinform.results.seal import BLOCK, Seal, is_sealed, read_seal
 from kinform.results.structure import ForeignError, check_structure
@@ -35,12 +36,13 @@ class NotWholeError(ResultsError):
 
 
 @contextlib.contextmanager
-def opened(path: str | Path) -> Iterator[HeldGroup]:
+def opened(path: str | Path) -> Iterator[HeldFile]:
     """What the file holds, open for reading and known to be a whole results file of this schema. Raises NotWholeError,
     and ResultsError for what was never one."""
     with contextlib.ExitStack() as stack:
         stream = stack.enter_context(_stream(path))
-        _check_seal(path, _sealed(path, stream))
+        seal = _sealed(path, stream)
+        _check_seal(path, seal)
         size = os.fstat(stream.fileno()).st_size
         try:
             file = stack.enter_context(h5py.File(stream, "r"))
@@ -52,7 +54,7 @@ def opened(path: str | Path) -> Iterator[HeldGroup]:
             raise not_whole(path, "the results file is damaged: its HDF5 makes no sense") from error
         if schema != SCHEMA:
             raise not_whole(path, "the results file is damaged: it has two schemas")
-        yield hold(file)
+        yield hold(file, recorded=provenance.is_recorded(seal.digest, path))
 
 
 def check_replaceable(path: Path) -> None:

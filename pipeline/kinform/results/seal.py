@@ -37,6 +37,8 @@ class Seal:
     """"" where the block itself is not whole."""
     fault: str | None
     """What shows that the file is not as it was written; None where it is whole."""
+    digest: str = ""
+    """SHA-256 (hex) of the HDF5 of a file that is whole."""
 
 
 def block(schema: str, length: int, digest: str) -> bytes:
@@ -53,6 +55,12 @@ def seal(image: bytes, schema: str) -> bytes:
 def block_of(image: bytes, schema: str) -> bytes:
     """The block before this HDF5."""
     return block(schema, len(image), hashlib.sha256(image).hexdigest())
+
+
+def digest_in(start: bytes) -> str:
+    """The digest that the block at the start of a file states; "" where there is none."""
+    stated = _FORM.match(start)
+    return "" if stated is None else stated[3].decode()
 
 
 def is_sealed(start: bytes) -> bool:
@@ -86,4 +94,4 @@ def _compare(stream: BufferedReader, start: bytes) -> Seal:
     hasher = hashlib.file_digest(stream, "sha256")
     if start != block(schema, length, hasher.hexdigest()):
         return Seal(schema, f"its SHA-256 is not the {digest[:12]}… that it was written with")
-    return Seal(schema, None)
+    return Seal(schema, None, digest)

@@ -70,7 +70,7 @@ def without(stage: Stage, design: Design) -> Design:
     later = STAGES[STAGES.index(stage) :]
     kinds = {kind for other in later for kind in other.code}
     marks = design.fingerprints
-    cleared = {
+    cleared: dict[str, Any] = {
         name: {kind: mark for kind, mark in getattr(marks, name).items() if kind not in kinds}
         for name in ("stages", "lineage", "inputs")
     } | {name: {} for other in later for name in other.marks}

@@ -32,12 +32,25 @@ class EarlierResults(Protocol):
     @property
     def fingerprints(self) -> Fingerprints: ...
 
+    @property
+    def recorded(self) -> bool: ...
+
+
+NONE = "no earlier results"
+UNKNOWN = "earlier results of unknown origin"
+"""Why nothing is reused, where an account begins with it."""
+UNTOUCHED = "nothing changed that matters"
+TRUSTED = "results of unknown origin, as --trust-results says"
+"""Why everything is reused."""
+
 
 @dataclass
 class Ledger:
     """Earlier results of the same output, if any, and the account of what became of them."""
 
     previous: EarlierResults | None = None
+    absent: str = NONE
+    """Why there are no earlier results."""
     reused: list[str] = field(default_factory=list)
     """Sentences, in the order of the stages."""
     recomputed: list[str] = field(default_factory=list)
@@ -48,6 +61,11 @@ class Ledger:
     def fingerprints(self) -> Fingerprints:
         """Those of the earlier results; empty ones where there are none."""
         return Fingerprints() if self.previous is None else self.previous.fingerprints
+
+    @property
+    def recorded(self) -> bool:
+        """As of Design: whether what is taken over makes a design that is."""
+        return self.previous is None or self.previous.recorded
 
     def keep(self, what: str) -> None:
         """Note that `what` is taken over."""
@@ -62,12 +80,12 @@ class Ledger:
         """What changed and what followed: "camera.stl changed → contacts of 2 pairs of parts, joints"; `files` are the
         contents that were read now, by name."""
         if not self._computed:
-            return "everything is reused: nothing changed that matters"
+            return f"everything is reused: {UNTOUCHED if self.recorded else TRUSTED}"
         return f"{self._cause(files)} → {', '.join(self._computed)}"
 
     def _cause(self, files: Mapping[str, str]) -> str:
         if self.previous is None:
-            return "no earlier results"
+            return self.absent
         before = self.fingerprints.files
         if not before or not files:
             return "earlier results do not say which files they were made of"

@@ -18,7 +18,9 @@ from kinform.batch.session import Settings
 from kinform.batch.task import INPUT, Task
 from kinform.errors import InputError, Problem
 from kinform.form.keys import steps_of
+from kinform.foundation import provenance
 from kinform.frozen import dataclass
+from kinform.results import computed_anew
 from kinform.study.plan import Plan
 from kinform.study.sampling import samples
 
@@ -42,17 +44,26 @@ class Outcome:
     """Of what is measured; "" where nothing says it."""
 
 
-def run(plan: Plan, output: Path, settings: Settings, progress: Callable[[int, int], None] | None = None) -> Outcome:
+def run(
+    plan: Plan,
+    output: Path,
+    settings: Settings,
+    progress: Callable[[int, int], None] | None = None,
+    say: Callable[[str], None] | None = None,
+) -> Outcome:
     """Measure all samples. What an interrupted study of the same files has measured, kept beside `output`, is not
-    measured again. Raises InputError where the design as it stands cannot be used, or a measure is not there."""
+    measured again, if it was this user's, or the settings trust it; else `say` is told. Raises InputError where the
+    design as it stands cannot be used, or a measure is not there."""
     rows = samples(plan)
     measured = [steps_of(one.value) for one in plan.measures]
     folder = Path(tempfile.mkdtemp(prefix=".kinform-study-", dir=output.parent))
     try:
         base = folder / "base.h5"
         nominal, units, contents = _nominal(plan, base, measured, settings)
-        kept = Journal(output.with_name(f"{output.name}.part"), _key(plan, contents))
+        kept = Journal(_part(output), _key(plan, contents), trust=settings.trust_results)
         done = kept.read()
+        if kept.unknown and say is not None:
+            say(f"{kept.path}: {computed_anew(kept.path)}")
         tasks = [
             _task(plan, k, row, base if base.exists() else None, measured, settings)
             for k, row in enumerate(rows)
@@ -134,36 +145,48 @@ def _key(plan: Plan, contents: dict[str, str]) -> str:
 
 
 class Journal:
-    """The samples that are measured, a line each, as they come: what is left of a study that was interrupted."""
+    """The samples that are measured, a line each, as they come: what is left of a study that was interrupted. Each line
+    ends with a code that only this user's kinform can make of it."""
 
-    def __init__(self, path: Path, key: str):
-        self._path, self._key = path, key
+    def __init__(self, path: Path, key: str, *, trust: bool = False):
+        self.path, self._key, self._trust = path, key, trust
         self._stream: Any = None
+        self.unknown = 0
+        """Lines of this very study that were read and are of unknown origin."""
 
     def read(self) -> dict[int, tuple[Row | None, str]]:
         """What is there of this very study; a line that is not whole is left out."""
         out: dict[int, tuple[Row | None, str]] = {}
-        for line in self._lines():
-            k, values, why = line
+        for k, values, why, _ in self._lines():
             out[int(k)] = (None if values is None else tuple(values), str(why))
         return out
 
     def _lines(self) -> Iterator[Any]:
         try:
-            lines = self._path.read_text(encoding="utf-8").split("\n")
+            lines = self.path.read_text(encoding="utf-8").split("\n")
         except (OSError, UnicodeDecodeError):
             return
         if lines[0] != json.dumps({"study": self._key}):
             return
         for line in lines[1:-1]:  # behind the last end of line is nothing, or half a line
             try:
-                yield json.loads(line)
-            except ValueError:
+                k, values, why, code = json.loads(line)
+            except (ValueError, TypeError):
                 return
+            if not _is_sample(k, values, why):
+                return
+            if self._trust or provenance.is_signed(self._text(k, values, why), code, self.path):
+                yield k, values, why, code
+            else:
+                self.unknown += 1
+
+    def _text(self, k: int, values: Row | None, why: str) -> str:
+        """What the code of a line is made of."""
+        return json.dumps([self._key, k, values, why])
 
     def __enter__(self) -> Journal:
         whole = [json.dumps({"study": self._key}), *(json.dumps(line) for line in self._lines())]
-        self._stream = self._path.open("w", encoding="utf-8")
+        self._stream = self.path.open("w", encoding="utf-8")
         self._stream.write("\n".join(whole) + "\n")
         self._stream.flush()
         return self
@@ -173,15 +196,29 @@ class Journal:
 
     def note(self, k: int, values: Row | None, why: str) -> None:
         """Keep a sample."""
-        self._stream.write(json.dumps([k, values, why]) + "\n")
+        code = provenance.signed(self._text(k, values, why), self.path)
+        self._stream.write(json.dumps([k, values, why, code]) + "\n")
         self._stream.flush()
 
     def forget(self) -> None:
         """The study is written: nothing is left to be gone on with."""
-        if self._path.exists():
-            os.unlink(self._path)
+        if self.path.exists():
+            os.unlink(self.path)
+
+
+def _is_sample(k: Any, values: Any, why: Any) -> bool:
+    """Whether a line holds what `note` was given."""
+    numbers = values is None or (
+        isinstance(values, list) and all(v is None or isinstance(v, int | float) for v in values)
+    )
+    return isinstance(k, int) and numbers and isinstance(why, str)
 
 
 def journal_of(output: Path) -> Journal:
     """The journal beside the file of a study."""
-    return Journal(output.with_name(f"{output.name}.part"), "")
+    return Journal(_part(output), "")
+
+
+def _part(output: Path) -> Path:
+    """Where the journal stands while a study runs."""
+    return output.with_name(f"{output.name}.part")

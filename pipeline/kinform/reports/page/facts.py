@@ -17,7 +17,7 @@ from kinform.model.findings import SEVERITIES, RuleOutcome, Severity
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.reports.page.phrases import assumption, joint_sentence, patch_words
 from kinform.reports.page.subjects import wanted_names
-from kinform.reports.phrases import rule_counts, severity_counts, verdict_line, verdict_told, where
+from kinform.reports.phrases import rule_counts, severity_counts, verdict_told, verdict_word, where
 
 MOST_LISTED_PATCHES = 14
 """Patches that a joint lists; the rest are counted. Chosen, not measured."""
@@ -87,7 +87,7 @@ def verdict_of(design: Design) -> Verdict:
     """Of a design; without findings in the file it is not verified."""
     if design.report is None:
         return Verdict("unverified", "?", "not verified: the rules have not been run", "run `kinform check`")
-    line = verdict_line(design.report)
+    line = verdict_word(design.report)
     stated = design.assembly.function.stated
     kind: VerdictKind = "inconsistent" if line == "inconsistent" else "unverified"
     if line == "consistent" and stated:
