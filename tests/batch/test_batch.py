@@ -18,11 +18,10 @@ from support.places import FIXTURES
 
 import kinform
 from kinform import catalog
-from kinform.batch import Settings, discover, render
+from kinform.batch import Settings, discover, record, render
 from kinform.batch import run as run_batch
 
 pytest.importorskip("distributed")
-pytest.importorskip("pathspec")
 
 GOOD = ("planar_block", "prismatic_drawer")
 
@@ -165,3 +164,17 @@ def test_formats_tell_what_has_no_results(done):
 def test_options_that_make_no_sense_are_refused(done, words, said):
     ran = ran_here("batch", "designs", "-o", "new", *words, cwd=done[0].parent)
     assert ran.returncode == 2 and said in ran.stderr
+
+
+def test_a_design_whose_results_have_no_place_is_a_row(tmp_path):
+    text = 'schema = 1\n[assembly]\nname = "a"\nunits = "mm"\n'
+    for name in ("batch.json/a.toml", "long.urdf", "r.urdf", "r.urdf.toml", "x" * 250 + ".URDF", "f/a.toml"):
+        (tmp_path / "d" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "d" / name).write_text(text if name.endswith("toml") else '<robot name="r"/>')
+    out = tmp_path / "results"
+    out.mkdir()
+    (out / "f").write_text("a file in the place of a folder")
+    found = [one for one in discover([tmp_path / "d"]) if one.name not in ("long.urdf", "r.urdf")]
+    rows = run_batch(found, out, Settings())
+    assert [row.failure for row in rows] == ["input"] * 4
+    assert record.read(out).rows.keys() == {row.name for row in rows}

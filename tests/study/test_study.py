@@ -24,7 +24,6 @@ from kinform.study import session as module
 from kinform.study.work import measure, nominal, sample, units
 
 pytest.importorskip("distributed")
-pytest.importorskip("pathspec")
 
 DESIGN = Path(__file__).parents[2] / "examples" / "slider_crank.toml"
 STUDY = """

@@ -10,6 +10,7 @@ from dataclasses import field
 from pathlib import Path
 from typing import Any, Literal
 
+from kinform.batch.discovery import RECORD
 from kinform.batch.task import FailureKind
 from kinform.errors import InputError, Problem
 from kinform.frozen import dataclass
@@ -17,7 +18,7 @@ from kinform.model.findings import SEVERITIES
 from kinform.results import replace_file
 
 SCHEMA = "kinform/batch-record/1"
-NAME = "batch.json"
+NAME = RECORD
 """Of the file in the folder of results."""
 
 

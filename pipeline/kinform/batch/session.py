@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -47,10 +48,16 @@ def run(
     kept = record.read(folder)
     rows: dict[str, Row] = {}
     for one in found:
+        fault = one.fault or _unmade(folder / one.results)
+        if fault is not None:
+            rows[one.name] = kept.rows[one.name] = _row(one, Answer(one.name, failure=Failure(INPUT, (fault,))))
+            continue
         row = row_if_unchanged(one, kept, folder, allow_outside=settings.allow_outside)
         if row is not None:
             rows[one.name] = row
     left = [one for one in found if one.name not in rows]
+    if len(rows) > sum(row.unchanged for row in rows.values()):
+        record.write(kept, folder)
     if left:
         _run(left, folder, settings, kept, rows, progress)
     return tuple(rows[one.name] for one in found)
@@ -89,8 +96,6 @@ def _answers(left: Sequence[Found], folder: Path, settings: Settings, crew: Crew
     code = code_of_here()
     outside = {"allow_outside": settings.allow_outside}
     if not settings.send:
-        for one in left:  # here, for a file in the place of a folder would stop a worker without words
-            _make((folder / one.results).parent)
         yield from crew.answers(
             Task(one.name, "kinform.batch.work:run",
                  {"source": str(one.source.absolute()), "output": str((folder / one.results).absolute()), **outside},
@@ -137,7 +142,6 @@ def _kept(answer: Answer, output: Path) -> Answer:
 
     data, said = answer.result
     try:
-        _make(output.parent)
         results.check_output(output)
         results.replace_file(output, data)
     except (ResultsError, InputError) as error:
@@ -155,6 +159,20 @@ def _row(one: Found, answer: Answer) -> Row:
     if answer.failure is not None:
         return Row(**start, failure=answer.failure.kind, problems=answer.failure.problems)
     return Row(**start, **answer.result)
+
+
+def _unmade(output: Path) -> Problem | None:
+    """Why the folder of a results file cannot be made; None where it is there now."""
+    try:
+        output.parent.mkdir(parents=True, exist_ok=True)
+        os.lstat(output)
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        return Problem(
+            f"its results cannot be written: {error.strerror}", str(output), None, "rename it, or --exclude it"
+        )
+    return None
 
 
 def _make(folder: Path) -> None:

@@ -21,6 +21,14 @@ def run(source: str, output: str, *, allow_outside: bool = False) -> dict[str, A
     return summary_of(results.read_gist(output), Path(output).read_bytes(), said)
 
 
+def files_of(source: str, *, allow_outside: bool = False) -> dict[str, str]:
+    """SHA-256 (hex) of every file that the readers open for the design at `source`, relative to its folder, and of the
+    list of each folder that they look through, with "/" at its end; {} where these do not say all that counts."""
+    from kinform.form.readers.assembly import load_with_contents
+
+    return load_with_contents(source, allow_outside=allow_outside)[1]
+
+
 def imported(source: str, *, allow_outside: bool = False) -> bytes:
     """The imported design, as bytes to be sent to a worker that sees none of its files."""
     return pickle.dumps(stages.import_(source, allow_outside=allow_outside), protocol=pickle.HIGHEST_PROTOCOL)
