@@ -124,10 +124,13 @@ class _Below:
     def files(self) -> Iterator[Path]:
         """All of them, each once: what git tracks, and what lies there and is not ignored. Folders whose name begins
         with a dot, and those of results, hold only what is tracked, or nothing."""
-        tracked = self._asked(self.real) if root_of(self.real) is not None else set()
-        if root_of(self.real) is None and not self.ignored:
-            self._note_rules(self.real)
+        inside_one = root_of(self.real) is not None
+        tracked = self._asked(self.real) if inside_one else set()
+        unused = not inside_one and not self.ignored
         for folder, folders, inside in os.walk(self.real, onerror=self._unreadable):
+            if unused and ".gitignore" in inside and root_of(folder) is None:
+                self.tell(f"{self.top} is in no repository of git, so that no .gitignore is used")
+                unused = False
             entered = []
             for name in sorted(folders):
                 path = os.path.join(folder, name)
@@ -187,10 +190,6 @@ class _Below:
         target = os.path.realpath(path)
         bound = root_of(self.real) or self.real
         return target != path and not target.startswith(os.path.join(bound, ""))
-
-    def _note_rules(self, folder: str) -> None:
-        if os.path.lexists(os.path.join(folder, ".gitignore")):
-            self.tell(f"{self.top} is in no repository of git, so that its .gitignore is not used")
 
     def _note_link(self, path: str) -> None:
         """Links to folders are not followed: what is in one that lies elsewhere is not looked for."""

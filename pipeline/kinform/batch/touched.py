@@ -130,9 +130,12 @@ class _Then:
                     return True
             elif os.path.basename(name) in _PACKAGES and not self.holds(name):
                 return True
+        try:
+            now = self._now()
+        except GitError:
+            return True
         return any(
-            (mode == _LINK or os.path.basename(name) in _PACKAGES) and name not in self.entries
-            for name, mode in self._now()
+            (mode == _LINK or os.path.basename(name) in _PACKAGES) and name not in self.entries for name, mode in now
         )
 
     def _now(self) -> list[tuple[str, bytes]]:
@@ -190,7 +193,11 @@ class _Before:
         if root is None:
             raise InputError([Problem("is in no repository of git", str(source), None, "leave --changed-since out")])
         if root not in self._known:
-            self._known[root] = _Then(root, self._commit(root))
+            commit = self._commit(root)
+            try:
+                self._known[root] = _Then(root, commit)
+            except GitError as error:
+                raise InputError([Problem(f"--changed-since: {error.reason}", str(root))]) from None
         return self._known[root]
 
     def _commit(self, root: Path) -> str:
@@ -247,7 +254,7 @@ class _Before:
             return None if not isinstance(outer, _Then) else outer.modules.get(os.path.relpath(root, outer.root))
         try:
             return self.of_source(root / ".git")
-        except (InputError, GitError):
+        except InputError:
             return None
 
 
