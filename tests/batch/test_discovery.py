@@ -160,3 +160,13 @@ def test_tracked_designs_in_the_folder_of_results_are_reported(repository):
     told: list[str] = []
     assert "results/r.toml" not in names(repository, results=repository / "results", say=told.append)
     assert len(told) == 1 and "r.toml" in told[0]
+
+
+def test_a_submodule_in_an_ignored_folder_counts(repository, tmp_path_factory):
+    inner = tmp_path_factory.mktemp("inner")
+    (inner / "s.toml").write_text(MANIFEST)
+    for words in (["init", "-q"], ["add", "."], ["-c", "user.name=t", "-c", "user.email=t@t", "commit", "-qm", "one"]):
+        subprocess.run(["git", "-C", str(inner), *words], check=True)
+    add = ["-c", "protocol.file.allow=always", "submodule", "--quiet", "add", "-f", str(inner), "build/inner"]
+    subprocess.run(["git", "-C", str(repository), *add], check=True)
+    assert "build/inner/s.toml" in names(repository) and "build/b.toml" not in names(repository)
