@@ -7,6 +7,7 @@ checked here is what would make that last step fail, or destroy a file that kinf
 from __future__ import annotations
 
 import contextlib
+import os
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
@@ -176,7 +177,7 @@ def advance(source: Path, output: Path, label: str, stage: Callable[[Design, Wor
 
 def write_text(path: Path, text: str) -> None:
     """Write a text file in one step, as UTF-8; the same text keeps the file, with a new time."""
-    write_bytes(path, text.encode())
+    write_bytes(path, text.encode("utf-8", "backslashreplace"))  # names of files may be bytes that are no UTF-8
 
 
 def write_bytes(path: Path, data: bytes) -> None:
@@ -216,7 +217,7 @@ def sources_of(named: Sequence[Path]) -> list[Path]:
         return list(named)
     from kinform.foundation.name_hints import first_names
 
-    inside = sorted(path for path in named[0].iterdir() if path.is_file())
+    inside = sorted(path for path in named[0].iterdir() if os.path.isfile(path))
     for kind, ends in (("manifest", (".toml",)), ("robot description", DESCRIPTIONS), ("CAD or scene file", SCENES)):
         found = [path for path in inside if path.suffix.lower() in ends]
         found = [path for path in found if _is_of_this_kind(path)]
@@ -238,21 +239,25 @@ def sources_of(named: Sequence[Path]) -> list[Path]:
 
 
 def _is_of_this_kind(path: Path) -> bool:
-    """Whether a TOML file has what a manifest begins with, or an XML file is an MJCF; of other names always. A file
-    that cannot be read as TOML may be a manifest."""
-    import tomllib
+    """Whether a TOML file is a manifest, or an XML file a description; of other names always. A file that cannot be
+    read as TOML may be a manifest."""
+    from kinform.form.recognition import is_design
 
     if path.suffix.lower() == ".xml":
-        with path.open("rb") as stream:
-            return b"<mujoco" in stream.read(1 << 16)
-    if path.suffix.lower() != ".toml":
-        return True
+        return is_design(path)
+    return path.suffix.lower() != ".toml" or is_design(path) or not (path.name == "pyproject.toml" or _is_toml(path))
+
+
+def _is_toml(path: Path) -> bool:
+    from kinform.form.constants import MANIFEST_BYTES
+    from kinform.form.readers.toml_text import TomlError, read_toml
+    from kinform.foundation.texts import TextError, read_text
 
     try:
-        tables = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return path.is_file() and path.name != "pyproject.toml"
-    return "schema" in tables and "assembly" in tables
+        read_toml(read_text(path, MANIFEST_BYTES, "a manifest"))
+    except (TextError, TomlError):
+        return False
+    return True
 
 
 def is_description(sources: Sequence[Path], units: str | None) -> bool:

@@ -18,13 +18,14 @@ from support.places import FIXTURES
 
 import kinform
 from kinform import catalog
-from kinform.batch import Found, Settings, discover, render, session
+from kinform.batch import Found, Settings, discover, record, render, session
 from kinform.batch import run as run_batch
 from kinform.batch.renderings import summary_line
 
 pytest.importorskip("distributed")
-pytest.importorskip("pathspec")
 
+BAD = os.fsdecode(b"\xff\xfe\n%s/bad.toml")
+"""In a folder whose name is no UTF-8."""
 GOOD = ("planar_block", "prismatic_drawer")
 
 
@@ -36,7 +37,8 @@ def done(tmp_path_factory) -> tuple[Path, Path, tuple]:
     designs, results = folder / "designs", folder / "results"
     for name in GOOD:
         shutil.copytree(FIXTURES / "pairs" / name, designs / name)
-    (designs / "bad.toml").write_text('schema = 1\n[assembly]\nname = "bad"\n')
+    (designs / BAD).parent.mkdir()
+    (designs / BAD).write_text('schema = 1\n[assembly]\nname = "bad"\n')
     killer = threading.Thread(target=_kill, args=(lambda desk: desk,), daemon=True)
     killer.start()
     rows = run_batch(discover([designs]), results, Settings(jobs=1))
@@ -110,7 +112,7 @@ def test_a_catalog_is_filled_and_reads_only_what_is_new(done, monkeypatch):
 
 def test_a_bad_design_stops_no_other(done):
     rows = {row.name: row for row in done[2]}
-    assert rows["bad.toml"].failure == "input" and "units" in rows["bad.toml"].problems[0].message
+    assert rows[BAD].failure == "input" and "units" in rows[BAD].problems[0].message
     assert all(not rows[f"{name}/{name}.toml"].failure for name in GOOD)
 
 
@@ -118,7 +120,7 @@ def test_unchanged_designs_need_no_worker_and_are_not_touched(done, monkeypatch)
     designs, results, _ = done
     before = {path: path.stat().st_mtime_ns for path in results.rglob("*.h5")}
     monkeypatch.setitem(sys.modules, "distributed", None)
-    good = discover([designs], exclude=["bad.toml"])
+    good = discover([designs], exclude=[BAD])
     assert all(row.unchanged for row in run_batch(good, results, Settings()))
     assert {path: path.stat().st_mtime_ns for path in results.rglob("*.h5")} == before
 
@@ -182,3 +184,31 @@ def test_formats_tell_what_has_no_results(done):
 def test_options_that_make_no_sense_are_refused(done, words, said):
     ran = ran_here("batch", "designs", "-o", "new", *words, cwd=done[0].parent)
     assert ran.returncode == 2 and said in ran.stderr
+
+
+def test_a_design_whose_results_have_no_place_is_a_row(tmp_path):
+    text = 'schema = 1\n[assembly]\nname = "a"\nunits = "mm"\n'
+    for name in ("batch.json/a.toml", "long.urdf", "r.urdf", "r.urdf.toml", "x" * 250 + ".URDF", "f/a.toml"):
+        (tmp_path / "d" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "d" / name).write_text(text if name.endswith("toml") else '<robot name="r"/>')
+    out = tmp_path / "results"
+    out.mkdir()
+    (out / "f").write_text("a file in the place of a folder")
+    found = [one for one in discover([tmp_path / "d"]) if one.name not in ("long.urdf", "r.urdf")]
+    rows = run_batch(found, out, Settings())
+    assert [row.failure for row in rows] == ["input"] * 4
+    assert record.read(out).rows.keys() == {row.name for row in rows}
+
+
+@pytest.mark.slow
+def test_a_folder_whose_name_is_no_utf8_ends_nothing(tmp_path):
+    for folder in (b"\xff\xfe", b"a\n%s"):
+        place = tmp_path / "d" / os.fsdecode(folder)
+        place.mkdir(parents=True)
+        (place / "a.toml").write_text('schema = 1\n[assembly]\nname = "a"\n')
+    ran = ran_here("batch", "d", "-o", "r", "-f", "json=all.json", "-f", "md=all.md", cwd=tmp_path)
+    assert ran.returncode == 2, ran.stderr
+    designs = json.loads((tmp_path / "all.json").read_text())["designs"]
+    assert [(one["design"], one["failure"]) for one in designs] == [
+        ("a\n%s/a.toml", "input"), ("\udcff\udcfe/a.toml", "input"),
+    ]  # fmt: skip

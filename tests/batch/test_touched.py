@@ -9,10 +9,10 @@ import pytest
 from support.command_line import ran_here
 
 from kinform.batch import touched as module
+from kinform.batch.desk import do
 from kinform.batch.discovery import discover
+from kinform.batch.touched import changed_since
 from kinform.errors import InputError
-
-pytest.importorskip("pathspec")
 
 
 def git(folder: Path, *words: str) -> None:
@@ -24,15 +24,35 @@ def manifest(*lines: str) -> str:
     return "\n".join(['schema = 1\n[assembly]\nname = "a"\nunits = "mm"', *lines])
 
 
+def solid(size: float) -> str:
+    """A tetrahedron, as STL."""
+    points = [(0, 0, 0), (size, 0, 0), (0, size, 0), (0, 0, size)]
+    faces = [[points[k] for k in face] for face in ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3))]
+    loops = ["\n".join(f"vertex {x} {y} {z}" for x, y, z in face) for face in faces]
+    return (
+        "solid s\n"
+        + "".join(f"facet normal 0 0 0\nouter loop\n{one}\nendloop\nendfacet\n" for one in loops)
+        + ("endsolid s\n")
+    )
+
+
+PART = ("[[part]]", "name='p'")
+URDF = '<robot name="arm"><link name="l"><visual><geometry><mesh filename="package://arm/meshes/link.stl"/>'
+URDF += '</geometry></visual><inertial><mass value="1"/></inertial></link></robot>'
 FILES = {
     "top.toml": manifest("[[subassembly]]", 'name = "m"', 'file = "sub/motor.toml"'),
-    "sub/motor.toml": manifest("[[part]]", "name='p'", "mesh = 'parts/rotor.stl'"),
-    "sub/parts/rotor.stl": "solid a", "alone.toml": manifest("[[part]]", "name='p'", 'mesh="alone.stl"'),
-    "alone.stl": "solid b",
-    "ros/urdf/arm.urdf.xacro": '<robot name="arm"><xacro:include filename="$(find arm)/urdf/links.xacro"/></robot>',
-    "ros/urdf/links.xacro": '<robot><mesh filename="package://arm/meshes/${part}.stl"/></robot>',
-    "ros/meshes/link.stl": "solid c", "ros/meshes/link.dae": "<COLLADA/>", "other.txt": "nothing",
+    "sub/motor.toml": manifest(*PART, "mesh = 'parts/rotor.stl'"),
+    "sub/parts/rotor.stl": solid(3), "alone.toml": manifest(*PART, '"m\\u0065sh"="alone.stl"'),
+    "alone.stl": solid(4), "ros/arm/urdf/arm.urdf": URDF, "ros/arm/meshes/link.stl": solid(5),
+    "arm/meshes/link.stl": solid(6), "other.txt": "nothing",
 }  # fmt: skip
+
+
+@pytest.fixture(autouse=True)
+def read_here(request, monkeypatch):
+    """Designs are read in this process, which takes less time than to start another; the command is tested as it is."""
+    if "command" not in request.node.name:
+        monkeypatch.setattr(module, "perform", do)
 
 
 @pytest.fixture
@@ -47,15 +67,8 @@ def repository(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def touched(repository: Path) -> list[str]:
-    for cached in (module._names, module._files, module._root):
-        cached.cache_clear()
-    return [one.name for one in module.changed_since(discover([repository]), "HEAD")]
-
-
-def by_name(repository: Path) -> list[str]:
-    """Without the one that any mesh may touch."""
-    return [name for name in touched(repository) if name != "ros/urdf/arm.urdf.xacro"]
+def touched(repository: Path, revision: str = "HEAD") -> list[str]:
+    return [one.name for one in changed_since(discover([repository]), revision)]
 
 
 @pytest.mark.parametrize(
@@ -65,62 +78,86 @@ def by_name(repository: Path) -> list[str]:
         ("sub/motor.toml", ["sub/motor.toml", "top.toml"]),
         ("top.toml", ["top.toml"]),
         ("alone.stl", ["alone.toml"]),
-        ("ros/urdf/links.xacro", ["ros/urdf/arm.urdf.xacro"]),
-        ("ros/meshes/link.stl", ["ros/urdf/arm.urdf.xacro"]),
+        ("ros/arm/meshes/link.stl", ["ros/arm/urdf/arm.urdf"]),
+        ("arm/meshes/link.stl", []),
         ("other.txt", []),
     ],
 )
 def test_a_changed_file_touches_what_names_it_in_any_depth(repository, changed, designs):
     (repository / changed).write_text(FILES[changed] + " ")
-    wildcards = ["ros/urdf/arm.urdf.xacro"] if changed.endswith(".stl") else []
-    assert touched(repository) == sorted({*designs, *wildcards})
+    assert touched(repository) == sorted(designs)
 
 
-def test_what_a_link_points_to_and_where_a_link_points_touch(repository):
-    (repository / "linked.toml").write_text(manifest("[[part]]", 'name="p"', 'mesh="other.stl"'))
+def test_what_a_link_points_to_touches_and_another_link_touches_all(repository):
+    (repository / "linked.toml").write_text(manifest(*PART, 'mesh="other.stl"'))
     (repository / "other.stl").symlink_to("alone.stl")
     git(repository, "add", ".")
     git(repository, "commit", "-qm", "a link")
-    (repository / "alone.stl").write_text("solid changed")
-    assert by_name(repository) == ["alone.toml", "linked.toml"]
+    assert touched(repository) == []
+    (repository / "alone.stl").write_text(solid(9))
+    assert touched(repository) == ["alone.toml", "linked.toml"]
     git(repository, "checkout", "alone.stl")
     (repository / "other.stl").unlink()
     (repository / "other.stl").symlink_to("sub/parts/rotor.stl")
-    assert by_name(repository) == ["linked.toml"]
+    assert touched(repository) == [one.name for one in discover([repository])]
 
 
-@pytest.mark.parametrize(
-    ("file", "text", "mesh"),
-    [
-        ("a.urdf", '<robot name="a"><mesh filename="a&amp;b.stl"/></robot>', "a&b.stl"),
-        ("a.toml", manifest("[[part]]", 'name="p"', r'mesh="\u00fc.stl"'), "ü.stl"),
-        ("a.toml", manifest("[[subassembly]]", 'name="p"', 'file="x.GLTF"'), "my buffer.bin"),
-    ],
-)
-def test_names_that_are_written_with_escapes_are_understood(repository, file, text, mesh):
-    (repository / file).write_text(text)
-    (repository / mesh).write_text("1")
-    (repository / "x.GLTF").write_text('{"buffers": [{"uri": "my%20buffer.bin"}]}')
+def test_a_file_that_is_gone_touches_what_opens_another_of_its_name_instead(repository):
+    (repository / "ros/arm/meshes/link.stl").unlink()
+    git(repository, "commit", "-qam", "gone")
+    assert touched(repository, "HEAD~1") == ["ros/arm/urdf/arm.urdf"]
+    assert touched(repository) == []
+
+
+def test_another_package_touches_all(repository):
+    (repository / "ros/arm/package.xml").write_text("<package><name>arm</name></package>")
     git(repository, "add", ".")
-    git(repository, "commit", "-qm", "escapes")
-    (repository / mesh).write_text("2")
-    assert by_name(repository) == [file]
+    assert len(touched(repository)) == len(discover([repository]))
+
+
+def test_ends_of_lines_and_pointers_of_lfs_touch_nothing(repository):
+    import hashlib
+
+    data = solid(4).encode()
+    pointer = f"version https://git-lfs.github.com/spec/v1\noid sha256:{hashlib.sha256(data).hexdigest()}\nsize 1\n"
+    (repository / "alone.stl").write_text(pointer)
+    git(repository, "commit", "-qam", "a pointer")
+    (repository / "alone.stl").write_bytes(data)
+    (repository / "top.toml").write_bytes(FILES["top.toml"].replace("\n", "\r\n").encode())
+    assert touched(repository) == []
+
+
+def test_what_git_could_run_is_not_run(repository):
+    marker = repository.parent / f"{repository.name}_ran"
+    script = repository.parent / f"{repository.name}.sh"
+    script.write_text(f"#!/bin/sh\ntouch '{marker}'\ncat\n")
+    script.chmod(0o755)
+    for name in ("core.fsmonitor", "diff.external", "diff.d.textconv", "filter.f.clean", "filter.f.smudge",
+                 "diff.d.command", "core.pager", "core.sshCommand", "core.alternateRefsCommand"):  # fmt: skip
+        git(repository, "config", name, str(script))
+    (repository / ".git" / "hooks").mkdir(exist_ok=True)
+    for name in ("post-index-change", "fsmonitor-watchman", "reference-transaction"):
+        (repository / ".git" / "hooks" / name).symlink_to(script)
+    (repository / ".gitattributes").write_text("* filter=f diff=d\n")
+    (repository / "alone.stl").write_text(solid(9))
+    assert touched(repository) == ["alone.toml"]
+    assert not marker.exists()
 
 
 def test_a_submodule_at_another_commit_touches_what_names_its_files(repository, tmp_path_factory):
     inner = tmp_path_factory.mktemp("inner")
-    (inner / "leg.stl").write_text("1")
+    (inner / "leg.stl").write_text(solid(1))
     git(inner, "init", "-q")
     git(inner, "add", ".")
     git(inner, "commit", "-qm", "one")
     git(repository, "-c", "protocol.file.allow=always", "submodule", "add", "-q", str(inner), "meshes")
-    (repository / "leg.toml").write_text(manifest("[[part]]", 'name="p"', 'mesh="meshes/leg.stl"'))
+    (repository / "leg.toml").write_text(manifest(*PART, 'mesh="meshes/leg.stl"'))
     git(repository, "add", ".")
     git(repository, "commit", "-qm", "a submodule")
     assert touched(repository) == []
-    (repository / "meshes" / "leg.stl").write_text("2")
+    (repository / "meshes" / "leg.stl").write_text(solid(2))
     git(repository / "meshes", "commit", "-qam", "two")
-    assert by_name(repository) == ["leg.toml"]
+    assert touched(repository) == ["leg.toml"]
 
 
 def test_nothing_changed_touches_nothing(repository):
@@ -135,16 +172,15 @@ def test_a_mesh_that_is_gone_and_one_that_is_new_touch(repository):
 
 
 def test_commits_count_as_changes_that_are_not_committed_do(repository):
-    (repository / "sub/parts/rotor.stl").write_text("solid other")
+    (repository / "sub/parts/rotor.stl").write_text(solid(8))
     git(repository, "commit", "-qam", "rotor")
-    found = discover([repository])
-    assert module.changed_since(found, "HEAD") == ()
-    assert {one.name for one in module.changed_since(found, "HEAD~1")} >= {"sub/motor.toml", "top.toml"}
+    assert touched(repository) == []
+    assert touched(repository, "HEAD~1") == ["sub/motor.toml", "top.toml"]
 
 
 def test_a_revision_that_is_none_is_refused(repository):
     with pytest.raises(InputError) as caught:
-        module.changed_since(discover([repository]), "--help")
+        changed_since(discover([repository]), "--help")
     assert "--help" in caught.value.problems[0].message
 
 

@@ -16,7 +16,6 @@ import pytest
 from support.places import FIXTURES, ROOT
 
 pytest.importorskip("distributed")
-pytest.importorskip("pathspec")
 pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(sys.platform == "win32", reason="commands of a POSIX shell"),

@@ -1,119 +1,58 @@
-"""git is asked in a repository whose own configuration names programs; none of them runs."""
+"""Git in repositories of strangers: which one is asked, what is started, and what a failure is."""
 
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 
-from kinform.foundation import git
-
-pytestmark = pytest.mark.skipif(shutil.which("git") is None, reason="git is not installed")
-
-
-def run(folder: Path, *words: str) -> None:
-    environment = {k: v for k, v in os.environ.items() if not k.startswith("GIT_")}
-    named = ["-c", "user.name=n", "-c", "user.email=e", "-c", "commit.gpgsign=false"]
-    subprocess.run(["git", *named, *words], cwd=folder, check=True, capture_output=True, env=environment)
+from kinform.foundation import git as module
+from kinform.foundation.git import GitError, git, names, root_of
 
 
 @pytest.fixture
 def repository(tmp_path: Path) -> Path:
-    """A repository with one commit, in whose working tree a file has changed."""
-    folder = tmp_path / "repository"
-    folder.mkdir()
-    run(folder, "init", "-q")
-    (folder / "file.txt").write_text("first\n")
-    (folder / ".gitattributes").write_text("*.txt filter=a=b.c diff=d\n")
-    run(folder, "add", ".")
-    run(folder, "commit", "-q", "-m", "first")
-    (folder / "file.txt").write_text("other\n")
-    return folder
+    subprocess.run(["git", "init", "-q", str(tmp_path / "r")], check=True)
+    return tmp_path / "r"
 
 
-def poisoned(config: Path, marker: Path) -> None:
-    """Write keys that have git run programs, for any question, to a configuration file."""
-    deed = f"touch {marker}; cat"
-    hooks = config.parent / "planted"
-    hooks.mkdir()
-    for name in ("fsmonitor-watchman", "post-index-change", "reference-transaction"):
-        (hooks / name).write_text(f"#!/bin/sh\ntouch {marker}\n")
-        (hooks / name).chmod(0o755)
-    with config.open("a") as stream:
-        stream.write(
-            f'[core]\nfsmonitor = "{deed}"\nhooksPath = {hooks}\nsshCommand = "{deed}"\npager = "{deed}"\n'
-            f'[diff]\nexternal = "{deed}"\n[diff "d"]\ntextconv = "{deed}"\ncommand = "{deed}"\n'
-            f'[filter "a=b.c"]\nclean = "{deed}"\nsmudge = "{deed}"\nrequired = true\n'
-        )
+def test_names_are_those_of_the_file_system(repository):
+    name = os.fsdecode(b"\xff\n%s")
+    (repository / name).write_text("")
+    assert names(git(repository, "ls-files", "-z", "--others")) == [name]
 
 
-QUESTIONS = (
-    ("status", "--porcelain"),
-    ("diff", "--name-only", "HEAD", "--"),
-    ("ls-files", "--others"),
-    ("diff", "HEAD"),
-)
+def test_a_folder_that_looks_like_a_bare_repository_is_none(repository):
+    inner = repository / "bare"
+    subprocess.run(["git", "init", "-q", "--bare", str(inner)], check=True)
+    assert root_of(inner) == root_of(inner / "objects") == repository
+    assert root_of(repository.parent) is None
 
 
-def test_programs_that_the_repository_names_do_not_run(repository: Path, tmp_path: Path):
-    marker = tmp_path / "MARKER"
-    poisoned(repository / ".git" / "config", marker)
-    run(repository, "diff", "--name-only")
-    assert marker.exists(), "git runs none of them by itself: the test shows nothing"
-    marker.unlink()
-    os.utime(repository / ".gitattributes")
-    for question in QUESTIONS:
-        assert git.ask(repository, *question) is not None
-    assert not marker.exists()
-    assert git.ask(repository, "diff", "--name-only", "HEAD", "--") == b"file.txt\n"
+def test_variables_for_git_do_not_count(repository, monkeypatch):
+    for name in ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_EXEC_PATH", "GIT_CONFIG_GLOBAL"):
+        monkeypatch.setenv(name, "/nowhere")
+    assert git(repository, "ls-files") == b""
 
 
-def test_a_configuration_that_is_included_counts_as_the_repositorys(repository: Path, tmp_path: Path):
-    marker = tmp_path / "MARKER"
-    poisoned(repository / "included", marker)
-    run(repository, "config", "include.path", "../included")
-    for question in QUESTIONS:
-        assert git.ask(repository, *question) is not None
-    assert not marker.exists()
-
-
-def test_a_bare_repository_in_a_folder_is_not_entered(repository: Path, tmp_path: Path):
-    marker, bare = tmp_path / "MARKER", repository / "meshes"
-    run(repository, "init", "-q", "--bare", str(bare))
-    poisoned(bare / "config", marker)
-    run(bare, "config", "core.bare", "false")
-    run(bare, "config", "core.worktree", str(repository))
-    for question in QUESTIONS:
-        git.ask(bare, *question)
-    assert not marker.exists()
-
-
-def test_filters_of_the_user_run(repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    marker = tmp_path / "MARKER"
-    own = tmp_path / "gitconfig"
-    own.write_text(f'[filter "a=b.c"]\nclean = "touch {marker}; cat"\n')
-    monkeypatch.setenv("GIT_CONFIG_GLOBAL", str(own))
-    assert git.ask(repository, "diff", "--name-only", "HEAD", "--") == b"file.txt\n"
-    assert marker.exists()
-
-
-def test_what_git_refuses_is_none_and_its_lack_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path))
-    (tmp_path / "plain").mkdir()
-    assert git.ask(tmp_path / "plain", "rev-parse", "--show-toplevel") is None
+def test_a_git_of_the_working_folder_is_not_started(repository, tmp_path, monkeypatch):
+    fake = tmp_path / "git"
+    fake.write_text(f"#!/bin/sh\ntouch {tmp_path}/ran\n")
+    fake.chmod(0o755)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PATH", os.pathsep.join(["", ".", "x/..", os.environ["PATH"]]))
+    assert git(repository, "ls-files") == b"" and not (tmp_path / "ran").exists()
     monkeypatch.setenv("PATH", ".")
-    with pytest.raises(git.NoGit):
-        git.ask(tmp_path, "status")
+    with pytest.raises(GitError):
+        git(repository, "ls-files")
+    assert not (tmp_path / "ran").exists()
 
 
-def test_filters_of_a_home_in_the_repository_do_not_run(
-    repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
-    (repository / ".gitconfig").write_text(f'[filter "a=b.c"]\nclean = "touch {tmp_path / "MARKER"}; cat"\n')
-    monkeypatch.setenv("HOME", str(repository))
-    monkeypatch.delenv("GIT_CONFIG_GLOBAL", raising=False)
-    assert git.ask(repository, "diff", "--name-only", "HEAD", "--") == b"file.txt\n"
-    assert not (tmp_path / "MARKER").exists()
+def test_what_git_cannot_do_or_does_not_end_is_an_error(repository, monkeypatch):
+    with pytest.raises(GitError):
+        git(repository, "ls-tree", "no_such")
+    monkeypatch.setattr(module, "SECONDS", 0.0)
+    with pytest.raises(GitError):
+        git(repository, "ls-files")

@@ -25,7 +25,6 @@ from kinform.study.session import Journal
 from kinform.study.work import measure, nominal, sample, units
 
 pytest.importorskip("distributed")
-pytest.importorskip("pathspec")
 
 DESIGN = Path(__file__).parents[2] / "examples" / "slider_crank.toml"
 STUDY = """

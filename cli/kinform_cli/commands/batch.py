@@ -29,7 +29,7 @@ from kinform_cli.options import (
 from kinform_cli.progress import Working
 
 if TYPE_CHECKING:
-    from kinform.batch import Found, Row
+    from kinform.batch import Found, Row, Settings
     from kinform.batch.task import Limits
 
 EXAMPLES = examples(
@@ -119,13 +119,15 @@ def batch(
     files.check_findings(((None, path) for _, path in written), paths)
     if catalog is not None:
         files.check_text_output(catalog, inputs=paths)
-    found = many.discover(paths, include=include or (), exclude=exclude or (), ignored=ignored, results=output)
-    if changed_since is not None:
-        found = _touched(found, changed_since)
+    found = many.discover(
+        paths, include=include or (), exclude=exclude or (), ignored=ignored, results=output, say=console.say
+    )
     settings = many.Settings(
         cores(jobs), scheduler, send, limits, allow_outside=allow_outside, allow_xacro=allow_xacro,
         trust_results=trust_results,
     )  # fmt: skip
+    if changed_since is not None:
+        found = _touched(found, changed_since, settings)
     began = time.monotonic()
     with Pace("batch", began) as pace:
         rows = many.run(found, output, settings, pace, console.warn) if found else ()
@@ -153,21 +155,21 @@ def _fill(file: Path, rows: tuple[Row, ...], output: Path, trust: bool) -> None:
 
 
 def need_extra() -> None:
-    """An error where the packages are missing that many designs at once need."""
+    """An error where the package is missing that many designs at once need."""
     import importlib.util
 
-    missing = [name for name in ("distributed", "pathspec") if importlib.util.find_spec(name) is None]
-    if missing:
+    if importlib.util.find_spec("distributed") is None:
         raise refuse(
-            f"many designs at once need {' and '.join(missing)}, which kinform does without else",
+            "many designs at once need the package distributed",
             remedy="install it: pip install 'kinform[batch]'",
         )
 
 
-def _touched(found: tuple[Found, ...], revision: str) -> tuple[Found, ...]:
+def _touched(found: tuple[Found, ...], revision: str, settings: Settings) -> tuple[Found, ...]:
     from kinform.batch import changed_since
 
-    left = changed_since(found, revision)
+    with Working("read"):
+        left = changed_since(found, revision, settings)
     console.say(f"{len(left)} of {counted(len(found), 'design')} differ from {revision}")
     return left
 

@@ -107,8 +107,8 @@ class Crew:
             task, tries, avoided = waiting.popleft()
             workers = [name for name in self._client.nthreads() if name not in avoided] if avoided else []
             placed = {"workers": workers, "allow_other_workers": True} if workers else {}
-            future = self._client.submit(perform, task, key=f"{task.key}-{tries}-{os.urandom(4).hex()}", pure=False,
-                                         **placed)  # fmt: skip
+            # no name of a file is part of it: those may have characters that Dask cannot send
+            future = self._client.submit(perform, task, key=f"kinform-{os.urandom(12).hex()}", pure=False, **placed)
             under_way[future] = (task, tries)
             completed.add(future)
             return True

@@ -11,6 +11,7 @@ from dataclasses import field, replace
 from pathlib import Path
 from typing import Any, Literal
 
+from kinform.batch.discovery import RECORD
 from kinform.batch.task import FailureKind
 from kinform.errors import InputError, Problem
 from kinform.foundation import provenance
@@ -19,7 +20,7 @@ from kinform.model.findings import SEVERITIES
 from kinform.results import computed_anew, replace_file
 
 SCHEMA = "kinform/batch-record/1"
-NAME = "batch.json"
+NAME = RECORD
 """Of the file in the folder of results."""
 
 

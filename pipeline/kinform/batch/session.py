@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -55,10 +56,16 @@ def run(
         say(kept.note)
     rows: dict[str, Row] = {}
     for one in found:
+        fault = one.fault or _unmade(folder / one.results)
+        if fault is not None:
+            rows[one.name] = kept.rows[one.name] = _row(one, Answer(one.name, failure=Failure(INPUT, (fault,))))
+            continue
         row = row_if_unchanged(one, kept, folder, allow_outside=settings.allow_outside)
         if row is not None:
             rows[one.name] = row
     left = [one for one in found if one.name not in rows]
+    if len(rows) > sum(row.unchanged for row in rows.values()):
+        record.write(kept, folder)
     if left:
         _run(left, folder, settings, kept, rows, progress)
     return tuple(rows[one.name] for one in found)
@@ -101,8 +108,6 @@ def _answers(left: Sequence[Found], folder: Path, settings: Settings, crew: Crew
         "trust_results": settings.trust_results,
     }
     if not settings.send:
-        for one in left:  # here, for a file in the place of a folder would stop a worker without words
-            _make((folder / one.results).parent)
         yield from crew.answers(
             Task(one.name, "kinform.batch.work:run",
                  {"source": str(one.source.absolute()), "output": str((folder / one.results).absolute()), **how},
@@ -150,7 +155,6 @@ def _kept(answer: Answer, output: Path) -> Answer:
 
     data, said = answer.result
     try:
-        _make(output.parent)
         results.write_bytes(data, output)
     except (ResultsError, InputError) as error:
         problems = error.problems if isinstance(error, InputError) else (error.problem,)
@@ -171,6 +175,20 @@ def _row(one: Found, answer: Answer) -> Row:
     if fields["recorded"]:  # a worker elsewhere keeps records of its own
         provenance.record(seal)
     return Row(**start, **fields)
+
+
+def _unmade(output: Path) -> Problem | None:
+    """Why the folder of a results file cannot be made; None where it is there now."""
+    try:
+        output.parent.mkdir(parents=True, exist_ok=True)
+        os.lstat(output)
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        return Problem(
+            f"its results cannot be written: {error.strerror}", str(output), None, "rename it, or --exclude it"
+        )
+    return None
 
 
 def _make(folder: Path) -> None:

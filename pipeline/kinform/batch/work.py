@@ -28,6 +28,14 @@ def run(
     return summary_of(gist, Path(output).read_bytes(), said)
 
 
+def files_of(source: str, *, allow_outside: bool = False, allow_xacro: bool = False) -> dict[str, str]:
+    """SHA-256 (hex) of every file that the readers open for the design at `source`, relative to its folder, and of the
+    list of each folder that they look through, with "/" at its end; {} where these do not say all that counts."""
+    from kinform.form.readers.assembly import load_with_contents
+
+    return load_with_contents(source, allow_outside=allow_outside, reading=Reading(allow_xacro=allow_xacro))[1]
+
+
 def imported(source: str, *, allow_outside: bool = False, allow_xacro: bool = False) -> bytes:
     """The imported design, as bytes to be sent to a worker that sees none of its files."""
     design = stages.import_(source, allow_outside=allow_outside, reading=Reading(allow_xacro=allow_xacro))

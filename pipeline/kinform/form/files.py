@@ -247,15 +247,21 @@ class DesignFiles:
 
     def contents(self) -> dict[str, str]:
         """SHA-256 (hex) of every file that was read, and of the list of each folder that was, with "/" at the end of
-        its name; {} where one changed meanwhile, or was not read."""
+        its name; {} where one changed meanwhile, was not read, or is not where its name leads."""
         if self.unsettled:
             return {}
         if any(not is_mesh(path) and _digest(path) != digest for path, digest in self._digests.items()):
+            return {}
+        if any(".." in path.parts and self._is_elsewhere(path) for path in self._digests):
             return {}
         contents = {self.shown(path): digest for path, digest in self._digests.items()}
         if set(contents) != self.names:
             return {}
         return contents | {self.shown(folder) + "/": listing(folder) for folder in sorted(self.listed)}
+
+    def _is_elsewhere(self, path: Path) -> bool:
+        """Whether the path as it is shown leads to another file: a ".." after a link goes up from its target."""
+        return os.path.realpath(path) != os.path.realpath(os.path.join(self.top, self.shown(path)))
 
     def loose(self, path: Path) -> RawMesh | None:
         """The facets of a mesh file that no part is; None where it may not be read. Raises MeshError and OSError."""

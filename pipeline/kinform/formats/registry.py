@@ -7,11 +7,11 @@ imported: who reads imports no writer, and nothing is imported before it is used
 from __future__ import annotations
 
 import importlib
-import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from kinform.form.constants import TEXT_BYTES
 from kinform.frozen import dataclass
 
 if TYPE_CHECKING:
@@ -90,23 +90,17 @@ SCENE_FORMATS = (
 WRITTEN = {format.name: format for format in ROBOT_FORMATS if format.ending}
 """Formats with a writer, by name."""
 
-_ROOT = re.compile(rb"<\s*([A-Za-z_][\w:.-]*)")
-_BEFORE_ROOT = re.compile(rb"<!--.*?-->|<\?.*?\?>|<!DOCTYPE[^>]*>", re.DOTALL)
-HEAD_BYTES = 64 << 10
-"""Of a file, in which its root element is looked for: comments before it, such as licences, have a few thousand.
-Chosen, not measured."""
-
 
 def reader_of(path: Path, data: bytes) -> Read | None:
     """`read` of the format that a file has by its suffix and its root element; None where it is none of them. Where one
     format alone has the suffix it reads the file whatever the root, and says what is wrong with that."""
-    match = _ROOT.search(_BEFORE_ROOT.sub(b"", data[:HEAD_BYTES]))
-    root = match[1].decode() if match else ""
     fits = [format for format in ROBOT_FORMATS if path.suffix.lower() in format.suffixes]
-    chosen = next((format for format in fits if format.root == root), None)
-    if chosen is None:
-        chosen = fits[0] if len(fits) == 1 else None
-    return None if chosen is None else _read(chosen.reader)
+    if len(fits) > 1:
+        from kinform.foundation.xml_root import root_of
+
+        root = root_of(data[: TEXT_BYTES + 1])
+        fits = [format for format in fits if root is not None and format.root == root.name]
+    return _read(fits[0].reader) if fits else None
 
 
 def reader_of_text(name: str) -> Read:

@@ -1,72 +1,75 @@
-"""git, asked about a repository that a stranger may have made.
+"""Calls git in a repository that somebody else may have filled.
 
-A repository can name programs that git runs: hooks, monitors of files, filters, converters, transports. None of those
-that the repository itself names is run; those that the user's own configuration names are. Repositories that lie
-within another as plain folders (bare ones) are not entered, and nothing is fetched.
+Only plumbing that reads is called: no filter, hook, textconv or external diff is part of it. The repository is named,
+not searched for by git, so that no folder that merely looks like one is used. Configuration of the system and the user,
+and variables for git, are not read; what the configuration of the repository could start is switched off; nothing is
+fetched, nothing is written.
 """
 
 from __future__ import annotations
 
 import os
-import re
 import subprocess
+from collections.abc import Sequence
+from pathlib import Path
 
-from kinform.foundation import interpreters, user_folders
+SECONDS = 120.0
+"""s that one call may take: a million files are listed in some 10 s. Chosen, not measured."""
 
-_SET = {
-    "core.fsmonitor": "false", "core.hooksPath": os.devnull, "core.untrackedCache": "false",
-    "core.sshCommand": "false", "core.gitProxy": "", "core.pager": "cat", "credential.helper": "",
-    "safe.bareRepository": "explicit", "protocol.allow": "never",
+_SETTINGS = ("core.fsmonitor=false", "core.untrackedCache=false", "core.hooksPath=/dev/null", "core.quotePath=false",
+             "core.excludesFile=", "core.attributesFile=", "core.alternateRefsCommand=", "core.sshCommand=false",
+             "credential.helper=", "protocol.allow=never", "safe.bareRepository=explicit")  # fmt: skip
+_VARIABLES = {
+    "GIT_CONFIG_NOSYSTEM": "1", "GIT_CONFIG_SYSTEM": os.devnull, "GIT_CONFIG_GLOBAL": os.devnull,
+    "GIT_ATTR_NOSYSTEM": "1", "GIT_OPTIONAL_LOCKS": "0", "GIT_LITERAL_PATHSPECS": "1", "GIT_NO_LAZY_FETCH": "1",
+    "GIT_NO_REPLACE_OBJECTS": "1", "GIT_ALLOW_PROTOCOL": "none", "GIT_TERMINAL_PROMPT": "0", "GIT_ASKPASS": "",
+    "LC_ALL": "C",
 }  # fmt: skip
-"""Configuration for every question, which comes before that of the repository."""
-
-_FILTER = re.compile(r"(filter\..*\.)(clean|smudge|process)", re.I | re.S)
-"""Keys whose values are programs that git runs to compare files."""
-_DIFFS = ("diff", "diff-files", "diff-index", "diff-tree", "log", "show")
-"""Commands that show changes by other programs, unless told not to."""
-
-_FROM_REPOSITORY = ("local", "worktree")
-"""Scopes of configuration that lie within the repository, with what they include."""
 
 
-class NoGit(Exception):
-    """git is not installed, or PATH finds it in the working folder only."""
+class GitError(Exception):
+    """Git is not installed, or cannot do what it was asked: `reason` says which."""
+
+    def __init__(self, reason: str):
+        self.reason = reason
+        super().__init__(reason)
 
 
-def ask(folder: str | os.PathLike[str], *arguments: str) -> bytes | None:
-    """What git prints about the repository that a folder is in; None where it fails. Raises NoGit."""
-    listed = _run(folder, {}, "config", "--list", "--includes", "--show-scope", "--name-only", "-z")
-    words = (listed or b"").decode("utf-8", "surrogateescape").split("\0")
-    foreign = (*_FROM_REPOSITORY, *(("global",) if user_folders.foreign_home() else ()))
-    named = {key for scope, key in zip(words[::2], words[1::2], strict=False) if scope in foreign}
-    off: dict[str, str] = {}
-    for key in sorted(named):
-        if (found := _FILTER.fullmatch(key)) is not None:  # a filter that is required and missing is an error
-            off |= {key: "", f"{found[1]}required": "false"}
-    first = [arguments[0], "--no-ext-diff", "--no-textconv"] if arguments[0] in _DIFFS else [arguments[0]]
-    return _run(folder, off, *first, *arguments[1:])
+def root_of(folder: str | os.PathLike[str]) -> Path | None:
+    """The top folder of the innermost repository that a folder is in, without links; None where it is in none."""
+    here = Path(os.path.realpath(folder))
+    return next((above for above in (here, *here.parents) if os.path.lexists(above / ".git")), None)
 
 
-def _run(folder: str | os.PathLike[str], settings: dict[str, str], *arguments: str) -> bytes | None:
-    program = interpreters.program("git")
+def git(root: Path, *arguments: str) -> bytes:
+    """What git prints in the repository whose top folder is `root`. Raises GitError where it fails."""
+    program = _program()
     if program is None:
-        raise NoGit
-    environment = interpreters.of_user()
-    for name in ("GIT_EXTERNAL_DIFF", "GIT_SSH", "GIT_SSH_COMMAND", "GIT_PROXY_COMMAND"):
-        environment.pop(name, None)
-    # by variables: a key may contain "=", which ends it on the command line
-    first = int(environment.get("GIT_CONFIG_COUNT") or 0)
-    for number, (key, value) in enumerate((_SET | settings).items(), start=first):
-        environment |= {f"GIT_CONFIG_KEY_{number}": key, f"GIT_CONFIG_VALUE_{number}": value}
-    environment |= {
-        "GIT_CONFIG_COUNT": str(first + len(_SET | settings)), "GIT_ALLOW_PROTOCOL": "none", "GIT_NO_LAZY_FETCH": "1",
-        "GIT_OPTIONAL_LOCKS": "0", "GIT_TERMINAL_PROMPT": "0",
-    }  # fmt: skip
+        raise GitError("git is not installed")
+    settings = [word for setting in _SETTINGS for word in ("-c", setting)]
+    place = ["-C", str(root), f"--git-dir={root / '.git'}", f"--work-tree={root}"]
+    outer = {name: value for name, value in os.environ.items() if not name.upper().startswith("GIT_")}
     try:
         done = subprocess.run(
-            [program, "--no-pager", "-C", os.fspath(folder), *arguments], stdin=subprocess.DEVNULL, capture_output=True,
-            env=environment, check=False,
+            [program, "--no-pager", *place, *settings, *arguments], stdin=subprocess.DEVNULL, capture_output=True,
+            check=False, timeout=SECONDS, env=outer | _VARIABLES,
         )  # fmt: skip
-    except OSError:
-        raise NoGit from None
-    return done.stdout if done.returncode == 0 else None
+    except subprocess.TimeoutExpired:
+        raise GitError(f"git was not done after {SECONDS:g} s") from None
+    except OSError as error:
+        raise GitError(f"git cannot be started: {error.strerror}") from None
+    if done.returncode != 0:
+        raise GitError("git cannot read this repository")
+    return done.stdout
+
+
+def names(output: bytes) -> list[str]:
+    """The names in a list that ends each with a zero byte (`-z`), as the file system has them."""
+    return [os.fsdecode(name) for name in output.split(b"\0") if name]
+
+
+def _program(folders: Sequence[str] | None = None) -> str | None:
+    """Git, from the folders of PATH that are absolute: one of the working folder is never started."""
+    name = "git.exe" if os.name == "nt" else "git"
+    there = (os.path.join(folder, name) for folder in folders or os.get_exec_path() if os.path.isabs(folder))
+    return next((path for path in there if os.path.isfile(path) and os.access(path, os.X_OK)), None)
