@@ -45,6 +45,9 @@ def entry() -> NoReturn:
     """The console script."""
     code = 2  # as `errors.NOT_VERIFIED`, which may be what cannot be imported
     try:
+        from kinform_cli import working_folder
+
+        working_folder.forget()
         from kinform_cli import console, interrupts, supervision
 
         supervision.divide()

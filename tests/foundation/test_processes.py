@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -166,3 +167,27 @@ def test_something_else_is_done_only_while_several_processes_are_at_work():
     assert done == []
     assert list(map_in_processes(abs, [1, 2], 2, meanwhile=meanwhile)) == [1, 2]
     assert done == [os.getpid()]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="children end with their parent on Linux only")
+@pytest.mark.parametrize("many", [True, False])
+def test_workers_end_with_the_process_that_waits_for_them(many: bool, tmp_path: Path) -> None:
+    code = (
+        "import os, sys, time\n"
+        "from pathlib import Path\n"
+        "from kinform.foundation.processes import in_own_process, map_in_processes\n"
+        "def held(k):\n"
+        "    Path(str(os.getpid())).touch()\n"
+        "    time.sleep(600)\n"
+        f"list(map_in_processes(held, [1, 2], 2)) if {many} else in_own_process(lambda: held(1))\n"
+    )
+    waiting = subprocess.Popen([sys.executable, "-c", code], cwd=tmp_path)
+    while len(workers := [int(path.name) for path in tmp_path.iterdir()]) < 1 + many:
+        assert waiting.poll() is None
+        time.sleep(0.01)
+    waiting.kill()
+    waiting.wait()
+    end = time.monotonic() + 60
+    while any(Path(f"/proc/{worker}/stat").exists() for worker in workers):
+        assert time.monotonic() < end
+        time.sleep(0.01)

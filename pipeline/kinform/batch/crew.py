@@ -19,6 +19,7 @@ from typing import Any
 from kinform.batch.desks import close_all, perform
 from kinform.batch.task import DIED, INTERNAL, Answer, Task, failed
 from kinform.errors import InputError, Problem
+from kinform.foundation import interpreters
 
 TRIES = 2
 """How often a task is begun whose worker died: once, and once more elsewhere."""
@@ -44,8 +45,9 @@ class Crew:
 
     def __enter__(self) -> Crew:
         try:
-            import dask
-            import distributed
+            with interpreters.safe_children():
+                import dask
+                import distributed
         except ImportError:
             raise InputError([Problem(MISSING, None, None, REMEDY)]) from None
         warnings.filterwarnings("ignore", module=r"distributed\..*")
@@ -59,6 +61,7 @@ class Crew:
             "distributed.comm.timeouts.connect": "30s",
             "distributed.admin.tick.limit": "1h",
         }
+        self._closing.enter_context(interpreters.safe_children())
         self._closing.enter_context(dask.config.set(settings))
         with _deaf():
             cluster = distributed.LocalCluster(

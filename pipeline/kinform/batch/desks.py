@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import queue
 import subprocess
-import sys
 from typing import Any
 
 from kinform.batch.desk import receive, send
 from kinform.batch.task import DIED, Answer, Task, failed
+from kinform.foundation import interpreters
 
 _free: queue.LifoQueue[Desk] = queue.LifoQueue()
 """Desks that have nothing to do."""
@@ -20,11 +19,9 @@ class Desk:
     """A process that does tasks, one at a time; it ends with this one."""
 
     def __init__(self) -> None:
-        # of `spawn`ed processes not all of sys.path comes from the environment
-        environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "OPENBLAS_NUM_THREADS": "1"}
         self._process: Any = subprocess.Popen(
-            [sys.executable, "-m", "kinform.batch.desk"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-            env=environment, start_new_session=True,
+            interpreters.command("-m", "kinform.batch.desk"), stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+            env=interpreters.environment(OPENBLAS_NUM_THREADS="1"), start_new_session=True,
         )  # fmt: skip
 
     @property

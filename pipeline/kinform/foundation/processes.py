@@ -20,6 +20,7 @@ from typing import Any, TypeVar
 from kinform.errors import KinformError
 from kinform.foundation import current_work
 from kinform.foundation.current_work import working_on
+from kinform.foundation.parent_death import exit_with_parent
 from kinform.foundation.progress import Progress
 
 Item = TypeVar("Item")
@@ -113,7 +114,10 @@ def _results(
     task: Callable[[Item], Result]
     if "fork" in multiprocessing.get_all_start_methods():
         context = multiprocessing.get_context("fork")
-        pool, task = ProcessPoolExecutor(jobs, context, initializer=_begin, initargs=(function,)), _in_worker
+        pool, task = (
+            ProcessPoolExecutor(jobs, context, initializer=_begin, initargs=(function, os.getpid())),
+            _in_worker,
+        )
     else:
         pool, task = ThreadPoolExecutor(jobs), function
     done = 0
@@ -147,9 +151,10 @@ def _one_by_one(
             raise Crash(crash.cause, name(item)) from None
 
 
-def _begin(function: Callable[[Any], Any]) -> None:
-    """Remember what is to be done, and leave Ctrl-C to the process that waits for it."""
+def _begin(function: Callable[[Any], Any], asker: int) -> None:
+    """Remember what is to be done, leave Ctrl-C to the process that waits for it, and end with that one."""
     global _function
+    exit_with_parent(asker)
     _function = function
     current_work.board = None
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -168,9 +173,10 @@ def in_own_process(function: Callable[[], Result]) -> Result:
     if not hasattr(os, "fork"):
         return function()
     reading, writing = os.pipe()
+    asker = os.getpid()
     child = os.fork()
     if child == 0:
-        _answer(function, reading, writing)
+        _answer(function, asker, reading, writing)
     os.close(writing)
     try:
         with os.fdopen(reading, "rb") as stream:
@@ -196,8 +202,14 @@ def apart(function: Callable[..., Result], *given: Any) -> Result:
         return in_own_process(lambda: function(*given))
     import subprocess
 
-    run = f"import sys; sys.path[:] = {sys.path!r}; from kinform.foundation import processes; processes.answer_asked()"
-    with subprocess.Popen([sys.executable, "-c", run], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as child:
+    from kinform.foundation import interpreters
+
+    run = (
+        f"import sys; sys.path[:] = {interpreters.search_path()!r}; "
+        f"from kinform.foundation import processes; processes.answer_asked({os.getpid()})"
+    )
+    with subprocess.Popen(interpreters.command("-c", run), stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                          env=interpreters.environment()) as child:  # fmt: skip
         try:
             answer, _ = child.communicate(pickle.dumps((function, given)))
         except BaseException:
@@ -209,8 +221,9 @@ def apart(function: Callable[..., Result], *given: Any) -> Result:
     return result
 
 
-def answer_asked() -> None:
-    """In a new interpreter: answer on the standard output what is asked on the standard input."""
+def answer_asked(asker: int) -> None:
+    """In a new interpreter: answer on the standard output what the process `asker` asks on the standard input."""
+    exit_with_parent(asker)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     writing = os.dup(1)
     os.dup2(2, 1)  # what native code says is no answer
@@ -234,10 +247,11 @@ def _answered(function: Callable[[], Any]) -> bytes:
         return pickle.dumps((False, error))
 
 
-def _answer(function: Callable[[], Any], reading: int, writing: int) -> None:
+def _answer(function: Callable[[], Any], asker: int, reading: int, writing: int) -> None:
     """In the fork: send what the function gives or raises, and end without touching anything of the parent."""
     code = 1
     try:
+        exit_with_parent(asker)
         os.close(reading)
         current_work.board = None  # what ends this process is told by who asked for it
         signal.signal(signal.SIGINT, signal.SIG_IGN)

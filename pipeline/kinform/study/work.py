@@ -13,6 +13,7 @@ from kinform.design import Design
 from kinform.errors import InputError, Problem
 from kinform.form.keys import looked_up
 from kinform.form.sources import Reading
+from kinform.foundation import interpreters
 from kinform.reports.values.topics import TOPICS, summary
 
 UNITS = {
@@ -160,8 +161,9 @@ def _made(part: str, words: Sequence[str], file: Path, folder: str | None) -> tu
     command = [word.replace("{file}", str(file)) for word in words]
     try:
         done = subprocess.run(
-            command, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", check=False, cwd=folder
-        )
+            command, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", check=False,
+            cwd=folder, env=interpreters.of_user(),
+        )  # fmt: skip
     except OSError as error:
         raise InputError([Problem(f"{command[0]}: {error.strerror}", None, None, "see that it is installed")]) from None
     if done.returncode or not file.is_file():
