@@ -14,7 +14,6 @@ import html
 import json
 import os
 import re
-import subprocess
 import tomllib
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
@@ -25,6 +24,7 @@ from urllib.parse import unquote
 
 from kinform.batch.discovery import DESCRIPTIONS, Found
 from kinform.errors import InputError, Problem
+from kinform.foundation import git
 from kinform.foundation.regular_files import not_a_file
 
 _FOLLOWED = (".toml", ".gltf", ".obj", ".dae", ".yaml", ".yml", ".csv", *DESCRIPTIONS)
@@ -170,8 +170,8 @@ def _root(source: Path) -> str:
 def _git(folder: str, *arguments: str) -> str:
     """What git prints; "" where it fails. Raises InputError where there is no git."""
     try:
-        done = subprocess.run(["git", "-C", folder, *arguments], capture_output=True, check=False)
-    except OSError:
+        printed = git.ask(folder, *arguments)
+    except git.NoGit:
         problem = Problem("--changed-since asks git, which is not installed", None, None, "install git")
         raise InputError([problem]) from None
-    return done.stdout.decode("utf-8", "surrogateescape") if done.returncode == 0 else ""
+    return (printed or b"").decode("utf-8", "surrogateescape")
