@@ -1,9 +1,11 @@
 """The command works in a process of its own, and this one watches it: so Ctrl-C is heard also while native code is at
 work, which Python does not interrupt, and a crash of native code ends in words and an exit code.
 
-The process that the user started waits for nothing but signals. On Ctrl-C it passes it on; who has not ended after a
-moment is ended. Where the user's process is killed the other goes with it: the system sees to that. It is so on Linux;
-elsewhere the command works in the process that was started, and native code is deaf for as long as it takes.
+The process that the user started waits for nothing but signals. On Ctrl-C, SIGTERM and SIGHUP it passes Ctrl-C on; who
+has not ended after a moment is ended. After these, and after a crash, it also ends every process that the work started,
+in any depth: orphans become children of this process. Where the user's process is killed the other goes with it: the
+system sees to that. It is so on Linux; elsewhere the command works in the process that was started, and native code is
+deaf for as long as it takes.
 """
 
 from __future__ import annotations
@@ -16,11 +18,20 @@ import time
 from typing import NoReturn
 
 GRACE = 1.5
-"""Seconds after Ctrl-C in which the work may end by itself, with its own words; the promise is two."""
+"""Seconds after a request to end in which the work may end by itself, with its own words; the promise is two."""
 
 
 board: mmap.mmap | None = None
 """Where the process that does the work notes what native code is at work on (`kinform.foundation.current_work`)."""
+
+
+_left = mmap.mmap(-1, 1)
+"""Whether the work started what is to go on without it."""
+
+
+def leave_children() -> None:
+    """Do not end what this command starts from now on, however it ends itself: a browser is the user's."""
+    _left[0] = 1
 
 
 def divide() -> None:
@@ -30,8 +41,9 @@ def divide() -> None:
         return
     board = mmap.mmap(-1, mmap.PAGESIZE)
     awaited = {signal.SIGCHLD}
-    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:  # as in the background of a shell: it stays so
-        awaited.add(signal.SIGINT)
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) is not signal.SIG_IGN:  # as in the background of a shell, or by nohup: it stays so
+            awaited.add(number)
     before = signal.pthread_sigmask(signal.SIG_BLOCK, awaited)
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     watching = os.getpid()
@@ -49,12 +61,26 @@ def divide() -> None:
 
 
 def _watch(worker: int, awaited: set[signal.Signals]) -> NoReturn:
-    """Wait until the worker has ended, and end as it did; never later than a moment after Ctrl-C."""
+    """Wait until the worker has ended, and end as it did; never later than a moment after a request to end."""
+    from kinform_cli import orphans
+
+    orphans.adopt()
     asked: float | None = None
+    request = signal.SIGINT
     while True:
-        ended, status = os.waitpid(worker, os.WNOHANG)
+        ended, status = _ended(worker)
         if ended:
-            os._exit(_code(status, asked is not None))
+            if asked is None and (late := signal.sigtimedwait(awaited - {signal.SIGCHLD}, 0)) is not None:
+                asked, request = time.monotonic(), signal.Signals(late.si_signo)  # sent to both processes at once
+            code = _code(status, asked is not None)
+            if (asked is not None or os.WIFSIGNALED(status)) and not _left[0]:
+                orphans.end_all()
+            if request != signal.SIGINT:
+                signal.signal(request, signal.SIG_DFL)
+                signal.pthread_sigmask(signal.SIG_UNBLOCK, {request})
+                os.kill(os.getpid(), request)  # as without a watching process; the first process of a container goes on
+                code = 128 + request
+            os._exit(code)
         if asked is None:
             heard: signal.struct_siginfo | None = signal.sigwaitinfo(awaited)
         else:
@@ -62,9 +88,20 @@ def _watch(worker: int, awaited: set[signal.Signals]) -> NoReturn:
             if left <= 0:
                 os.kill(worker, signal.SIGKILL)
             heard = signal.sigtimedwait(awaited, max(left, GRACE / 10))
-        if heard is not None and heard.si_signo == signal.SIGINT and asked is None:
-            asked = time.monotonic()
+        if heard is not None and heard.si_signo != signal.SIGCHLD and asked is None:
+            asked, request = time.monotonic(), signal.Signals(heard.si_signo)
             os.kill(worker, signal.SIGINT)
+
+
+def _ended(worker: int) -> tuple[bool, int]:
+    """Whether the worker has ended, and its status; adopted children that ended are forgotten."""
+    while True:
+        try:
+            child, status = os.waitpid(-1, os.WNOHANG)
+        except ChildProcessError:
+            return True, signal.SIGKILL
+        if child in (0, worker):
+            return child == worker, status
 
 
 def _code(status: int, asked: bool) -> int:
@@ -74,7 +111,7 @@ def _code(status: int, asked: bool) -> int:
         return code
     if asked:
         _tell("interrupted; an output file that existed is as it was")
-    elif -code == signal.SIGKILL:
+    elif -code in (signal.SIGKILL, signal.SIGTERM, signal.SIGHUP):
         _tell("killed from outside, or for want of memory; an output file that existed is as it was")
     else:
         try:

@@ -239,6 +239,34 @@ def test_who_kills_the_command_kills_its_work(signal_: signal.Signals, folder: P
     running.communicate()
 
 
+STARTED = """
+    import subprocess, time
+    words = "import subprocess; subprocess.Popen(['sleep', '600'], start_new_session=True); print(flush=True); input()"
+    child = subprocess.Popen([sys.executable, '-c', words], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                             start_new_session=True)
+    child.stdout.readline()
+    children = Path(f'/proc/{child.pid}/task/{child.pid}/children').read_text()
+    Path('children').write_text(f'{child.pid} {children}')
+    {end}
+"""
+"""The work starts a process, which starts one of its own; both in sessions of their own."""
+
+
+@pytest.mark.parametrize(("how", "code"), [("SIGTERM", -15), ("SIGHUP", -1), ("SIGINT", 2), ("SIGSEGV", 2)])
+def test_nothing_that_the_work_started_is_left(how: str, code: int, folder: Path) -> None:
+    number = signal.Signals[how]
+    end = "os.kill(os.getpid(), signal.SIGSEGV)" if how == "SIGSEGV" else "time.sleep(600)"
+    running = begun(folder, "kinform.stages.check", "check", "r.h5", deed=STARTED.replace("{end}", end))
+    while not (folder / "children").exists() or not (folder / "children").read_text():
+        time.sleep(0.01)
+    if how != "SIGSEGV":
+        running.send_signal(number)
+    running.communicate(timeout=60)
+    assert running.returncode == code
+    children = [int(word) for word in (folder / "children").read_text().split()]
+    assert len(children) == 2 and not any(map(alive, children))
+
+
 def test_a_command_in_the_background_of_a_shell_goes_on(folder: Path) -> None:
     """There Ctrl-C is ignored, and is meant for others."""
     deed = "import time\n    while not Path('go').exists(): time.sleep(0.01)\n    raise OSError('went on')"

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from kinform.foundation.words import counted
-from kinform_cli import console, files
+from kinform_cli import console, files, supervision
 from kinform_cli.designs import whole_design
 from kinform_cli.errors import refuse
 from kinform_cli.options import (
@@ -108,6 +108,7 @@ def show_page(address: str) -> None:
     """Open an address in the browser of the user; a warning where there is none."""
     import webbrowser
 
+    supervision.leave_children()
     try:
         shown = webbrowser.open(address)
     except webbrowser.Error:
