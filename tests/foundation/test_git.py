@@ -107,3 +107,13 @@ def test_what_git_refuses_is_none_and_its_lack_an_error(tmp_path: Path, monkeypa
     monkeypatch.setenv("PATH", ".")
     with pytest.raises(git.NoGit):
         git.ask(tmp_path, "status")
+
+
+def test_filters_of_a_home_in_the_repository_do_not_run(
+    repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    (repository / ".gitconfig").write_text(f'[filter "a=b.c"]\nclean = "touch {tmp_path / "MARKER"}; cat"\n')
+    monkeypatch.setenv("HOME", str(repository))
+    monkeypatch.delenv("GIT_CONFIG_GLOBAL", raising=False)
+    assert git.ask(repository, "diff", "--name-only", "HEAD", "--") == b"file.txt\n"
+    assert not (tmp_path / "MARKER").exists()

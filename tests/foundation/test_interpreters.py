@@ -63,3 +63,20 @@ def test_no_program_comes_from_the_working_folder(tmp_path: Path, monkeypatch: p
     assert interpreters.program("git") == str(tmp_path / "there" / "git")
     monkeypatch.setenv("PATH", ":.:")
     assert interpreters.program("git") is None
+
+
+@pytest.mark.skipif(os.name != "posix", reason="the home is HOME on POSIX only")
+def test_a_home_in_the_working_folder_configures_no_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.chdir(tmp_path)
+    for home in (str(tmp_path), "."):
+        monkeypatch.setenv("HOME", home)
+        with interpreters.safe_children():
+            assert not Path(os.environ["HOME"]).resolve().is_relative_to(tmp_path)
+            assert interpreters.of_user()["HOME"] == home
+            with interpreters.safe_children():
+                assert interpreters.of_user()["HOME"] == home
+        assert os.environ["HOME"] == home and "KINFORM_HOME" not in os.environ
+    other = tmp_path.with_name("other home")
+    monkeypatch.setenv("HOME", str(other))
+    with interpreters.safe_children():
+        assert os.environ["HOME"] == str(other)

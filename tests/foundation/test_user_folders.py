@@ -113,5 +113,5 @@ def test_folders_in_a_design_are_foreign(mark: str | None, tmp_path: Path, monke
 def test_a_home_under_version_control_is_the_users(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     (tmp_path / ".git").mkdir()
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(user_folders, "_home", lambda: str(tmp_path))
+    monkeypatch.setattr(user_folders, "stated_home", lambda: str(tmp_path))
     assert not is_foreign(tmp_path / ".cache")

@@ -11,7 +11,7 @@ import os
 import re
 import subprocess
 
-from kinform.foundation import interpreters
+from kinform.foundation import interpreters, user_folders
 
 _SET = {
     "core.fsmonitor": "false", "core.hooksPath": os.devnull, "core.untrackedCache": "false",
@@ -37,7 +37,8 @@ def ask(folder: str | os.PathLike[str], *arguments: str) -> bytes | None:
     """What git prints about the repository that a folder is in; None where it fails. Raises NoGit."""
     listed = _run(folder, {}, "config", "--list", "--includes", "--show-scope", "--name-only", "-z")
     words = (listed or b"").decode("utf-8", "surrogateescape").split("\0")
-    named = {key for scope, key in zip(words[::2], words[1::2], strict=False) if scope in _FROM_REPOSITORY}
+    foreign = (*_FROM_REPOSITORY, *(("global",) if user_folders.foreign_home() else ()))
+    named = {key for scope, key in zip(words[::2], words[1::2], strict=False) if scope in foreign}
     off: dict[str, str] = {}
     for key in sorted(named):
         if (found := _FILTER.fullmatch(key)) is not None:  # a filter that is required and missing is an error

@@ -12,9 +12,14 @@ import os
 import sys
 from collections.abc import Iterator
 
+from kinform.foundation import user_folders
+
 _SAFE_PATH = "PYTHONSAFEPATH"
 _OURS = "kinform"
 """What the variable is set to here (any text has the same effect), to tell it from what the user set."""
+
+_HOME = "KINFORM_HOME"
+"""The user's variable HOME, where `safe_children` set another."""
 
 _PLACES = ("PYTHONPYCACHEPREFIX", "PYTHONUSERBASE", "DASK_CONFIG", "DASK_ROOT_CONFIG")
 """Variables that name folders or files which hold code or say which code runs."""
@@ -38,13 +43,22 @@ def environment(**extra: str) -> dict[str, str]:
 
 def of_user() -> dict[str, str]:
     """The environment for programs of the user: without what `safe_children` added."""
-    return {name: value for name, value in os.environ.items() if (name, value) != (_SAFE_PATH, _OURS)}
+    out = {name: value for name, value in os.environ.items() if (name, value) != (_SAFE_PATH, _OURS)}
+    if _HOME in out:
+        out["HOME"] = out.pop(_HOME)
+    return out
 
 
 @contextlib.contextmanager
 def safe_children() -> Iterator[None]:
-    """Interpreters that libraries start meanwhile, and those that these start, do not look in the working folder."""
-    before = {name: os.environ.get(name) for name in (_SAFE_PATH, "PYTHONPATH", *_PLACES)}
+    """Interpreters that libraries start meanwhile, and those that these start, do not look in the working folder.
+
+    Where HOME is a folder of strangers, it is the home that the system states: Dask reads there which code to run.
+    """
+    before = {name: os.environ.get(name) for name in (_SAFE_PATH, "PYTHONPATH", "HOME", _HOME, *_PLACES)}
+    if "HOME" in os.environ and _HOME not in os.environ and user_folders.foreign_home():
+        os.environ[_HOME] = os.environ["HOME"]
+        os.environ["HOME"] = user_folders.stated_home() or os.devnull
     os.environ.setdefault(_SAFE_PATH, _OURS)
     os.environ["PYTHONPATH"] = os.pathsep.join(search_path())
     for name in _PLACES:

@@ -37,7 +37,7 @@ def cache_folder() -> Path | None:
         folder = Path(os.environ["LOCALAPPDATA"])
     else:
         home = os.environ.get("HOME", "")
-        folder = Path(home if os.path.isabs(home) else _home() or "") / ".cache"
+        folder = Path(home if os.path.isabs(home) else stated_home() or "") / ".cache"
     return None if not folder.is_absolute() or is_foreign(folder) else folder / "kinform"
 
 
@@ -51,7 +51,7 @@ def is_foreign(folder: Path) -> bool:
         place, working = os.path.realpath(folder), os.path.realpath(os.curdir)
     except OSError:
         return True
-    own = _home()
+    own = stated_home()
     above = Path(os.path.realpath(own)) if own else Path(os.path.abspath(os.sep))
     for each in (Path(place), *Path(place).parents):
         if above.is_relative_to(each):
@@ -61,8 +61,13 @@ def is_foreign(folder: Path) -> bool:
     return False
 
 
-def _home() -> str | None:
-    """The user's home as the system states it, whatever the environment says."""
+def foreign_home() -> bool:
+    """Whether the home that the environment names is a folder of strangers: in CI it is at times the checkout."""
+    return is_foreign(Path(os.path.expanduser("~")))
+
+
+def stated_home() -> str | None:
+    """The user's home as the system states it, whatever the environment says; None where it states none."""
     try:
         import pwd
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
+import sys
 import tempfile
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +17,7 @@ from kinform.errors import InputError, Problem
 from kinform.form.keys import looked_up
 from kinform.form.sources import Reading
 from kinform.foundation import interpreters
+from kinform.foundation.parent_death import exit_with_parent
 from kinform.reports.values.topics import TOPICS, summary
 
 UNITS = {
@@ -159,10 +163,11 @@ def _sensors(readings: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 def _made(part: str, words: Sequence[str], file: Path, folder: str | None) -> tuple[tuple[str, ...], str]:
     """The change that gives a part the mesh that a command makes."""
     command = [word.replace("{file}", str(file)) for word in words]
+    ending = partial(exit_with_parent, os.getpid())
     try:
         done = subprocess.run(
             command, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", check=False,
-            cwd=folder, env=interpreters.of_user(),
+            cwd=folder, env=interpreters.of_user(), preexec_fn=ending if sys.platform == "linux" else None,
         )  # fmt: skip
     except OSError as error:
         raise InputError([Problem(f"{command[0]}: {error.strerror}", None, None, "see that it is installed")]) from None
