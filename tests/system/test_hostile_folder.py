@@ -56,7 +56,7 @@ COMMANDS = (
     "run {0}.toml -o r.h5 --jobs 2", "run . -o q.h5", "batch . -o {1}/b --jobs 2", "study s.toml -o s.h5 --jobs 2",
     "import {0}.toml -o i.h5", "contacts i.h5 -o i.h5", "joints i.h5 -o i.h5", "mass i.h5 -o i.h5",
     "simulate i.h5 -o i.h5", "check i.h5 -o i.h5", "show r.h5", "show r.h5 joints --format json", "query r.h5 --help",
-    "report r.h5 -o r.html", "export r.h5 --to gltf -o r.glb", "export r.h5 --to dot -o r.dot", "catalog --help",
+    "report r.h5 -o r.html", "export r.h5 --to glb -o r.glb", "export r.h5 --to dot -o r.dot", "catalog --help",
     "diff r.h5 i.h5", "lock --help", "watch --help", "init block.stl shaft.stl --units mm -o n.toml", "explain KF201",
     "schema --help",
 )  # fmt: skip
