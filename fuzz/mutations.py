@@ -115,7 +115,36 @@ def _splice(data, others, words, rng):
     return data[:at] + other[start : stop + rng.randrange(200)] + data[at + rng.choice((0, stop - start)) :]
 
 
+_ELEMENT = re.compile(rb"<(\w[\w:.-]*)(?:[^<>]*/>|[^<>]*>.*?</\1>)", re.DOTALL)
+_TABLE = re.compile(rb"^\[[^\n]*\n(?:[^\[\n][^\n]*\n)*", re.MULTILINE)
+
+
+def _structure(data, others, words, rng):
+    """An element of XML, or a table of TOML, taken out, doubled, moved, or put in from another seed."""
+    pattern = _ELEMENT if data.lstrip()[:1] == b"<" else _TABLE
+    starts = [place.start() for place in re.finditer(rb"<\w|^\[", data, re.MULTILINE)]
+    place = pattern.match(data, rng.choice(starts)) if starts else None
+    if place is None:
+        return data
+    piece, to = place[0], rng.choice(starts)
+    other = pattern.search(rng.choice(others))
+    change = rng.randrange(4)
+    if change == 0:
+        del data[place.start() : place.end()]
+    elif change == 1:
+        data[to:to] = piece
+    elif change == 2 and not place.start() <= to < place.end():
+        del data[place.start() : place.end()]
+        to -= len(piece) if to > place.start() else 0
+        data[to:to] = piece
+    elif other is not None:
+        data[to:to] = other[0]
+    return data
+
+
 _CHANGES = (
+    _structure,
+    _structure,
     _flip,
     _byte,
     _integer,

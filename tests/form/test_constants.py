@@ -128,6 +128,8 @@ CASES = {
     "lzma-3mf": ("a.3mf", lambda: _3mf(OBJECT, extra="<a/>" * 1_000_000, method=zipfile.ZIP_LZMA)),
     "copies-dae": ("a.dae", lambda: _dae(40)),
     "circle-urdf": ("a.urdf", lambda: _circle(6000)),
+    "include-itself-mjcf": ("a.xml", lambda: "<mujoco>" + '<include file="a.xml"/>' * 30_000 + "<worldbody/></mujoco>"),
+    "values": ("m.toml", lambda: HEAD + "a = [" + "1," * 400_000 + "]"),
     "unknown-members": ("m.toml", lambda: _unknown_members(20_000)),
 }
 

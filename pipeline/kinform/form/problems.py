@@ -15,17 +15,18 @@ class Problems:
     def __init__(self) -> None:
         self._items: dict[Problem, None] = {}
         self._alike: dict[tuple[str, str | None], list[str]] = {}
-        self._more = 0
+        self._noted = 0
 
     def __len__(self) -> int:
         return len(self._items)
 
     def add(self, message: str, file: str | None, line: int | None, remedy: str, column: int | None = None) -> None:
-        """Note a problem; the same problem is kept once, and of very many only the first."""
-        if len(self._items) >= PROBLEMS_MOST:
-            self._more += 1
-        else:
-            self._items.setdefault(Problem(message=message, file=file, line=line, remedy=remedy, column=column))
+        """Note a problem; the same problem is kept once. Raises InputError with all where there were very many,
+        repeated ones included: looking for more takes long, and these are to be repaired first."""
+        self._items.setdefault(Problem(message=message, file=file, line=line, remedy=remedy, column=column))
+        self._noted += 1
+        if self._noted >= PROBLEMS_MOST:
+            self.raise_if_any()
 
     def add_alike(self, what: str, fault: str, file: str | None, line: int | None, remedy: str) -> None:
         """Note that `what` has a `fault` that others of the file have too: they become one problem, at the first."""
@@ -49,8 +50,6 @@ class Problems:
             return
         order = {file: i for i, file in reversed(list(enumerate(p.file for p in self._items)))}
         told = sorted(map(self._told, self._items), key=lambda p: (order[p.file], p.line or 0))
-        if self._more:
-            told.append(
-                Problem(f"{counted(self._more, 'more problem')} of this input", None, None, "repair these first")
-            )
+        if self._noted >= PROBLEMS_MOST:
+            told.append(Problem("more problems of this input were not looked for", None, None, "repair these first"))
         raise InputError(told)

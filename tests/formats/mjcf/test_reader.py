@@ -411,3 +411,14 @@ def test_an_angle_in_no_known_unit_is_told(tmp_path):
     with pytest.raises(InputError) as caught:
         form.load(write(tmp_path, text().replace('angle="degree"', 'angle="Radian"')))
     assert caught.value.problems[0].line == 2
+
+
+def test_a_mesh_that_is_scaled_to_nothing_is_left_out(tmp_path):
+    mesh = '<mesh name="a" file="a.stl" scale="1e-320 1 1" refquat="1 1 0 0"/>'
+    (tmp_path / "m.xml").write_text(
+        f'<mujoco><asset>{mesh}</asset><worldbody><body><geom type="mesh" mesh="a"/></body></worldbody></mujoco>'
+    )
+    (tmp_path / "a.stl").write_bytes(b"")
+    with np.errstate(all="raise", under="ignore"):
+        assembly = form.load(tmp_path / "m.xml")
+    assert [part.mesh for part in assembly.parts] == [None]

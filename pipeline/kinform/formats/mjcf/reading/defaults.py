@@ -269,9 +269,12 @@ def mesh_assets(xml: Xml, root: Element, compiler: Compiler, defaults: Defaults)
 
 def _scale_and_pose(scale: Array, R: Array, p: Array) -> tuple[Array, Array | None]:
     """MuJoCo scales along the axes of the reference frame, whose pose is R, p: its vertices are diag(s)·Rᵀ·(v − p). As
-    a scale (3,) along the axes of the mesh and a pose (4, 4) then; no pose where the mesh is sheared."""
+    a scale (3,) along the axes of the mesh and a pose (4, 4) then; no pose where the mesh is sheared, or scaled to
+    nothing."""
     M = scale[:, None] * R.T
     along = np.linalg.norm(M, axis=0)
+    if not (np.outer(along, along) > 0.0).all():
+        return scale, None
     cosines = (M.T @ M) / np.outer(along, along)
     if float(np.abs(cosines - np.eye(3)).max()) > FRAME_ROUNDING:
         return scale, None
