@@ -35,13 +35,13 @@ from kinform.formats.urdf.reading.yaml_data import load_plain
 from kinform.foundation.confined import Ask
 
 NODES = 100_000
-"""Nodes (elements, texts, comments) that are expanded, at most: about two seconds. Public robots have up to 20,000."""
+"""Nodes (elements, texts, comments) that are expanded, at most: about two seconds. Public robots have up to 12,000."""
 SIBLINGS = 10_000
-"""Nodes inside one element, at most: adding one looks through all. Public robots have up to 2,000."""
+"""Nodes inside one element, at most: adding one looks through all. Public robots have up to 250."""
 TEXT_LENGTH = 1_000_000
 """Characters of one text or attribute. The longest of a public robot has some 1,000."""
 TEXTS_LENGTH = 16_000_000
-"""Characters of all texts together that are expanded."""
+"""Characters of all texts together that are expanded; of a public robot up to 160,000."""
 FRAMES = 3000
 """Calls inside each other, of which macros that are nested take some ten each."""
 RUN_ALL = "allow this with --allow-xacro, which runs code of the file"
