@@ -256,7 +256,7 @@ LookedAt = Annotated[
     argument("F.h5", "Results file; of a manifest, robot description or scene all is computed, and not kept."),
 ]
 Output = Annotated[Path, option("--output -o", "F.h5", "Results file to write; may be the one that is read.")]
-AllowOutside = Annotated[bool, typer.Option("--allow-outside", help="Accept meshes outside the manifest's folder.")]
+AllowOutside = Annotated[bool, typer.Option("--allow-outside", help="Accept files outside the design's folder.")]
 Geometry = Annotated[
     GeometryKind, typer.Option("--geometry", help="Which geometry of a robot description its parts are.")
 ]

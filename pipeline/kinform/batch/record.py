@@ -14,7 +14,7 @@ from kinform.batch.task import FailureKind
 from kinform.errors import InputError, Problem
 from kinform.frozen import dataclass
 from kinform.model.findings import SEVERITIES
-from kinform.results import replace_file
+from kinform.results import refuse_links, replace_file
 
 SCHEMA = "kinform/batch-record/1"
 NAME = "batch.json"
@@ -83,6 +83,7 @@ def read(folder: Path) -> Record:
     Raises InputError where another kind of file stands in its place.
     """
     path = folder / NAME
+    refuse_links(path, (), folder)
     if not path.exists():
         return Record()
     other = Problem("is not the record of a batch, and would be overwritten", str(path), None, "name another folder")
@@ -109,7 +110,7 @@ def write(record: Record, folder: Path) -> None:
         del values["unchanged"]
         rows.append(values)
     text = json.dumps({"schema": SCHEMA, "designs": rows}, indent=1, ensure_ascii=True) + "\n"
-    replace_file(folder / NAME, text.encode())
+    replace_file(folder / NAME, text.encode(), below=folder)
 
 
 def _row(values: Mapping[str, Any]) -> Row:

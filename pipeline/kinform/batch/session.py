@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from kinform import results
 from kinform.batch import record
 from kinform.batch.crew import Crew
 from kinform.batch.desk import code_of_here
@@ -90,7 +91,8 @@ def _answers(left: Sequence[Found], folder: Path, settings: Settings, crew: Crew
     outside = {"allow_outside": settings.allow_outside}
     if not settings.send:
         for one in left:  # here, for a file in the place of a folder would stop a worker without words
-            _make((folder / one.results).parent)
+            _make((folder / one.results).parent, folder)
+            results.refuse_links(folder / one.results, (), folder)
         yield from crew.answers(
             Task(one.name, "kinform.batch.work:run",
                  {"source": str(one.source.absolute()), "output": str((folder / one.results).absolute()), **outside},
@@ -120,7 +122,7 @@ def _sent(left: Sequence[Found], folder: Path, settings: Settings, crew: Crew, c
 
     places = {one.name: folder / one.results for one in left}
     for answer in crew.answers(tasks()):
-        yield answer if answer.failure is not None else _kept(answer, places[answer.key])
+        yield answer if answer.failure is not None else _kept(answer, places[answer.key], folder)
         yield from _taken(refused)
     yield from _taken(refused)
 
@@ -130,16 +132,15 @@ def _taken(answers: list[Answer]) -> Iterator[Answer]:
         yield answers.pop(0)
 
 
-def _kept(answer: Answer, output: Path) -> Answer:
+def _kept(answer: Answer, output: Path, folder: Path) -> Answer:
     """The answer after its results file was written; the fields of a row as result."""
-    from kinform import results
     from kinform.batch.work import summary_of
 
     data, said = answer.result
     try:
-        _make(output.parent)
+        _make(output.parent, folder)
         results.check_output(output)
-        results.replace_file(output, data)
+        results.replace_file(output, data, below=folder)
     except (ResultsError, InputError) as error:
         problems = error.problems if isinstance(error, InputError) else (error.problem,)
         return Answer(answer.key, failure=Failure(INPUT, problems), seconds=answer.seconds, tries=answer.tries)
@@ -157,9 +158,9 @@ def _row(one: Found, answer: Answer) -> Row:
     return Row(**start, **answer.result)
 
 
-def _make(folder: Path) -> None:
+def _make(folder: Path, below: Path | None = None) -> None:
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        results.make_folder(folder, below)
     except OSError as error:
         problem = Problem(f"the folder cannot be made: {error.strerror}", str(folder), None, "name another with -o")
         raise InputError([problem]) from None

@@ -11,18 +11,28 @@ from typing import Any
 
 from kinform import method, results, stages
 from kinform.design import Design
+from kinform.errors import InputError, Problem
+from kinform.foundation.boundary import OUTSIDE, OUTSIDE_REMEDY, leads_out
+
+
+def refuse_outside(source: str, *, allow_outside: bool) -> None:
+    """Raise InputError for a design that is a link out of its folder: it was found, not named."""
+    if not allow_outside and leads_out(source):
+        raise InputError([Problem(f"is a link, and {OUTSIDE}", source, None, OUTSIDE_REMEDY)])
 
 
 def run(source: str, output: str, *, allow_outside: bool = False) -> dict[str, Any]:
     """Run the design at `source`, with its results at `output`; gives the fields of its row."""
     said: list[str] = []
     os.makedirs(os.path.dirname(output), exist_ok=True)
+    refuse_outside(source, allow_outside=allow_outside)
     method.run(source, output, allow_outside=allow_outside, say=said.append)
     return summary_of(results.read_gist(output), Path(output).read_bytes(), said)
 
 
 def imported(source: str, *, allow_outside: bool = False) -> bytes:
     """The imported design, as bytes to be sent to a worker that sees none of its files."""
+    refuse_outside(source, allow_outside=allow_outside)
     return pickle.dumps(stages.import_(source, allow_outside=allow_outside), protocol=pickle.HIGHEST_PROTOCOL)
 
 

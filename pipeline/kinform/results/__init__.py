@@ -20,7 +20,7 @@ from kinform.results.file import (
     write,
 )
 from kinform.results.opening import SCHEMA, NotWholeError
-from kinform.results.replacement import replace_file
+from kinform.results.replacement import make_folder, refuse_links, replace_file
 
 __all__ = [
     "SCHEMA",
@@ -31,10 +31,12 @@ __all__ = [
     "earlier",
     "fault_of",
     "files_of",
+    "make_folder",
     "read",
     "read_at_need",
     "read_gist",
     "read_if_current",
+    "refuse_links",
     "replace_file",
     "to_bytes",
     "write",

@@ -19,6 +19,7 @@ from kinform.batch.task import INPUT, Task
 from kinform.errors import InputError, Problem
 from kinform.form.keys import steps_of
 from kinform.frozen import dataclass
+from kinform.results import refuse_links
 from kinform.study.plan import Plan
 from kinform.study.sampling import samples
 
@@ -150,6 +151,7 @@ class Journal:
 
     def _lines(self) -> Iterator[Any]:
         try:
+            refuse_links(self._path)
             lines = self._path.read_text(encoding="utf-8").split("\n")
         except (OSError, UnicodeDecodeError):
             return
@@ -163,7 +165,9 @@ class Journal:
 
     def __enter__(self) -> Journal:
         whole = [json.dumps({"study": self._key}), *(json.dumps(line) for line in self._lines())]
-        self._stream = self._path.open("w", encoding="utf-8")
+        refuse_links(self._path)
+        flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | getattr(os, "O_NOFOLLOW", 0)
+        self._stream = open(os.open(self._path, flags, 0o666), "w", encoding="utf-8")
         self._stream.write("\n".join(whole) + "\n")
         self._stream.flush()
         return self
