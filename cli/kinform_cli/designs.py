@@ -29,6 +29,7 @@ def whole_design(
     """
     from kinform import method
     from kinform.form.sources import AS_IT_IS
+    from kinform.foundation.boundary import leads_out
 
     if len(sources) == 1 and sources[0].suffix.lower() in RESULTS:
         looked_into = files.read(sources[0], at_need=True)
@@ -42,7 +43,7 @@ def whole_design(
         return design
     manifest = files.is_manifest(sources, units)
     beside = sources[0].with_suffix(".h5")
-    if manifest and reading == AS_IT_IS and beside.is_file():
+    if manifest and reading == AS_IT_IS and not leads_out(beside) and beside.is_file():
         from kinform import results
 
         if results.read_if_current(beside, sources[0], allow_outside=allow_outside) is not None:

@@ -104,9 +104,25 @@ def check_findings(written: Iterable[tuple[object, Path]], others: Iterable[Path
 
 
 def _spare_inputs(path: Path, inputs: Iterable[Path]) -> None:
+    """Raise an error if the output is one of the inputs, or a link in one of their folders leads it elsewhere."""
+    inputs = list(inputs)
+    _refuse_links(path, inputs)
     for source in inputs:
         if source == path or (path.exists() and source.exists() and path.samefile(source)):
             raise refuse("is an input and would be overwritten", file=path, remedy="name another output")
+
+
+def check_folder(path: Path, *, inputs: Iterable[Path]) -> None:
+    """Raise an error if the folder for outputs is reached by a link out of the folder of an input."""
+    _refuse_links(path, inputs, folder=True)
+
+
+def _refuse_links(path: Path, inputs: Iterable[Path], *, folder: bool = False) -> None:
+    from kinform.foundation.boundary import design_folder
+    from kinform.results import refuse_links
+
+    inside = [design_folder(source / "any" if source.is_dir() else source) for source in inputs]
+    refuse_links(path, inside, folder=folder)
 
 
 def _try_writing(path: Path) -> None:
@@ -163,6 +179,7 @@ def needing(path: Path) -> Iterator[None]:
 
 def advance(source: Path, output: Path, label: str, stage: Callable[[Design, Working], Design]) -> Design:
     """Take the design in a results file through one stage, and write what that gives to another, or to the same."""
+    check_folder(output.parent, inputs=[source])
     check_output(output)
     from kinform import results
 
@@ -180,11 +197,11 @@ def write_text(path: Path, text: str) -> None:
     write_bytes(path, text.encode("utf-8", "backslashreplace"))  # names of files may be bytes that are no UTF-8
 
 
-def write_bytes(path: Path, data: bytes) -> None:
-    """Write a file in one step; the same bytes keep the file, with a new time."""
+def write_bytes(path: Path, data: bytes, below: Path | None = None) -> None:
+    """Write a file in one step, which stays `below` a folder; the same bytes keep the file, with a new time."""
     from kinform import results
 
-    results.replace_file(path, data)
+    results.replace_file(path, data, below=below)
 
 
 def write_rule(depfile: Path, output: Path, design: Design, sources: Sequence[Path]) -> None:
@@ -215,9 +232,10 @@ def sources_of(named: Sequence[Path]) -> list[Path]:
     meshes. InputError where there is none of them, or several of the first kind that there is."""
     if len(named) != 1 or not named[0].is_dir():
         return list(named)
+    from kinform.foundation.boundary import leads_out
     from kinform.foundation.name_hints import first_names
 
-    inside = sorted(path for path in named[0].iterdir() if os.path.isfile(path))
+    inside = sorted(path for path in named[0].iterdir() if not leads_out(path) and os.path.isfile(path))
     for kind, ends in (("manifest", (".toml",)), ("robot description", DESCRIPTIONS), ("CAD or scene file", SCENES)):
         found = [path for path in inside if path.suffix.lower() in ends]
         found = [path for path in found if _is_of_this_kind(path)]

@@ -266,7 +266,7 @@ TrustResults = Annotated[
         help="Reuse earlier results whoever wrote them: only where strangers cannot write them.",
     ),
 ]
-AllowOutside = Annotated[bool, typer.Option("--allow-outside", help="Accept meshes outside the manifest's folder.")]
+AllowOutside = Annotated[bool, typer.Option("--allow-outside", help="Accept files outside the design's folder.")]
 AllowXacro = Annotated[
     bool,
     typer.Option(

@@ -105,13 +105,24 @@ def test_a_new_file_has_the_permissions_that_the_umask_leaves(tmp_path: Path) ->
     assert (tmp_path / "r.h5").stat().st_mode == (tmp_path / "other").stat().st_mode
 
 
-def test_a_link_stays_a_link_and_its_target_is_replaced(tmp_path: Path) -> None:
+@pytest.mark.parametrize("there", [False, True])
+def test_a_file_is_not_written_through_a_link(there: bool, tmp_path: Path) -> None:
     (tmp_path / "real").mkdir()
+    if there:
+        results.write(_design("one"), tmp_path / "real" / "r.h5")
+    before = [path.read_bytes() for path in (tmp_path / "real").iterdir()]
     (tmp_path / "link.h5").symlink_to(tmp_path / "real" / "r.h5")
-    results.write(_design("one"), tmp_path / "link.h5")
-    results.write(_design("two"), tmp_path / "link.h5")
+    with pytest.raises(ResultsError):
+        results.write(_design("two"), tmp_path / "link.h5")
     assert (tmp_path / "link.h5").is_symlink()
-    assert results.read(tmp_path / "real" / "r.h5").assembly.name == "two"
+    assert [path.read_bytes() for path in (tmp_path / "real").iterdir()] == before
+
+
+def test_a_file_is_written_in_a_folder_that_the_user_linked(tmp_path: Path) -> None:
+    (tmp_path / "scratch").mkdir()
+    (tmp_path / "link").symlink_to("scratch")
+    results.write(_design("one"), tmp_path / "link" / "r.h5")
+    assert results.read(tmp_path / "scratch" / "r.h5").assembly.name == "one"
 
 
 @pytest.mark.parametrize(

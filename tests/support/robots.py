@@ -61,6 +61,7 @@ def write(folder: Path, text: str, name: str = "arm.urdf") -> Path:
     """The description in a package `arm` below the folder, with the mesh of its base; its path."""
     package = folder / "arm"
     (package / "urdf").mkdir(parents=True, exist_ok=True)
+    (package / "package.xml").write_text("<package><name>arm</name></package>")
     (package / "base.obj").write_text(ring(10.0, 30.0, 60.0))
     path = package / "urdf" / name
     path.write_text(text)

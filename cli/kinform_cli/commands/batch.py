@@ -116,6 +116,7 @@ def batch(
     need_extra()
     from kinform import batch as many
 
+    files.check_folder(output, inputs=paths)
     files.check_findings(((None, path) for _, path in written), paths)
     if catalog is not None:
         files.check_text_output(catalog, inputs=paths)

@@ -78,6 +78,7 @@ def check(
     how = printed(format, verbose)
     files.check_findings(how.files, [source, *filter(None, (output, write_baseline))])
     if output is not None:
+        files.check_folder(output.parent, inputs=[source])
         files.check_output(output)
     if write_baseline is not None:
         files.check_text_output(write_baseline, inputs=[source])

@@ -68,6 +68,7 @@ def export(
     """
     if output.exists() and not output.is_dir():
         raise refuse("this is a file, not a folder", file=output, remedy="name a folder with -o")
+    files.check_folder(output, inputs=[source])
     design = looked_at(source)
     from kinform import exports
     from kinform.errors import InputError, Problem

@@ -77,6 +77,7 @@ def report(
     page = output or _beside(sources[0])
     files.check_page(page, inputs=sources)
     if png is not None:
+        files.check_folder(png, inputs=sources)
         _make_folder(png)
     design = whole_design(
         sources,
@@ -97,7 +98,7 @@ def report(
     console.say(f"{page}: {max(len(text.encode()) / 1e6, 0.1):.1f} MB, to be opened in a browser")
     if png is not None:
         for name, data in images.items():
-            files.write_bytes(png / name, data)
+            files.write_bytes(png / name, data, below=png)
         files.write_text(png / "summary.md", page_summary(design, notes=notes))
         console.say(f"{png}: {counted(len(images), 'picture')} and summary.md")
     if design.report is None:
@@ -122,6 +123,7 @@ def show_page(address: str) -> None:
 def _beside(source: Path) -> Path:
     """The page's name where none is given; an error where another file has it."""
     page = source.with_suffix(".html")
+    files.check_page(page, inputs=[source])
     if page.is_file() and b'name="generator" content="kinform' not in page.read_bytes()[:4096]:
         raise refuse("exists, and is no page of kinform", file=page, remedy="name the page: -o FILE.html")
     return page
@@ -129,8 +131,10 @@ def _beside(source: Path) -> Path:
 
 def _make_folder(path: Path) -> None:
     """Make the folder for pictures; an error where that cannot be."""
+    from kinform import results
+
     try:
-        path.mkdir(parents=True, exist_ok=True)
+        results.make_folder(path)
     except OSError as error:
         raise refuse(f"the folder cannot be made: {error.strerror}", file=path, remedy="name another folder") from None
     files.check_text_output(path / "summary.md")

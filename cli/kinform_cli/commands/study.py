@@ -71,9 +71,11 @@ def study(
     files.check_text_output(output, inputs=[source])
     table.check_output(output)
     beside = [output.with_suffix(end) for end in (".csv", ".html")]
+    for path in beside:
+        files.check_text_output(path, inputs=[source])
     if output.suffix.lower() not in (".h5", ".hdf5"):
         raise refuse("the table of a study is HDF5", file=output, remedy=f"name it {output.with_suffix('.h5')}")
-    plan = studies.read_plan(source)
+    plan = studies.read_plan(source, allow_outside=allow_outside)
     _check_commands(plan, allow_commands)
     began = time.monotonic()
     with Pace("study", began) as pace:

@@ -17,7 +17,7 @@ from kinform.errors import InputError, Problem
 from kinform.foundation import provenance
 from kinform.frozen import dataclass
 from kinform.model.findings import SEVERITIES
-from kinform.results import computed_anew, replace_file
+from kinform.results import computed_anew, refuse_links, replace_file
 
 SCHEMA = "kinform/batch-record/1"
 NAME = RECORD
@@ -92,6 +92,7 @@ def read(folder: Path, *, trust: bool = False) -> Record:
     Raises InputError where another kind of file stands in its place.
     """
     path = folder / NAME
+    refuse_links(path, (), folder)
     if not path.exists():
         return Record()
     other = Problem("is not the record of a batch, and would be overwritten", str(path), None, "name another folder")
@@ -127,7 +128,7 @@ def write(record: Record, folder: Path) -> None:
     text = json.dumps({"schema": SCHEMA, "designs": rows}, indent=1, ensure_ascii=True) + "\n"
     data = text.encode()
     provenance.record(hashlib.sha256(data).hexdigest())
-    replace_file(folder / NAME, data)
+    replace_file(folder / NAME, data, below=folder)
 
 
 def _row(values: Mapping[str, Any]) -> Row:

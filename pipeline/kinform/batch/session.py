@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from kinform import results
 from kinform.batch import record
 from kinform.batch.crew import Crew
 from kinform.batch.desk import code_of_here
@@ -56,7 +56,7 @@ def run(
         say(kept.note)
     rows: dict[str, Row] = {}
     for one in found:
-        fault = one.fault or _unmade(folder / one.results)
+        fault = one.fault or _unmade(folder / one.results, folder)
         if fault is not None:
             rows[one.name] = kept.rows[one.name] = _row(one, Answer(one.name, failure=Failure(INPUT, (fault,))))
             continue
@@ -138,7 +138,7 @@ def _sent(left: Sequence[Found], folder: Path, settings: Settings, crew: Crew, c
 
     places = {one.name: folder / one.results for one in left}
     for answer in crew.answers(tasks()):
-        yield answer if answer.failure is not None else _kept(answer, places[answer.key])
+        yield answer if answer.failure is not None else _kept(answer, places[answer.key], folder)
         yield from _taken(refused)
     yield from _taken(refused)
 
@@ -148,14 +148,13 @@ def _taken(answers: list[Answer]) -> Iterator[Answer]:
         yield answers.pop(0)
 
 
-def _kept(answer: Answer, output: Path) -> Answer:
+def _kept(answer: Answer, output: Path, folder: Path) -> Answer:
     """The answer after its results file was written; the fields of a row as result."""
-    from kinform import results
     from kinform.batch.work import summary_of
 
     data, said = answer.result
     try:
-        results.write_bytes(data, output)
+        results.write_bytes(data, output, below=folder)
     except (ResultsError, InputError) as error:
         problems = error.problems if isinstance(error, InputError) else (error.problem,)
         return Answer(answer.key, failure=Failure(INPUT, problems), seconds=answer.seconds, tries=answer.tries)
@@ -177,13 +176,14 @@ def _row(one: Found, answer: Answer) -> Row:
     return Row(**start, **fields)
 
 
-def _unmade(output: Path) -> Problem | None:
-    """Why the folder of a results file cannot be made; None where it is there now."""
+def _unmade(output: Path, folder: Path) -> Problem | None:
+    """Why a results file cannot be written below the folder, or the folders on its way not made; None where they are
+    there now."""
     try:
-        output.parent.mkdir(parents=True, exist_ok=True)
-        os.lstat(output)
-    except FileNotFoundError:
-        return None
+        results.make_folder(output.parent, folder)
+        results.refuse_links(output, (), folder)
+    except ResultsError as error:
+        return error.problem
     except OSError as error:
         return Problem(
             f"its results cannot be written: {error.strerror}", str(output), None, "rename it, or --exclude it"
@@ -191,9 +191,9 @@ def _unmade(output: Path) -> Problem | None:
     return None
 
 
-def _make(folder: Path) -> None:
+def _make(folder: Path, below: Path | None = None) -> None:
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        results.make_folder(folder, below)
     except OSError as error:
         problem = Problem(f"the folder cannot be made: {error.strerror}", str(folder), None, "name another with -o")
         raise InputError([problem]) from None

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from kinform.batch.discovery import Found
 from kinform.batch.record import Record, Row
+from kinform.foundation.boundary import leads_out, way_out
 from kinform.reuse import lineage
 
 
@@ -19,6 +20,8 @@ def row_if_unchanged(found: Found, record: Record, folder: Path, *, allow_outsid
     """The row of a design whose results in `folder` are what a run would give; None of others."""
     row = record.rows.get(found.name)
     if row is None or row.failure or not row.lineage or row.results != found.results:
+        return None
+    if way_out(folder / found.results, (), folder) or (not allow_outside and leads_out(found.source)):
         return None
     if digest_of(folder / found.results) != row.digest:
         return None

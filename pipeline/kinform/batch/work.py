@@ -11,7 +11,15 @@ from typing import Any
 
 from kinform import method, results, stages
 from kinform.design import Design
+from kinform.errors import InputError, Problem
 from kinform.form.sources import Reading
+from kinform.foundation.boundary import OUTSIDE, OUTSIDE_REMEDY, leads_out
+
+
+def refuse_outside(source: str, *, allow_outside: bool) -> None:
+    """Raise InputError for a design that is a link out of its folder: it was found, not named."""
+    if not allow_outside and leads_out(source):
+        raise InputError([Problem(f"is a link, and {OUTSIDE}", source, None, OUTSIDE_REMEDY)])
 
 
 def run(
@@ -20,6 +28,7 @@ def run(
     """Run the design at `source`, with its results at `output`; gives the fields of its row."""
     said: list[str] = []
     os.makedirs(os.path.dirname(output), exist_ok=True)
+    refuse_outside(source, allow_outside=allow_outside)
     done = method.run(
         source, output, allow_outside=allow_outside, say=said.append, reading=Reading(allow_xacro=allow_xacro),
         trust_results=trust_results,
@@ -33,11 +42,13 @@ def files_of(source: str, *, allow_outside: bool = False, allow_xacro: bool = Fa
     list of each folder that they look through, with "/" at its end; {} where these do not say all that counts."""
     from kinform.form.readers.assembly import load_with_contents
 
+    refuse_outside(source, allow_outside=allow_outside)
     return load_with_contents(source, allow_outside=allow_outside, reading=Reading(allow_xacro=allow_xacro))[1]
 
 
 def imported(source: str, *, allow_outside: bool = False, allow_xacro: bool = False) -> bytes:
     """The imported design, as bytes to be sent to a worker that sees none of its files."""
+    refuse_outside(source, allow_outside=allow_outside)
     design = stages.import_(source, allow_outside=allow_outside, reading=Reading(allow_xacro=allow_xacro))
     return pickle.dumps(design, protocol=pickle.HIGHEST_PROTOCOL)
 

@@ -12,6 +12,7 @@ from kinform import results
 from kinform.catalog.entry import Entry, entry_of
 from kinform.catalog.store import Catalog
 from kinform.errors import InputError, Problem, ResultsError, StageError
+from kinform.foundation.boundary import leads_out
 from kinform.frozen import dataclass
 
 _ENDINGS = (".h5", ".hdf5")
@@ -102,7 +103,7 @@ def _designs_of(source: Path, home: str | Path) -> tuple[list[Entry], list[Refus
     """The designs below a folder, or in a results file, and what is none."""
     entries, refused = [], []
     paths = source.rglob("*") if source.is_dir() else ()
-    files = [path for path in paths if path.suffix.lower() in _ENDINGS and path.is_file()]
+    files = [p for p in paths if p.suffix.lower() in _ENDINGS and not leads_out(p) and p.is_file()]
     for path in sorted(files) if source.is_dir() else [source]:
         try:
             entries.append(_entry(path, home))

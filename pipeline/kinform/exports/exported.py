@@ -6,7 +6,7 @@ from pathlib import Path
 
 from kinform.errors import KinformError
 from kinform.frozen import dataclass
-from kinform.results.replacement import replace_file
+from kinform.results.replacement import make_folder, replace_file
 
 
 @dataclass(frozen=True)
@@ -41,8 +41,8 @@ def write(exported: Exported, folder: str | Path) -> tuple[Path, ...]:
     swept: set[Path] = set()
     for name, data in sorted(exported.files.items()):
         target = Path(folder) / name
-        target.parent.mkdir(parents=True, exist_ok=True)
-        replace_file(target, data, sweeps=target.parent not in swept)
+        make_folder(target.parent, Path(folder))
+        replace_file(target, data, sweeps=target.parent not in swept, below=Path(folder))
         swept.add(target.parent)
         out.append(target)
     return tuple(out)

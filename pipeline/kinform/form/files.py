@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, scaled
 from kinform.form.problems import Problems
 from kinform.form.sources import AS_IT_IS, Reading, is_scene
+from kinform.foundation.boundary import OUTSIDE, OUTSIDE_REMEDY, Boundary
 from kinform.foundation.name_hints import did_you_mean, first_names, in_quotes
 from kinform.foundation.regular_files import AS_A_FILE, listing, not_a_file
 from kinform.foundation.units import metres_per
@@ -30,7 +31,7 @@ IN_METRES = (".dae", ".glb", ".gltf", ".step", ".stp")
 
 def no_file(path: Path) -> str:
     """What is wrong with a path at which no file is, as the end of a sentence."""
-    return "is a folder" if path.is_dir() else not_a_file(path) or "does not exist"
+    return "is a folder" if os.path.isdir(path) else not_a_file(path) or "does not exist"
 
 
 def is_mesh(path: Path) -> bool:
@@ -38,21 +39,25 @@ def is_mesh(path: Path) -> bool:
     return path.suffix.lower() in MESHES + OTHER_MESHES
 
 
-def _digest(path: Path) -> str | None:
+def _digest(path: Path, boundary: Boundary) -> str | None:
     """SHA-256 (hex) of a file; None where it cannot be read."""
     if not_a_file(path):
         return None
     try:
-        with open(path, "rb") as stream:
+        with boundary.open(path) as stream:
             return hashlib.file_digest(stream, "sha256").hexdigest()
     except OSError:
         return None
 
 
-def read_raw(path: Path) -> RawMesh:
-    """Facets of an STL or OBJ file; raises MeshError, or OSError where it cannot be opened."""
+def read_raw(path: Path, boundary: Boundary | None = None) -> RawMesh:
+    """Facets of a mesh file, which lies wherever it may if no boundary is given; raises MeshError, or OSError where it
+    cannot be opened."""
+    boundary = boundary or Boundary(path)
+    if not boundary.allows(path):
+        raise MeshError([Fault(OUTSIDE, OUTSIDE_REMEDY)])
     _check_file(path)
-    return _parsed(path, path.read_bytes() if is_mesh(path) else b"")
+    return _parsed(path, boundary.read(path) if is_mesh(path) else b"")
 
 
 def _check_file(path: Path) -> None:
@@ -125,13 +130,14 @@ def earlier_meshes(assembly: Assembly, files: Mapping[str, str]) -> dict[_Reques
 
 
 class DesignFiles:
-    """Files below the folder of the top manifest; meshes with the same content are one object."""
+    """Files that a design may read, named relative to the folder of its top manifest; meshes with the same content are
+    one object."""
 
     def __init__(
         self,
         top: Path,
         problems: Problems,
-        allow_outside: bool,
+        boundary: Boundary,
         earlier: Mapping[_Request, Mesh] | None = None,
         reading: Reading = AS_IT_IS,
     ):
@@ -143,15 +149,13 @@ class DesignFiles:
         """Folders whose list of files was read."""
         self.unsettled = False
         """Something counts that is no file that was read: nothing may be taken for unchanged."""
-        self._allowed: set[Path] = set()
         self._by_name: dict[str, dict[Path, Path]] | None = None
-        self._outside = allow_outside
+        self.boundary = boundary
         self._earlier = earlier or {}
         self._data: dict[Path, bytes] = {}
         self._digests: dict[Path, str] = {}
         self._raw: dict[Path, RawMesh | MeshError] = {}
         self._bodies: dict[Path, dict[str, RawMesh]] = {}
-        self._real: dict[Path, str] = {}
         self._shown: dict[Path, str] = {}
         self._meshes: dict[tuple[Path, MeshUse], Mesh | None] = {}
         self._same: dict[tuple[str, str, str | None], Mesh] = {}
@@ -165,20 +169,14 @@ class DesignFiles:
     def find(self, stated: str, folder: Path, file: str, line: int, what: str) -> Path | None:
         """The file that a manifest states, relative to its folder; None after noting what is wrong."""
         path = folder / stated
-        if not self._outside and not any(self._inside(path, root) for root in {self.top, folder, *self._allowed}):
-            remedy = "move it into the folder of the manifest, or allow this with --allow-outside"
-            self.problems.add_alike(f"{what} {stated}", "lies outside the manifest's folder", file, line, remedy)
+        if not self.boundary.allows(path):
+            self.problems.add_alike(f"{what} {stated}", OUTSIDE, file, line, OUTSIDE_REMEDY)
             return None
-        try:
-            there = path.is_file()
-        except OSError as error:
-            self.problems.add(f"{what} {stated} cannot be looked for: {error.strerror}", file, line, "correct its name")
-            return None
-        if not there:
-            near = [name for name in _files_in(path.parent) if is_mesh(Path(name)) or not is_mesh(path)]
+        if not self.boundary.is_file(path):
+            near = [name for name in self._files_in(path.parent) if is_mesh(Path(name)) or not is_mesh(path)]
             elsewhere = self._elsewhere(path.name) if is_mesh(path) else []
-            if path.is_dir():
-                meshes = [name for name in _files_in(path) if is_mesh(Path(name))]
+            if self.boundary.is_folder(path):
+                meshes = [name for name in self._files_in(path) if is_mesh(Path(name))]
                 remedy = f"name a file in it: {first_names(meshes)}" if meshes else "name a file"
             elif not_a_file(path):
                 remedy = AS_A_FILE
@@ -186,55 +184,56 @@ class DesignFiles:
                 remedy = f"did you mean {' or '.join(in_quotes(self.shown(other)) for other in elsewhere)}?"
             elif near:
                 remedy = did_you_mean(path.name, near, "the files there")
-            elif path.parent.is_dir():
-                remedy = f"no mesh lies in {_folder_in_words(path.parent, folder)}"
+            elif missing := self._first_missing(folder, Path(stated).parent):
+                remedy = f"there is no folder {missing}"
             else:
-                remedy = f"there is no folder {_first_missing(folder, Path(stated).parent)}"
+                remedy = f"no mesh lies in {_folder_in_words(path.parent, folder)}"
             self.problems.add(f"{what} {stated} {no_file(path)}", file, line, remedy)
             return None
         self.note(path)
         return path
 
+    def _files_in(self, folder: Path) -> list[str]:
+        """Names of the files of a folder that may be read, sorted; none where there is no folder."""
+        try:
+            names = sorted(os.listdir(folder)) if self.boundary.is_folder(folder) else []
+        except OSError:
+            return []
+        return [name for name in names if self.boundary.is_file(folder / name)]
+
+    def _first_missing(self, folder: Path, below: Path) -> str | None:
+        """The first of the folders of a path that is not there: of a missing one nothing is the parent. Those outside
+        are not asked for."""
+        so_far = Path()
+        for part in below.parts:
+            so_far = so_far / part
+            if self.boundary.allows(folder / so_far) and not self.boundary.is_folder(folder / so_far):
+                return so_far.name
+        return None
+
     def _elsewhere(self, name: str) -> list[Path]:
-        """Meshes of this name, whatever its case, below the folder of the top, else below others that may be read: two
-        at most."""
+        """Meshes of this name, whatever its case, below the folder of the top, else below the design's: two at most."""
         if self._by_name is None:
             from kinform.formats.description.mesh_files import files_below
 
             self._by_name = {}
-            for root in (self.top, *sorted(self._allowed - {self.top})):
-                for path in files_below(root, MESHES + OTHER_MESHES):
+            for root in (self.top, Path(self.boundary.folder)):
+                for path in filter(self.boundary.allows, files_below(root, MESHES + OTHER_MESHES)):
                     self._by_name.setdefault(path.name.lower(), {})[path.resolve()] = path
         every = list(self._by_name.get(name.lower(), {}).values())
         return ([path for path in every if path.is_relative_to(self.top)] or every)[:2]
-
-    def allow(self, folders: Iterable[Path]) -> None:
-        """Files below these folders may be read as well: those of the package of a description."""
-        self._allowed.update(folders)
-
-    def _inside(self, path: Path, root: Path) -> bool:
-        """Whether the file, wherever links lead, lies in the folder."""
-        if path.name == ".." or os.path.islink(path):
-            return os.path.realpath(path).startswith(self._real_folder(root))
-        return (self._real_folder(path.parent) + path.name).startswith(self._real_folder(root))
-
-    def _real_folder(self, folder: Path) -> str:
-        """Where links lead, with a separator at its end."""
-        if folder not in self._real:
-            self._real[folder] = os.path.join(os.path.realpath(folder), "")
-        return self._real[folder]
 
     def note(self, path: Path) -> None:
         """Note a file that is read; unless it is a mesh, with its content before it is read."""
         self.names.add(self.shown(path))
         if not is_mesh(path) and path not in self._digests:
-            self._keep(path, _digest(path))
+            self._keep(path, _digest(path, self.boundary))
 
     def hash_meshes(self, paths: Sequence[Path]) -> None:
         """Hash mesh files, several at a time; what cannot be read is told when it is asked for."""
         # Mesh files that are hashed at the same time: more gain nothing on one disk. Chosen, not measured.
         with ThreadPoolExecutor(min(8, os.cpu_count() or 1)) as pool:
-            for path, digest in zip(paths, pool.map(_digest, paths), strict=True):
+            for path, digest in zip(paths, pool.map(lambda path: _digest(path, self.boundary), paths), strict=True):
                 self._keep(path, digest)
 
     def _keep(self, path: Path, digest: str | None) -> None:
@@ -250,7 +249,7 @@ class DesignFiles:
         its name; {} where one changed meanwhile, was not read, or is not where its name leads."""
         if self.unsettled:
             return {}
-        if any(not is_mesh(path) and _digest(path) != digest for path, digest in self._digests.items()):
+        if any(not is_mesh(path) and _digest(path, self.boundary) != digest for path, digest in self._digests.items()):
             return {}
         if any(".." in path.parts and self._is_elsewhere(path) for path in self._digests):
             return {}
@@ -265,7 +264,7 @@ class DesignFiles:
 
     def loose(self, path: Path) -> RawMesh | None:
         """The facets of a mesh file that no part is; None where it may not be read. Raises MeshError and OSError."""
-        if not self._outside and not any(self._inside(path, root) for root in {self.top, *self._allowed}):
+        if not self.boundary.allows(path):
             return None
         self.note(path)
         self._mesh_content(path)
@@ -332,7 +331,7 @@ class DesignFiles:
             _check_file(path)
             try:
                 if self._earlier:
-                    with open(path, "rb") as stream:
+                    with self.boundary.open(path) as stream:
                         self._digests[path] = hashlib.file_digest(stream, "sha256").hexdigest()
                 else:
                     self._digests[path] = hashlib.sha256(self._bytes(path)).hexdigest()
@@ -343,7 +342,7 @@ class DesignFiles:
     def _bytes(self, path: Path) -> bytes:
         if path not in self._data:
             _check_file(path)
-            self._data[path] = path.read_bytes()
+            self._data[path] = self.boundary.read(path)
             if self._digests.get(path, "") not in ("", hashlib.sha256(self._data[path]).hexdigest()):
                 raise MeshError([Fault("changed while it was read", "run again when it is saved")])
         return self._data[path]
@@ -377,23 +376,5 @@ def _folder_in_words(folder: Path, seen_from: Path) -> str:
     return "its folder" if path == "." else path
 
 
-def _files_in(folder: Path) -> list[str]:
-    """Names of the files of a folder, sorted; none where there is no folder, or none that may be read."""
-    try:
-        return sorted(path.name for path in folder.iterdir() if path.is_file())
-    except OSError:
-        return []
-
-
 def _unreadable(error: OSError) -> MeshError:
     return MeshError([Fault(f"cannot be read: {error.strerror}", "check its permissions")])
-
-
-def _first_missing(folder: Path, below: Path) -> str:
-    """The first of the folders of a path that is not there: of a missing one nothing is the parent."""
-    so_far = Path()
-    for part in below.parts:
-        so_far = so_far / part
-        if not (folder / so_far).is_dir():
-            break
-    return so_far.name

@@ -15,6 +15,7 @@ import numpy as np
 from kinform.form.files import DesignFiles, earlier_meshes, is_mesh, mesh_use
 from kinform.form.problems import Problems
 from kinform.form.sources import is_scene
+from kinform.foundation.boundary import Boundary
 from kinform.model.assembly import Assembly, Part
 
 
@@ -29,7 +30,9 @@ def reload_meshes(
     if earlier.descriptions or path.name not in contents or set(contents) != set(earlier.files):
         return None  # of a description, meshes count that are no parts
     problems = Problems()
-    files = DesignFiles(path.parent, problems, allow_outside, earlier_meshes(earlier, contents))
+    files = DesignFiles(
+        path.parent, problems, Boundary(path, allow_outside=allow_outside), earlier_meshes(earlier, contents)
+    )
     meshes = []
     for name, content in contents.items():
         file = files.find(name, path.parent, path.name, 1, "the file")

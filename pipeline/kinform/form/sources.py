@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Mapping
-from dataclasses import field, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from kinform.formats.registry import ROBOT_FORMATS, SCENE_FORMATS
+from kinform.foundation.boundary import Boundary
 from kinform.frozen import dataclass
 
 if TYPE_CHECKING:
@@ -80,6 +81,8 @@ class Source:
     """Of the lengths in the tables; None: those of the source."""
     problems: Problems
     reading: Reading
+    boundary: Boundary
+    """What may be read."""
 
 
 @dataclass(frozen=True)
@@ -91,8 +94,6 @@ class SourceTables:
     notes: tuple[str, ...] = ()
     files: tuple[Path, ...] = ()
     """Files that were read besides the source, meshes apart."""
-    folders: tuple[Path, ...] = field(default=())
-    """Folders in which its meshes may lie, besides that of the source."""
     described: bool = True
     """Whether this is a robot description: what it says of links and joints is meant to be all."""
     facts: Facts | None = None

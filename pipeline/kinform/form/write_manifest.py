@@ -14,6 +14,7 @@ from kinform.form.problems import Problems
 from kinform.form.readers.assembly import load
 from kinform.form.sources import AS_IT_IS, Reading, Source, source_tables
 from kinform.form.without_manifest import proposals
+from kinform.foundation.boundary import Boundary
 from kinform.model.assembly import Assembly
 from kinform.model.function import IntendedJoint
 
@@ -35,7 +36,8 @@ def init_from_source(
     """
     problems = Problems()
     folder = Path(os.path.realpath(relative_to))
-    tables = source_tables(Source(path, path.name, folder, None, problems, reading))
+    boundary = Boundary(path, packages=(package for _, package in reading.packages))
+    tables = source_tables(Source(path, path.name, folder, None, problems, reading, boundary))
     problems.raise_if_any()
     assert tables is not None
     notes = [f"# {' '.join(note.split())}" for note in tables.notes]

@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+from kinform.foundation.boundary import OUTSIDE, OUTSIDE_REMEDY, Boundary
 from kinform.foundation.regular_files import not_a_file
 
 JSON_DEPTH = 32
@@ -29,14 +30,16 @@ class TextError(Exception):
         super().__init__(message)
 
 
-def read_text(path: Path, most: int, what: str) -> str:
-    """The UTF-8 text of a file of at most so many bytes, without its byte order mark; `what` it should be. Raises
-    TextError."""
+def read_text(path: Path, most: int, what: str, boundary: Boundary | None = None) -> str:
+    """The UTF-8 text of a file of at most so many bytes, without its byte order mark; `what` it should be, and where it
+    may lie if not everywhere. Raises TextError."""
+    if boundary is not None and not boundary.allows(path):
+        raise TextError(OUTSIDE, OUTSIDE_REMEDY)
     fault = not_a_file(path)
     if fault is not None:
         raise TextError(fault, f"write it to a file, and name {what}")
     try:
-        with open(path, "rb") as stream:
+        with open(path, "rb") if boundary is None else boundary.open(path) as stream:
             data = stream.read(most + 1)
     except OSError as error:
         raise TextError(f"cannot be read: {error.strerror or error}") from None

@@ -24,7 +24,7 @@ from kinform.results.file import (
     write_bytes,
 )
 from kinform.results.opening import SCHEMA, NotWholeError
-from kinform.results.replacement import replace_file
+from kinform.results.replacement import make_folder, refuse_links, replace_file
 from kinform.results.seal import digest_in
 
 __all__ = [
@@ -39,10 +39,12 @@ __all__ = [
     "fault_of",
     "files_of",
     "is_unknown",
+    "make_folder",
     "read",
     "read_at_need",
     "read_gist",
     "read_if_current",
+    "refuse_links",
     "replace_file",
     "to_bytes",
     "unknown_origin",

@@ -50,16 +50,17 @@ def write(design: Design, path: str | Path) -> None:
     _replace(path, block_of(image, SCHEMA), image, recorded=design.recorded)
 
 
-def write_bytes(data: bytes, path: str | Path) -> None:
-    """Write to `path` what another process made with `to_bytes` for this one, and record it; raises as `write`."""
+def write_bytes(data: bytes, path: str | Path, below: Path | None = None) -> None:
+    """Write to `path`, which stays `below` a folder, what another process made with `to_bytes` for this one, and record
+    it; raises as `write`."""
     check_output(path)
-    _replace(path, data[:BLOCK], data[BLOCK:], recorded=True)
+    _replace(path, data[:BLOCK], data[BLOCK:], recorded=True, below=below)
 
 
-def _replace(path: str | Path, block: bytes, image: bytes, *, recorded: bool) -> None:
+def _replace(path: str | Path, block: bytes, image: bytes, *, recorded: bool, below: Path | None = None) -> None:
     if recorded:
         provenance.record(digest_in(block))
-    replace_file(path, block, image)
+    replace_file(path, block, image, below=below)
 
 
 def check_output(path: str | Path) -> None:

@@ -3,6 +3,9 @@
 The new bytes go to a temporary file in the same folder, are synchronised to disk, and take the place of
 the old file in one step. Identical bytes leave the file alone and touch its time, so that Make converges. What a
 killed process left behind is removed by the next that writes in the folder: writers hold a lock on their file.
+
+Links are not written through (`kinform.foundation.boundary.way_out` says which): the folder is resolved once, opened
+without following links, and everything is done in the folder that was opened.
 """
 
 from __future__ import annotations
@@ -10,6 +13,7 @@ from __future__ import annotations
 import contextlib
 import os
 import stat
+from collections.abc import Iterable
 from pathlib import Path
 
 try:
@@ -18,9 +22,11 @@ except ImportError:  # Windows: files that are left behind stay
     fcntl = None  # type: ignore[assignment]
 
 from kinform.errors import Problem, ResultsError
+from kinform.foundation.boundary import held_folder, way_out
 from kinform.foundation.regular_files import no_folder
 
 _PREFIX, _SUFFIX = ".kinform-", ".tmp"
+_NO_LINK = getattr(os, "O_NOFOLLOW", 0)
 
 
 def refuse(path: str | Path, message: str, remedy: str) -> ResultsError:
@@ -28,8 +34,27 @@ def refuse(path: str | Path, message: str, remedy: str) -> ResultsError:
     return ResultsError(Problem(message, file=str(path), remedy=remedy))
 
 
-def check_target(path: str | Path) -> None:
+def refuse_links(
+    path: str | Path, inside: Iterable[str | Path] = (), below: Path | None = None, *, folder: bool = False
+) -> None:
+    """Raise ResultsError where a link is in the way of an output; what else is given is as of `way_out`."""
+    link = way_out(path, inside, below, folder=folder)
+    if link is None:
+        return
+    if os.path.islink(path) and not folder:
+        raise refuse(path, "this is a link, and outputs are not written through links", "remove it, or name its target")
+    raise refuse(path, f"{link} is a link out of the folder", "remove it, or name the folder that it leads to")
+
+
+def make_folder(folder: Path, below: Path | None = None) -> None:
+    """Make a folder, and those above it, where they are missing. Raises as `refuse_links`, and OSError."""
+    refuse_links(folder, (), below, folder=True)
+    folder.mkdir(parents=True, exist_ok=True)
+
+
+def check_target(path: str | Path, below: Path | None = None) -> None:
     """Raise ResultsError when a file could not be written there, before hours of work are lost."""
+    refuse_links(path, (), below)
     target = Path(os.path.realpath(path))
     if target.is_dir():
         raise refuse(path, "this is a folder, not a file", f"name a file in it, such as {Path(path) / 'results.h5'}")
@@ -43,19 +68,21 @@ def check_target(path: str | Path) -> None:
         raise refuse(path, f"the folder {Path(path).parent} is read-only", "name a file in a writable folder")
 
 
-def replace_file(path: str | Path, *pieces: bytes, sweeps: bool = True) -> None:
+def replace_file(path: str | Path, *pieces: bytes, sweeps: bool = True, below: Path | None = None) -> None:
     """Put these pieces, one after the other, at `path` in one step; keep a file that has them already, with a new time.
 
-    What killed processes left in the folder is removed, unless it has been (`sweeps`): of many files once.
-    Raises ResultsError when that is not possible; the old file is then as it was.
+    `below` is the folder that was named for several files, and in which this one stays, whatever links are there. What
+    killed processes left in the folder is removed, unless it has been (`sweeps`): of many files once. Raises
+    ResultsError when that is not possible; the old file is then as it was.
     """
-    check_target(path)
-    target = Path(os.path.realpath(path))
+    check_target(path, below)
     try:
-        if _holds(target, pieces):
-            os.utime(target)
-        else:
-            _swap(target, pieces, sweeps)
+        with held_folder(os.path.realpath(Path(path).parent)) as folder:
+            target = Path(folder) / Path(path).name
+            if _holds(target, pieces):
+                os.utime(target, follow_symlinks=os.utime not in os.supports_follow_symlinks)
+            else:
+                _swap(target, pieces, sweeps)
     except OSError as error:
         reason = error.strerror or str(error)
         raise refuse(
@@ -70,7 +97,7 @@ def _may(path: Path, mode: int) -> bool:
 def _holds(target: Path, pieces: tuple[bytes, ...]) -> bool:
     if not target.exists() or target.stat().st_size != sum(map(len, pieces)):
         return False
-    with open(target, "rb") as stream:
+    with open(os.open(target, os.O_RDONLY | _NO_LINK), "rb") as stream:
         return all(stream.read(len(piece)) == piece for piece in pieces)
 
 
@@ -122,7 +149,7 @@ def _sweep(folder: Path) -> None:
 def _remove_unless_locked(path: Path) -> None:
     assert fcntl is not None
     with contextlib.suppress(OSError):
-        handle = os.open(path, os.O_RDONLY | os.O_NOFOLLOW)
+        handle = os.open(path, os.O_RDONLY | _NO_LINK)
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
             path.unlink()

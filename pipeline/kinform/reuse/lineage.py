@@ -12,6 +12,7 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
+from kinform.foundation.boundary import Boundary
 from kinform.foundation.regular_files import listing, not_a_file
 from kinform.reuse import fingerprints
 from kinform.reuse.dependence import STAGES, Stage
@@ -45,11 +46,11 @@ def before(stage: Stage) -> str:
     return STAGES[place - 1].name if place else "assembly"
 
 
-def _same(top: Path, files: Mapping[str, str], *, allow_outside: bool) -> bool:
+def _same(top: Path, files: Mapping[str, str], boundary: Boundary) -> bool:
     """Whether every file has the content that it had. What was written last is looked at first: it is what changed, if
     anything did."""
-    root = os.path.join(os.path.realpath(top), "")
-    folders: dict[str, str] = {}
+    if not all(boundary.allows(os.path.join(top, name)) for name in files):
+        return False
     try:
         times = {name: os.stat(os.path.join(top, name)).st_mtime_ns for name in files}
         for name in sorted(files, key=lambda name: -times[name]):
@@ -58,16 +59,9 @@ def _same(top: Path, files: Mapping[str, str], *, allow_outside: bool) -> bool:
                 if listing(path) != files[name]:
                     return False
                 continue
-            if not allow_outside:
-                folder, base = os.path.split(path)
-                if folder not in folders:
-                    folders[folder] = os.path.realpath(folder)
-                whole = os.path.realpath(path) if os.path.islink(path) else os.path.join(folders[folder], base)
-                if not whole.startswith(root):
-                    return False
             if not_a_file(path):
                 return False
-            with open(path, "rb") as stream:
+            with boundary.open(path) as stream:
                 if hashlib.file_digest(stream, "sha256").hexdigest() != files[name]:
                     return False
     except OSError:
@@ -77,7 +71,7 @@ def _same(top: Path, files: Mapping[str, str], *, allow_outside: bool) -> bool:
 
 def current(manifest: Path, files: Mapping[str, str], *, allow_outside: bool) -> str:
     """The lineage that the findings of a run would have now, if it read the same files as before; "" otherwise."""
-    if manifest.name not in files or not _same(manifest.parent, files, allow_outside=allow_outside):
+    if manifest.name not in files or not _same(manifest.parent, files, Boundary(manifest, allow_outside=allow_outside)):
         return ""
     descent = of_files(manifest.name, files)
     for stage in STAGES:

@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from kinform.errors import InputError, Problem
 from kinform.form.keys import steps_of
 from kinform.form.stated import stated_value, toml_of
+from kinform.foundation.boundary import OUTSIDE, OUTSIDE_REMEDY, Boundary
 from kinform.frozen import dataclass
 from kinform.study import fits
 
@@ -145,22 +146,25 @@ class Plan:
     """SHA-256 of the file's text."""
 
 
-def read_plan(path: Path) -> Plan:
+def read_plan(path: Path, *, allow_outside: bool = False) -> Plan:
     """The study in a file. Raises InputError with every problem."""
-    text, raw = toml_of(path, "a study")
+    boundary = Boundary(path, allow_outside=allow_outside)
+    text, raw = toml_of(path, "a study", boundary)
     try:
         tables = Tables.model_validate(raw)
     except ValidationError as error:
         raise InputError([_problem(one, path) for one in error.errors()]) from None
     design = path.parent / tables.study.design
     problems: list[Problem] = []
-    if not design.is_file():
+    if not boundary.allows(design):
+        raise InputError([Problem(f"design: {tables.study.design} {OUTSIDE}", str(path), None, OUTSIDE_REMEDY)])
+    if not boundary.is_file(design):
         problems.append(Problem(f"design: there is no file {tables.study.design}", str(path)))
     problems += _doubles(tables, path)
     axes = []
     for one in tables.vary:
         try:
-            axes.append(replace(_axis(one, design), unit=one.unit))
+            axes.append(replace(_axis(one, design, boundary), unit=one.unit))
         except (ValueError, KeyError) as error:
             problems.append(Problem(f"[[vary]] {one.name!r}: {error.args[0]}", str(path)))
     problems += [Problem(text, str(path)) for text in _wrong_together(tables, axes)]
@@ -170,7 +174,7 @@ def read_plan(path: Path) -> Plan:
     return Plan(path, design, tables.study, tuple(axes), tuple(tables.measure), tuple(tables.make), digest)
 
 
-def _axis(one: Vary, design: Path) -> Axis:
+def _axis(one: Vary, design: Path, boundary: Boundary) -> Axis:
     steps = None if one.value is None else steps_of(one.value)
     if one.values is not None:
         return Axis(one.name, steps, tuple(one.values))
@@ -181,9 +185,9 @@ def _axis(one: Vary, design: Path) -> Axis:
         width = SIGMAS * one.deviation
         return Axis(one.name, steps, None, "normal", one.mean - width, one.mean + width, one.steps)
     middle = one.nominal
-    if middle is None and steps is not None and design.is_file():
+    if middle is None and steps is not None and boundary.is_file(design):
         try:
-            middle = stated_value(design, steps)
+            middle = stated_value(design, steps, boundary)
         except KeyError as error:
             raise ValueError(
                 f"its nominal value is not known ({error.args[0]}): correct value, or state nominal"

@@ -20,7 +20,7 @@ from kinform.errors import InputError, Problem
 from kinform.form.keys import steps_of
 from kinform.foundation import provenance
 from kinform.frozen import dataclass
-from kinform.results import computed_anew
+from kinform.results import computed_anew, refuse_links
 from kinform.study.plan import Plan
 from kinform.study.sampling import samples
 
@@ -163,6 +163,7 @@ class Journal:
 
     def _lines(self) -> Iterator[Any]:
         try:
+            refuse_links(self.path)
             lines = self.path.read_text(encoding="utf-8").split("\n")
         except (OSError, UnicodeDecodeError):
             return
@@ -186,7 +187,9 @@ class Journal:
 
     def __enter__(self) -> Journal:
         whole = [json.dumps({"study": self._key}), *(json.dumps(line) for line in self._lines())]
-        self._stream = self.path.open("w", encoding="utf-8")
+        refuse_links(self.path)
+        flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | getattr(os, "O_NOFOLLOW", 0)
+        self._stream = open(os.open(self.path, flags, 0o666), "w", encoding="utf-8")
         self._stream.write("\n".join(whole) + "\n")
         self._stream.flush()
         return self

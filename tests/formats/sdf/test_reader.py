@@ -124,6 +124,7 @@ def test_frames_and_nested_models_are_where_drake_has_them(tmp_path):
 
 
 def test_includes_are_read_from_packages_and_files(tmp_path):
+    (tmp_path / ".git").mkdir()
     (tmp_path / "models" / "tool").mkdir(parents=True)
     (tmp_path / "models" / "tool" / "model.config").write_text("<model><sdf version='1.7'>tool.sdf</sdf></model>")
     inner = f'<sdf version="1.7"><model name="tool"><pose>5 5 5 0 0 0</pose>{link("tip")}</model></sdf>'
@@ -366,6 +367,7 @@ TOOL = f'<sdf version="1.9"><model name="tool"><link name="t"><visual name="v">{
 
 def a_world(folder, models, more=""):
     """A world, and a model in another folder."""
+    (folder / ".git").mkdir()
     (folder / models / "tool").mkdir(parents=True)
     (folder / models / "tool" / "model.config").write_text("<model><sdf>model.sdf</sdf></model>")
     (folder / models / "tool" / "model.sdf").write_text(TOOL)
@@ -420,6 +422,7 @@ PLATFORM = (
 
 def merged(folder, how, uri="platform", platform=PLATFORM):
     """A model that takes the platform in: merged, or nested as `platform`."""
+    (folder / ".git").mkdir(exist_ok=True)
     (folder / "platform" / "meshes").mkdir(parents=True, exist_ok=True)
     (folder / "platform" / "model.config").write_text("<model><sdf>model.sdf</sdf></model>")
     (folder / "platform" / "model.sdf").write_text(platform)

@@ -219,6 +219,7 @@ LAYOUTS = {
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_a_package_is_found_in_the_workspace_of_the_description(tmp_path, layout):
     mine, theirs, name = LAYOUTS[layout]
+    (tmp_path / ".git").mkdir()
     written = write(tmp_path, urdf(base=BASE.replace("package://arm/", f"package://{name}/meshes/")))
     for package, said in ((mine, "arm"), (theirs, name)):
         (tmp_path / package).mkdir(parents=True)

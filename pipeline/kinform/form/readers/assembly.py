@@ -28,6 +28,7 @@ from kinform.form.readers.sensors import sensors_of
 from kinform.form.readers.springs import springs_of
 from kinform.form.sources import AS_IT_IS, Reading, is_source
 from kinform.form.tables import Posed
+from kinform.foundation.boundary import Boundary
 from kinform.foundation.memory import keep_heap
 from kinform.foundation.name_hints import bound_comparisons, did_you_mean, in_quotes
 from kinform.foundation.regular_files import AS_A_FILE, not_a_file
@@ -61,7 +62,7 @@ def load_with_contents(
     """The assembly that the manifest, or the description, at `path` describes: meshes read, sub-assemblies flattened.
 
     Raises InputError with every problem, each with file, line and remedy. Mesh and
-    sub-assembly files outside the manifest's folder need `allow_outside`. Also gives the SHA-256 (hex) of every file
+    sub-assembly files outside the design's folder need `allow_outside`. Also gives the SHA-256 (hex) of every file
     that was read, by name, empty where one changed meanwhile. Meshes of files that are among the `files` of an
     `earlier` assembly, which the present code read, are taken from it.
     """
@@ -74,7 +75,9 @@ def load_with_contents(
     bound_comparisons()
     problems = Problems()
     meshes = {} if earlier is None else earlier_meshes(earlier, files or {})
-    design = DesignFiles(path.parent, problems, allow_outside, meshes, reading)
+    packages = (folder for _, folder in reading.packages)
+    boundary = Boundary(path, allow_outside=allow_outside, packages=packages)
+    design = DesignFiles(path.parent, problems, boundary, meshes, reading)
     reader = _AssemblyReader(design, problems)
     reader.read(path, path.name, "", np.eye(4), ())
     assembly = reader.assembly() if reader.scopes else None
@@ -104,7 +107,7 @@ class _AssemblyReader:
             return
         scope = Scope(
             parsed.manifest, parsed.lines, file, path.parent, prefix, X_WF, self.problems, parsed.refused, parsed.notes,
-            parsed.described, parsed.facts,
+            parsed.described, parsed.facts, self.files.boundary,
         )  # fmt: skip
         self.scopes.append(scope)
         here = (*above, Path(os.path.realpath(path)))

@@ -68,7 +68,7 @@ def _rows(scope: Scope, path: Path, shown: str, most: int | None = None) -> Iter
     them comes empty. Blank lines, and a first line that is no numbers, are left out. A file that cannot be read as
     such is a problem of the scope, and ends there."""
     try:
-        text = read_text(path, TABLE_BYTES, "a table of numbers")
+        text = read_text(path, TABLE_BYTES, "a table of numbers", scope.boundary)
     except TextError as error:
         scope.problems.add(error.message, shown, None, error.remedy or "check its permissions")
         return

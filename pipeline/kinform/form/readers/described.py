@@ -161,6 +161,7 @@ class _Describer:
         """What may name the meshes: the description, and the texts of its package."""
         yield self.facts.description.text.encode()
         path = self.files.top / self.facts.description.file
-        for other in files_below(MeshFiles(path, {}).home, _TEXTS)[:SIBLINGS_MOST]:
-            if other.stat().st_size <= SIBLING_BYTES:
-                yield other.read_bytes()
+        boundary = self.files.boundary
+        for other in files_below(MeshFiles(path, {}, boundary=boundary).home, _TEXTS)[:SIBLINGS_MOST]:
+            if boundary.allows(other) and other.stat().st_size <= SIBLING_BYTES:
+                yield boundary.read(other)

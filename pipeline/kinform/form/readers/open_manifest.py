@@ -24,6 +24,7 @@ from kinform.form.readers.toml_lines import Path as KeyPath
 from kinform.form.readers.toml_text import TomlError, read_toml
 from kinform.form.sources import Source as SourceFile
 from kinform.form.sources import SourceTables, is_scene, is_source, source_tables, unread
+from kinform.foundation.boundary import Boundary
 from kinform.foundation.name_hints import did_you_mean, in_quotes
 from kinform.foundation.texts import TextError, read_text
 from kinform.foundation.units import UNITS, metres_per
@@ -56,6 +57,8 @@ class Scope:
     """Whether a robot description says it, alone or as `from`."""
     facts: Facts | None = None
     """What that description says word for word."""
+    boundary: Boundary | None = None
+    """Where the files lie that it may name; None: everywhere."""
 
     @property
     def metres(self) -> float:
@@ -147,7 +150,7 @@ def parse(path: Path, file: str, files: DesignFiles, problems: Problems, changes
         problems.add(foreign[0], file, None, foreign[1])
         return None
     try:
-        text = read_text(path, MANIFEST_BYTES, "a manifest")
+        text = read_text(path, MANIFEST_BYTES, "a manifest", files.boundary)
         raw = read_toml(text)
     except TextError as error:
         problems.add(error.message, file, None, error.remedy or "name a manifest (TOML)")
@@ -198,13 +201,12 @@ def _validated(
 def _from_source(
     path: Path, file: str, folder: Path, units: str | None, files: DesignFiles, problems: Problems
 ) -> SourceTables | None:
-    """The tables of a source; its files are noted, and its folders may be read."""
-    tables = source_tables(SourceFile(path, file, folder, units, problems, files.reading))
+    """The tables of a source; its files are noted."""
+    tables = source_tables(SourceFile(path, file, folder, units, problems, files.reading, files.boundary))
     if tables is not None:
         for other in tables.files:
             files.note(other)
         files.hash_meshes([other for other in tables.files if is_mesh(other)])
-        files.allow(tables.folders)
     return tables
 
 

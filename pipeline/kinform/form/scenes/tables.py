@@ -26,7 +26,7 @@ def tables(source: Source) -> SourceTables | None:
         source.problems.add(fault, source.file, None, "write the scene to a file")
         return None
     try:
-        scene = scene_once(source.path.read_bytes(), source.path, source.reading)
+        scene = scene_once(source.boundary.read(source.path), source.path, source.reading)
         parts = parts_of(scene)
     except OSError as error:
         source.problems.add(f"cannot be read: {error.strerror}", source.file, None, "check its permissions")

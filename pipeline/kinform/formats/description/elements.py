@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 from lxml import etree
@@ -16,6 +17,7 @@ from lxml import etree
 from kinform.form.constants import LARGEST_NUMBER, TEXT_BYTES, VALUE_LENGTH
 from kinform.form.problems import Problems
 from kinform.formats.description.robot import At
+from kinform.foundation.boundary import Boundary
 from kinform.foundation.colours import told
 from kinform.foundation.name_hints import in_quotes
 
@@ -139,6 +141,14 @@ class Xml:
         """Note a problem at an element."""
         at = self.at(element)
         self.problems.add(message, at.file, at.line, remedy)
+
+    def content(self, element: Element, path: Path, boundary: Boundary) -> bytes | None:
+        """The content of a file that an element names; None after noting why it cannot be read."""
+        try:
+            return boundary.read(path)
+        except OSError as error:
+            self.complain(element, f"{path.name} cannot be read: {error.strerror}", "check its permissions")
+            return None
 
     def children(self, element: Element | None, *tags: str) -> Iterator[Element]:
         """The children with one of these local names; of all names where none is given."""

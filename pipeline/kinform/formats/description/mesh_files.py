@@ -10,6 +10,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from kinform.form.constants import NAME_LENGTH, VALUE_LENGTH
+from kinform.foundation.boundary import OUTSIDE, OUTSIDE_REMEDY, Boundary
 from kinform.frozen import dataclass
 
 PACKAGE_LEVELS = 4
@@ -35,30 +36,37 @@ _NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
 
 @dataclass(frozen=True)
 class Found:
-    """A file, or the reason why there is none with its remedy; and the folder below which the file may lie."""
+    """A file, which may be read if it is there, or the reason why there is none with its remedy."""
 
     path: Path | None
-    folder: Path | None = None
     message: str = ""
     remedy: str = ""
 
 
 class MeshFiles:
-    """Resolves what one description names. `packages` are folders by name, as the user states them."""
+    """Resolves what one description names. `packages` are folders by name, as the user states them; `boundary` says
+    what may be read, which without one is the folder of this description, and those packages."""
 
     runs_xacro = False
     """Whether the package xacro may expand a file by itself, which runs what its expressions say."""
 
-    def __init__(self, description: Path, packages: Mapping[str, Path], environment: Mapping[str, str] | None = None):
+    def __init__(
+        self,
+        description: Path,
+        packages: Mapping[str, Path],
+        environment: Mapping[str, str] | None = None,
+        boundary: Boundary | None = None,
+    ):
         self.folder = description.parent
         self.packages = packages
+        self.boundary = boundary or Boundary(description, packages=packages.values())
         self._environment = os.environ if environment is None else environment
-        self.home = _home(self.folder)
-        """The package of the description: it may name what lies below."""
+        self.home = _home(self.folder, self.boundary)
+        """The package of the description."""
 
     def beside(self, description: Path) -> MeshFiles:
         """The same for another description that this one names."""
-        return MeshFiles(description, self.packages, self._environment)
+        return MeshFiles(description, self.packages, self._environment, self.boundary)
 
     def find(self, stated: str, folder: Path | None = None) -> Found:
         """The file that a description names; `folder` is where plain paths begin, else that of the description."""
@@ -75,8 +83,7 @@ class MeshFiles:
             text = re.sub(r"^file:(//)?", "", text)
         elif "://" in text:
             return Found(None, message=f"{stated} is not a path in a file system", remedy="name a file")
-        path = (folder or self.folder) / text
-        return Found(path, self.home)
+        return self._inside((folder or self.folder) / text, stated)
 
     def package(self, name: str) -> Path | None:
         """The folder of a package: the one that is stated, else the first that says of itself that it is one, else the
@@ -86,55 +93,87 @@ class MeshFiles:
         there = [root for root in self._roots(name) if root.is_dir()]
         return next((root for root in there if _is_package(root)), next(iter(there), None))
 
+    def _inside(self, path: Path, stated: str) -> Found:
+        """The file of that path, if it lies where the description may read."""
+        if self.boundary.allows(path):
+            return Found(path)
+        return Found(None, message=f"{stated} {OUTSIDE}", remedy=OUTSIDE_REMEDY)
+
     def _in_package(self, name: str, rest: str, stated: str) -> Found:
+        is_file = self.boundary.is_file
         for root in self._roots(name):
             path = root / rest
-            if path.is_file():
-                return Found(path, root)
+            if is_file(path):
+                return Found(path)
         parts = rest.split("/")
-        for base in _above(self.folder, PACKAGE_LEVELS):  # a package that was renamed, or copied without its folder
+        for base in self._above(PACKAGE_LEVELS):  # a package that was renamed, or copied without its folder
             for k in range(len(parts)):
                 path = base.joinpath(*parts[k:])
-                if path.is_file():
-                    return Found(path, base)
+                if is_file(path):
+                    return Found(path)
         known = self.package(name)
         if known is not None:
-            return Found(known / rest, known)  # it is not there, which is told as of any other path
-        for base in _above(self.folder, PACKAGE_LEVELS):
+            return self._inside(known / rest, stated)  # it is not there, which is told as of any other path
+        for base in self._above(PACKAGE_LEVELS):
             for k in range(len(parts) - 2):  # two of its folders stand there, and the file does not
-                if base.joinpath(*parts[k:-1]).is_dir():
-                    return Found(base.joinpath(*parts[k:]), base)
+                if self.boundary.is_folder(base.joinpath(*parts[k:-1])):
+                    return self._inside(base.joinpath(*parts[k:]), stated)
         remedy = f"add --package {name}=FOLDER, or set ROS_PACKAGE_PATH"
         return Found(None, message=f"{stated} is not found: no folder {name} is known", remedy=remedy)
 
     def _roots(self, name: str) -> Iterator[Path]:
-        """Folders that may be the package: as stated, beside the description, then as the environment says."""
+        """Folders that may be the package, all of which may be read: as stated, beside the description, then as the
+        environment says."""
         if name in ("", ".", ".."):
             yield from (self.folder, self.home)[: 0 if name else 2]
             return
         if name in self.packages:
             yield self.packages[name]
-        for above in _above(self.folder, None):
-            if above.name == name:
+        for above in self._above(None):
+            if above.name == name and self._is_own(above):
                 yield above
-            if (above / name).is_dir():
+            if self._is_own(above / name):
                 yield from (above / name, above / name / "share" / name)  # which is where colcon installs it
-            if (above / MODELS / name).is_dir():
+            elif self._is_own(above / name / "share" / name):
+                yield above / name / "share" / name
+            if self._is_own(above / MODELS / name):
                 yield above / MODELS / name
         for prefix in _paths(self._environment.get("AMENT_PREFIX_PATH")):
-            yield prefix / "share" / name
+            yield self._granted(prefix / "share" / name)
         for folder in (path for variable in SEARCHED for path in _paths(self._environment.get(variable))):
-            yield from (folder / name, folder) if folder.name == name else (folder / name,)
+            for root in (folder / name, folder) if folder.name == name else (folder / name,):
+                yield self._granted(root)
         if name in self._around:
             yield self._around[name]
+
+    def _is_own(self, folder: Path) -> bool:
+        """Whether it is a folder that may be read; a package of the design's repository may be from now on. Others are
+        not looked at."""
+        if not self.boundary.allows(folder):
+            if not self.boundary.holds_package(folder) or not _is_package(folder):
+                return False
+            self.boundary.grant(folder)
+        return self.boundary.is_folder(folder)
+
+    def _granted(self, folder: Path) -> Path:
+        """A folder that a variable of the user names."""
+        self.boundary.grant(folder)
+        return folder
+
+    def _above(self, levels: int | None) -> list[Path]:
+        """The folder of the description and those above it, as far as packages of the design are looked for."""
+        return [above for above in _above(self.folder, levels) if above.is_relative_to(self.boundary.top)]
 
     @cached_property
     def _around(self) -> Mapping[str, Path]:
         """The packages of the workspace of the description, by the names that they give themselves: those below the
-        folder `src` that it is in; without one, those beside its own."""
-        full = self.home.resolve()
+        folder `src` that it is in; without one, those beside its own; as far as its repository goes."""
+        full, top = self.home.resolve(), Path(self.boundary.top)
         source = next((above for above in full.parents if above.name == "src"), None)
-        return packages_below(full.parent, 1) if source is None else packages_below(source, WORKSPACE_LEVELS)
+        below, levels = (full.parent, 1) if source is None else (source, WORKSPACE_LEVELS)
+        if not below.is_relative_to(top):
+            below = top
+        return {name: folder for name, folder in packages_below(below, levels).items() if self._is_own(folder)}
 
 
 def packages_below(folder: Path, levels: int) -> dict[str, Path]:
@@ -216,10 +255,10 @@ def _above(folder: Path, levels: int | None) -> Sequence[Path]:
     return [full, *full.parents][:levels]
 
 
-def _home(folder: Path) -> Path:
-    """The nearest folder above with the file of a package; else the one above the description's."""
+def _home(folder: Path, boundary: Boundary) -> Path:
+    """The nearest folder above with the file of a package; else the one above the description's, if it may be read."""
     full = folder.resolve()
     for above in [full, *full.parents][:PACKAGE_LEVELS]:
-        if _is_package(above):
+        if boundary.allows(above) and _is_package(above):
             return above
-    return full.parent
+    return full.parent if boundary.allows(full.parent) else full

@@ -7,7 +7,6 @@ The frame F is that of the description: of its root link, or of its world. A rea
 from __future__ import annotations
 
 import math
-from dataclasses import field
 from pathlib import Path
 
 from kinform.frozen import dataclass
@@ -170,5 +169,3 @@ class Robot:
     """What `text` is."""
     text: str = ""
     """All of it as XML, macros expanded and includes put in; "" where it cannot be written back."""
-    folders: tuple[Path, ...] = field(default=())
-    """Folders, besides that of the description, in which its meshes may lie."""

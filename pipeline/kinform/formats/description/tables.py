@@ -36,7 +36,7 @@ def tables(source: Source) -> SourceTables | None:
         source.problems.add(fault, source.file, None, "write the description to a file")
         return None
     try:
-        data = source.path.read_bytes()
+        data = source.boundary.read(source.path)
     except OSError as error:
         source.problems.add(f"cannot be read: {error.strerror}", source.file, None, "name a robot description")
         return None
@@ -49,7 +49,7 @@ def tables(source: Source) -> SourceTables | None:
                             "name a manifest (TOML), or a description")  # fmt: skip
         return None
     packages = {name: Path(folder) for name, folder in source.reading.packages}
-    meshes = MeshFiles(source.path, packages)
+    meshes = MeshFiles(source.path, packages, boundary=source.boundary)
     meshes.runs_xacro = source.reading.allow_xacro
     before = len(source.problems)
     robot = read(source.path, data, source.file, source.problems, meshes)
@@ -57,10 +57,8 @@ def tables(source: Source) -> SourceTables | None:
         return None
     writer = _Writer(source)
     writer.write(robot)
-    folders = (*robot.folders, meshes.home)
     facts = facts_of(robot, source.file, source.reading.geometry, writer.parts, writer.absent)
-    return SourceTables(writer.raw, Places(writer.places), (*robot.notes, *writer.notes), robot.files, folders,
-                        facts=facts)  # fmt: skip
+    return SourceTables(writer.raw, Places(writer.places), (*robot.notes, *writer.notes), robot.files, facts=facts)
 
 
 class _Writer:

@@ -21,9 +21,10 @@ from kinform.design import Design
 from kinform.exports.exported import Exported
 from kinform.form.problems import Problems
 from kinform.formats.description.elements import xml_bytes
-from kinform.formats.description.mesh_files import MeshFiles
+from kinform.formats.description.mesh_files import Found, MeshFiles
 from kinform.formats.description.robot import At, Inertial, Robot, RobotJoint
 from kinform.formats.registry import WRITTEN, edits_of, reader_of_text
+from kinform.foundation.boundary import Boundary
 from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
 from kinform.mass.shapes import solid_of
@@ -73,12 +74,23 @@ def export(design: Design, format: str, *, inertia: bool = False, folder: str | 
 
 
 def _read(description: Description) -> Robot:
-    """The robot of the text, by its reader; meshes need not be there."""
+    """The robot of the text, by its reader; meshes need not be there. What else it names is read only where the working
+    folder may."""
     read = reader_of_text(description.format)
     data, path = xml_bytes(description.text), Path(description.file)
-    robot = read(path, data, description.file, Problems(), MeshFiles(path, {}))
-    assert robot is not None, "it was read before"
+    problems = Problems()
+    robot = read(path, data, description.file, problems, _Named(path, {}, boundary=Boundary(Path(path.name))))
+    problems.raise_if_any()
+    assert robot is not None
     return robot
+
+
+class _Named(MeshFiles):
+    """Paths as they are stated."""
+
+    def find(self, stated: str, folder: Path | None = None) -> Found:
+        """The name of a file, wherever it lies."""
+        return Found((folder or self.folder) / stated)
 
 
 class _Text:

@@ -17,6 +17,7 @@ from kinform.formats.description.elements import Element, Xml
 from kinform.formats.description.mesh_files import MeshFiles
 from kinform.formats.description.robot import Link, Ratio, RobotJoint, Shape
 from kinform.foundation.algebra.displacements import inverse
+from kinform.foundation.boundary import OUTSIDE, OUTSIDE_REMEDY
 from kinform.foundation.name_hints import did_you_mean, in_quotes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
@@ -64,15 +65,13 @@ class Budget:
     made: int = 0
     files: list[Path] = field(default_factory=list)
     """That were read besides the description."""
-    folders: set[Path] = field(default_factory=set)
-    """In which meshes may lie."""
     notes: list[str] = field(default_factory=list)
     known: dict[Path, tuple[str, Content] | None] = field(default_factory=dict)
     """By file the name that a model gives itself, and what it holds."""
 
 
-Read = Callable[[Path, Xml, MeshFiles, Budget], "tuple[str, Content] | None"]
-"""Reads the model of a file: the name that it gives itself, and what it holds."""
+Read = Callable[[Path, bytes, Xml, MeshFiles, Budget], "tuple[str, Content] | None"]
+"""Reads the model of a file with this content: the name that it gives itself, and what it holds."""
 
 
 class Models:
@@ -108,9 +107,9 @@ class Models:
         full = path.resolve()
         shown = (Path(self._xml.file).parent / stated).as_posix()
         fault = None
-        if not full.is_relative_to(self._meshes.home.resolve()):
-            fault = f"the model {in_quotes(stated)} lies outside the folder", "move it there"
-        elif not stated or not full.is_file():
+        if not self._meshes.boundary.allows(path):
+            fault = f"the model {in_quotes(stated)} {OUTSIDE}", OUTSIDE_REMEDY
+        elif not stated or not self._meshes.boundary.is_file(path):
             fault = f"the model {in_quotes(stated)} does not exist", "correct its file"
         elif full in self._budget.way:
             fault = f"the model {in_quotes(stated)} attaches itself", "remove one of the models"
@@ -123,7 +122,9 @@ class Models:
             way = self._budget.way
             self._budget.way = (*way, full)
             xml = Xml(shown, self._xml.problems)
-            self._budget.known[full] = self._read(path, xml, self._meshes.beside(path), self._budget)
+            data = self._xml.content(element, path, self._meshes.boundary)
+            meshes = self._meshes.beside(path)
+            self._budget.known[full] = None if data is None else self._read(path, data, xml, meshes, self._budget)
             self._budget.way = way
         return self._budget.known[full]
 

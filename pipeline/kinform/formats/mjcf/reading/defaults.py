@@ -14,6 +14,7 @@ from kinform.formats.description.elements import FILE, Element, Xml, parse_xml, 
 from kinform.formats.description.mesh_files import MeshFiles
 from kinform.formats.description.poses import about, pose, quaternion, turn
 from kinform.formats.mjcf.reading.fits import INERTIAS
+from kinform.foundation.boundary import OUTSIDE, OUTSIDE_REMEDY
 from kinform.foundation.name_hints import did_you_mean, in_quotes
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
@@ -44,9 +45,9 @@ class Includes:
             name, here = (element.get("file") or "").replace("\\", "/"), Path(self._xml.at(element).file).parent
             beside = os.path.relpath(here, Path(self._xml.file).parent)
             below = self._top.parent / folder
-            if name and "://" not in name and beside != "." and not (below / name).is_file():
+            if name and "://" not in name and beside != "." and not self._meshes.boundary.is_file(below / name):
                 path = Path(beside) / name
-                if (below / path).is_file():
+                if self._meshes.boundary.is_file(below / path):
                     element.set("file", path.as_posix())
 
     def _include(self, element: Element) -> None:
@@ -54,13 +55,14 @@ class Includes:
         path = self._top.parent / name
         shown = Path(self._xml.file).parent / name
         from_file = self._xml.at(element).file
-        if name and not path.is_file() and (self._shown[from_file].parent / name).is_file():
-            path, shown = self._shown[from_file].parent / name, Path(from_file).parent / name
+        beside = self._shown[from_file].parent / name
+        if name and not self._meshes.boundary.is_file(path) and self._meshes.boundary.is_file(beside):
+            path, shown = beside, Path(from_file).parent / name
         above = element.getparent()
         place = above.index(element)
-        if not path.resolve().is_relative_to(self._meshes.home.resolve()):
-            self._xml.complain(element, f"the include {in_quotes(name)} lies outside the folder", "move it there")
-        elif not name or not path.is_file():
+        if not self._meshes.boundary.allows(path):
+            self._xml.complain(element, f"the include {in_quotes(name)} {OUTSIDE}", OUTSIDE_REMEDY)
+        elif not name or not self._meshes.boundary.is_file(path):
             self._xml.complain(element, f"the include {in_quotes(name)} does not exist", "correct its file")
         elif path.resolve() in self._seen or len(self._seen) > FILES_DEEP:
             message = f"the file {in_quotes(name)} is included twice, or includes itself"
@@ -69,7 +71,8 @@ class Includes:
             self._seen.add(path.resolve())
             self.files.append(path)
             self._shown[shown.as_posix()] = path
-            root = parse_xml(path.read_bytes(), shown.as_posix(), self._xml.problems)
+            data = self._xml.content(element, path, self._meshes.boundary)
+            root = None if data is None else parse_xml(data, shown.as_posix(), self._xml.problems)
             for k, child in enumerate([] if root is None else list(root)):
                 child.set(FILE, shown.as_posix())
                 above.insert(place + k, child)

@@ -46,8 +46,7 @@ def read(path: Path, data: bytes, file: str, problems: Problems, meshes: MeshFil
         return None
     # what attached models say is in no text that could be written back
     text = "" if budget.known else _whole(root, data, changed)
-    folders = tuple(sorted(set(robot.folders) | budget.folders))
-    return replace(robot, format="mjcf", text=text, files=(*budget.files, *robot.files), folders=folders)
+    return replace(robot, format="mjcf", text=text, files=(*budget.files, *robot.files))
 
 
 def _opened(
@@ -69,15 +68,14 @@ def _opened(
     return _Reader(xml, meshes, root, path, budget), root, changed
 
 
-def _model(path: Path, xml: Xml, meshes: MeshFiles, budget: Budget) -> tuple[str, Content] | None:
+def _model(path: Path, data: bytes, xml: Xml, meshes: MeshFiles, budget: Budget) -> tuple[str, Content] | None:
     """The name that a model gives itself, and what it holds."""
     budget.files.append(path)
-    reader, root, _ = _opened(path, path.read_bytes(), xml, meshes, budget)
+    reader, root, _ = _opened(path, data, xml, meshes, budget)
     content = None if reader is None else reader.content(root)
     if reader is None or content is None:
         return None
     budget.notes += reader.left.sentences(xml.file)
-    budget.folders |= reader.shapes.folders
     budget.files += sorted(reader.shapes.files)
     return root.get("model") or path.stem, content
 
@@ -127,7 +125,6 @@ class _Reader:
             ratios=tuple(self.ratios),
             root=WORLD if WORLD in self.links else next(iter(self.links), None),
             notes=(*self.left.sentences(self.xml.file), *dict.fromkeys(self.budget.notes)),
-            folders=tuple(sorted(self.shapes.folders)),
             files=tuple(sorted(self.shapes.files)),
         )
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from kinform.form.meshes.raw import REEXPORT, Fault, MeshError, RawMesh, scaled
+from kinform.form.meshes.raw import REEXPORT, MeshError, RawMesh, scaled
 from kinform.formats.description.elements import Element, Xml, colour_of, tag_of
 from kinform.formats.description.inertials import placed, symmetric
 from kinform.formats.description.mesh_files import MeshFiles
@@ -24,7 +24,7 @@ _UNCOLOURED: tuple[list[str], ...] = ([], ["0.5", "0.5", "0.5", "1"], [".5", ".5
 
 
 class Shapes:
-    """Reads what is in bodies; `folders` are those of its meshes."""
+    """Reads what is in bodies."""
 
     def __init__(self, xml: Xml, root: Element, meshes: MeshFiles, compiler: Compiler, defaults: Defaults, left: Count):
         self._xml, self._meshes, self._compiler, self._defaults, self._left = xml, meshes, compiler, defaults, left
@@ -34,7 +34,6 @@ class Shapes:
             for assets in xml.children(root, "asset")
             for said in (defaults.said(element, None) for element in xml.children(assets, "material"))
         }
-        self.folders: set[Path] = set()
         self.files: set[Path] = set()
         """Meshes that were read, for what was fitted to them."""
         self._raw: dict[Path, RawMesh] = {}
@@ -145,10 +144,7 @@ class Shapes:
         from kinform.form.files import read_raw  # which asks for readers of descriptions itself
 
         if path not in self._raw:
-            roots = [self._meshes.home, *self.folders]
-            if not any(path.resolve().is_relative_to(root.resolve()) for root in roots):
-                raise MeshError([Fault("lies outside the folder", "move it there")])
-            self._raw[path] = read_raw(path)
+            self._raw[path] = read_raw(path, self._meshes.boundary)
         return self._raw[path]
 
     def _mesh(self, element: Element, said: Mapping[str, str], link: str, X: Array, name: str | None) -> Shape | None:
@@ -168,6 +164,4 @@ class Shapes:
         if found.path is None:
             self._xml.complain(asset.element, f"mesh {in_quotes(stated)} {found.message}", found.remedy)
             return None
-        if found.folder is not None:
-            self.folders.add(found.folder)
         return Shape(name, found.path, asset.scale, X @ asset.X, self._xml.at(element))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 from kinform.formats.description.elements import Element, colour_of, tag_of
 from kinform.formats.description.inertials import placed, symmetric
@@ -31,7 +30,6 @@ class Links:
     def __init__(self, values: Values, frames: Frames, meshes: MeshFiles, left: Count):
         self.xml, self.values, self.frames, self.meshes, self.left = values.xml, values, frames, meshes, left
         self.stated: dict[str, tuple[Model, Element]] = {}
-        self.folders: set[Path] = set()
 
     def read(self) -> dict[str, Link]:
         """The links whose poses are known, by their full names."""
@@ -111,8 +109,6 @@ class Links:
             self.xml.complain(kind, f"{what}: its mesh names no file", "add <uri>…</uri>")
             return None
         found = self.meshes.find(uri, model.folder)
-        if found.folder is not None:
-            self.folders.add(found.folder)
         if found.path is None:
             self.xml.complain(kind, f"{what}: the mesh {found.message}", found.remedy)
             return None

@@ -1,7 +1,7 @@
 """The models of an SDF, nested and included, as a flat list, each with the prefix of its names and its frame.
 
-`<include>` of `model://NAME`, of a folder with a model.config, or of a file; only below the package of the description,
-or below folders that the user names, and at most so deep in each other.
+`<include>` of `model://NAME`, of a folder with a model.config, or of a file; only where the description may read, and
+at most so deep in each other.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from kinform.formats.description.tree import Count
 from kinform.formats.sdf.reading.frames import MODEL, WORLD, Frame, Frames
 from kinform.formats.sdf.reading.text import Included
 from kinform.formats.sdf.reading.values import Values
+from kinform.foundation.boundary import OUTSIDE, OUTSIDE_REMEDY
 from kinform.foundation.name_hints import in_quotes
 from kinform.frozen import dataclass
 
@@ -67,7 +68,6 @@ class Models:
         self._values = Values(xml)
         self.models: list[Model] = []
         self.files: list[Path] = []
-        self.folders: list[Path] = []
         self.included: list[Included] = []
         """The outer before the inner."""
         self._full = False
@@ -152,7 +152,8 @@ class Models:
             xml.complain(element, f"the include {in_quotes(uri)} includes itself", "remove one of the includes")
             return
         shown = _shown(path, self._meshes.folder, Path(xml.file).parent)
-        root = parse_xml(path.read_bytes(), shown, xml.problems)
+        data = xml.content(element, path, self._meshes.boundary)
+        root = None if data is None else parse_xml(data, shown, xml.problems)
         self.files.append(path)
         if root is None:
             return
@@ -218,38 +219,39 @@ class Models:
                 message = f"the include {in_quotes(uri)} is not found: no folder {match[1]} is known"
                 self._xml.complain(element, message, f"add --package {match[1]}=FOLDER, or set ROS_PACKAGE_PATH")
                 return None
-            path, allowed = package / match[2], package
+            path = package / match[2]
         else:
-            path, allowed = folder / uri.removeprefix("file://"), self._meshes.home
-            package = None if path.exists() or not re.fullmatch(r"[\w.-]+", uri) else self._meshes.package(uri)
-            path, allowed = (path, allowed) if package is None else (package, package)  # a name is that of a model
-        if not path.resolve().is_relative_to(allowed.resolve()):
-            self._xml.complain(element, f"the include {in_quotes(uri)} lies outside the folder", "move it there")
+            path = folder / uri.removeprefix("file://")
+            named = re.fullmatch(r"[\w.-]+", uri) and not (
+                self._meshes.boundary.is_file(path) or self._meshes.boundary.is_folder(path)
+            )
+            path = (self._meshes.package(uri) or path) if named else path  # a name is that of a model
+        path = self._in_folder(path) if self._meshes.boundary.is_folder(path) else path
+        if not self._meshes.boundary.allows(path):
+            self._xml.complain(element, f"the include {in_quotes(uri)} {OUTSIDE}", OUTSIDE_REMEDY)
             return None
-        path = _in_folder(path) if path.is_dir() else path
-        if not path.is_file():
+        if not self._meshes.boundary.is_file(path):
             self._xml.complain(
                 element, f"the include {in_quotes(uri)} does not exist", f"there is no {path.name} there"
             )
             return None
-        if package is not None:
-            self.folders.append(package.resolve())
         return path
+
+    def _in_folder(self, folder: Path) -> Path:
+        """The SDF that model.config of a folder names last, else model.sdf."""
+        try:
+            config = self._meshes.boundary.read(folder / "model.config")
+        except OSError:
+            config = b""
+        names = re.findall(rb"<sdf[^>]*>([^<]+)</sdf>", config)
+        path = folder / (names[-1].decode("utf-8", "replace").strip() if names else "model.sdf")
+        return path if path.resolve().is_relative_to(folder.resolve()) else folder / "model.sdf"
 
 
 def version_of(root: Element) -> tuple[int, ...]:
     """The version of SDF that a file states; the newest where it states none."""
     numbers = re.findall(r"\d+", root.get("version", ""))
     return tuple(int(n[:6]) for n in numbers[:2]) or (1, 11)
-
-
-def _in_folder(folder: Path) -> Path:
-    """The SDF that model.config of a folder names last, else model.sdf."""
-    config = folder / "model.config"
-    names = re.findall(rb"<sdf[^>]*>([^<]+)</sdf>", config.read_bytes()) if config.is_file() else []
-    name = names[-1].decode("utf-8", "replace").strip() if names else "model.sdf"
-    path = folder / name
-    return path if path.resolve().is_relative_to(folder.resolve()) else folder / "model.sdf"
 
 
 def _shown(path: Path, folder: Path, prefix: Path) -> str:

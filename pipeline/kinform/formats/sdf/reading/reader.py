@@ -107,7 +107,6 @@ class _Reader:
             root=name if keep else next((end for end in ends), next(iter(links), None)),
             notes=self.left.sentences(xml.file),
             files=tuple(self.models.files),
-            folders=tuple(sorted({*self.links.folders, *self.models.folders})),
         )
 
     def _state(self, model: Model) -> None:

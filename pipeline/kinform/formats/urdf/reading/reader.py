@@ -65,7 +65,6 @@ def read_text(
 class _Reader:
     def __init__(self, xml: Xml, meshes: MeshFiles):
         self.xml, self.meshes, self.left = xml, meshes, Count()
-        self.folders: set[Path] = set()
         self.colours: dict[str, str] = {}
 
     def robot(self, root: Element, name: str) -> Robot | None:
@@ -94,7 +93,6 @@ class _Reader:
             ratios=tuple(self._ratios(joints, {joint.name for joint in made if joint is not None})),
             root=tree.root,
             notes=self.left.sentences(xml.file),
-            folders=tuple(sorted(self.folders)),
         )
 
     def _by_name(self, root: Element, tag: str) -> dict[str, Element]:
@@ -198,8 +196,6 @@ class _Reader:
             self.xml.complain(kind, f"{what}: its mesh names no file", 'add filename="…"')
             return None
         found = self.meshes.find(kind.get("filename"))
-        if found.folder is not None:
-            self.folders.add(found.folder)
         if found.path is None:
             self.xml.complain(kind, f"{what}: the mesh {found.message}", found.remedy)
             return None

@@ -1,10 +1,10 @@
 """xacro: expanded by the macro processor of the package `xacro`, confined, then read as URDF.
 
 The processor runs in a process of its own (`foundation.confined`), where expressions are evaluated by kinform
-(`expansion`, `expressions`). It has no environment and no files but those that `_Host` hands it: the file itself, files
-of the design's folder, and files of packages that are found. With `--allow-xacro` the package expands the file by
-itself, with everything that its expressions may do. Lines are those of the text as written, as far as an element of
-that name stands there; else the first.
+(`expansion`, `expressions`). It has no environment and no files but those that `_Host` hands it: the file itself, what
+the `boundary` of the design allows, and files of packages that are found. With `--allow-xacro` the package expands the
+file by itself, with everything that its expressions may do. Lines are those of the text as written, as far as an
+element of that name stands there; else the first.
 """
 
 from __future__ import annotations
@@ -113,7 +113,6 @@ class _Host:
 
     def __init__(self, path: Path, data: bytes, file: str, problems: Problems, meshes: MeshFiles):
         self.path, self.data, self.file, self.problems, self.meshes = path, data, file, problems, meshes
-        self.roots = [design_folder(path.parent)]
         self.texts = {str(path): data}
         self.questions = 0
 
@@ -159,14 +158,8 @@ class _Host:
         if folder is None:
             return _no(f"package {name} is not found", f"add --package {name}=FOLDER, or set ROS_PACKAGE_PATH")
         folder = folder.resolve()
-        if folder not in self.roots:
-            self.roots.append(folder)
+        self.meshes.boundary.grant(folder)
         return b"+" + os.fsencode(folder.as_posix())
-
-    def _inside(self, name: str) -> bool:
-        """Whether a file, wherever links lead, is in the design's folder or in a package that was found."""
-        full = Path(os.path.realpath(name))
-        return any(full.is_relative_to(root) for root in self.roots)
 
     def _outside(self, name: str) -> bytes:
         shown = Path(os.path.relpath(name, self.path.parent)).as_posix()
@@ -178,15 +171,15 @@ class _Host:
         parts = pattern.split("/")
         first = next((k for k, part in enumerate(parts) if glob.has_magic(part)), len(parts))
         folder = "/".join(parts[:first]) or ("/" if pattern.startswith("/") else ".")
-        if ".." in parts[first:] or not self._inside(folder):
+        if ".." in parts[first:] or not self.meshes.boundary.allows(folder):
             return self._outside(pattern)
         names = sorted(glob.glob(pattern))
-        strange = next((name for name in names if not self._inside(name)), None)
+        strange = next((name for name in names if not self.meshes.boundary.allows(name)), None)
         return b"+" + json.dumps(names[: XACRO_FILES + 1]).encode() if strange is None else self._outside(strange)
 
     def _content(self, name: str, at: str, *, xml: bool) -> bytes:
         """The content of a file."""
-        if not self._inside(name):
+        if not self.meshes.boundary.allows(name):
             return self._outside(name)
         path = Path(os.path.realpath(name))
         fault = not_a_file(path) or ("is a folder" if path.is_dir() else None)
@@ -194,7 +187,7 @@ class _Host:
         if fault is not None:
             return _no(f"includes {shown}, which {fault}", "name a file")
         try:
-            with open(path, "rb") as stream:
+            with self.meshes.boundary.open(path) as stream:
                 data = stream.read(TEXT_BYTES + 1)
         except FileNotFoundError:
             return b"-" + json.dumps({"missing": True}).encode()
@@ -210,15 +203,6 @@ class _Host:
 
 def _no(words: str, remedy: str) -> bytes:
     return b"-" + json.dumps({"words": words, "remedy": remedy}).encode()
-
-
-def design_folder(folder: Path) -> Path:
-    """The nearest folder, from this one upwards, with a package.xml or the root of a repository; else this one."""
-    full = folder.resolve()
-    for above in (full, *full.parents):
-        if (above / "package.xml").is_file() or (above / ".git").exists():
-            return above
-    return full
 
 
 def _by_xacro(path: Path, data: bytes, meshes: MeshFiles) -> _Expanded | _Fault:
