@@ -96,7 +96,7 @@ def xml(text: str) -> str:
 
 def html(text: str) -> str:
     """A text for people in HTML and SVG, also within attributes: on one line as `one_line`."""
-    return one_line(text).translate(_IN_HTML)
+    return lines(one_line(text)).translate(_IN_HTML)
 
 
 def csv_cell(text: str) -> str:
