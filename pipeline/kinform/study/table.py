@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 
 from kinform.errors import InputError, Problem
+from kinform.exports.names import XML, free_name, identifiers
 from kinform.foundation.escapes import csv_cell
 from kinform.results import replace_file
 from kinform.study.session import Outcome
@@ -32,8 +33,10 @@ def write(outcome: Outcome, path: Path) -> None:
             ("measured", [m.name for m in outcome.plan.measures], outcome.measured),
         ):
             made = file.create_group(group)
+            places = identifiers(names, XML)
             for k, name in enumerate(names):
-                _column(made, name.replace("/", "_"), [row[k] for row in rows])
+                place = places[name].replace("/", "_").strip(".") or "_"
+                _column(made, free_name(place, made), [row[k] for row in rows])
         _column(file, "failure", list(outcome.failures))
         file.flush()
         image = file.id.get_file_image()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from kinform.design import Design
+from kinform.exports.names import FILES
 from kinform.foundation.escapes import lines as safe_lines
 from kinform.foundation.progress import Progress
 from kinform.reports.markdown import escaped
@@ -30,7 +31,8 @@ def _told(design: Design, notes: bool) -> list[tuple[str, facts.FindingFacts]]:
     """The findings that the summary tells, the worst first, each with the name of its picture; empty: it has none."""
     found = facts.findings(design)[:MOST_PICTURE_FILES]
     return [
-        (f"finding-{n:02d}-{f.code}.png" if notes or f.severity != "note" else "", f) for n, f in enumerate(found, 1)
+        (f"finding-{n:02d}-{FILES.spell(f.code)}.png" if notes or f.severity != "note" else "", f)
+        for n, f in enumerate(found, 1)
     ]
 
 
