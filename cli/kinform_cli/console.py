@@ -13,8 +13,10 @@ import sys
 from dataclasses import dataclass
 from typing import IO, TYPE_CHECKING
 
+from kinform.foundation import escapes
+
 if TYPE_CHECKING:
-    from rich.console import Console, RenderableType
+    from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
     from rich.text import Text
 
 WIDTH = 80
@@ -81,18 +83,32 @@ def stderr() -> Console:
 def tell(text: str | Text) -> None:
     """A line on stderr. That nobody can read it changes no verdict."""
     try:
-        if isinstance(text, str):  # nothing to style: without rich, whose import takes longer than all else
-            sys.stderr.write(harmless(text) + "\n")
-            sys.stderr.flush()
-        else:
-            stderr().print(text, soft_wrap=True)
+        # where nothing is styled without rich, whose import takes longer than all else
+        told = escapes.lines(text) + "\n" if isinstance(text, str) else _drawn(stderr(), text, soft_wrap=True)
+        sys.stderr.write(told)
+        sys.stderr.flush()
     except OSError:
         _forget(sys.stderr)
 
 
-def harmless(text: str) -> str:
-    """The text with control characters escaped, but for ends of lines: a name commands no terminal."""
-    return "".join(c if c.isprintable() or c in "\n\t" else c.encode("unicode_escape").decode("ascii") for c in text)
+def _drawn(console: Console, item: RenderableType, *, soft_wrap: bool = False) -> str:
+    """What the console would print: only its colours are control characters, and no line commands a CI runner."""
+    with console.capture() as drawn:
+        console.print(_Escaped(item), soft_wrap=soft_wrap, crop=False)
+    return escapes.of_terminal(drawn.get())
+
+
+@dataclass
+class _Escaped:
+    """An item of whose text control characters are escaped once it is in lines."""
+
+    item: RenderableType
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        from rich.segment import Segment
+
+        for text, style, control in console.render(self.item, options):
+            yield Segment(text if control else escapes.harmless(text), style, control)
 
 
 def _forget(stream: IO[str]) -> None:
@@ -109,8 +125,8 @@ def _lose(stream: IO[str], error: OSError) -> None:
 
 
 def emit(text: str) -> None:
-    """Write text to stdout as it is, and end the line. What cannot be written is remembered, and no exception: the
-    work goes on, and the verdict counts."""
+    """Write a document to stdout, which `foundation.escapes` made safe, and end the line. What cannot be written is
+    remembered, and no exception: the work goes on, and the verdict counts."""
     try:
         sys.stdout.write(text if text.endswith("\n") else text + "\n")
         sys.stdout.flush()
@@ -121,9 +137,7 @@ def emit(text: str) -> None:
 def out(item: RenderableType) -> None:
     """Write a table, a tree or sentences for people to stdout; off a terminal no blanks end a line."""
     console = _console(sys.stdout)
-    with console.capture() as drawn:
-        console.print(item)
-    text = drawn.get()
+    text = _drawn(console, item)
     emit(text if console.is_terminal else "\n".join(line.rstrip() for line in text.splitlines()))
 
 
@@ -149,6 +163,7 @@ def say(text: str | None) -> None:
     if text is not None and not settings.quiet:
         from kinform_cli.text import hanging
 
+        text = escapes.one_line(text)
         width = max(shutil.get_terminal_size((WIDTH, 24)).columns, LEAST_WIDTH)
         tell(hanging(text, width) if sys.stderr.isatty() else text)
 
@@ -158,7 +173,7 @@ def warn(text: str) -> None:
     if not settings.quiet:
         from rich.text import Text
 
-        tell(Text.assemble(("warning: ", "bold yellow"), text))
+        tell(Text.assemble(("warning: ", "bold yellow"), escapes.one_line(text)))
 
 
 def write_whole() -> None:

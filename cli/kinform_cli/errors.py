@@ -11,6 +11,7 @@ import re
 import traceback
 from typing import TYPE_CHECKING
 
+from kinform.foundation.escapes import one_line
 from kinform_cli import console, interrupts
 
 if TYPE_CHECKING:
@@ -149,9 +150,7 @@ def _print(place: str, message: str, remedy: str | None = None) -> None:
     """`place: error: message`, as compilers write it, so that editors find the place."""
     from rich.text import Text
 
-    text = Text.assemble(
-        (console.harmless(place), "bold"), ": ", ("error:", "bold red"), f" {console.harmless(message)}"
-    )
+    text = Text.assemble((one_line(place), "bold"), ": ", ("error:", "bold red"), f" {one_line(message)}")
     if remedy:
-        text.append(f"\n  remedy: {console.harmless(remedy)}")
+        text.append(f"\n  remedy: {one_line(remedy)}")
     console.tell(text)

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from kinform.foundation.escapes import make_name
 from kinform.foundation.regular_files import no_folder, not_a_file
 from kinform_cli import console
 from kinform_cli.errors import refuse
@@ -94,6 +95,7 @@ def check_outputs(sources: Sequence[Path], output: Path | None, depfile: Path | 
     if depfile is not None:
         if output is None:
             raise refuse("--depfile names what the output depends on", file=depfile, remedy="add -o F.h5")
+        make_rule(output, [])
         check_text_output(depfile, inputs=[*sources, output])
 
 
@@ -212,19 +214,27 @@ def write_rule(depfile: Path, output: Path, design: Design, sources: Sequence[Pa
 
 
 def make_rule(target: Path, sources: Iterable[Path]) -> str:
-    """A Make rule "target: sources", and an empty rule a source, so that a deleted one stops nothing."""
-    names = [str(source) for source in sources]
-    lines = [" \\\n  ".join([_escape(str(target), target=True) + ":", *map(_escape, names)])]
-    lines += [_escape(name, target=True) + ":" for name in names]
+    """A Make rule "target: sources", and an empty rule a source, so that a deleted one stops nothing.
+
+    Where Make cannot take the name of a source, the target is always made anew. InputError where it cannot take that of
+    the target.
+    """
+    made = make_name(target.as_posix(), target=True)
+    if made is None:
+        raise refuse(
+            "Make cannot take this name", file=target, remedy="name the output with letters, digits, . - and _"
+        )
+    names = [source.as_posix() for source in sources]
+    taken = [name for name in map(make_name, names) if name is not None]
+    always = [] if len(taken) == len(names) else [ALWAYS]
+    lines = [" \\\n  ".join([f"{made}:", *taken, *always])]
+    lines += [f"{make_name(name, target=True)}:" for name in names if make_name(name) is not None]
+    lines += [f".PHONY: {name}" for name in always]
     return "\n".join(lines) + "\n"
 
 
-def _escape(name: str, *, target: bool = False) -> str:
-    """The name as Make reads it: blanks, hashes and dollars escaped; in targets also % and :."""
-    name = name.replace("$", "$$")
-    for character in " #" + ("%:" if target else ""):
-        name = name.replace(character, "\\" + character)
-    return name
+ALWAYS = "kinform-reads-names-that-make-cannot-take"
+"""A phony target: what depends on it is always made anew."""
 
 
 def sources_of(named: Sequence[Path]) -> list[Path]:

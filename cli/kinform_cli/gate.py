@@ -94,7 +94,8 @@ class Gate:
         )
 
 
-def next_look(results: Path) -> str:
-    """The commands that show more of these results."""
+def say_next(results: Path) -> None:
+    """Say by which commands more of these results is shown."""
     page = command("kinform", "report", results, "-o", results.with_suffix(".html"))
-    return f"next: {page}   (one page to look at)\n  or: {command('kinform', 'show', results)}"
+    console.say(f"next: {page}   (one page to look at)")
+    console.say(f"  or: {command('kinform', 'show', results)}")

@@ -12,6 +12,7 @@ import threading
 from types import TracebackType
 from typing import TYPE_CHECKING
 
+from kinform.foundation.escapes import one_line
 from kinform_cli import console, interrupts
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ class Working:
     """
 
     def __init__(self, label: str):
-        self._label = label
+        self._label = one_line(label)
         self._done, self._total = 0, 0
         self._over = threading.Event()
         self._thread: threading.Thread | None = None
@@ -56,7 +57,7 @@ class Working:
 
     def stage(self, label: str) -> None:
         """This stage is under way now."""
-        self._label = label
+        self._label = one_line(label)
 
     def step(self, label: str, done: int, total: int) -> None:
         """As a run reports it: so many steps of this stage are done."""

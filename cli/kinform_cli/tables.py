@@ -11,6 +11,7 @@ from rich.segment import Segment
 from rich.style import Style
 from rich.text import Text
 
+from kinform.foundation.escapes import one_line
 from kinform.foundation.words import shortened_ends
 from kinform_cli.text import NONE
 
@@ -48,9 +49,9 @@ class Rows:
         names: Iterable[str] = (),
         texts: Iterable[str] = (),
     ):
-        self._headings = headings
+        self._headings = tuple(map(one_line, headings))
         self._shared = shared
-        self._title = title
+        self._title = None if title is None else told(title)
         self._right = frozenset(right)
         self._keys = keys
         self._names = frozenset(names)
@@ -61,7 +62,7 @@ class Rows:
         """One more row, a value for each heading."""
         if len(values) != len(self._headings):
             raise ValueError(f"expected {len(self._headings)} values, got {len(values)}")
-        self._rows.append(values)
+        self._rows.append([one_line(value) for value in values])
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """The title, then columns or blocks."""
@@ -224,10 +225,20 @@ class _Hanging:
 
 
 def stacked(*items: RenderableType) -> Group:
-    """Items below each other; lines of text that do not fit go on indented."""
-    return Group(
-        *(
-            _Hanging(Text(item) if isinstance(item, str) else item) if isinstance(item, str | Text) else item
-            for item in items
-        )
-    )
+    """Items below each other; lines of text that do not fit go on indented. A string, and a text of one style, is one
+    line, after empty ones where it begins with ends of lines."""
+    return Group(*map(_stacked, items))
+
+
+def _stacked(item: RenderableType) -> RenderableType:
+    if isinstance(item, str):
+        return _Hanging(Text(told(item)))
+    if isinstance(item, Text):
+        return _Hanging(item if item.spans else Text(told(item.plain), style=item.style))
+    return item
+
+
+def told(text: str) -> str:
+    """A heading or a sentence with the names of strangers in it: on one line, after its own empty ones."""
+    line = text.lstrip("\n")
+    return "\n" * (len(text) - len(line)) + one_line(line)

@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from kinform.foundation import words
+from kinform.foundation.escapes import json_text
 from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.frozen import dataclass
 
@@ -201,4 +202,4 @@ def dumps(value: Any) -> str:
     """JSON text of a value; null for what is not a finite number."""
     from kinform.reports.values.plain import plain
 
-    return json.dumps(plain(value), indent=1, allow_nan=False)
+    return json_text(json.dumps(plain(value), indent=1, allow_nan=False))

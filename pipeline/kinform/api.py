@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 from kinform.design import Design
 from kinform.errors import Problem, ResultsError, StageError
+from kinform.foundation import escapes
 from kinform.foundation.notebook_tables import Tabled, rows_of
 
 if TYPE_CHECKING:
@@ -231,8 +232,8 @@ class Results:
     def _repr_html_(self) -> str:
         """Verdict, joints, findings and curves."""
         design = self.design
-        shown = [f"<p><b>{escape(design.assembly.name)}</b>: {len(design.assembly.parts)} parts"]
-        shown[0] += f"; {escape(self.verdict)}</p>" if design.report is not None else "</p>"
+        shown = [f"<p><b>{escapes.html(design.assembly.name)}</b>: {len(design.assembly.parts)} parts"]
+        shown[0] += f"; {escapes.html(self.verdict)}</p>" if design.report is not None else "</p>"
         if design.kinematics is not None:
             shown.append(self.joints._repr_html_())
         if design.report is not None and design.report.findings:

@@ -260,10 +260,10 @@ def test_names_survive_in_every_format():
     after = replace(DESK, findings=(*DESK.findings, ("KF401", (name,), "error", 1)))
     found = compare(DESK, after)
     assert json.loads(render(found, "json"))["changes"][0]["subject"][1] == name
-    assert "[m6] <b> a|b\\n::error::" in render(found, "full")
+    assert "[m6] <b> a|b\\n\\x3a:error::" in render(found, "full")
     tokens = MarkdownIt("commonmark").enable("table").parse(render(found, "md"))
     spans = [c.content for t in tokens for c in t.children or () if c.type == "code_inline"]
-    assert "[m6] <b> a|b\\n::error::" in spans
+    assert "[m6] <b> a|b\\n\\x3a:error::" in spans
 
 
 def test_a_part_with_another_name_and_the_same_mesh_is_renamed_and_nothing_else():

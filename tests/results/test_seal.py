@@ -265,3 +265,14 @@ def test_texts_longer_than_the_file_are_refused(folder: Path, good: bytes) -> No
     (folder / "r.h5").write_bytes(seal(bytes(image[BLOCK:]), results.SCHEMA))
     with pytest.raises(ResultsError):
         results.read(folder / "r.h5")
+
+
+@pytest.mark.parametrize("code", ["../../evil", "KF403\n::error::x", "=1"])
+def test_codes_of_rules_that_are_no_words_of_kinform_are_refused(folder: Path, code: str) -> None:
+    with editing(folder / "r.h5") as file:
+        rules = file["findings/rules"][()]
+        rules["code"][0] = code
+        file["findings/rules"][...] = rules
+    ran = ran_here("check", "r.h5", cwd=folder)
+    assert ran.returncode == 2
+    assert "findings/rules.code" in ran.stderr and "internal error" not in ran.stderr

@@ -13,7 +13,7 @@ from support.places import ROOT
 
 TESTS = ROOT / "tests"
 KINFORM, COMMAND = ROOT / "pipeline" / "kinform", ROOT / "cli" / "kinform_cli"
-WITHOUT_PACKAGE = ("docs", "structure", "support", "system")
+WITHOUT_PACKAGE = ("docs", "hostile", "structure", "support", "system")
 """Folders of tests that mirror nothing."""
 
 

@@ -13,7 +13,7 @@ from kinform.foundation.words import counted
 from kinform_cli import console, files
 from kinform_cli.designs import looked_at
 from kinform_cli.errors import refuse
-from kinform_cli.gate import Gate, next_look
+from kinform_cli.gate import Gate, say_next
 from kinform_cli.options import (
     FailOn,
     FindingsFormat,
@@ -105,14 +105,14 @@ def check(
         design = _with_lock(design, lock, manifest_folder)
     code = Gate(how, fail_on, manifest_folder, strict).judge(design)
     if code and how.format is FindingsFormat.brief:
-        console.say(next_look(source if output is None else output))
+        say_next(source if output is None else output)
     raise typer.Exit(code)
 
 
 def _without_baseline(report: CheckReport, baseline: Path) -> CheckReport:
     """The report without what the baseline adopts; says on stderr what of it is gone."""
     from kinform.consistency import read_baseline, with_baseline
-    from kinform.foundation.words import one_line
+    from kinform.foundation.escapes import one_line
 
     text = _read(baseline, "baseline", "kinform check F.h5 --write-baseline B.json")
     left, gone = with_baseline(report, read_baseline(text, str(baseline)))

@@ -32,6 +32,8 @@ def explain(
     if code is not None:
         console.emit(wrapped(consistency.explain(code), console.columns()))
         return
+    from rich.text import Text
+
     from kinform.consistency.glossary import GLOSSARY
     from kinform_cli.tables import Rows, stacked
 
@@ -41,5 +43,5 @@ def explain(
     words: dict[str, list[str]] = {}
     for word, (about, _) in GLOSSARY.items():
         words.setdefault(about, []).append(word)
-    lines = [hanging(f"{about}: {', '.join(told)}", console.columns()) for about, told in words.items()]
+    lines = [Text(hanging(f"{about}: {', '.join(told)}", console.columns())) for about, told in words.items()]
     console.out(stacked(rows, "\nWords", *lines))

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from kinform_cli import console, files
-from kinform_cli.gate import Gate, next_look
+from kinform_cli.gate import Gate, say_next
 from kinform_cli.options import (
     AllowOutside,
     AllowXacro,
@@ -103,7 +103,7 @@ def run(
         again = command("kinform", "run", *sources, *(["--units", units] if units else []), "-o", _results(sources[0]))
         console.say(f"nothing was kept: {again} keeps it for `kinform show` and `kinform report`")
     elif first or (how.format is FindingsFormat.brief and code):
-        console.say(next_look(output))
+        say_next(output)
     raise typer.Exit(code)
 
 

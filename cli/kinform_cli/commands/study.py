@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from kinform.foundation.escapes import json_text
 from kinform_cli import console, files
 from kinform_cli.commands.batch import Pace, limits_of, need_extra
 from kinform_cli.errors import refuse
@@ -89,7 +90,7 @@ def study(
     files.write_text(beside[1], page.page_html(outcome))
     journal_of(output).forget()
     if format is TableFormat.json:
-        console.emit(json.dumps(table.values(outcome), indent=1))
+        console.emit(json_text(json.dumps(table.values(outcome), indent=1)))
     else:
         from kinform_cli.views import study as view
 

@@ -8,6 +8,7 @@ from rich.text import Text
 from rich.tree import Tree
 
 from kinform.design import Design
+from kinform.foundation.escapes import one_line
 from kinform.foundation.words import counted
 from kinform.model.assembly import Assembly, Part, Subassembly
 from kinform_cli.shortened import beginning
@@ -36,7 +37,9 @@ def render(design: Design, *, short: bool = False) -> RenderableType:
 def _tree(assembly: Assembly, short: bool) -> Tree:
     files = {sub.name: _describe_sub(sub) for sub in assembly.subassemblies}
     tree = Tree(
-        Text.assemble((assembly.name, "bold"), f"  {counted(len(assembly.parts), 'part')}, lengths in {assembly.units}")
+        Text.assemble(
+            (one_line(assembly.name), "bold"), f"  {counted(len(assembly.parts), 'part')}, lengths in {assembly.units}"
+        )
     )
     branches: dict[str, Tree] = {"": tree}
     group_of = {part: group.name for group in assembly.groups for part in group.parts}
@@ -55,7 +58,7 @@ class _Leaf:
     """A part on one line: the folders of its file give way first, then the line is wrapped."""
 
     def __init__(self, name: str, file: str, facts: str):
-        self._name, self._file, self._facts = name, file, facts
+        self._name, self._file, self._facts = one_line(name), one_line(file), one_line(facts)
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """The line, or its pieces."""
@@ -70,7 +73,7 @@ def _groups(assembly: Assembly) -> Table:
     """Names, and beside them the parts: what does not fit in a line goes on below, not under the names."""
     grid = Table.grid(padding=(0, 2))
     for group in assembly.groups:
-        grid.add_row(f"  {group.name}", ", ".join(group.parts))
+        grid.add_row(*map(one_line, (f"  {group.name}", ", ".join(group.parts))))
     return grid
 
 
@@ -78,7 +81,9 @@ def _branch(branches: dict[str, Tree], name: str, files: dict[str, str]) -> Tree
     if name not in branches:
         above, _, leaf = name.rpartition("/")
         file = f"  {files[name]}" if name in files else ""
-        branches[name] = _branch(branches, above, files).add(Text.assemble((leaf, "bold"), (file, "dim")))
+        branches[name] = _branch(branches, above, files).add(
+            Text.assemble((one_line(leaf), "bold"), (one_line(file), "dim"))
+        )
     return branches[name]
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from kinform.foundation import escapes
+from kinform.foundation.escapes import one_line
 from kinform_cli.tables import Rows
 
 if TYPE_CHECKING:
@@ -27,6 +29,8 @@ def as_text(rows: Sequence[Row], fail_on: str) -> str:
     """The table as text with columns, whatever their width."""
     from kinform.batch.renderings import table_row
 
-    lines = [_HEADINGS, *(table_row(row, fail_on) for row in rows)]
+    lines = [_HEADINGS, *([*map(one_line, table_row(row, fail_on))] for row in rows)]
     widths = [max(len(line[k]) for line in lines) for k in range(len(_HEADINGS))]
-    return "".join("  ".join(v.ljust(w) for v, w in zip(line, widths, strict=True)).rstrip() + "\n" for line in lines)
+    return escapes.lines(
+        "".join("  ".join(v.ljust(w) for v, w in zip(line, widths, strict=True)).rstrip() + "\n" for line in lines)
+    )

@@ -14,9 +14,10 @@ from kinform import results
 from kinform.batch.record import Row
 from kinform.design import Design
 from kinform.errors import KinformError, Problem
-from kinform.foundation.words import counted, number, one_line
+from kinform.foundation.escapes import json_text, lines, one_line, xml_legal
+from kinform.foundation.words import counted, number
 from kinform.model.findings import SEVERITIES, CheckReport
-from kinform.reports import as_json, concise, github, junit, markdown, sarif
+from kinform.reports import TEXTS, as_json, concise, github, junit, markdown, sarif
 from kinform.reports.from_here import seen_from_here
 from kinform.reports.phrases import UNKNOWN, verdict_word
 from kinform.version import __version__
@@ -29,7 +30,8 @@ def render(rows: Sequence[Row], folder: Path, format: str, fail_on: str = "error
     named as seen from here. ValueError for an unknown format."""
     if format not in FORMATS:
         raise ValueError(f"unknown format {format!r}: expected one of {', '.join(FORMATS)}")
-    return FORMATS[format](_Whole(rows, folder, fail_on))
+    text = FORMATS[format](_Whole(rows, folder, fail_on))
+    return lines(text) if format in TEXTS else text
 
 
 @dataclasses.dataclass(frozen=True)
@@ -94,7 +96,7 @@ def _json(whole: _Whole) -> str:
         })  # fmt: skip
     told = totals(whole.rows, whole.fail_on)
     head = {"schema": SCHEMA, "kinform": __version__, "exit_code": exit_code(whole.rows, whole.fail_on)}
-    return json.dumps(head | {"totals": told, "designs": designs}, indent=1, ensure_ascii=False) + "\n"
+    return json_text(json.dumps(head | {"totals": told, "designs": designs}, indent=1, ensure_ascii=False)) + "\n"
 
 
 def _report(gist: Design) -> CheckReport:
@@ -130,7 +132,7 @@ def _sarif(whole: _Whole) -> str:
         "tool": {"driver": driver}, "columnKind": "unicodeCodePoints", "invocations": [invocation], "results": found,
         "properties": {"designs": outcomes},
     }  # fmt: skip
-    return json.dumps({"$schema": sarif.SCHEMA, "version": "2.1.0", "runs": [one]}, indent=1) + "\n"
+    return json_text(json.dumps({"$schema": sarif.SCHEMA, "version": "2.1.0", "runs": [one]}, indent=1)) + "\n"
 
 
 def _in_design(result: Mapping[str, Any], row: Row) -> dict[str, str]:
@@ -161,15 +163,15 @@ def _junit(whole: _Whole) -> str:
     top = ElementTree.Element("testsuites", name="kinform")
     for row, gist in whole.designs():
         if gist is None:
-            suite = ElementTree.SubElement(top, "testsuite", name=junit.legal(row.name), tests="1", failures="0",
+            suite = ElementTree.SubElement(top, "testsuite", name=xml_legal(row.name), tests="1", failures="0",
                                            errors="1", skipped="0")  # fmt: skip
-            case = ElementTree.SubElement(suite, "testcase", classname="kinform", name=junit.legal(row.failure))
+            case = ElementTree.SubElement(suite, "testcase", classname="kinform", name=xml_legal(row.failure))
             message = "; ".join(problem.message for problem in row.problems)
-            told = ElementTree.SubElement(case, "error", type=row.failure, message=junit.legal(message))
-            told.text = junit.legal("\n".join(map(str, row.problems)))
+            told = ElementTree.SubElement(case, "error", type=row.failure, message=xml_legal(message))
+            told.text = xml_legal("\n".join(map(str, row.problems)))
         else:
             suite = ElementTree.fromstring(junit.render(_report(gist), gist, whole.fail_on))[0]
-            suite.set("name", junit.legal(row.name))
+            suite.set("name", xml_legal(row.name))
             top.append(suite)
         suite.set("time", f"{row.seconds:.3f}")
     for name in ("tests", "failures", "errors"):
@@ -210,7 +212,7 @@ def _concise(whole: _Whole) -> str:
     lines = []
     for row, gist in whole.designs():
         if gist is None:
-            lines += [f"{_where(row, p)}: {row.failure}: {one_line(p.message)}" for p in row.problems]
+            lines += [f"{one_line(_where(row, p))}: {row.failure}: {one_line(p.message)}" for p in row.problems]
         else:
             lines.append(concise.render(_report(gist), gist, whole.fail_on).rstrip("\n"))
     return "\n".join([*lines, summary_line(whole.rows, whole.fail_on)]) + "\n"

@@ -19,6 +19,7 @@ from kinform.changes.comparison import Comparison, compare
 from kinform.changes.tolerance import Tolerance
 from kinform.design import Design
 from kinform.errors import InputError, Problem
+from kinform.foundation.escapes import json_text
 from kinform.foundation.texts import parse_json
 from kinform.frozen import dataclass
 from kinform.model.findings import CheckReport, Finding
@@ -207,16 +208,20 @@ def _text(value: Any) -> str:
     lines = []
     for key, item in value.items():
         if isinstance(item, list) and item:
-            inner = ",\n  ".join(json.dumps(entry, ensure_ascii=False, allow_nan=False) for entry in item)
+            inner = ",\n  ".join(_dumped(entry) for entry in item)
             lines.append(f" {json.dumps(key)}: [\n  {inner}\n ]")
         else:
-            lines.append(f" {json.dumps(key)}: {json.dumps(item, ensure_ascii=False, allow_nan=False)}")
+            lines.append(f" {json.dumps(key)}: {_dumped(item)}")
     return "{\n" + ",\n".join(lines) + "\n}"
+
+
+def _dumped(value: Any) -> str:
+    return json_text(json.dumps(value, ensure_ascii=False, allow_nan=False))
 
 
 def _lines(text: str, names: Iterable[str]) -> dict[str, int]:
     """The first line (from 1) that names each of them, as the lock is written."""
-    wanted = {f'"name": {json.dumps(name, ensure_ascii=False)}': name for name in names}
+    wanted = {f'"name": {_dumped(name)}': name for name in names}
     lines: dict[str, int] = {}
     for number, line in enumerate(text.splitlines(), start=1):
         for start in re.findall(r'"name": "(?:[^"\\]|\\.)*"', line):

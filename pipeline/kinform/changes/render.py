@@ -9,7 +9,8 @@ from collections.abc import Callable, Collection
 from kinform.changes.causes import Consequences
 from kinform.changes.change import Change
 from kinform.changes.comparison import Comparison
-from kinform.foundation.words import counted, listed, one_line
+from kinform.foundation.escapes import json_text, lines, one_line
+from kinform.foundation.words import counted, listed
 from kinform.reports.markdown import cell_code, code, escaped, table
 
 SCHEMA = "kinform/diff/1"
@@ -23,17 +24,17 @@ def render(comparison: Comparison, format: str) -> str:
 
 
 def _full(comparison: Comparison) -> str:
-    lines = []
+    told = []
     if comparison.groups:
         for group in comparison.groups:
-            lines += cause_lines(group, comparison)
+            told += cause_lines(group, comparison)
             own = {cause.part for cause in group.causes}
-            lines += ["  " + line for change in group.changes for line in change_lines(change, own)]
+            told += ["  " + line for change in group.changes for line in change_lines(change, own)]
     else:
-        lines += [line for change in comparison.changes for line in change_lines(change)]
-    lines += [f"not compared: {what}: {why}" for what, why in comparison.missing]
-    lines += new_lines(comparison)
-    return "\n".join([*lines, verdict_words(comparison)]) + "\n"
+        told += [line for change in comparison.changes for line in change_lines(change)]
+    told += [f"not compared: {one_line(what)}: {one_line(why)}" for what, why in comparison.missing]
+    told += new_lines(comparison)
+    return lines("\n".join([*told, verdict_words(comparison)]) + "\n")
 
 
 def new_lines(comparison: Comparison) -> list[str]:
@@ -82,7 +83,7 @@ def _json(comparison: Comparison) -> str:
         "new": comparison.new,
         "tolerance": dataclasses.asdict(comparison.tolerance),
     }
-    return json.dumps(found, indent=1, allow_nan=False) + "\n"
+    return json_text(json.dumps(found, indent=1, allow_nan=False)) + "\n"
 
 
 def _markdown(comparison: Comparison) -> str:
@@ -101,10 +102,10 @@ def _markdown(comparison: Comparison) -> str:
         ]
         blocks.append(table(("what", "change", "before", "after"), rows))
     if comparison.missing:
-        blocks.append("\n".join(f"- not compared: {what}: {why}" for what, why in comparison.missing))
+        blocks.append("\n".join(f"- not compared: {escaped(what)}: {escaped(why)}" for what, why in comparison.missing))
     if comparison.new:
-        blocks.append("\n".join(f"- {line}" for line in new_lines(comparison)))
-    return "\n\n".join(blocks) + "\n"
+        blocks.append("\n".join(f"- {escaped(line)}" for line in new_lines(comparison)))
+    return lines("\n\n".join(blocks) + "\n")
 
 
 def _subject(change: Change) -> str:

@@ -16,6 +16,7 @@ from typing import Any
 
 from kinform.consistency.control import outcome_without
 from kinform.errors import InputError, Problem
+from kinform.foundation.escapes import json_text
 from kinform.foundation.texts import parse_json
 from kinform.frozen import dataclass
 from kinform.model.findings import SEVERITIES, CheckReport, Finding, Ignored
@@ -42,7 +43,7 @@ class Baseline:
             {"code": code, "subject": list(subject), "severity": severity, "count": count}
             for ((code, subject), severity), count in sorted(self.counts.items())
         ]
-        lines = ",\n  ".join(json.dumps(entry, ensure_ascii=False) for entry in entries)
+        lines = ",\n  ".join(json_text(json.dumps(entry, ensure_ascii=False)) for entry in entries)
         body = f"[\n  {lines}\n ]" if entries else "[]"
         return f'{{\n "schema": "{SCHEMA}",\n "findings": {body}\n}}\n'
 

@@ -8,9 +8,11 @@ order.
 from __future__ import annotations
 
 import re
+import sys
 import unicodedata
 from collections.abc import Container, Iterable
 
+from kinform.foundation.escapes import lines, one_line
 from kinform.frozen import dataclass
 
 
@@ -25,6 +27,10 @@ class Language:
     """What names are made of, as in a regular expression; "" for any text."""
     first: str = "A-Za-z"
     """What they begin with."""
+    longest: int = sys.maxsize
+    """Letters after which they are cut."""
+    stem: bool = False
+    """What stands before the first dot must not be reserved: as of files on Windows."""
 
     def spell(self, name: str) -> str:
         """The name as an identifier, whatever else may have the same."""
@@ -39,9 +45,15 @@ class Language:
         text = re.sub("_+", "_", text).strip("_.-") or "unnamed"
         if not re.match(f"[{self.first}]", text):
             text = f"n{text}"
-        return f"{text}_x" if self._taken(text) else text
+        if len(text) > self.longest:
+            text = text[: self.longest].rstrip("_.-")
+        if not self._taken(text):
+            return text
+        stem, dot, rest = text.partition(".") if self.stem else (text, "", "")
+        return f"{stem}_x{dot}{rest}"
 
     def _taken(self, text: str) -> bool:
+        text = text.partition(".")[0] if self.stem else text
         return (text.lower() if self.folds else text) in self.reserved or (
             "__" in self.reserved and text.startswith("__") and text.endswith("__")
         )
@@ -76,14 +88,9 @@ def free_name(name: str, taken: Container[str]) -> str:
     return name
 
 
-def single_line(text: str) -> str:
-    """The text with a blank in place of each line break and control character."""
-    return "".join(" " if unicodedata.category(c) in ("Cc", "Zl", "Zp", "Cs") else c for c in text)
-
-
 def comment(text: str) -> str:
     """Text for a comment: on one line, and without two hyphens in a row or what ends a comment."""
-    flat = single_line(text).replace("*/", "* /")
+    flat = lines(one_line(text)).replace("*/", "* /")
     while "--" in flat:
         flat = flat.replace("--", "- -")
     return flat
@@ -130,5 +137,8 @@ FILES = Language(
     folds=True,
     letters="A-Za-z0-9_.-",
     first="A-Za-z0-9_",
+    longest=120,
+    stem=True,
 )
-"""Names of files on any system."""
+"""Names of files on any system: with a number and an ending behind them they stay below the 143 bytes that encrypted
+folders take (eCryptfs)."""

@@ -28,6 +28,7 @@ from kinform.errors import InputError, Problem
 from kinform.exports.exported import Exported
 from kinform.exports.model import ExportModel
 from kinform.exports.names import FILES, identifiers
+from kinform.foundation.escapes import json_text
 from kinform.model.arrays import Array
 
 SCHEMA = "kinform/port-model/1"
@@ -48,7 +49,7 @@ def export(model: ExportModel) -> Exported:
         starts.append({"joint": joint.name, "position": position.tolist(), "velocity": velocity.tolist()})
     text = write(model.nested, model.name, gravity=model.gravity, start=starts, missing=model.missing)
     name = identifiers([model.name], FILES)[model.name]
-    return Exported({f"{name}.json": text.encode("utf-8", "replace")}, model.missing)
+    return Exported({f"{name}.json": text.encode()}, model.missing)
 
 
 def write(
@@ -73,7 +74,7 @@ def write(
         "count": _counts(flat(system)),
         "missing": list(missing),
     }
-    return json.dumps(whole, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    return json_text(json.dumps(whole, indent=1, ensure_ascii=False, allow_nan=False)) + "\n"
 
 
 def read(text: str | bytes) -> System:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterable
 
 import numpy as np
@@ -11,6 +9,7 @@ import numpy as np
 from kinform.behaviour.joints import KINDS
 from kinform.exports.exported import Exported, ExportError
 from kinform.exports.model import ExportModel
+from kinform.foundation.escapes import csv_cell
 from kinform.function import as_intended, designers_joints
 from kinform.model.arrays import Array
 from kinform.model.simulation import Simulation
@@ -118,8 +117,5 @@ def _joints(run: Simulation) -> tuple[list[str], Array]:
 
 
 def _table(header: list[str], rows: Iterable[Array]) -> bytes:
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows([repr(float(value) + 0.0) for value in row] for row in rows)
-    return out.getvalue().encode("utf-8")
+    lines = [",".join(map(csv_cell, header)), *(",".join(repr(float(value) + 0.0) for value in row) for row in rows)]
+    return "".join(f"{line}\n" for line in lines).encode("utf-8")

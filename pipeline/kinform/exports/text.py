@@ -6,11 +6,11 @@ import math
 from collections.abc import Iterable
 from functools import cache
 from typing import Any
-from xml.sax.saxutils import quoteattr
 
 import jinja2
 
-from kinform.exports.names import comment, single_line
+from kinform.exports.names import comment
+from kinform.foundation import escapes
 
 
 def number(value: float) -> str:
@@ -31,12 +31,17 @@ def vector(values: Iterable[float], separator: str = " ") -> str:
 
 def _attribute(text: object) -> str:
     """A quoted value of an XML attribute."""
-    return quoteattr(str(text))
+    return f'"{escapes.xml(str(text))}"'
+
+
+def _content(text: object) -> str:
+    """The text of an XML element."""
+    return escapes.xml(str(text))
 
 
 def _quoted(text: object) -> str:
-    """A string in Modelica and in DOT."""
-    return '"' + single_line(str(text)).replace("\\", "\\\\").replace('"', '\\"') + '"'
+    """A string in Modelica."""
+    return escapes.quoted(str(text))
 
 
 @cache
@@ -53,6 +58,7 @@ def _environment(package: str) -> jinja2.Environment:
         "number": number,
         "vector": vector,
         "xml": _attribute,
+        "xml_content": _content,
         "quoted": _quoted,
         "comment": comment,
     }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import textwrap
@@ -20,6 +19,7 @@ from kinform.form.meshes.raw import MeshError, RawMesh
 from kinform.form.problems import Problems
 from kinform.form.readers.poses import shift
 from kinform.form.sources import states_units
+from kinform.foundation.escapes import toml
 from kinform.foundation.name_hints import did_you_mean, in_quotes
 from kinform.foundation.rounding import ARITHMETIC
 from kinform.foundation.units import METRES_PER_UNIT, UNITS, metres_per
@@ -103,7 +103,7 @@ def init_manifest(
     """
     assembly = load_meshes(paths, units=units, name=name)
     where = {Path(p).name: Path(os.path.relpath(p, relative_to)).as_posix() for p in paths}
-    lines = ["schema = 1", "", "[assembly]", f"name = {_text(assembly.name)}", f"units = {_text(units)}"]
+    lines = ["schema = 1", "", "[assembly]", f"name = {toml(assembly.name)}", f"units = {toml(units)}"]
     lines += [f"# {doubt}" for doubt in doubts(assembly)]
     lines += ['# ground = "…"   # the part or group at rest; else the heaviest body']
     built_in = ", ".join(sorted(BUILT_IN))
@@ -111,9 +111,9 @@ def init_manifest(
     lines += ["", *textwrap.wrap(told, WIDTH, initial_indent="# ", subsequent_indent="# ")]
     for part in assembly.parts:
         assert part.mesh is not None
-        lines += ["", "[[part]]", f"name = {_text(part.name)}", f"mesh = {_text(where[part.mesh.path])}"]
+        lines += ["", "[[part]]", f"name = {toml(part.name)}", f"mesh = {toml(where[part.mesh.path])}"]
         if part.mesh.body is not None:
-            lines.append(f"body = {_text(part.mesh.body)}")
+            lines.append(f"body = {toml(part.mesh.body)}")
         lines.append('# material = "…"')
     lines += proposals(assembly, units, fastened, jointed)
     lines.append("")
@@ -133,9 +133,9 @@ def proposals(
     hints = [] if fastened is None else fastened(assembly)
     for parts, evidence in hints:
         label = _free(f"{parts[0]}_body", taken)
-        lines += [f"## {_text(sentence)[1:-1]}" for sentence in evidence.split("; ") if sentence]
-        members = ", ".join(_text(part) for part in parts)
-        lines += ["# [[group]]", f"# name = {_text(label)}", f"# parts = [{members}]"]
+        lines += [f"## {toml(sentence)[1:-1]}" for sentence in evidence.split("; ") if sentence]
+        members = ", ".join(toml(part) for part in parts)
+        lines += ["# [[group]]", f"# name = {toml(label)}", f"# parts = [{members}]"]
     if not hints:
         lines += ["# [[group]]", '# name = "…"', '# parts = ["…", "…"]']
     lines += ["", "# What the device is for:"]
@@ -146,7 +146,7 @@ def proposals(
     lines += ["# [function]", "# complete = true" if joints else "# mobility = 1"]
     for joint, evidence in joints:
         stated = joint_lines(joint, units, reach(assembly))
-        lines += ["#", f"## {_text(evidence)[1:-1]}", *(f"# {line}" for line in stated)]
+        lines += ["#", f"## {toml(evidence)[1:-1]}", *(f"# {line}" for line in stated)]
     return lines
 
 
@@ -159,8 +159,8 @@ def reach(assembly: Assembly) -> float:
 def joint_lines(joint: IntendedJoint, units: str, within: float) -> list[str]:
     """Lines of a `[[function.joint]]` in the manifest's unit, of an assembly whose coordinates reach so far (m): what
     is rounding beside that is 0."""
-    lines = ["[[function.joint]]", f"name = {_text(joint.name)}", f"type = {_text(joint.type)}"]
-    lines.append("between = [" + ", ".join(_text(name) for name in joint.between) + "]")
+    lines = ["[[function.joint]]", f"name = {toml(joint.name)}", f"type = {toml(joint.type)}"]
+    lines.append("between = [" + ", ".join(toml(name) for name in joint.between) + "]")
     if joint.axis is not None:
         lines.append(f"axis = {_numbers(_without_noise(joint.axis), 6)}")
     if joint.point is not None:
@@ -204,12 +204,8 @@ def doubts(assembly: Assembly) -> list[str]:
         return []
     least, most = USUAL_ASSEMBLY
     better = [u for u in UNITS if least <= size / METRES_PER_UNIT[units] * METRES_PER_UNIT[u] <= most]
-    advice = f"; units = {' or '.join(_text(u) for u in better)} would be more usual" if better else ""
+    advice = f"; units = {' or '.join(toml(u) for u in better)} would be more usual" if better else ""
     return [f"doubtful: in {units} the assembly is {length(size, 'mm', 3)} across{advice}"]
-
-
-def _text(value: str) -> str:
-    return json.dumps(value, ensure_ascii=False)
 
 
 def _metres(units: str, problems: Problems) -> float:

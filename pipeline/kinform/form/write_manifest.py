@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import re
@@ -15,6 +14,7 @@ from kinform.form.readers.assembly import load
 from kinform.form.sources import AS_IT_IS, Reading, Source, source_tables
 from kinform.form.without_manifest import proposals
 from kinform.foundation.boundary import Boundary
+from kinform.foundation.escapes import toml
 from kinform.model.assembly import Assembly
 from kinform.model.function import IntendedJoint
 
@@ -69,14 +69,14 @@ def _is_table(value: Any) -> bool:
 
 
 def _key(key: str) -> str:
-    return key if _BARE.fullmatch(key) else json.dumps(key, ensure_ascii=False)
+    return key if _BARE.fullmatch(key) else toml(key)
 
 
 def _value(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+        return toml(value)
     if isinstance(value, float):
         return ("-inf" if value < 0 else "inf") if math.isinf(value) else repr(value)
     if isinstance(value, dict):

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Iterable, Sequence
-from html import escape
 from typing import Any
 
 import numpy as np
+
+from kinform.foundation.escapes import html
 
 
 class Tabled:
@@ -28,9 +29,9 @@ class Tabled:
         return pandas.DataFrame(self.rows(), columns=list(self.columns))
 
     def _repr_html_(self) -> str:
-        head = "".join(f"<th>{escape(name)}</th>" for name in self.columns)
+        head = "".join(f"<th>{html(name)}</th>" for name in self.columns)
         body = "".join(
-            "<tr>" + "".join(f"<td>{escape(_shown(value))}</td>" for value in row) + "</tr>" for row in self.rows()
+            "<tr>" + "".join(f"<td>{html(_shown(value))}</td>" for value in row) + "</tr>" for row in self.rows()
         )
         return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 

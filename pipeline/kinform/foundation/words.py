@@ -134,11 +134,6 @@ def listed(words: Sequence[str]) -> str:
     return " and ".join(filter(None, [", ".join(words[:-1]), words[-1] if words else ""]))
 
 
-def one_line(text: str) -> str:
-    """The text with control characters escaped, so that it stays on one line."""
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
-
-
 def shortened(name: str, room: int) -> str:
     """The name in so many characters at most, three at least: both ends, and "…" for its middle."""
     if len(name) <= room:

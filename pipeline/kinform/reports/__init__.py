@@ -15,6 +15,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from kinform.design import Design
+from kinform.foundation.escapes import lines
 from kinform.model.findings import CheckReport
 
 if TYPE_CHECKING:
@@ -27,6 +28,9 @@ FORMATS = {
     "md": "markdown", "sarif": "sarif",
 }  # fmt: skip
 """By format: the module that renders it."""
+
+TEXTS = ("brief", "concise", "full", "md")
+"""Formats that are lines for people; the others escape as their parsers expect."""
 
 _VIEWS = ("joint_evidence", "joint_json", "summary", "summary_json")
 
@@ -52,7 +56,7 @@ def render(
     if format == "brief" and width is not None:
         more = {"width": width}
     text: str = renderer.render(report, design, fail_on, **more)
-    return text
+    return lines(text) if format in TEXTS else text
 
 
 def __getattr__(name: str) -> Any:

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from kinform.design import Design
+from kinform.foundation.escapes import json_text
 from kinform.model.findings import SEVERITIES, CheckReport
 from kinform.reports.phrases import verdict_word
 
@@ -17,7 +18,7 @@ SCHEMA = "kinform/findings/1"
 def render(report: CheckReport, design: Design, fail_on: str = "error", run: Mapping[str, Any] | None = None) -> str:
     """The document as text; with the account of a `run`, where it was one."""
     whole = document(report, design, fail_on) | ({} if run is None else {"run": dict(run)})
-    return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
+    return json_text(json.dumps(whole, indent=1, ensure_ascii=False)) + "\n"
 
 
 def of_design(design: Design) -> dict[str, Any]:

@@ -13,7 +13,8 @@ from itertools import groupby
 from typing import Literal, get_args
 
 from kinform.design import Design
-from kinform.foundation.words import counted, one_line, shortened, shortened_ends
+from kinform.foundation.escapes import one_line
+from kinform.foundation.words import counted, shortened, shortened_ends
 from kinform.frozen import dataclass
 from kinform.function.body_titles import body_titles
 from kinform.model.findings import CheckReport, Finding

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from kinform.design import Design
-from kinform.foundation.words import one_line
+from kinform.foundation.escapes import one_line
 from kinform.model.findings import CheckReport
 from kinform.reports.phrases import rule_counts, severity_counts, verdict_line, where
 
 
 def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     """Findings by code, then rules that could not decide, then one line of summary."""
+    file = one_line(design.assembly.source.file)
     lines = [
-        f"{where(f) or design.assembly.source.file}: {f.severity} {f.code} "
+        f"{one_line(where(f)) or file}: {f.severity} {f.code} "
         f"{', '.join(one_line(s) for s in f.subject)}: {one_line(f.message)}"
         for f in report.findings
     ]
-    file = design.assembly.source.file
     lines += [
         f"{file}: inconclusive {r.code} {r.rule}: {one_line(r.reason)}"
         for r in report.rules

@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 
 from kinform.design import Design
-from kinform.foundation.words import one_line
+from kinform.foundation.escapes import one_line
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
 from kinform.reports.constants import WIDTH
 from kinform.reports.phrases import accepted, place, rule_counts, severity_counts, skipped, verdict_told, where

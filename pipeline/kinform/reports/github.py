@@ -6,7 +6,8 @@ No line begins with text that a user chose: a part cannot be named so that it be
 from __future__ import annotations
 
 from kinform.design import Design
-from kinform.foundation.words import one_line
+from kinform.foundation import escapes
+from kinform.foundation.escapes import one_line
 from kinform.model.findings import CheckReport, Finding, RuleOutcome
 from kinform.reports.phrases import details, rule_counts, severity_counts, verdict_line
 
@@ -19,7 +20,7 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     lines = [_finding(finding, manifest, design.assembly.units) for finding in report.findings]
     lines += [_undecided(rule, manifest) for rule in report.rules if rule.outcome == "inconclusive"]
     counts = f"{severity_counts(report)}; {rule_counts(report)}"
-    lines.append(f"{verdict_line(report, fail_on)}; {counts}; {one_line(design.assembly.name)}")
+    lines.append(escapes.lines(f"{verdict_line(report, fail_on)}; {counts}; {one_line(design.assembly.name)}"))
     return "\n".join(lines) + "\n"
 
 
@@ -41,10 +42,14 @@ def command(name: str, file: str, line: int | None, title: str, text: str) -> st
 
 
 def _data(text: str) -> str:
-    """As the runner decodes it; other control characters are escaped as in Python."""
-    lines = [one_line(line) for line in text.split("\n")]
-    return "\n".join(lines).replace("%", "%25").replace("\n", "%0A")
+    """As the runner decodes it; other control characters, and what some runners obey within a line, are escaped as in
+    Python."""
+    return escapes.lines(_encoded(text))
 
 
 def _property(text: str) -> str:
-    return _data(text).replace(":", "%3A").replace(",", "%2C")
+    return escapes.lines(_encoded(text).replace(":", "%3A").replace(",", "%2C"))
+
+
+def _encoded(text: str) -> str:
+    return "%0A".join(one_line(line).replace("%", "%25") for line in text.split("\n"))

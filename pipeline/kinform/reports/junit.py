@@ -8,21 +8,19 @@ cannot carry is escaped as in Python.
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from xml.etree import ElementTree
 
 from kinform.design import Design
+from kinform.foundation.escapes import xml_legal, xml_text
 from kinform.model.findings import SEVERITIES, CheckReport, Finding, Ignored, RuleOutcome
 from kinform.reports.phrases import UNKNOWN, details, verdict_line
-
-_NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     """The document: one suite; `fail_on` is the least severity that is a failure."""
     failing = SEVERITIES[SEVERITIES.index(fail_on) :]
-    suite = ElementTree.Element("testsuite", name=legal(design.assembly.name))
+    suite = ElementTree.Element("testsuite", name=xml_legal(design.assembly.name))
     for rule in report.rules:
         own = [finding for finding in report.findings if finding.code == rule.code]
         accepted = [item for item in report.ignored if item.finding.code == rule.code]
@@ -61,14 +59,14 @@ def text_of(whole: ElementTree.Element) -> str:
     ElementTree.indent(whole, " ")
     text: str = ElementTree.tostring(whole, "unicode")
     head = '<?xml version="1.0" encoding="UTF-8"?>\n'
-    return head + text.encode("ascii", "xmlcharrefreplace").decode("ascii") + "\n"
+    return head + xml_text(text).encode("ascii", "xmlcharrefreplace").decode("ascii") + "\n"
 
 
 def _case_of_finding(suite: ElementTree.Element, finding: Finding, units: str, fails: bool) -> None:
     subject = ", ".join(finding.subject)
     case = _case(suite, finding.code, f"{finding.rule}: {subject}")
     if finding.file is not None:
-        case.set("file", legal(finding.file))
+        case.set("file", xml_legal(finding.file))
     if finding.line is not None:
         case.set("line", str(finding.line))
     lines = [
@@ -76,31 +74,26 @@ def _case_of_finding(suite: ElementTree.Element, finding: Finding, units: str, f
         *(f"{key}: {value}" for key, value in details(finding, units).items()),
     ]
     if fails:
-        told = ElementTree.SubElement(case, "failure", type=finding.severity, message=legal(finding.message))
+        told = ElementTree.SubElement(case, "failure", type=finding.severity, message=xml_legal(finding.message))
     else:
         told = ElementTree.SubElement(case, "system-out")
-    told.text = legal("\n".join(lines))
+    told.text = xml_legal("\n".join(lines))
 
 
 def _case_of_accepted(suite: ElementTree.Element, item: Ignored) -> None:
     finding = item.finding
     case = _case(suite, finding.code, f"{finding.rule}: {', '.join(finding.subject)}")
     message = f"ignored by the {item.by}: {item.reason or finding.message}"
-    ElementTree.SubElement(case, "skipped", message=legal(message))
+    ElementTree.SubElement(case, "skipped", message=xml_legal(message))
 
 
 def _case_of_rule(suite: ElementTree.Element, rule: RuleOutcome) -> None:
     case = _case(suite, rule.code, rule.rule)
     if rule.outcome == "inconclusive":
-        ElementTree.SubElement(case, "error", type="inconclusive", message=legal(rule.reason))
+        ElementTree.SubElement(case, "error", type="inconclusive", message=xml_legal(rule.reason))
     elif rule.outcome != "passed" and rule.outcome != "failed":  # skipped
-        ElementTree.SubElement(case, "skipped", message=legal(rule.reason))
+        ElementTree.SubElement(case, "skipped", message=xml_legal(rule.reason))
 
 
 def _case(suite: ElementTree.Element, code: str, name: str) -> ElementTree.Element:
-    return ElementTree.SubElement(suite, "testcase", classname=f"kinform.{code}", name=legal(name))
-
-
-def legal(text: str) -> str:
-    """The text with what XML cannot carry escaped."""
-    return _NOT_XML.sub(lambda match: match[0].encode("unicode_escape").decode("ascii"), text)
+    return ElementTree.SubElement(suite, "testcase", classname=f"kinform.{code}", name=xml_legal(name))

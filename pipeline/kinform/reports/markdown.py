@@ -10,7 +10,7 @@ import re
 from collections.abc import Sequence
 
 from kinform.design import Design
-from kinform.foundation.words import one_line
+from kinform.foundation.escapes import one_line
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
 from kinform.reports.phrases import accepted, details, rule_counts, severity_counts, skipped, verdict_told, where
 
@@ -72,8 +72,26 @@ def cell_code(text: str) -> str:
 
 
 def escaped(text: str) -> str:
-    """The text with every character that Markdown could read as markup escaped, on one line."""
-    return re.sub(r"([\\`*_{}\[\]<>#+!|~&@$()])", r"\\\1", one_line(text))
+    """The text on one line, with every character that Markdown could read as markup escaped. Words in which a host
+    would find a mention, a reference or a link stand in code spans: hosts look for these when escapes are gone."""
+    return "".join(
+        code(piece) if _REFERENCE.search(piece) else _MARKUP.sub(_escape, piece)
+        for piece in _WORDS.split(one_line(text))
+    )
+
+
+_WORDS = re.compile(r"([ |]+)")
+"""What ends a word: a pipe too, which code spans in a table cannot hold."""
+_REFERENCE = re.compile(r"[@#]|://|www\.|\b(?:mailto|xmpp):|\bGH-\d|(?:^|\W)[!&$%^~]\w", re.IGNORECASE)
+"""Mentions, issues, commits, merge requests, epics, snippets, milestones, alerts, labels and links of GitHub and
+GitLab."""
+_MARKUP = re.compile(r"[\\`*_{}\[\]<>+!|~&$()]")
+_NAMED = {"<": "&lt;", ">": "&gt;", "&": "&amp;"}
+"""Characters of HTML, whose escapes by a stroke are not safe everywhere."""
+
+
+def _escape(match: re.Match[str]) -> str:
+    return _NAMED.get(match[0], "\\" + match[0])
 
 
 def _details(finding: Finding, units: str) -> str:

@@ -6,7 +6,8 @@ from collections import Counter
 from collections.abc import Sequence
 
 from kinform.foundation import words
-from kinform.foundation.words import counted, few, one_line
+from kinform.foundation.escapes import one_line
+from kinform.foundation.words import counted, few
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
 
 

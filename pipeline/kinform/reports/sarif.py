@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from kinform.design import Design
+from kinform.foundation.escapes import json_text
 from kinform.model.findings import CheckReport, Finding, Ignored, RuleOutcome
 from kinform.reports.phrases import verdict_word
 from kinform.version import __version__
@@ -55,7 +56,7 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
             "rules": [_present({"code": r.code, "outcome": r.outcome, "reason": r.reason}) for r in report.rules],
         },
     }
-    return json.dumps({"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}, indent=1) + "\n"
+    return json_text(json.dumps({"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}, indent=1)) + "\n"
 
 
 def _descriptors(outcomes: Sequence[RuleOutcome]) -> list[dict[str, Any]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
@@ -167,6 +168,13 @@ def _check_words(file: HeldGroup, column: str) -> None:
         raise DatasetError(column, f"holds {wrong!r}; expected one of {', '.join(words)}")
 
 
+def _check_spelling(file: HeldGroup, column: str) -> None:
+    form = re.compile(schema.SPELT[column])
+    wrong = next((text for text in _texts(file, column) if not form.fullmatch(text)), None)
+    if wrong is not None:
+        raise DatasetError(column, f"holds {wrong!r}, no word of kinform")
+
+
 def _named(file: HeldGroup, column: str) -> Iterable[str]:
     """The names that a column has, one a row or a list of them."""
     texts = _texts(file, column)
@@ -282,6 +290,7 @@ _CHECKS: tuple[tuple[Sequence[str] | dict[str, Any], Check], ...] = (
     (schema.ALONE, _check_alone),
     (schema.NAMES, _check_names),
     (schema.WORDS, _check_words),
+    (schema.SPELT, _check_spelling),
 )
 _KINDS = {"f": "numbers", "i": "whole numbers", "u": "whole numbers from 0", "b": "yes and no", "O": "texts"}
 

@@ -198,3 +198,9 @@ ENDLESS: tuple[str, ...] = (
     "assembly/function/joints.range_",
 )  # fmt: skip
 """Beginnings of the columns that may be infinite: nothing bounds them."""
+
+SPELT: dict[str, str] = {
+    **{f"findings/{table}.code": r"[A-Z]{2}[0-9]{3}" for table in ("findings", "rules", "ignored")},
+    **{f"findings/{table}.rule": r"[a-z0-9]+(-[a-z0-9]+)*" for table in ("findings", "rules", "ignored")},
+}
+"""Columns whose texts are words of kinform, also of versions that have others: renderers write them as they are."""

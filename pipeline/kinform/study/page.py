@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from html import escape
 
 import numpy as np
 
+from kinform.foundation.escapes import html
 from kinform.foundation.words import number
 from kinform.study.pictures import histogram, scatter
 from kinform.study.plan import Measure
@@ -31,8 +31,8 @@ def page_html(outcome: Outcome) -> str:
     """The page."""
     study = outcome.plan.study
     failed = sum(bool(why) for why in outcome.failures)
-    head = f"{escape(study.design)}: {len(outcome.samples)} samples, {study.method}"
-    blocks = [f"<h1>Study of {escape(study.design)}</h1><p>{head}; {failed} failed.</p>"]
+    head = f"{html(study.design)}: {len(outcome.samples)} samples, {study.method}"
+    blocks = [f"<h1>Study of {html(study.design)}</h1><p>{head}; {failed} failed.</p>"]
     whole = whole_yield(outcome)
     if whole is not None:
         good, n, (share, low, high) = whole
@@ -43,11 +43,11 @@ def page_html(outcome: Outcome) -> str:
     blocks += [_table(("measure", "unit", "nominal", "mean", "95 %", "deviation", "lowest", "highest", "yield"),
                       [_row(one, _unit(outcome, k)) for k, one in enumerate(found)])]  # fmt: skip
     blocks += [_measure(outcome, k, one) for k, one in enumerate(found)]
-    wrong = [f"<li>sample {k}: {escape(why)}</li>" for k, why in enumerate(outcome.failures) if why]
+    wrong = [f"<li>sample {k}: {html(why)}</li>" for k, why in enumerate(outcome.failures) if why]
     if wrong:
         blocks.append(f"<h2>Failed</h2><ul>{''.join(wrong[:20])}</ul>")
     body = "\n".join(blocks)
-    title = f"kinform study: {escape(study.design)}"
+    title = f"kinform study: {html(study.design)}"
     return (
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
         f'<meta name="viewport" content="width=device-width"><style>{_STYLE}</style></head>\n'
@@ -77,7 +77,7 @@ def _measure(outcome: Outcome, k: int, one: Statistics) -> str:
     measure = outcome.plan.measures[k]
     limits = [value for value in (measure.least, measure.most) if value is not None]
     label = _titled(one.name, _unit(outcome, k))
-    out = [f"<h2>{escape(one.name)}</h2><p><code>{escape(measure.value)}</code>{_between(measure, outcome, k)}</p>"]
+    out = [f"<h2>{html(one.name)}</h2><p><code>{html(measure.value)}</code>{_between(measure, outcome, k)}</p>"]
     if np.isfinite(values).sum() > 1:
         out.append(histogram(label, values[np.isfinite(values)], limits))
         for j, axis in enumerate(outcome.plan.axes):
@@ -104,7 +104,7 @@ def _titled(name: str, unit: str) -> str:
 
 def _between(measure: Measure, outcome: Outcome, k: int) -> str:
     """Its limits, in words."""
-    unit = f" {escape(_unit(outcome, k))}" if _unit(outcome, k) else ""
+    unit = f" {html(_unit(outcome, k))}" if _unit(outcome, k) else ""
     told = [
         f"{word} {_n(value)}{unit}" for word, value in (("at least", measure.least), ("at most", measure.most))
         if value is not None
@@ -127,10 +127,10 @@ def _varies(outcome: Outcome) -> str:
 
 
 def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    top = "".join(f"<th>{escape(text)}</th>" for text in head)
-    lines = "".join("<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row) + "</tr>" for row in rows)
+    top = "".join(f"<th>{html(text)}</th>" for text in head)
+    lines = "".join("<tr>" + "".join(f"<td>{html(text)}</td>" for text in row) + "</tr>" for row in rows)
     table = f"<table><thead><tr>{top}</tr></thead><tbody>{lines}</tbody></table>"
-    return f'<div class="table" role="group" tabindex="0" aria-label="table: {escape(head[0])}">{table}</div>'
+    return f'<div class="table" role="group" tabindex="0" aria-label="table: {html(head[0])}">{table}</div>'
 
 
 def _n(value: object) -> str:

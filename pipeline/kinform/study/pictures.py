@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from html import escape
 
 import numpy as np
 
+from kinform.foundation.escapes import html
 from kinform.foundation.rounding import ARITHMETIC, SOLVED
 from kinform.foundation.words import number
 from kinform.model.arrays import Array
@@ -97,7 +97,7 @@ def _span(values: Sequence[float]) -> tuple[float, float]:
 
 
 def _figure(caption: str, drawing: str, x: _Axis, y: _Axis, below: str, beside: str) -> str:
-    text = escape(caption, quote=True)
+    text = html(caption)
     bottom, middle = _HEIGHT - _BOTTOM, (_TOP + _HEIGHT - _BOTTOM) / 2
     digits = [_shown(axis.ticks()) for axis in (x, y)]
     ticks = [
@@ -109,8 +109,8 @@ def _figure(caption: str, drawing: str, x: _Axis, y: _Axis, below: str, beside: 
         for v, t in digits[1]
     ]
     names = (
-        f'<text x="{(_LEFT + _WIDTH - _RIGHT) / 2}" y="{_HEIGHT - 6}" text-anchor="middle">{escape(below)}</text>'
-        f'<text x="12" y="{middle}" text-anchor="middle" transform="rotate(-90 12 {middle})">{escape(beside)}</text>'
+        f'<text x="{(_LEFT + _WIDTH - _RIGHT) / 2}" y="{_HEIGHT - 6}" text-anchor="middle">{html(below)}</text>'
+        f'<text x="12" y="{middle}" text-anchor="middle" transform="rotate(-90 12 {middle})">{html(beside)}</text>'
     )
     frame = f'<path d="M{_LEFT} {_TOP}V{bottom}H{_WIDTH - _RIGHT}"/>'
     size = f'viewBox="0 0 {_WIDTH} {_HEIGHT}" width="{_WIDTH}" height="{_HEIGHT}"'

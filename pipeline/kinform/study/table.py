@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 import dataclasses
-import io
 import json
 import math
 from pathlib import Path
@@ -14,6 +12,8 @@ import h5py
 import numpy as np
 
 from kinform.errors import InputError, Problem
+from kinform.exports.names import XML, free_name, identifiers
+from kinform.foundation.escapes import csv_cell
 from kinform.results import replace_file
 from kinform.study.session import Outcome
 from kinform.study.statistics import statistics, whole_yield
@@ -33,8 +33,10 @@ def write(outcome: Outcome, path: Path) -> None:
             ("measured", [m.name for m in outcome.plan.measures], outcome.measured),
         ):
             made = file.create_group(group)
+            places = identifiers(names, XML)
             for k, name in enumerate(names):
-                _column(made, name.replace("/", "_"), [row[k] for row in rows])
+                place = places[name].replace("/", "_").strip(".") or "_"
+                _column(made, free_name(place, made), [row[k] for row in rows])
         _column(file, "failure", list(outcome.failures))
         file.flush()
         image = file.id.get_file_image()
@@ -65,15 +67,15 @@ def _column(group: Any, name: str, column: list[Any]) -> None:
 
 def as_csv(outcome: Outcome) -> str:
     """The table as CSV: a row a sample; what is not known is empty."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
     names = [*(a.name for a in outcome.plan.axes), *(m.name for m in outcome.plan.measures)]
-    writer.writerow(["sample", *names, "failure"])
+    lines = [["sample", *map(csv_cell, names), "failure"]]
     for k, (given, found, why) in enumerate(zip(outcome.samples, outcome.measured, outcome.failures, strict=True)):
-        writer.writerow(
-            [k, *("" if v is None else repr(v) if isinstance(v, float) else v for v in (*given, *found)), why]
-        )
-    return out.getvalue()
+        lines.append([str(k), *map(_cell, (*given, *found)), csv_cell(why)])
+    return "".join(",".join(line) + "\n" for line in lines)
+
+
+def _cell(value: Any) -> str:
+    return "" if value is None else csv_cell(value) if isinstance(value, str) else repr(value)
 
 
 def values(outcome: Outcome) -> dict[str, Any]:

@@ -7,15 +7,15 @@ is for Graphviz and whatever reads its language.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from html import escape
 
 import numpy as np
 
 from kinform.exports.graph.layout import box_centres
+from kinform.foundation.escapes import html, one_line, quoted
 from kinform.foundation.graphs.cycles import short_cycles
 from kinform.foundation.graphs.graph import blocks
 from kinform.foundation.rounding import SOLVED
-from kinform.foundation.words import counted, one_line
+from kinform.foundation.words import counted
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Kinematics
@@ -66,13 +66,13 @@ def graph_dot(kinematics: Kinematics) -> str:
     lines = ["graph kinematics {", "  node [shape=box];"]
     for body in kinematics.bodies:
         ground = ' [style=filled, fillcolor="gray85", xlabel="ground"]' if body.ground else ""
-        lines.append(f"  {_quoted(body.name)}{ground};")
+        lines.append(f"  {quoted(body.name)}{ground};")
     drivers = _drivers(kinematics)
     for joint in kinematics.joints:
         label = SYMBOLS[joint.type] + (" *" if joint.name in drivers else "")
         style = {"ambiguous": ", style=dashed", "blocked": ", style=dotted"}.get(joint.status, "")
-        ends = " -- ".join(_quoted(name) for name in joint.bodies)
-        lines.append(f"  {ends} [label={_quoted(label)}, tooltip={_quoted(_about(joint))}{style}];")
+        ends = " -- ".join(quoted(name) for name in joint.bodies)
+        lines.append(f"  {ends} [label={quoted(label)}, tooltip={quoted(_about(joint))}{style}];")
     return "\n".join([*lines, "}"]) + "\n"
 
 
@@ -114,7 +114,7 @@ def graph_svg(kinematics: Kinematics) -> str:
     width = max(float(extent[0]), LETTER_WIDTH * max(map(len, legend)) + 2 * MARGIN)
     height = float(extent[1]) + LINE_HEIGHT * len(legend) + MARGIN
     texts = [
-        f'<text x="{MARGIN:.0f}" y="{extent[1] + LINE_HEIGHT * (n + 1):.1f}" class="legend">{escape(text)}</text>'
+        f'<text x="{MARGIN:.0f}" y="{extent[1] + LINE_HEIGHT * (n + 1):.1f}" class="legend">{html(text)}</text>'
         for n, text in enumerate(legend)
     ]
     head = (
@@ -177,7 +177,7 @@ def _lines(drawing: _Drawing, colours: Sequence[str] | None = None) -> list[str]
 
 
 def _button(kind: str, data: str, number: int, about: str, drawn: str) -> str:
-    label = escape(one_line(about))
+    label = html(about)
     return f'<g class="{kind}" role="button" tabindex="0" data-{data}="{number}" aria-label="{label}">{drawn}</g>'
 
 
@@ -199,11 +199,6 @@ _HATCH = (
     '<defs><pattern id="hatch" width="7" height="7" patternUnits="userSpaceOnUse" patternTransform="rotate(45)">'
     '<line x1="0" y1="0" x2="0" y2="7" stroke="#889" stroke-width="2.4"/></pattern></defs>'
 )
-
-
-def _quoted(text: str) -> str:
-    clean = one_line(text).replace("\\", "\\\\").replace('"', '\\"')
-    return f'"{clean}"'
 
 
 def _about(joint: Joint) -> str:
@@ -270,16 +265,14 @@ def _box(name: str, centre: Array, size: Array, ground: bool, colour: str = "") 
     if colour:
         corner = f'x="{x + 8:.1f}" y="{centre[1] - 5:.1f}"'
         box += f'<rect class="swatch" fill="{colour}" {corner} width="10" height="10" rx="2"/>'
-    return (
-        box + f'<text x="{centre[0] + shift:.1f}" y="{centre[1] + 4.5:.1f}" text-anchor="middle">{escape(name)}</text>'
-    )
+    return box + f'<text x="{centre[0] + shift:.1f}" y="{centre[1] + 4.5:.1f}" text-anchor="middle">{html(name)}</text>'
 
 
 def _symbol(centre: Array, joint: Joint, drives: bool) -> str:
     x, y = centre
     dash = f' stroke-dasharray="{DASHES[joint.status]}"' if joint.status in DASHES else ""
     return (
-        f'<g><title>{escape(one_line(_about(joint)))}</title><circle class="symbol{" drives" if drives else ""}" '
+        f'<g><title>{html(_about(joint))}</title><circle class="symbol{" drives" if drives else ""}" '
         f'cx="{x:.1f}" cy="{y:.1f}" r="{SYMBOL_RADIUS}"{dash}/>'
         f'<text class="letter" x="{x:.1f}" y="{y + 4.3:.1f}" text-anchor="middle">{SYMBOLS[joint.type]}</text></g>'
     )

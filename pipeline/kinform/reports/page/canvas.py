@@ -21,6 +21,9 @@ OUTLINE_STEP = 6.0
 """px: where depth changes by more from one pixel to the next, there is an outline; and what is nearer by more,
 covers. Chosen by eye."""
 
+MOST_SAMPLES = 2.0**52
+"""Samples from the origin of the world from which on one cannot be told from the next, as numbers have 53 bits:
+nothing is drawn there."""
 
 Colour = tuple[float, float, float]
 Shown = Sequence[tuple[Figure, Colour]]
@@ -118,6 +121,9 @@ def _taken(view: View, figure: Figure) -> _Taken | None:
     if box is None:
         return None
     (rows, columns), found = box, figure.samples(view)
+    farthest = np.abs(view.target[:2]).max() + max(view.width, view.height) / view.scale
+    if not max(farthest * found.scale, abs(found.left), abs(found.top)) < MOST_SAMPLES:
+        return None
     middle = np.array([0.5 * view.width, 0.5 * view.height])
     x = view.target[0] + (np.arange(columns.start, columns.stop) + 0.5 - middle[0]) / view.scale
     y = view.target[1] - (np.arange(rows.start, rows.stop) + 0.5 - middle[1]) / view.scale
@@ -140,6 +146,8 @@ def _taken(view: View, figure: Figure) -> _Taken | None:
 def _pixels(view: View, figure: Figure) -> tuple[slice, slice] | None:
     """Rows and columns of the picture in which the figure is; None where it lies outside."""
     corners = view.project(figure.box)
+    if not np.isfinite(corners).all():
+        return None
     left, right = corners[0, 0], corners[1, 0]
     top, bottom = corners[1, 1], corners[0, 1]
     columns = slice(max(int(np.floor(left)), 0), min(int(np.ceil(right)) + 1, view.width))

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from html import escape
 from typing import Any
 
 import numpy as np
 
+from kinform.foundation.escapes import html
 from kinform.foundation.rounding import ARITHMETIC, SOLVED
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
@@ -78,10 +78,10 @@ def plot_svg(plot: Plot, time: Array, events: Sequence[tuple[float, str]] = ()) 
         at = y(value)
         inside = at + (11.0 if at < (PLOT_TOP + PLOT_BOTTOM) / 2 else -4.0)
         side, anchor = (PLOT_LEFT + 4.0, "start") if label.startswith("found") else (PLOT_RIGHT, "end")
-        named = escape(f"{label} {number(value)}{plot.unit}")
+        named = html(f"{label} {number(value)}{plot.unit}")
         parts += [line("limit", across, (at, at)), text(side, inside, named, anchor)]
     for moment, event in events[:MOST_EVENTS]:
-        sign = f"✕<title>{escape(event)}</title>"
+        sign = f"✕<title>{html(event)}</title>"
         parts.append(line("event", (x(moment), x(moment)), upright))
         parts.append(text(x(moment), PLOT_TOP - 2, sign, "middle", "tick event-sign"))
     parts += [
@@ -92,11 +92,11 @@ def plot_svg(plot: Plot, time: Array, events: Sequence[tuple[float, str]] = ()) 
     for k, series in enumerate(plot.series if several else ()):
         at = PLOT_LEFT + 104.0 * k
         parts.append(line(f"curve curve-{k}", (at, at + 18), (below, below)))
-        parts.append(text(at + 23, PLOT_HEIGHT + 12, escape(series.label)))
+        parts.append(text(at + 23, PLOT_HEIGHT + 12, html(series.label)))
     parts.append(f'<line class="cursor" visibility="hidden" x1="0" x2="0" y1="{PLOT_TOP}" y2="{PLOT_BOTTOM}"/>')
-    spoken = escape(_spoken_text(plot, start, end, events), quote=True)
+    spoken = html(_spoken_text(plot, start, end, events))
     return (
-        f'<figure class="plot"><figcaption>{escape(plot.title)} <span>{escape(plot.unit)}</span></figcaption>'
+        f'<figure class="plot"><figcaption>{html(plot.title)} <span>{html(plot.unit)}</span></figcaption>'
         f'<svg viewBox="0 0 {PLOT_WIDTH:.0f} {PLOT_HEIGHT + (18 if several else 0):.0f}" '
         f'role="img" aria-label="{spoken}" data-from="{start!r}" data-to="{end!r}" data-left="{PLOT_LEFT}" '
         f'data-right="{PLOT_RIGHT}">{"".join(parts)}</svg></figure>'

@@ -21,6 +21,7 @@ from markupsafe import Markup, escape
 
 from kinform.design import Design
 from kinform.exports.graph.drawing import graph_legend, graph_panel
+from kinform.foundation.escapes import harmless
 from kinform.model.kinematics import Body
 from kinform.reports.page import agreement, facts, intended
 from kinform.reports.page.pictures import MOST_PICTURES, Artist
@@ -103,6 +104,7 @@ def environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
         loader=FunctionLoader(_asset),
+        finalize=_shown,
     )
     made.filters["ticks"] = _ticks
     return made
@@ -130,9 +132,14 @@ def image_url(png: bytes) -> Markup:
     return Markup("data:image/png;base64," + base64.b64encode(png).decode("ascii"))
 
 
+def _shown(value: Any) -> Any:
+    """What a template writes: of texts of strangers control characters and direction marks are escaped."""
+    return harmless(value) if type(value) is str else value
+
+
 def _ticks(text: str) -> Markup:
     """The text, escaped, with what stands between backticks set as code."""
-    return Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", str(escape(text))))
+    return Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", str(escape(harmless(text)))))
 
 
 def _asset(name: str) -> str:

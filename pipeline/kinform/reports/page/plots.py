@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from html import escape
 from importlib.resources import files
 
 import numpy as np
 
 from kinform.design import Design
+from kinform.foundation.escapes import html
 from kinform.foundation.rounding import ARITHMETIC
 from kinform.foundation.units import metres_per
 from kinform.function import designers_joints, stated_ranges
@@ -72,7 +72,7 @@ def plots_html(design: Design) -> str:
     css = files("kinform.reports.page").joinpath("assets", "page.css").read_text(encoding="utf-8")
     style = "".join(f".kinform-plots {line}" for line in css.splitlines() if line.startswith(".plot "))
     shown = [
-        f'<h4>{escape(heading)}</h4><div class="kinform-plots">{"".join(drawn)}</div><p>{escape(left)}</p>'
+        f'<h4>{html(heading)}</h4><div class="kinform-plots">{"".join(drawn)}</div><p>{html(left)}</p>'
         for heading, drawn, left in plot_groups(design)
     ]
     return f"<style>{_CELL}{style}</style>{''.join(shown) or '<p>nothing was simulated</p>'}"

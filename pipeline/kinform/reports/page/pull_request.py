@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import re
-
 from kinform.design import Design
+from kinform.exports.names import FILES
+from kinform.foundation.escapes import lines as safe_lines
 from kinform.foundation.progress import Progress
+from kinform.reports.markdown import escaped
 from kinform.reports.page import agreement, facts
 from kinform.reports.page.pictures import Artist
 
@@ -30,7 +31,8 @@ def _told(design: Design, notes: bool) -> list[tuple[str, facts.FindingFacts]]:
     """The findings that the summary tells, the worst first, each with the name of its picture; empty: it has none."""
     found = facts.findings(design)[:MOST_PICTURE_FILES]
     return [
-        (f"finding-{n:02d}-{f.code}.png" if notes or f.severity != "note" else "", f) for n, f in enumerate(found, 1)
+        (f"finding-{n:02d}-{FILES.spell(f.code)}.png" if notes or f.severity != "note" else "", f)
+        for n, f in enumerate(found, 1)
     ]
 
 
@@ -38,11 +40,11 @@ def page_summary(design: Design, notes: bool = False) -> str:
     """Markdown: verdict, overview, what disagrees, each finding; their pictures, those of `notes` where they are asked
     for, are beside it."""
     verdict = facts.verdict_of(design)
-    name = _plain(design.assembly.name)
+    name = escaped(design.assembly.name)
     lines = [
-        f"# {name}: {verdict.sign} {_plain(verdict.line)}",
+        f"# {name}: {verdict.sign} {escaped(verdict.line)}",
         "",
-        _plain(verdict.counts),
+        escaped(verdict.counts),
         "",
         f"![{name}](overview.png)",
         "",
@@ -59,34 +61,22 @@ def page_summary(design: Design, notes: bool = False) -> str:
                 row.function or "–",
                 f"{row.sign} {row.mark}{codes}",
             )
-            lines.append("| " + " | ".join(map(_plain, cells)) + " |")
+            lines.append("| " + " | ".join(map(escaped, cells)) + " |")
         lines.append("")
     told = _told(design, notes)
     for file, finding in told:
         lines += [
-            f"## {finding.sign} {finding.severity} {finding.code}: {_plain(finding.rule)}: {_plain(finding.subject)}",
+            f"## {finding.sign} {finding.severity} {finding.code}: {escaped(finding.rule)}: {escaped(finding.subject)}",
             "",
-            _plain(finding.message),
+            escaped(finding.message),
             "",
         ]
-        lines += [f"- {key}: {_plain(value)}" for key, value in finding.facts]
-        lines += [f"- remedy: {_plain(finding.remedy)}"] if finding.remedy else []
+        lines += [f"- {key}: {escaped(value)}" for key, value in finding.facts]
+        lines += [f"- remedy: {escaped(finding.remedy)}"] if finding.remedy else []
         lines += ["", f"![{finding.code}]({file})", ""] if file else [""]
     left = len(design.report.findings) - len(told) if design.report else 0
     lines += [f"{left} more findings are in the report.", ""] if left > 0 else []
     undecided = [rule for rule in facts.rules(design) if rule.outcome == "inconclusive"]
     if undecided:
-        lines += ["## Not decided", "", *(f"- {r.code} {_plain(r.rule)}: {_plain(r.reason)}" for r in undecided), ""]
-    return "\n".join(lines)
-
-
-def _plain(text: str) -> str:
-    """The text as itself in Markdown, also where a browser reads HTML, in a cell of a table, on one line."""
-    clean = "".join(c if c.isprintable() else " " for c in text)
-    return re.sub(r"([\\`*_{}\[\]<>()#|~!&@])", _escaped, clean)
-
-
-def _escaped(match: re.Match[str]) -> str:
-    """HTML's own characters by name (Markdown escapes of them are not safe everywhere), others by a stroke."""
-    named = {"<": "&lt;", ">": "&gt;", "&": "&amp;", "@": "&#64;"}
-    return named.get(match[1], "\\" + match[1])
+        lines += ["## Not decided", "", *(f"- {r.code} {escaped(r.rule)}: {escaped(r.reason)}" for r in undecided), ""]
+    return safe_lines("\n".join(lines))

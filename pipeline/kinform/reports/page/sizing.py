@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from html import escape
 
 import numpy as np
 
 from kinform.design import Design
+from kinform.foundation.escapes import html
 from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array
 from kinform.model.simulation import DriveUse, Simulation
@@ -81,9 +81,9 @@ def _figure(title: str, use: DriveUse, speeds: Array, efforts: Array, speed_unit
         f"{speed_unit}, peak {number(use.peak_power)} W, RMS {number(use.rms_power)} W"
     )
     return (
-        f'<figure class="plot"><figcaption>{escape(name)} <span>{escape(f"{unit} over {speed_unit}; {facts}")}</span>'
+        f'<figure class="plot"><figcaption>{html(name)} <span>{html(f"{unit} over {speed_unit}; {facts}")}</span>'
         f'</figcaption><svg viewBox="0 0 {PLOT_WIDTH:.0f} {PLOT_HEIGHT:.0f}" role="img" '
-        f'aria-label="{escape(f"{name}, effort over speed: {facts}", quote=True)}">{"".join(parts)}</svg></figure>'
+        f'aria-label="{html(f"{name}, effort over speed: {facts}")}">{"".join(parts)}</svg></figure>'
     )
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from html import escape
 
 import numpy as np
 
+from kinform.foundation.escapes import html
 from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
 from kinform.reports.page.curves import (
@@ -64,15 +64,15 @@ def spectrum_svg(plot: Plot, time: Array) -> str:
         if several:
             at = PLOT_LEFT + 104.0 * k
             parts.append(line(f"curve curve-{k % 3}", (at, at + 18), (below, below)))
-            parts.append(text(at + 23, PLOT_HEIGHT + 12, escape(label)))
+            parts.append(text(at + 23, PLOT_HEIGHT + 12, html(label)))
     lines = "; ".join(filter(None, (_lines(label, spectrum, plot.unit) for label, spectrum in drawn)))
     lower = f"; up to {number(float(whole[-1]))} Hz less than {number(10.0**low)}" if last < whole[-1] else ""
     spoken = f"{plot.title}, amplitude in {plot.unit} from 0 to {number(last)} Hz: {lines or 'no line'}{lower}"
     return (
-        f'<figure class="plot"><figcaption>{escape(plot.title)} <span>{escape(f"{plot.unit}; {lines}".strip("; "))}'
+        f'<figure class="plot"><figcaption>{html(plot.title)} <span>{html(f"{plot.unit}; {lines}".strip("; "))}'
         f'</span></figcaption><svg viewBox="0 0 {PLOT_WIDTH:.0f} '
         f'{PLOT_HEIGHT + (18 if several else 0):.0f}" role="img" '
-        f'aria-label="{escape(spoken, quote=True)}">{"".join(parts)}</svg></figure>'
+        f'aria-label="{html(spoken)}">{"".join(parts)}</svg></figure>'
     )
 
 

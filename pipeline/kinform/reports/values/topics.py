@@ -12,6 +12,7 @@ from typing import Any
 
 from kinform.design import Design
 from kinform.errors import StageError
+from kinform.foundation.escapes import json_text
 from kinform.frozen import dataclass
 from kinform.reports.values.plain import fields, plain
 
@@ -35,7 +36,7 @@ def summary(design: Design, topic: str | None = None) -> dict[str, Any]:
 
 def summary_json(design: Design, topic: str | None = None) -> str:
     """`summary` as JSON text, ending in a newline."""
-    return json.dumps(summary(design, topic), indent=1, allow_nan=False) + "\n"
+    return json_text(json.dumps(summary(design, topic), indent=1, allow_nan=False)) + "\n"
 
 
 def joint_evidence(design: Design, name: str) -> dict[str, Any]:
@@ -69,7 +70,7 @@ def joint_evidence(design: Design, name: str) -> dict[str, Any]:
 
 def joint_json(design: Design, name: str) -> str:
     """`joint_evidence` as JSON text, ending in a newline."""
-    return json.dumps(joint_evidence(design, name), indent=1, allow_nan=False) + "\n"
+    return json_text(json.dumps(joint_evidence(design, name), indent=1, allow_nan=False)) + "\n"
 
 
 @dataclass(frozen=True)

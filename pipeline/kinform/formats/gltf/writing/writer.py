@@ -19,6 +19,7 @@ from kinform.exports.model import ExportModel
 from kinform.exports.names import FILES, identifiers
 from kinform.foundation.algebra.spatial import quaternions
 from kinform.foundation.colours import light
+from kinform.foundation.escapes import json_text
 from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
@@ -58,7 +59,7 @@ class _File:
     def encoded(self) -> bytes:
         """The file: header, JSON chunk, binary chunk."""
         self.data["buffers"] = [{"byteLength": len(self.binary)}]
-        text = json.dumps(self.data, ensure_ascii=False, separators=(",", ":"), allow_nan=False).encode("utf-8")
+        text = json_text(json.dumps(self.data, ensure_ascii=False, separators=(",", ":"), allow_nan=False)).encode()
         text += b" " * (-len(text) % 4)
         body = bytes(self.binary) + b"\0" * (-len(self.binary) % 4)
         out = [b"glTF", _u32(2), _u32(12 + 8 + len(text) + 8 + len(body))]
