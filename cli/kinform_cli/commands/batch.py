@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 import time
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -191,7 +192,8 @@ def _tell(
     console.out(view.table(rows, fail_on))
     for row in rows:
         for problem in row.problems:
-            console.say(f"{row.source}: {row.failure}: {problem}")
+            console.say(f"{row.source}: {row.failure}: {replace(problem, remedy=None)}")
+            console.say(f"  remedy: {problem.remedy}" if problem.remedy else None)
 
 
 def _text(rows: tuple[Row, ...], output: Path, fail_on: str, format: BatchFormat) -> str:
