@@ -55,6 +55,13 @@ def test_a_name_that_is_an_identifier_stays():
     assert identifiers(["signal"], VHDL) == {"signal": "signal_x"}
 
 
+@pytest.mark.parametrize("name", ["con", "CON.x", "a" * 5000, "-rf", "..", "../../x", ".hidden", "a/b", "nul.tar.gz"])
+def test_names_of_files_stay_in_their_folder_on_any_system(name):
+    (found,) = identifiers([name], FILES).values()
+    assert re.fullmatch(VALID["files"], found) and found[0] not in "-." and len(found) <= 120
+    assert found.partition(".")[0].lower() not in FILES.reserved
+
+
 def test_appended_suffixes_never_meet_another_name():
     out = identifiers(["a", "a m", "a_m"], VHDL, suffixes=("", "_m"))
     made = [found + end for found in out.values() for end in ("", "_m")]

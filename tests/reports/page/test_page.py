@@ -11,7 +11,7 @@ import pytest
 from support.markup import NASTY, read
 from support.places import FIXTURES
 
-from kinform import results, stages
+from kinform import results, run, stages
 from kinform.consistency.comparisons.answers import answers
 from kinform.model.findings import CheckReport, Finding, RuleOutcome
 from kinform.reports.page import Scene, facts, page_html, page_summary
@@ -259,3 +259,15 @@ def test_counts_of_rows_are_told_as_a_person_would(derive_design, page_of):
     text = " ".join(found.texts)
     assert re.search(r"\b\d+ agree\b", text)
     assert not re.search(r"\b(?!1 )\d+ (agrees|disagrees|contradicts)\b", text)
+
+
+@pytest.mark.parametrize("far", [1e10, 1e18])
+def test_parts_as_far_as_numbers_reach_are_no_error(far, tmp_path):
+    box = 'shape = {type = "box", size = [10, 10, 10]}\nmaterial = "steel"\n'
+    manifest = tmp_path / "far.toml"
+    manifest.write_text(
+        'schema = 1\n[assembly]\nname = "far"\nunits = "mm"\nground = "a"\n'
+        f'[[part]]\nname = "a"\n{box}[[part]]\nname = "b"\n{box}position = [0, 0, {far!r}]\n'
+    )
+    page = read(page_html(run(manifest, ranges=False).design))
+    assert {part["name"] for part in page.scene["parts"]} == {"a", "b"}
