@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
-import os
+import json
 import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+
+_STARTER = """
+import json, os, subprocess, sys
+process = subprocess.Popen(sys.argv[1:], stdout=subprocess.DEVNULL)
+_, status, usage = os.wait4(process.pid, 0)
+print(json.dumps([os.waitstatus_to_exitcode(status), usage.ru_utime + usage.ru_stime, usage.ru_maxrss]))
+"""
+"""A small process that starts the command: what a process had before it became another counts as its memory."""
 
 
 @dataclass(frozen=True)
@@ -25,14 +33,8 @@ class Cost:
 def cost_of(folder: Path, *arguments: str) -> Cost:
     """Run the command in a folder and measure it, as `getrusage` counts."""
     with open(folder / "said.txt", "w+b") as said:
-        command = [sys.executable, "-m", "kinform_cli", *arguments]
-        with subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=said) as process:
-            _, status, usage = os.wait4(process.pid, 0)
-            process.returncode = os.waitstatus_to_exitcode(status)
+        command = [sys.executable, "-c", _STARTER, sys.executable, "-m", "kinform_cli", *arguments]
+        done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=said, check=True)
         said.seek(0)
-        return Cost(
-            process.returncode,
-            usage.ru_utime + usage.ru_stime,
-            usage.ru_maxrss / (1024.0 if sys.platform != "darwin" else 1024.0**2),
-            said.read().decode(),
-        )
+        code, seconds, most = json.loads(done.stdout)
+        return Cost(code, seconds, most / (1024.0 if sys.platform != "darwin" else 1024.0**2), said.read().decode())

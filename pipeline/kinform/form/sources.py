@@ -98,6 +98,8 @@ class SourceTables:
     """Whether this is a robot description: what it says of links and joints is meant to be all."""
     facts: Facts | None = None
     """What a robot description says word for word."""
+    unsettled: bool = False
+    """Whether the answer hangs on more than what these files hold, as on which files fit a pattern."""
 
 
 def is_source(path: Path) -> bool:

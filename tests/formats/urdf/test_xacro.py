@@ -7,6 +7,7 @@ import pytest
 
 from kinform import form
 from kinform.errors import InputError
+from kinform.form.readers.assembly import load_with_contents
 from kinform.form.sources import Reading
 
 pytest.importorskip("xacrodoc", reason="xacrodoc expands xacro: pip install 'kinform[xacro]'")
@@ -173,3 +174,13 @@ def test_what_has_no_end_is_refused_in_bounded_time_and_memory(tmp_path, monkeyp
         form.load(path)
     (problem,) = caught.value.problems
     assert problem.file == path.name and problem.line and problem.remedy
+
+
+@pytest.mark.parametrize(
+    ("include", "settled"),
+    [("parts.xacro", True), ("$(find arm_description)/urdf/parts.xacro", True), ("part?.xacro", False),
+     ('absent.xacro" optional="true"/><xacro:include filename="parts.xacro', False)],
+)  # fmt: skip
+def test_what_hangs_on_which_files_there_are_is_never_taken_for_unchanged(tmp_path, include, settled):
+    _, contents = load_with_contents(write(tmp_path, include))
+    assert bool(contents) == settled

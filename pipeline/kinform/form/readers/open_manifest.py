@@ -204,6 +204,7 @@ def _from_source(
     """The tables of a source; its files are noted."""
     tables = source_tables(SourceFile(path, file, folder, units, problems, files.reading, files.boundary))
     if tables is not None:
+        files.unsettled |= tables.unsettled
         for other in tables.files:
             files.note(other)
         files.hash_meshes([other for other in tables.files if is_mesh(other)])

@@ -11,6 +11,7 @@ from urllib.parse import unquote
 
 from kinform.form.constants import NAME_LENGTH, VALUE_LENGTH
 from kinform.foundation.boundary import OUTSIDE, OUTSIDE_REMEDY, Boundary
+from kinform.foundation.regular_files import not_a_file
 from kinform.frozen import dataclass
 
 PACKAGE_LEVELS = 4
@@ -194,8 +195,11 @@ def packages_below(folder: Path, levels: int) -> dict[str, Path]:
 
 def package_name(folder: Path) -> str | None:
     """The name that a package gives itself; None where the folder is none."""
+    file = folder / _PACKAGE_FILES[0]
     try:
-        with open(folder / _PACKAGE_FILES[0], "rb") as stream:
+        if not_a_file(file) is not None:
+            return None
+        with open(file, "rb") as stream:
             stated = _NAME.search(stream.read(PACKAGE_BYTES))
     except OSError:
         return None

@@ -165,6 +165,8 @@ class Robot:
     """What the reader did on its own account, and what cannot be carried, in sentences."""
     files: tuple[Path, ...] = ()
     """Files that were read besides the description: includes, and meshes that primitives are fitted to."""
+    unsettled: bool = False
+    """Whether it hangs on more than what the files hold: which files fit a pattern, are missing, or are in packages."""
     format: DescriptionFormat = ""
     """What `text` is."""
     text: str = ""

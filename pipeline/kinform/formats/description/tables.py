@@ -58,7 +58,9 @@ def tables(source: Source) -> SourceTables | None:
     writer = _Writer(source)
     writer.write(robot)
     facts = facts_of(robot, source.file, source.reading.geometry, writer.parts, writer.absent)
-    return SourceTables(writer.raw, Places(writer.places), (*robot.notes, *writer.notes), robot.files, facts=facts)
+    return SourceTables(writer.raw, Places(writer.places), (*robot.notes, *writer.notes), robot.files,
+        facts=facts, unsettled=robot.unsettled,
+    )  # fmt: skip
 
 
 class _Writer:

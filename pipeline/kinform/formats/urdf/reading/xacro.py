@@ -78,7 +78,9 @@ def read(path: Path, data: bytes, file: str, problems: Problems, meshes: MeshFil
         return None
     robot = reader.read_text(path, done.text.encode(), file, problems, meshes, data.decode("utf-8", "replace"))
     included = dict.fromkeys(Path(name) for name in done.includes)
-    return None if robot is None else replace(robot, files=tuple(included))
+    return (
+        None if robot is None else replace(robot, files=tuple(included), unsettled=host.unsettled or meshes.runs_xacro)
+    )
 
 
 @dataclass(frozen=True)
@@ -115,6 +117,8 @@ class _Host:
         self.path, self.data, self.file, self.problems, self.meshes = path, data, file, problems, meshes
         self.texts = {str(path): data}
         self.questions = 0
+        self.unsettled = False
+        """Whether an answer hung on more than what the files hold."""
 
     def expanded(self) -> _Expanded | _Fault:
         """The text with macros expanded. Raises Crash."""
@@ -158,6 +162,7 @@ class _Host:
         if folder is None:
             return _no(f"package {name} is not found", f"add --package {name}=FOLDER, or set ROS_PACKAGE_PATH")
         folder = folder.resolve()
+        self.unsettled |= folder != self.meshes.home.resolve()  # a nearer one may come
         self.meshes.boundary.grant(folder)
         return b"+" + os.fsencode(folder.as_posix())
 
@@ -168,6 +173,7 @@ class _Host:
 
     def _fitting(self, pattern: str) -> bytes:
         """Names of the files that a pattern fits, sorted, in JSON."""
+        self.unsettled = True  # others may come that it fits
         parts = pattern.split("/")
         first = next((k for k, part in enumerate(parts) if glob.has_magic(part)), len(parts))
         folder = "/".join(parts[:first]) or ("/" if pattern.startswith("/") else ".")
@@ -190,6 +196,7 @@ class _Host:
             with self.meshes.boundary.open(path) as stream:
                 data = stream.read(TEXT_BYTES + 1)
         except FileNotFoundError:
+            self.unsettled = True
             return b"-" + json.dumps({"missing": True}).encode()
         except OSError as error:
             return _no(f"includes {shown}, which cannot be read: {error.strerror}", "check its permissions")
