@@ -92,7 +92,7 @@ def tell(text: str | Text) -> None:
 
 
 def _drawn(console: Console, item: RenderableType, *, soft_wrap: bool = False) -> str:
-    """What the console would print: only its colours are control characters, and no line commands a CI runner."""
+    """What the console would print, without control characters but those of colours, and without commands for CI."""
     with console.capture() as drawn:
         console.print(_Escaped(item), soft_wrap=soft_wrap, crop=False)
     return escapes.of_terminal(drawn.get())

@@ -267,8 +267,8 @@ def sources_of(named: Sequence[Path]) -> list[Path]:
 
 
 def _is_of_this_kind(path: Path) -> bool:
-    """Whether a TOML file is a manifest, or an XML file a description; of other names always. A file that cannot be
-    read as TOML may be a manifest."""
+    """Whether a TOML file is a manifest, or an XML file a description. A TOML file with faults may be a manifest. Other
+    files are not read."""
     from kinform.form.recognition import is_design
 
     if path.suffix.lower() == ".xml":

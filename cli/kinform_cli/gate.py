@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from kinform.design import Design
 
 NOTHING_REUSED = ("no earlier results", "earlier results of unknown origin")
-"""How accounts of runs begin that take nothing over; of the origin a line says more than the account."""
+"""How the account of a run begins that reused nothing. A warning has already named results of unknown origin."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Gate:
     manifest_folder: Path | None = None
     """Formats that a repository's host reads name files as seen from here: this goes before them."""
     strict: bool = False
-    """Whether results of unknown origin verify nothing."""
+    """Whether the exit code is 2 where results are of unknown origin and no finding fails."""
 
     def judge_run(self, outcome: Outcome) -> int:
         """What a run says on its own account, then its findings; returns the exit code of the gate."""

@@ -26,7 +26,7 @@ board: mmap.mmap | None = None
 
 
 _left = mmap.mmap(-1, 1)
-"""Whether the work started what is to go on without it."""
+"""1 where the command has started something that may outlive it, such as a browser."""
 
 
 def leave_children() -> None:
@@ -94,7 +94,7 @@ def _watch(worker: int, awaited: set[signal.Signals]) -> NoReturn:
 
 
 def _ended(worker: int) -> tuple[bool, int]:
-    """Whether the worker has ended, and its status; adopted children that ended are forgotten."""
+    """Whether the worker has ended, and its exit status. Adopted children that have ended are collected too."""
     while True:
         try:
             child, status = os.waitpid(-1, os.WNOHANG)

@@ -19,7 +19,8 @@ MINE, OTHER = ("a" + hashlib.sha256(name).hexdigest()[1:] for name in (b"mine", 
 def state(tmp_path, monkeypatch):
     """The user's state folder."""
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
-    monkeypatch.chdir(tmp_path)
+    (tmp_path / "work").mkdir()
+    monkeypatch.chdir(tmp_path / "work")
     return tmp_path / "state" / "kinform"
 
 
@@ -95,19 +96,30 @@ def test_a_folder_of_another_user_is_not_believed(tmp_path, monkeypatch):
     assert fault(tmp_path / "a.h5")
 
 
-def test_a_folder_in_the_repository_of_the_file_or_of_the_current_folder_is_not_believed(tmp_path, monkeypatch):
+@pytest.mark.parametrize("mark", [".git", "package.xml"])
+def test_a_folder_in_a_repository_or_a_package_is_not_believed(mark, tmp_path):
     record(MINE)
-    (tmp_path / ".git").mkdir()
-    assert not is_recorded(MINE, tmp_path / "deep" / "a.h5")
-    (tmp_path / ".git").rename(tmp_path / "git")
-    inner = tmp_path / "repository"
+    code = signed("x", tmp_path / "elsewhere" / "a")
+    (tmp_path / mark).write_text("")
+    for file in (tmp_path / "a.h5", tmp_path.parent / "a.h5"):
+        assert not is_recorded(MINE, file) and fault(file) and not signed("x", file)
+        assert not is_signed("x", code, file)
+
+
+def test_a_folder_in_the_repository_around_that_of_the_file_is_not_believed(tmp_path, monkeypatch):
+    inner = tmp_path / "module"
     (inner / ".git").mkdir(parents=True)
-    assert is_recorded(MINE, inner / "a.h5")
-    monkeypatch.setenv("XDG_STATE_HOME", str(inner / "state"))
     record(MINE)
-    assert is_recorded(MINE, tmp_path / "a.h5") and not is_recorded(MINE, inner / "a.h5")
+    assert is_recorded(MINE, inner / "a.h5")
+    (tmp_path / ".git").mkdir()
     monkeypatch.chdir(inner)
-    assert not is_recorded(MINE, tmp_path / "a.h5") and fault(tmp_path / "a.h5") and not signed("x", tmp_path / "a")
+    assert not is_recorded(MINE, inner / "a.h5")
+
+
+def test_a_folder_in_the_working_folder_is_not_believed(tmp_path, monkeypatch):
+    record(MINE)
+    monkeypatch.chdir(tmp_path)
+    assert not is_recorded(MINE, tmp_path.parent / "a.h5")
 
 
 def test_half_a_line_of_a_killed_process_harms_no_other(state, tmp_path):

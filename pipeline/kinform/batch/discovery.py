@@ -54,8 +54,9 @@ def discover(
 
     `include` are patterns of names or paths (`*.step`, `arms/*.toml`), whatever their case: only such files, and these
     whatever they hold, if kinform reads their format. `exclude` are left out. `ignored`: also what git ignores. Nothing
-    below the folder of `results` is a design. `say` is told what could not be looked into. Two designs whose results
-    would be one file have a fault. Raises InputError for a path that is not there, and for no design at all.
+    below the folder of `results` is a design. `say` is called for each file or folder that was passed
+    over. Two designs whose results would be one file have a fault. Raises InputError for a path that is not there, and
+    for no design at all.
     """
     missing = [Problem("there is no such file or folder", str(p)) for p in paths if not os.path.exists(p)]
     if missing:

@@ -13,6 +13,8 @@ import subprocess
 from collections.abc import Sequence
 from pathlib import Path
 
+from kinform.foundation.boundary import repository_of
+
 SECONDS = 120.0
 """s that one call may take: a million files are listed in some 10 s. Chosen, not measured."""
 
@@ -37,8 +39,8 @@ class GitError(Exception):
 
 def root_of(folder: str | os.PathLike[str]) -> Path | None:
     """The top folder of the innermost repository that a folder is in, without links; None where it is in none."""
-    here = Path(os.path.realpath(folder))
-    return next((above for above in (here, *here.parents) if os.path.lexists(above / ".git")), None)
+    root = repository_of(folder)
+    return None if root is None else Path(root)
 
 
 def git(root: Path, *arguments: str) -> bytes:

@@ -3,8 +3,8 @@
 A digest inside a file shows that the file is whole, not who wrote it: anyone can compute one. So the digests of files
 that later runs rely on are kept where only the user writes: in `kinform` below `$XDG_STATE_HOME` (where that is an
 absolute path) or `~/.local/state`. That folder must belong to the user and be closed to all others (mode 0700), and it
-must not lie in the repository of the file that is asked about or of the current folder: whoever can change the file
-could change its record too.
+must not lie in a repository, a package or the working folder (`user_folders.is_foreign`), nor in the repository of the
+file that is asked about: whoever can change the file could change its record too.
 
 The digests stand in 16 files by their first hexadecimal digit, one a line. A line is appended in one write, so that
 processes need no lock, and is found wherever it stands, so that half a line of a killed process harms no other. A file
@@ -23,6 +23,9 @@ import os
 import re
 import stat
 from pathlib import Path
+
+from kinform.foundation.boundary import repository_of
+from kinform.foundation.user_folders import is_foreign
 
 try:
     import fcntl
@@ -72,7 +75,7 @@ def fault(file: str | Path) -> str:
     try:
         folder = _folder(create=True)
         if _in_reach(folder, file):
-            return f"{folder} lies in the same repository"
+            return f"{folder} lies in a repository, a package or the working folder"
         if not os.access(folder, os.W_OK | os.X_OK):
             return f"{folder} is not writable"
     except _UnusableError as error:
@@ -126,21 +129,11 @@ def _folder(*, create: bool = False) -> Path:
 
 
 def _in_reach(folder: Path, file: str | Path) -> bool:
-    """Whether the folder lies in the repository of the file or of the current folder: then it may be part of what
-    somebody else wrote."""
+    """Whether strangers may have written the folder: it lies in a repository, a package or the working folder, or in
+    the repository of the file."""
     inside = os.path.realpath(folder)
-    starts = {os.path.dirname(os.path.realpath(file)), os.path.realpath(os.curdir)}
-    return any(inside.startswith(os.path.join(root, "")) for start in starts if (root := _repository(start)))
-
-
-def _repository(folder: str) -> str:
-    """The root of the repository that the folder lies in; "" where it lies in none."""
-    while not os.path.lexists(os.path.join(folder, ".git")):
-        above = os.path.dirname(folder)
-        if above == folder:
-            return ""
-        folder = above
-    return folder
+    roots = {repository_of(os.path.dirname(os.path.realpath(file))), repository_of(os.curdir)} - {None}
+    return is_foreign(folder) or any(inside.startswith(os.path.join(str(root), "")) for root in roots)
 
 
 def _open(path: Path, flags: int) -> int:
