@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from collections.abc import Set as AbstractSet
+from dataclasses import field
 from functools import cached_property
 from typing import Annotated, Literal, get_args
 
@@ -107,6 +108,22 @@ class Blocker:
 
 
 @dataclass(frozen=True, eq=False)
+class EndStop:
+    """A contact that ends the motion of a joint at the drawn pose, in one sense."""
+
+    parts: PartPair
+    patch: int
+    """Index into Contacts.patches."""
+    area: SquareMetres
+    place: Place
+    """(3,) m."""
+    sense: int
+    """1 where it ends the motion about or along the joint's axis, −1 where it ends the reverse."""
+    ends: str
+    """In words: "the turn about +z"."""
+
+
+@dataclass(frozen=True, eq=False)
 class Release:
     """One way in which the second body can leave the first, breaking contact; the opposite way is blocked."""
 
@@ -174,6 +191,14 @@ class Joint:
     """Whether contact lets no motion of the second body break it; None where contact does not say."""
     releases: tuple[Release, ...] = ()
     """Ways to leave, where they are not held: slides first."""
+    at_rest: Annotated[Array, TWIST] = field(default_factory=lambda: np.zeros((0, 6)))
+    """(r, 6) canonical basis of the motions that keep all contact of the pair; empty where contact does not decide."""
+    closed: Annotated[Array, TWIST] = field(default_factory=lambda: np.zeros((0, 6)))
+    """(c, 6) canonical basis of the span of all motions that contact allows, which pushes and does not pull."""
+    open: bool = False
+    """Whether one motion opens all contact that holds, or bodies without freedoms come apart along one line."""
+    at_stop: tuple[EndStop, ...] = ()
+    """What ends its motion at this pose."""
     extremes: int | None = None
     """How many extreme directions the leaving motions have; None where held, not known, or too many to list."""
     held_reason: str = ""

@@ -12,14 +12,14 @@ from contextlib import suppress
 from typing import Any
 
 from kinform.kinematics.joints.pair.question import Answer
-from kinform.model.kinematics import Blocker, Joint, Reading, Release
+from kinform.model.kinematics import Blocker, EndStop, Joint, Reading, Release
 from kinform.reuse import fingerprints
 from kinform.reuse.digest import digest
 from kinform.reuse.ledger import Ledger
 from kinform.reuse.packing import pack, seal, unpack
 from kinform.version import __version__
 
-CLASSES: dict[str, type] = {cls.__name__: cls for cls in (Answer, Blocker, Joint, Reading, Release)}
+CLASSES: dict[str, type] = {cls.__name__: cls for cls in (Answer, Blocker, EndStop, Joint, Reading, Release)}
 
 
 class Decisions:

@@ -84,6 +84,8 @@ def one_joint(joint: Joint, computed: bool) -> dict[str, Any]:
         "readings": [
             fields(one, "type", "axis", "point", "pitch", "freedoms", "cause", "words") for one in joint.readings
         ],
+        **fields(joint, "at_rest", "closed", "open"),
+        "at_stop": [fields(one, "parts", "patch", "area", "place", "sense", "ends") for one in joint.at_stop],
         **fields(joint, "axis_uncertainty", "point_uncertainty"),
         "singular_values": joint.singular_values,
         **fields(joint, "held", "held_reason", "extremes"),

@@ -22,13 +22,10 @@ from kinform.frozen import dataclass
 from kinform.kinematics.joints.pair.constants import VAGUE_AXIS
 from kinform.kinematics.joints.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.joints.pair.freedoms import freedoms, freedoms_beyond
-from kinform.kinematics.joints.pair.hollows import hollow_reading
 from kinform.kinematics.joints.pair.in_step import Steps
 from kinform.kinematics.joints.pair.lower_pairs import JointForm
-from kinform.kinematics.joints.pair.preserved import preserved_motions
-from kinform.kinematics.joints.pair.scraps import narrow, scraps
-from kinform.kinematics.joints.pair.slots import pin_reading
-from kinform.kinematics.joints.pair.stops import (
+from kinform.kinematics.joints.pair.motion_cone import MotionCone
+from kinform.kinematics.joints.pair.one_sided import (
     ALONG_AXIS,
     ROLES,
     OtherReading,
@@ -37,6 +34,9 @@ from kinform.kinematics.joints.pair.stops import (
     seat_reading,
     stop_reading,
 )
+from kinform.kinematics.joints.pair.preserved import preserved_motions
+from kinform.kinematics.joints.pair.scraps import narrow, scraps
+from kinform.kinematics.joints.pair.slots import pin_reading
 from kinform.kinematics.joints.pair.touches import TOUCHING, apart_doubt, beside_flange, held_by_bends, stray_doubt
 from kinform.kinematics.joints.pair.uncertainty import uncertainty_doubt
 from kinform.model.arrays import Array, Flags
@@ -83,7 +83,13 @@ class Certainty:
 
 
 def certainty(
-    evidence: Evidence, twists: Array, preserved: Flags, basis: Array, values: Array, tolerances: Tolerances
+    evidence: Evidence,
+    twists: Array,
+    preserved: Flags,
+    basis: Array,
+    values: Array,
+    tolerances: Tolerances,
+    cone: MotionCone,
 ) -> Steps[Certainty]:
     """How sure the freedoms `basis` (6, k) are, with singular values (6,), found among `twists` (6, n) of which
     `preserved` (items, n) says what each patch preserves."""
@@ -141,18 +147,18 @@ def certainty(
         bent = OtherReading(evidence.form(held), held, (), "bend")
         return Certainty("ambiguous", _bend_words(evidence, basis, held), bent)
     other = seat or pin or (yield from reading(evidence, twists, preserved, basis, tolerances))
-    other = other or (yield from stop_reading(evidence, twists, preserved, basis, tolerances))
-    hollow = None if other else (yield from hollow_reading(evidence, twists, preserved, basis, tolerances))
-    if hollow is not None and hollow.basis.shape[1] > 1:
-        faces = faces_in_words(evidence, hollow.out)
-        return Certainty("ambiguous", f"{form.type} if {faces} holds; as a corner it leaves two ways, one at a time")
-    other = other or hollow
+    other = other or (yield from stop_reading(evidence, twists, preserved, basis, tolerances, cone))
     if other is not None:
-        faces = faces_in_words(evidence, other.out)
-        words = f"{form.type} if {faces} holds; {other.form.type} if it is {ROLES[other.role]}"
-        return Certainty("ambiguous", words, other)
+        return doubtful(evidence, basis, other)
     weakest = f"; the weakest constraint has singular value {values[count]:.2g}" if count < 6 else ""
     return Certainty("determined", f"the contact leaves {counted(count, 'freedom')}{weakest}")
+
+
+def doubtful(evidence: Evidence, basis: Array, other: OtherReading) -> Certainty:
+    """That the freedoms `basis` (6, k) may be those of another reading."""
+    faces = faces_in_words(evidence, other.out)
+    words = f"{evidence.form(basis).type} if {faces} holds; {other.form.type} if it is {ROLES[other.role]}"
+    return Certainty("ambiguous", words, other)
 
 
 def _spread(evidence: Evidence) -> float:

@@ -133,6 +133,28 @@ class Evidence:
         parts = [slice(bounds[k], bounds[k + 1]) for k in np.flatnonzero(chosen).tolist()]
         return np.concatenate([self.rows[part] for part in parts]), np.concatenate([self.share[part] for part in parts])
 
+    def speeds_of(self, chosen: Flags, twist: Array) -> Array:
+        """(n,) of a twist (6,) along the normals of the items of the flags (items,) that are set."""
+        return np.asarray(self.rows_of(chosen)[0] @ twist)
+
+    def without(self, out: Flags) -> Evidence:
+        """What is left without the items of these flags (items,), in the same frame; one at least is left."""
+        items = self.chosen(~out)
+        rows, share = self.rows_of(~out)
+        held = np.repeat(~out, np.diff(self.start))
+        return Evidence(
+            items=tuple(items),
+            frame=self.frame,
+            rows=rows,
+            share=share / share.sum(),
+            start=np.array([0, *accumulate(len(item.points) for item in items)], dtype=np.int64),
+            arms=self.arms[held],
+            angle=self.angle[~out],
+            position=self.position[~out],
+            contact=self.contact,
+            size=self.size,
+        )
+
     def chosen(self, chosen: Flags) -> list[Item]:
         """The items of the flags (items,) that are set."""
         return [item for item, flag in zip(self.items, chosen, strict=True) if flag]

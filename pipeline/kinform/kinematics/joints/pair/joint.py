@@ -9,15 +9,15 @@ import numpy as np
 from kinform.foundation.algebra.vectors import canonical, cross, foot, norm, perpendicular, weighted_mean, widest_gap
 from kinform.kinematics.joints.pair.decision import Decision
 from kinform.kinematics.joints.pair.evidence import COAXIAL, Evidence, Item
-from kinform.kinematics.joints.pair.hypotheses import motion_words
+from kinform.kinematics.joints.pair.hypotheses import Motion, motion_words
 from kinform.kinematics.joints.pair.lower_pairs import JointForm
-from kinform.kinematics.joints.pair.stops import BESIDE_AXIS, ROLES
+from kinform.kinematics.joints.pair.one_sided import BESIDE_AXIS, ROLES
 from kinform.kinematics.joints.pair.uncertainty import disagreement, joint_uncertainty
 from kinform.kinematics.screws.canonical_basis import canonical_twists
-from kinform.kinematics.screws.wording import motions_in_words
+from kinform.kinematics.screws.wording import direction_words, motions_in_words
 from kinform.mechanism.constants import SIGMAS
 from kinform.model.arrays import Array
-from kinform.model.kinematics import FREEDOMS, Blocker, Joint, Reading, ReadingCause
+from kinform.model.kinematics import FREEDOMS, Blocker, EndStop, Joint, Reading, ReadingCause
 from kinform.model.names import BodyName, JointName
 
 LEAST_MISALIGNMENT = 1e-4
@@ -82,6 +82,7 @@ def joint_from_decision(bodies: tuple[BodyName, BodyName], evidence: Evidence, d
         for item, motion in blocking
     )
     direction, place = joint_uncertainty(kept, form)
+    cone = decision.cone
     joint = Joint(
         name=JointName(f"{bodies[0]}~{bodies[1]}"),
         bodies=bodies,
@@ -102,10 +103,31 @@ def joint_from_decision(bodies: tuple[BodyName, BodyName], evidence: Evidence, d
         axis_uncertainty=max(direction, disagreement(kept, form)),
         point_uncertainty=place,
     )
+    if cone is not None:
+        joint = replace(
+            joint,
+            at_rest=canonical_twists(cone.rest, frame),
+            closed=canonical_twists(cone.closed, frame),
+            open=cone.plainly_open or cone.withdraws,
+            at_stop=tuple(_end_stop(evidence.items[k], motion, sense, form) for k, motion, sense in decision.ended),
+        )
     if decision.other is None:
         return joint
     return replace(
         joint, readings=(reading_of(joint_from_decision(bodies, evidence, decision.other), decision.other.role),)
+    )
+
+
+def _end_stop(item: Item, motion: Motion, sense: float, form: JointForm) -> EndStop:
+    """What a patch ends, of a turn in one sense; senses count about the joint's axis."""
+    along = 1.0 if form.axis is None or float(form.axis @ motion.axis) >= 0.0 else -1.0
+    return EndStop(
+        parts=item.patch.parts,
+        patch=item.index,
+        area=item.patch.area,
+        place=weighted_mean(item.points, item.weights),
+        sense=int(sense * along),
+        ends=f"the turn about {direction_words(sense * motion.axis)}",
     )
 
 

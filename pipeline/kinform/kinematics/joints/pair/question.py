@@ -72,7 +72,13 @@ def _answer_each(questions: Sequence[Question]) -> list[Answer]:
     extremes = [tuple(islice(bounds, len(question.members))) for question in questions]
     evidences = [_evidence(question) for question in questions]
     decisions = iter(
-        decide_each([(e, q.tolerances) for q, e in zip(questions, evidences, strict=True) if e is not None])
+        decide_each(
+            [
+                (e, q.tolerances, [samples[item.index] for item in e.items])
+                for q, e, samples in zip(questions, evidences, extremes, strict=True)
+                if e is not None
+            ]
+        )
     )
     return [
         Answer(samples, None) if evidence is None else _answer(samples, evidence, next(decisions))
@@ -87,7 +93,8 @@ def _evidence(question: Question) -> Evidence | None:
 
 def _answer(extremes: tuple[Ints, ...], evidence: Evidence, decision: Decision) -> Answer:
     joint = joint_from_decision((BodyName(""), BodyName("")), evidence, decision)
-    strict = twist_at_origin(decision.strict, evidence.frame).T if decision.status == "blocked" else None
+    blocked = decision.status == "blocked"
+    strict = twist_at_origin(decision.strict, evidence.frame).T if blocked else None
     other = None if decision.other is None else joint_from_decision(joint.bodies, evidence, decision.other)
     return Answer(extremes, joint, strict, *misalignment(evidence, decision), other)
 
@@ -100,4 +107,5 @@ def joint_between(joint: Joint, pair: tuple[BodyName, BodyName], indices: Sequen
         bodies=pair,
         patches=tuple(indices[k] for k in joint.patches),
         blockers=tuple(altered(blocker, patch=indices[blocker.patch]) for blocker in joint.blockers),
+        at_stop=tuple(altered(stop, patch=indices[stop.patch]) for stop in joint.at_stop),
     )

@@ -21,7 +21,7 @@ from kinform.foundation.rounding import SINGLE, TINY
 from kinform.kinematics.joints.pair.evidence import LOOSE_ANGLE, Evidence
 from kinform.kinematics.joints.pair.freedoms import freedoms_beyond
 from kinform.kinematics.joints.pair.in_step import Steps
-from kinform.kinematics.joints.pair.stops import OPPOSING_SPEED, OtherReading
+from kinform.kinematics.joints.pair.one_sided import OPPOSING_SPEED, OtherReading
 from kinform.model.arrays import Array, Flags
 from kinform.model.tolerances import Tolerances
 

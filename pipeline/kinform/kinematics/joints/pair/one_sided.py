@@ -1,17 +1,19 @@
-"""End stops: faces that end a motion at the drawn pose, and do not guide it.
+"""What contact lets go in one sense alone, and whether that is a doubt.
 
-The rows of a pair take every patch for a constraint in both senses, so that a face which a lever just touches holds it.
-A *stop candidate* is a set of faces whose removal frees a motion that they oppose in one sense only. One sense alone is
-no doubt: a block rests on a table, a shaft on its collar. What tells a guide from a stop is where the face is:
+The rows of a pair take every patch for a constraint in both senses, so that a face which a slider just touches holds
+it. The cone of motions says what is free beside that (`motion_cone`). One sense alone is no doubt: a block rests on a
+table, a lid lies in its pocket, a shaft on its collar. Where all contact opens by one motion, or bodies without
+freedoms come apart along one line only, the joint is what is at rest. Else it depends on where the faces are that are
+left:
 
 - A collar or shoulder lies round the guide and beyond it: the motion is meant to be held there.
 - A face inside of the guide's own cross-section, at the end of a guide that is long enough to slide in, may be the
   bottom of a bore that a piston has reached, or the step bearing of a shaft. So may a face beside the axis.
 - A face that opposes a turn in one sense is what the lever came to rest on.
 - A rim that stands in a seat beside a guide may be either: the head of a countersunk screw is tightened, a valve opens.
-- A flank beside a plane contact makes a slider of it where it runs along with it, and is a stop where it is short.
 
-Where the candidate may be either, both readings are kept, and the joint is ambiguous until something else chooses.
+Where it may be either, both readings are kept, and the joint is ambiguous until something else chooses. So it is where
+bodies without freedoms may leave each other in several ways, one at a time, as a pin in the corner of a slot does.
 
 Whether a guide is long enough to slide in is the rule for bushings: shorter than half of its width it jams, as friction
 at its edges then holds any load beside its axis (W. Beitz, K.-H. Küttner, Dubbel, guides).
@@ -23,12 +25,13 @@ import math
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, perpendicular, sine, widest_turn
+from kinform.foundation.algebra.vectors import perpendicular, sine, widest_turn
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.joints.pair.freedoms import freedoms_beyond
 from kinform.kinematics.joints.pair.in_step import Steps
 from kinform.kinematics.joints.pair.lower_pairs import JointForm
+from kinform.kinematics.joints.pair.motion_cone import MotionCone
 from kinform.model.arrays import Array, Flags
 from kinform.model.kinematics import ReadingCause
 from kinform.model.tolerances import Tolerances
@@ -37,8 +40,6 @@ ALONG_AXIS = 0.01
 """Normals and axes this near (sine) to an axis are along it. Chosen, not measured."""
 OPPOSING_SPEED = 0.05
 """Share of a patch's greatest normal speed that is opposition, and no rounding beside it. Chosen, not measured."""
-FACING_ONE_WAY = 1e-4
-"""1 − cosine of normals of faces that face one way. Chosen, not measured."""
 SLIDES_FROM = 0.5
 """Length of a guide over its width from which on it slides and does not jam. Chosen, not measured."""
 ONE_SECTION = 0.05
@@ -48,10 +49,11 @@ INSIDE_GUIDE = 1.05
 measured."""
 ROUND_FROM = 0.3
 """Points of a face beyond this share of its reach show whether it goes round the axis. Chosen, not measured."""
+HALF_ROUND = math.radians(175.0)
+"""rad without any normal about the axis up to which a journal goes more than half round: half a turn less 5°, by which
+facets of 72 sides round the ends of a half bearing. Chosen, not measured."""
 BESIDE_AXIS = math.radians(200.0)
 """rad without any of a face about the axis, beyond which it lies beside it. Half a turn, and 20° for facets."""
-SHORT_FLANK = 0.5
-"""Length of a flank over that of the faces beside it below which it guides nothing. Chosen, not measured."""
 
 
 ROLES = {
@@ -80,80 +82,45 @@ class OtherReading:
 
 
 def stop_reading(
-    evidence: Evidence,
-    twists: Array,
-    preserved: Flags,
-    strict: Array,
-    tolerances: Tolerances,
-    counts: Flags | None = None,
+    evidence: Evidence, twists: Array, preserved: Flags, strict: Array, tolerances: Tolerances, cone: MotionCone
 ) -> Steps[OtherReading | None]:
-    """The other reading of a pair whose freedoms are `strict` (6, k), if some of its faces may be a stop; None if not.
+    """The other reading of a pair whose freedoms are `strict` (6, k), where what it lets go in one sense may be meant;
+    None where not.
 
     `twists` (6, n) are candidate motions, `preserved` (items, n) which patches slide on themselves under them.
-    Of several stops the one with the least area. `counts` (items,): what is left of the contact; None: all of it.
     """
-    best: tuple[float, OtherReading] | None = None
-    every = np.ones(len(evidence.items), dtype=bool) if counts is None else counts
-    for out in _candidates(evidence, every):
-        keep = every.copy()
-        keep[list(out)] = False
-        free = preserved[keep].all(axis=0) if keep.any() else np.zeros(twists.shape[1], dtype=bool)
-        if not (free & ~preserved[list(out)].all(axis=0)).any():
-            continue
-        basis, freed = yield from freedoms_beyond(evidence, twists, preserved, keep, tolerances, strict)
-        if basis.shape[1] <= strict.shape[1]:
-            continue
-        reading = OtherReading(evidence.form(basis), basis, out, "stop")
-        area = sum(evidence.items[k].area for k in out)
-        if (best is None or area < best[0]) and _may_be_stop(evidence, strict, freed, reading, keep):
-            best = area, reading
-    return None if best is None else best[1]
+    if cone.extra != 1 or cone.plainly_open or cone.withdraws or cone.opened.all() or not cone.opened.any():
+        return None
+    keep = ~cone.opened
+    basis, freed = yield from freedoms_beyond(evidence, twists, preserved, keep, tolerances, strict)
+    if freed.shape[1] != 1:
+        return None
+    out = tuple(int(k) for k in np.flatnonzero(cone.opened))
+    reading = OtherReading(evidence.form(basis), basis, out, "stop")
+    turned = {"fixed": ("revolute",), "prismatic": ("cylindrical",)}
+    if reading.form.type in turned.get(evidence.form(strict).type, ()):
+        return reading
+    return reading if _ends_guide(reading.form, evidence.chosen(keep), evidence.chosen(cone.opened)) else None
+
+
+def leaves_several_ways(cone: MotionCone) -> bool:
+    """Whether bodies without freedoms may leave each other in several ways, no one of which opens all contact."""
+    return not cone.rest.shape[1] and cone.extra > 1 and not cone.plainly_open
 
 
 def seat_reading(
     evidence: Evidence, twists: Array, preserved: Flags, strict: Array, sure: Flags, tolerances: Tolerances
 ) -> Steps[OtherReading | None]:
-    """The other reading of a pair whose freedoms are `strict` (6, k), if all that holds it are surfaces that are known
-    (`sure` (items,)) and rims in seats beside them, which end one motion in one sense; None if not."""
-    lines = np.array([item.patch.kind == "line" and not item.patch.one_sided for item in evidence.items])
-    if not lines.any() or lines.all() or not (lines | sure).all():
+    """The other reading of a pair whose freedoms are `strict` (6, k), if surfaces that are known (`sure` (items,)) hold
+    all of it but one motion, and the rest, such as a rim in its seat or facets of no known surface, ends that in one
+    sense; None if not."""
+    if sure.all() or not sure.any():
         return None
-    basis, freed = yield from freedoms_beyond(evidence, twists, preserved, ~lines, tolerances, strict)
-    out = tuple(int(k) for k in np.flatnonzero(lines))
+    basis, freed = yield from freedoms_beyond(evidence, twists, preserved, sure, tolerances, strict)
+    out = tuple(int(k) for k in np.flatnonzero(~sure))
     if freed.shape[1] != 1 or not one_sense(evidence, freed[:, 0], out):
         return None
     return OtherReading(evidence.form(basis), basis, out, "stop")
-
-
-def _candidates(evidence: Evidence, counts: Flags) -> list[tuple[int, ...]]:
-    """Sets of items, of those that count (items,), that could be stops: planes that face one way, and single cones and
-    balls."""
-    items = evidence.items
-    some = [(k, items[k]) for k in np.flatnonzero(counts).tolist()]
-    planes = sorted((k for k, i in some if i.patch.kind == "plane"), key=lambda k: (-items[k].area, k))
-    sets: list[tuple[int, ...]] = []
-    left = list(planes)
-    while left:
-        normal = items[left[0]].normals[0]
-        facing = [k for k in left if float(items[k].normals[0] @ normal) > 1.0 - FACING_ONE_WAY]
-        sets.append(tuple(sorted(facing)))
-        left = [k for k in left if k not in facing]
-    sets += [(k,) for k, i in some if i.patch.kind in ("cone", "sphere") and not i.patch.one_sided]
-    return [found for found in sets if len(found) < len(some)]
-
-
-def _may_be_stop(evidence: Evidence, strict: Array, motions: Array, reading: OtherReading, keep: Flags) -> bool:
-    """Is there nothing that tells the faces left out to be guides? `motions` (6, n) is what they oppose."""
-    guides = evidence.chosen(keep)
-    faces = [evidence.items[k] for k in reading.out]
-    if motions.shape[1] == 2:
-        return _short_flank(evidence, strict, reading, guides, faces)
-    if motions.shape[1] != 1 or not one_sense(evidence, motions[:, 0], reading.out):
-        return False
-    turned = {"fixed": ("revolute",), "prismatic": ("cylindrical",)}
-    if reading.form.type in turned.get(evidence.form(strict).type, ()):
-        return True
-    return _ends_guide(reading.form, guides, faces)
 
 
 def one_sense(evidence: Evidence, motion: Array, out: tuple[int, ...]) -> bool:
@@ -162,13 +129,6 @@ def one_sense(evidence: Evidence, motion: Array, out: tuple[int, ...]) -> bool:
     most, least = float(speeds.max()), float(speeds.min())
     large = OPPOSING_SPEED * max(most, -least)
     return not (most > large and least < -large)
-
-
-def ends_inside(evidence: Evidence, reading: OtherReading, keep: Flags) -> bool:
-    """Is a stop at the end of what else is kept (items,), inside of its cross-section, as the bottom of a bore is?"""
-    guides = [item for k, item in enumerate(evidence.items) if keep[k] and k not in reading.out]
-    end = _end_of_guide(reading.form, guides, [evidence.items[k] for k in reading.out])
-    return end is not None and end.inside
 
 
 @dataclass(frozen=True, eq=False)
@@ -244,19 +204,6 @@ def _runs_along(item: Item, axis: Array) -> bool:
     if item.patch.kind == "plane":
         return abs(float(item.patch.axis @ axis)) < ALONG_AXIS
     return sine(item.patch.axis, axis) < ALONG_AXIS
-
-
-def _short_flank(
-    evidence: Evidence, strict: Array, reading: OtherReading, guides: list[Item], faces: list[Item]
-) -> bool:
-    """Do short faces, all on one side, make a slider of a plane contact?"""
-    form = evidence.form(strict)
-    if form.type != "prismatic" or reading.form.type != "planar" or form.axis is None or reading.form.axis is None:
-        return False
-    sideways = cross(form.axis, reading.form.axis)
-    senses = {float(item.normals[0] @ sideways) > 0.0 for item in faces}
-    length, guided = (float(np.ptp(np.concatenate([i.points for i in of]) @ form.axis)) for of in (faces, guides))
-    return len(senses) == 1 and length < SHORT_FLANK * guided
 
 
 def faces_in_words(evidence: Evidence, out: tuple[int, ...]) -> str:
