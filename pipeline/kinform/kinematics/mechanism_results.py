@@ -15,6 +15,7 @@ from kinform.kinematics.mobility.idle import idle_turns
 from kinform.kinematics.mobility.joint_redundancy import redundancy_within
 from kinform.kinematics.mobility.loop_redundancy import redundancies_of_loops
 from kinform.kinematics.mobility.named_freedoms import named_freedoms
+from kinform.kinematics.mobility.two_ends import mobility_ends
 from kinform.kinematics.separation.constraint_matrix import constraint_matrix
 from kinform.kinematics.separation.contact_rows import ContactRows, pair_cones
 from kinform.kinematics.separation.releases import with_releases
@@ -70,13 +71,13 @@ class DecidedMechanism:
 
 def kinematics_of(mechanism: DecidedMechanism) -> Kinematics:
     """The kinematics of a mechanism."""
-    matrix, joints, apart, reason = _separations(mechanism)
-    mobility, couplings = _mobility(mechanism)
+    matrix, joints, apart, reason, opened = _separations(mechanism)
+    mobility, couplings = _mobility(mechanism, opened)
     bodies = mechanism.graph.bodies
     return Kinematics(bodies, joints, matrix, mobility, Misfit(), (), apart, reason, couplings)
 
 
-def _mobility(mechanism: DecidedMechanism) -> tuple[Mobility, tuple[Coupling, ...]]:
+def _mobility(mechanism: DecidedMechanism, opened: frozenset[JointName]) -> tuple[Mobility, tuple[Coupling, ...]]:
     """What the joints let move, and the ratios in which they are coupled."""
     assembly, graph, patches, size = mechanism.assembly, mechanism.graph, mechanism.patches, mechanism.size
     joints, nodes, strict = graph.joints, len(graph.bodies), mechanism.strict
@@ -90,11 +91,13 @@ def _mobility(mechanism: DecidedMechanism) -> tuple[Mobility, tuple[Coupling, ..
     couplings = couplings_between(assembly, graph, patches, closure)
     constant = {coupling.through for coupling in couplings if coupling.meshing is not None}
     finite = finite_mobility(graph.edges, joints, nodes, count, size, couplings)
+    effective = (count if finite.count is None else finite.count) - idle
+    low, high = mobility_ends(assembly, graph, opened, effective, count, size, doubts)
     within = [redundancy_within(joint, patches, assembly.tolerances) for joint in joints]
     mobility = Mobility(
         instantaneous=count,
         finite=finite.count,
-        effective=(count if finite.count is None else finite.count) - idle,
+        effective=effective,
         idle=idle,
         redundant=count - (6 * (nodes - 1) - sum(6 - joint.freedoms for joint in joints)),
         blocked=blocked,
@@ -108,14 +111,16 @@ def _mobility(mechanism: DecidedMechanism) -> tuple[Mobility, tuple[Coupling, ..
         certificates=finite.certificates,
         named=named_freedoms(graph, closure, turns, mechanism.places, mechanism.size),
         redundancies=(*filter(None, within), *redundancies_of_loops(joints, closure, size)),
+        low=low,
+        high=high,
     )
     return mobility, couplings
 
 
 def _separations(
     mechanism: DecidedMechanism,
-) -> tuple[ConstraintMatrix, tuple[Joint, ...], tuple[Separation, ...], str]:
-    """J, the joints with how they come apart, what can leave, and why it is not known of the rest."""
+) -> tuple[ConstraintMatrix, tuple[Joint, ...], tuple[Separation, ...], str, frozenset[JointName]]:
+    """J, the joints with how they come apart, what can leave, why that is not known of the rest, and what opens."""
     bodies, patches, clusters = mechanism.graph.bodies, mechanism.patches, mechanism.clusters
     matrix = constraint_matrix(bodies, mechanism.graph.joints, patches, mechanism.extremes)
     rows = ContactRows(matrix, bodies, patches)
@@ -123,8 +128,8 @@ def _separations(
     joints = with_releases(mechanism.graph.joints, cones)
     links = links_between(clusters, bodies, joints, patches, rows)
     ground = next(k for k, cluster in enumerate(clusters) if cluster.ground)
-    apart, reason = separations([cluster.name for cluster in clusters], ground, links, mechanism.cache)
-    return matrix, joints, apart, reason
+    apart, reason, opened = separations([cluster.name for cluster in clusters], ground, links, mechanism.cache)
+    return matrix, joints, apart, reason, opened
 
 
 def _uncertain(joint: Joint, constant: Collection[str]) -> bool:

@@ -380,6 +380,10 @@ class Mobility:
     """Instantaneous mobility of what contact alone gives, where joints are taken as the function states them."""
     redundancies: tuple[Redundancy, ...] = ()
     """Those of loops sum to `redundant`; those of pairs come first and are not counted there."""
+    low: int | None = None
+    """The least that `effective` may be: all contact is kept as it is at rest. None: computed by an older version."""
+    high: int | None = None
+    """The most: contact that only pushes, and that no stated joint names, is left out where it can separate."""
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{name} {'not known' if value is None else value}" for name, value in self._counts())
@@ -395,6 +399,11 @@ class Mobility:
             ("effective", self.effective), ("instantaneous", self.instantaneous), ("finite", self.finite),
             ("idle", self.idle), ("redundant", self.redundant), ("blocked", self.blocked),
         )  # fmt: skip
+
+    @property
+    def ends(self) -> tuple[int, int]:
+        """The least and the most that `effective` may be."""
+        return self.effective if self.low is None else self.low, self.effective if self.high is None else self.high
 
     @property
     def gruebler(self) -> int:

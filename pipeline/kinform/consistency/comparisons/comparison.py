@@ -59,6 +59,8 @@ class Comparison:
     """Uncertainty of the found position."""
     size: float = 1.0
     """m: diagonal of the smaller body."""
+    admitted: bool = False
+    """Contact of another type lets each motion of the intended joint go, in one sense at least."""
     loose: bool = False
     """The joint is stated as fixed, which makes its sides one body, and contact would part them as `type` says."""
     afloat: str = ""
@@ -115,8 +117,10 @@ class Comparison:
 
 
 def leaves_more(c: Comparison) -> bool:
-    """Whether the joint that was found leaves the intended motion free, and more beside."""
+    """Whether the joint that was found leaves the intended motion free, and more beside, or lets it go in one sense."""
     wanted = joint_twists(c.intended)
+    if c.admitted:
+        return True
     if c.state != "found" or c.right_type or c.twists is None or wanted is None:
         return False
     place = c.intended.point if c.intended.point is not None else c.point

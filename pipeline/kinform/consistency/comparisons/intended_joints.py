@@ -14,6 +14,7 @@ from kinform.consistency.questions.through_intermediates import IntermediateMoti
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.rounding import TINY
 from kinform.foundation.words import counted, quoted
+from kinform.kinematics.joints.bodies.admitted import admits
 from kinform.kinematics.joints.bodies.joints_in_force import leaves_free, may_end
 from kinform.kinematics.joints.bodies.stated_joints import joint_twists
 from kinform.model.arrays import Array
@@ -77,6 +78,10 @@ def _compared(
         state, reason = _end_certainty(intended, direct, patches, first, size)
     if state == "found" and intended.closure and found is not None and _shares(intended, form.type, found):
         state, reason = "undecided", f"it only closes a loop, and by contact that joint is {form.type}"
+    admitted = False
+    if state == "found" and motion is None and direct is not None and direct.type != intended.type:
+        wanted = joint_twists(intended)
+        admitted = wanted is not None and admits(_every_patch(direct, every), wanted, _first(kinematics, direct).parts)
     return Comparison(
         intended,
         bodies,
@@ -95,7 +100,19 @@ def _compared(
         position_slack=position_slack,
         size=size,
         position_limit=assembly.tolerances.offset_limit(size),
+        admitted=admitted,
     )
+
+
+def _every_patch(joint: Joint, patches: Sequence[Patch]) -> list[Patch]:
+    """The patches of a joint, those that end or block it too."""
+    every = {*joint.patches, *(one.patch for one in joint.at_stop), *(one.patch for one in joint.blockers)}
+    return [patches[k] for k in sorted(every)]
+
+
+def _first(kinematics: Kinematics, joint: Joint) -> Body:
+    """The first body of a joint."""
+    return next(body for body in kinematics.bodies if body.name == joint.bodies[0])
 
 
 def loose_joint(assembly: Assembly, kinematics: Kinematics, intended: IntendedJoint) -> UndeclaredJoint | None:

@@ -27,7 +27,7 @@ from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, quoted
 from kinform.kinematics import disconnected_bodies, disconnected_in_words
 from kinform.model.assembly import Source
-from kinform.model.kinematics import Kinematics
+from kinform.model.kinematics import Kinematics, Mobility
 
 
 def check(context: Context) -> Outcome:
@@ -49,6 +49,12 @@ def check(context: Context) -> Outcome:
             return inconclusive(f"the counts take for free what may not be: {afloat.words()}")
     if mobility.effective == intended:
         return decided(reason=f"{counted(intended, 'freedom')}, as intended")
+    low, high = mobility.ends
+    if intended in (low, high):
+        which = "all contact holds as it is drawn" if intended == low else "contact that only pushes is left out"
+        return decided(reason=f"{counted(intended, 'freedom')}, as intended, where {which} ({_ends(mobility)})")
+    if low < intended < high:
+        return inconclusive(f"{_ends(mobility)}: which contact holds while it moves is not known")
     whole, line = context.assembly.source, context.function.mobility_line
     near = nearly_moves(context) if mobility.effective < intended else ""
     usual = "See the freedoms with `kinform show F.h5 mobility`; correct the joints, or `mobility`."
@@ -65,6 +71,12 @@ def check(context: Context) -> Outcome:
         else usual,
     )
     return decided([finding])
+
+
+def _ends(mobility: Mobility) -> str:
+    """Both ends of the mobility."""
+    low, high = mobility.ends
+    return f"{low} with all contact kept, {high} without contact that only pushes"
 
 
 def _details(kinematics: Kinematics) -> str:

@@ -105,8 +105,8 @@ def links_between(
 
 def separations(
     names: Sequence[BodyName], ground: int, links: Sequence[Link], cache: StepCache | None = None
-) -> tuple[tuple[Separation, ...], str]:
-    """What can leave, and why it is not known of the rest ("" where it is)."""
+) -> tuple[tuple[Separation, ...], str, frozenset[JointName]]:
+    """What can leave, why it is not known of the rest ("" where it is), and which links open."""
     opened: set[int] = set()
     reason = ""
     joined: list[Sequence[int]] = []
@@ -126,7 +126,7 @@ def separations(
     if missing:
         more = f"{missing} more can move out of contact, but only together with many others, or while these move too"
         reason = f"{reason}; {more}" if reason else more
-    return sets, reason
+    return sets, reason, frozenset(links[k].name for k in opened)
 
 
 def _opened(of_each: Sequence[Sequence[Link]], cache: StepCache | None) -> Sequence[Opened]:

@@ -125,7 +125,8 @@ def mobility_values(design: Design) -> dict[str, Any]:
 def mobility_counts(mobility: Mobility) -> dict[str, int | None]:
     """All counts by name."""
     counts = fields(mobility, "instantaneous", "finite", "effective", "idle", "redundant")
-    return counts | {"blocked_mobility": mobility.blocked, "contact_mobility": mobility.by_contact}
+    ends = {"low_mobility": mobility.low, "high_mobility": mobility.high}
+    return counts | {"blocked_mobility": mobility.blocked, "contact_mobility": mobility.by_contact} | ends
 
 
 def _named(kinematics: Kinematics) -> list[dict[str, Any]]:

@@ -12,6 +12,7 @@ from kinform.results.layout import Layout, Numbers, Ragged, Row, Table, Texts
 LAYOUT = Layout(
     Mobility,
     Row("counts", "instantaneous", "finite", "effective", "idle", "redundant", "blocked", "by_contact"),
+    Row("ends", "low", "high"),
     Numbers("freedoms"),
     Texts("idle_bodies"),
     Texts("uncertain"),

@@ -7,11 +7,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from kinform.foundation.words import quoted
+from kinform.kinematics.joints.bodies.admitted import admits
 from kinform.kinematics.joints.bodies.complete_function import without_effect
 from kinform.kinematics.joints.bodies.extents import Extents
 from kinform.kinematics.joints.bodies.merging import Merger
 from kinform.kinematics.joints.bodies.overlaps import deepest_overlaps, with_overlap
-from kinform.kinematics.joints.bodies.stated_joints import Pair, stated_roots
+from kinform.kinematics.joints.bodies.stated_joints import Pair, joint_twists, pair_between, stated_roots
 from kinform.kinematics.joints.pair.evidence import Evidence, Member, gather
 from kinform.kinematics.joints.pair.question import Answer, Question, answer_each, bare_patches, joint_between
 from kinform.kinematics.step_cache import StepCache, cached_each
@@ -71,15 +72,30 @@ def decide_all(pairs: Pairs, merger: Merger, *, fusing: bool = True) -> dict[Pai
         touching = _touching(pairs, merger, beside=False)
         out = _decided(pairs, merger, touching, known)
         fused = False
+        moving = _stated_to_move(pairs.assembly, merger, touching) if fusing else set()
         for pair, (_, joint) in out.items():
             parts = touching[pair][0][1].parts
-            if not fusing or frozenset(merger.root(p) for p in parts) in stated:
+            if not fusing or pair in moving or frozenset(merger.root(p) for p in parts) in stated:
                 continue
             if joint.type == "fixed" and joint.status == "determined":
                 merger.fuse(parts[0], parts[1], f"contact {parts[0]}~{parts[1]} leaves no freedom")
                 fused = True
         if not fused:
             return out
+
+
+def _stated_to_move(assembly: Assembly, merger: Merger, touching: Mapping[Pair, Sequence[Member]]) -> set[Pair]:
+    """Pairs of bodies that the function states to move in a way that contact admits, in one sense at least."""
+    bodies = {body.name: body for body in merger.bodies()}
+    of_part = body_of_part(tuple(bodies.values()))
+    out = set()
+    for joint in assembly.function.joints:
+        pair, motions = pair_between(assembly, of_part, joint.between), joint_twists(joint)
+        if pair is None or motions is None or pair not in touching:
+            continue
+        if admits([patch for _, patch, _ in touching[pair]], motions, bodies[pair[0]].parts):
+            out.add(pair)
+    return out
 
 
 def decide_ignored(pairs: Pairs, merger: Merger) -> list[Joint]:

@@ -27,6 +27,7 @@ from kinform.foundation.rounding import SINGLE
 from kinform.foundation.words import counted
 from kinform.frozen import dataclass
 from kinform.kinematics.constants import INTENDED_AXIS
+from kinform.kinematics.joints.bodies.admitted import admits
 from kinform.kinematics.joints.bodies.complete_function import complete_joints, without_effect
 from kinform.kinematics.joints.bodies.merging import Merger
 from kinform.kinematics.joints.bodies.stated_joints import Pair, joint_form, pair_between
@@ -167,7 +168,7 @@ def _in_force(
     cause: ReadingCause
     if joint.status in ("ambiguous", "blocked"):
         cause, why = "doubt", "contact leaves it undecided"
-    elif joint.type != "general" and joint.freedoms == len(taken.twists):
+    elif "screw" in (joint.type, taken.type) and joint.freedoms == len(taken.twists):
         return joint  # as many freedoms, and others, however little a fine thread advances
     elif leaves_free(joint.twists, taken.twists, place, reach) and _in_bowls(joint, patches):
         cause, why = (
@@ -176,9 +177,7 @@ def _in_force(
         )
     elif leaves_free(joint.twists, taken.twists, place, reach):
         cause, why = "contact", "contact leaves it free and does not hold it"
-    elif (len(taken.twists) == 1 or joint.freedoms == 5) and opens(
-        [patches[k] for k in joint.patches], taken.twists, first
-    ):
+    elif admits(_all_of(joint, patches), taken.twists, first):
         cause, why = "end", "contact leaves it free in one sense, as an end stop does, and does not hold it"
     elif may_end([patches[k] for k in joint.patches], joint.twists, taken.twists, place, reach, first):
         cause, why = "doubt", "a line of contact holds it in one sense alone, and may be a stop"
@@ -194,6 +193,12 @@ def _in_force(
         singular_values=joint.singular_values,
         readings=(replace(reading_of(replace(joint, blockers=()), ""), cause=cause),),
     )
+
+
+def _all_of(joint: Joint, patches: Sequence[Patch]) -> list[Patch]:
+    """The patches of a joint, those that block or end it too."""
+    every = {*joint.patches, *(one.patch for one in joint.blockers), *(one.patch for one in joint.at_stop)}
+    return [patches[k] for k in sorted(every)]
 
 
 def _is_just(joint: Joint, taken: Joint, place: Array, reach: float) -> bool:

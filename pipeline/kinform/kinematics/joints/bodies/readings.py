@@ -13,10 +13,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from kinform.foundation.algebra.screws import Frame, scaled, span
 from kinform.foundation.algebra.vectors import box, cross, foot, norm
 from kinform.kinematics.constants import INTENDED_AXIS, SAME_DIRECTION
 from kinform.kinematics.joints.bodies.stated_joints import Pair, pair_between
-from kinform.kinematics.joints.pair.joint import reading_of
+from kinform.kinematics.joints.pair.joint import reading_of, twists_of
+from kinform.kinematics.joints.pair.lower_pairs import name_space
 from kinform.kinematics.joints.pair.question import Answer
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Patch
@@ -42,14 +44,43 @@ def choose_readings(
     seated = _pins(decided, size)
     out: dict[Pair, tuple[Answer, Joint]] = {}
     for pair, (answer, joint) in decided.items():
-        if joint.readings and pair in wanted:
+        if joint.readings and pair in wanted and answer.other is not None:
             out[pair] = _as_intended(wanted[pair], answer, joint, patches)
+        elif pair in wanted and joint.status == "determined" and (closed := _closed(joint, patches)) is not None:
+            out[pair] = answer, closed if _is(closed, wanted[pair], patches) else joint
         elif joint.readings and seated.intersection(pair) and joint.readings[0].cause == "stop":
             reason = f"{joint.reason}; a pin that several bodies hold about one line is seated"
             out[pair] = answer, replace(joint, status="determined", reason=reason)
         else:
             out[pair] = answer, joint
     return out
+
+
+def _closed(joint: Joint, patches: Sequence[Patch]) -> Joint | None:
+    """The joint that contact leaves if what it lets go in one sense counts; None where that is no other lower pair."""
+    if len(joint.closed) <= len(joint.twists):
+        return None
+    frame = Frame.of(np.concatenate([patches[k].points for k in joint.patches]))
+    form = name_space(span(scaled(joint.closed.T, frame)), frame)
+    if form.type == "general":
+        return None
+    point = form.point
+    if point is not None and form.axis is not None:
+        point = foot(point, form.axis, frame.centre)
+    reason = f"{joint.reason}; {joint.type} at rest, and {form.type} where what goes in one sense counts, as stated"
+    return replace(
+        joint,
+        type=form.type,
+        axis=form.axis,
+        point=point,
+        pitch=form.pitch,
+        freedoms=len(joint.closed),
+        twists=twists_of(form.type, form.axis, point, form.pitch),
+        status="inferred",
+        reason=reason,
+        evidence=(*joint.evidence, "function"),
+        readings=(reading_of(replace(joint, blockers=()), "end"),),
+    )
 
 
 def _as_intended(

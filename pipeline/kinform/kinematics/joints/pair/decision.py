@@ -121,6 +121,9 @@ def _decide(pair: _Pair) -> Steps[Decision]:
     strict, values = yield from freedoms(evidence, pair.twists, preserved, everything, pair.tolerances)
     cone = motion_cone(evidence, strict, pair.bounds)
     turned: OtherReading | None = None
+    if cone.extra and not cone.opened.all():
+        _, freed = yield from freedoms_beyond(evidence, pair.twists, preserved, ~cone.opened, pair.tolerances, strict)
+        cone = cone.exactly(freed)
     if cone.extra:
         stopped = yield from _at_stop(pair, strict, cone)
         if isinstance(stopped, Decision):

@@ -5,8 +5,9 @@ that keep all contact are the freedoms *at rest*, its lineality. What the cone s
 holds the rest in both senses. The true motion of a mechanism lies between the two.
 
 Rows are known no better than the directions and places of their surfaces. So a row may be missed by its slack: by as
-much as the tolerances of its patch give at the speed that the motion asked about has there. Of what is held by opposing rows the slack
-leaves a little, its clearance; of what is free a unit twist leaves about all. Between the two lies `REACH`.
+much as the tolerances of its patch give at the speed that the motion asked about has there. Of what is held by opposing
+rows the slack leaves a little, its clearance; of what is free a unit twist leaves about all. Between the two lies
+`REACH`.
 
 The point of the cone nearest to a twist d tells whether d reaches into it: the cone is convex, so that it is one point,
 moves with the data and does not jump (Moreau 1962). It is the solution of a least distance problem, which is one of
@@ -16,6 +17,7 @@ least squares without negative numbers (Lawson and Hanson 1974, chapter 23).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -68,6 +70,13 @@ class MotionCone:
     def beyond(self) -> Array:
         """(6, extra) orthonormal: what is closed beside what is at rest."""
         return self.closed[:, self.rest.shape[1] :]
+
+    def exactly(self, freed: Array) -> MotionCone:
+        """The cone with what its open contact alone holds, (6, n) orthonormal, in place of what it spans beside what is
+        at rest, where that is as much: the cone is known to slack only, and surfaces know their own motions."""
+        if freed.shape[1] != self.extra:
+            return self
+        return replace(self, closed=np.hstack([self.rest, freed]))
 
     @property
     def plainly_open(self) -> bool:
@@ -123,8 +132,8 @@ class _Rows:
 
     @property
     def least(self) -> Array:
-        """(n,) slack that there is for every motion: a share of that of a unit twist, whatever it does at the sample, as
-        the motion of the cone nearest to one asked about is another one."""
+        """(n,) slack that there is for every motion: a share of that of a unit twist, whatever it does at the sample,
+        as the motion of the cone nearest to one asked about is another one."""
         return np.asarray(LEAST_SLACK * (self.angle * (1.0 + np.linalg.norm(self.arms, axis=1)) + self.position))
 
     def slack(self, motion: Array) -> Array:
