@@ -54,9 +54,9 @@ class Comparison:
     through: tuple[str, ...] = ()
     """Loose bodies that take part."""
     angle_slack: float = 0.0
-    """Uncertainty of the found direction."""
+    """By so much the found direction may be off: two standard uncertainties."""
     position_slack: float = 0.0
-    """Uncertainty of the found position."""
+    """By so much the found position may be off: two standard uncertainties."""
     size: float = 1.0
     """m: diagonal of the smaller body."""
     admitted: bool = False

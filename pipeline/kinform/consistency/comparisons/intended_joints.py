@@ -24,7 +24,9 @@ from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import FREEDOMS, Body, Joint, Kinematics, UndeclaredJoint
 
 SHARED_MOTION = 0.02
-"""Share of a motion within which what contact leaves is a motion that a loop's closure leaves, too; as `ADMITTED`."""
+"""Share of a motion within which what contact leaves is what a loop's closure leaves, too."""
+MISSED_SIGMAS = 2.0
+"""Standard uncertainties of a found axis beyond which it is elsewhere than stated: 95 % of errors are smaller."""
 
 
 def compare_joints(
@@ -96,8 +98,8 @@ def _compared(
         joint=direct,
         twists=found,
         through=motion.intermediates if motion is not None else (),
-        angle_slack=angle_slack,
-        position_slack=position_slack,
+        angle_slack=MISSED_SIGMAS * angle_slack,
+        position_slack=MISSED_SIGMAS * position_slack,
         size=size,
         position_limit=assembly.tolerances.offset_limit(size),
         admitted=admitted,

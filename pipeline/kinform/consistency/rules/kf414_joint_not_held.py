@@ -1,6 +1,7 @@
 """Contact leaves the intended joint free, and more: nothing in the geometry holds it.
 
-The intended motion is possible, and so are others. Where the function states all joints (`complete = true`), the joint
+The intended motion is possible, and so are others; or contact ends it in one sense, as the bottom of a bore ends the
+stroke of a ram, and lets the parts leave by it. Where the function states all joints (`complete = true`), the joint
 is then taken as stated, and everything that follows from it says so; one that is stated as fixed makes its sides one
 body, and is found here where contact alone would let them turn as a joint does. Contact that forbids the joint is
 KF402. Where a part between the two has play, less than the contact tolerance to either side, it may hold what else is
@@ -41,11 +42,13 @@ def _finding(c: Comparison) -> Finding:
     axis = reading.axis if reading is not None else c.axis
     through = f" (through {quoted(c.through)})" if c.through else ""
     more = freedoms - FREEDOMS.get(intended.type, 0)
+    beside = (
+        counted(more, "freedom") + " too many" if more > 0 else "contact only ends the intended motion in one sense"
+    )
     word = found if found != "general" else f"general with {counted(freedoms, 'freedom')}"
     return RULE.finding(
         [intended.name],
-        f"joint '{intended.name}' is {word}{through} by contact, intended is {intended.type}: "
-        f"{counted(more, 'freedom')} too many",
+        f"joint '{intended.name}' is {word}{through} by contact, intended is {intended.type}: {beside}",
         found=word + (f" about {direction(axis)}" if axis is not None else ""),
         intended=intended.type + (f" about {direction(intended.axis)}" if intended.axis is not None else ""),
         place=c.point if c.point is not None else intended.point,

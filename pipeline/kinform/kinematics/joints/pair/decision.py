@@ -169,7 +169,7 @@ def _at_stop(pair: _Pair, strict: Array, cone: MotionCone) -> Steps[Decision | O
             continue
         sense = 0.0 if freed.shape[1] > 1 else -_sense(evidence.speeds_of(out, motion.twist))
         ended = tuple((int(k), motion, sense) for k in np.flatnonzero(out))
-        return _with_left_out(rest, out, motion, strict, cone, ended, "")
+        return _with_left_out(rest, out, motion, strict, cone.exactly(freed), ended, "")
     return reading
 
 

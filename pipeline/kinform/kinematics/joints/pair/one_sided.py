@@ -2,9 +2,8 @@
 
 The rows of a pair take every patch for a constraint in both senses, so that a face which a slider just touches holds
 it. The cone of motions says what is free beside that (`motion_cone`). One sense alone is no doubt: a block rests on a
-table, a lid lies in its pocket, a shaft on its collar. Where all contact opens by one motion, or bodies without
-freedoms come apart along one line only, the joint is what is at rest. Else it depends on where the faces are that are
-left:
+table, a lid lies in its pocket, a shaft on its collar. Where all contact opens by one motion the joint is what is at
+rest. Else it depends on where the faces are that are left:
 
 - A collar or shoulder lies round the guide and beyond it: the motion is meant to be held there.
 - A face inside of the guide's own cross-section, at the end of a guide that is long enough to slide in, may be the
@@ -89,7 +88,7 @@ def stop_reading(
 
     `twists` (6, n) are candidate motions, `preserved` (items, n) which patches slide on themselves under them.
     """
-    if cone.extra != 1 or cone.plainly_open or cone.withdraws or cone.opened.all() or not cone.opened.any():
+    if cone.extra != 1 or cone.plainly_open or cone.opened.all() or not cone.opened.any():
         return None
     keep = ~cone.opened
     basis, freed = yield from freedoms_beyond(evidence, twists, preserved, keep, tolerances, strict)
