@@ -166,7 +166,17 @@ def joints(draw: Any) -> Joint:
     """Joints with as many twists as freedoms."""
     n = draw(st.integers(0, 6))
     indices = lists(st.integers(0, 99))
-    return draw(of(Joint, freedoms=st.just(n), twists=array(n, 6), singular_values=array(6), patches=indices))
+    return draw(
+        of(
+            Joint,
+            freedoms=st.just(n),
+            twists=array(n, 6),
+            at_rest=array(n, 6),
+            closed=array(n, 6),
+            singular_values=array(6),
+            patches=indices,
+        )
+    )
 
 
 @st.composite

@@ -42,8 +42,8 @@ def test_a_disc_that_slides_on_a_plate_up_to_a_round_wall_is_not_denied(kind, sc
 
 
 @pytest.mark.parametrize("kind", BASES)
-def test_away_from_it_it_slides_and_what_it_does_not_do_is_denied(kind):
+def test_away_from_it_it_slides_and_what_it_does_in_one_sense_alone_is_not_held(kind):
     base, away = BASES[kind]
     beside = away + (2.0 if kind == "post" else -2.0)
     assert answered("planar", base, beside, complete=False) == "agrees"
-    assert answered("cylindrical", base, away, complete=False) == "contradicts"
+    assert answered("cylindrical", base, away, complete=False) == "not held"

@@ -119,7 +119,7 @@ class Comparison:
 def leaves_more(c: Comparison) -> bool:
     """Whether the joint that was found leaves the intended motion free, and more beside, or lets it go in one sense."""
     wanted = joint_twists(c.intended)
-    if c.admitted:
+    if c.admitted and c.state == "found":
         return True
     if c.state != "found" or c.right_type or c.twists is None or wanted is None:
         return False

@@ -2,8 +2,8 @@
 
 A finding when the distance exceeds `tolerances.axis_offset` (default 0.5 % of the smaller body's diagonal)
 by more than two standard uncertainties of the found axis; inconclusive when the uncertainty decides. Axes are lines:
-their least distance over the stretch between the intended point and the joint counts, so that a tilt alone is reported by
-KF403 only.
+their least distance over the stretch between the intended point and the joint counts, so that a tilt alone is reported
+by KF403 only.
 
 Why it matters: levers, strokes and clearances are computed from wrong places.
 

@@ -177,10 +177,10 @@ def _in_force(
         )
     elif leaves_free(joint.twists, taken.twists, place, reach):
         cause, why = "contact", "contact leaves it free and does not hold it"
-    elif admits(_all_of(joint, patches), taken.twists, first):
-        cause, why = "end", "contact leaves it free in one sense, as an end stop does, and does not hold it"
     elif may_end([patches[k] for k in joint.patches], joint.twists, taken.twists, place, reach, first):
         cause, why = "doubt", "a line of contact holds it in one sense alone, and may be a stop"
+    elif admits(_all_of(joint, patches), taken.twists, first):
+        cause, why = "end", "contact leaves it free in one sense, as an end stop does, and does not hold it"
     else:
         return joint
     return replace(
