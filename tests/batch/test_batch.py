@@ -18,8 +18,9 @@ from support.places import FIXTURES
 
 import kinform
 from kinform import catalog
-from kinform.batch import Found, Settings, discover, record, render, session
+from kinform.batch import Found, Settings, discover, record, render, session, work
 from kinform.batch import run as run_batch
+from kinform.batch.record import Row
 from kinform.batch.renderings import summary_line
 
 pytest.importorskip("distributed")
@@ -212,3 +213,22 @@ def test_a_folder_whose_name_is_no_utf8_ends_nothing(tmp_path):
     assert [(one["design"], one["failure"]) for one in designs] == [
         ("a\n%s/a.toml", "input"), ("\ufffd\ufffd/a.toml", "input"),
     ]  # fmt: skip
+
+
+def test_what_manifests_set_aside_is_in_the_summary(tmp_path):
+    design = 'schema = 1\n[assembly]\nname = "a"\nunits = "mm"\n[[part]]\nname = "a"\n[[part]]\nname = "b"\n'
+    design += "[function]\nmobility = 0\n"
+    told = {"": "", '[[check.ignore]]\ncode = "KF301"\nreason = "r"': "1 finding ignored"}
+    told['[check]\nselect = ["KF1"]'] = "left out"
+    for check, words in told.items():
+        (tmp_path / "m.toml").write_text(design + check)
+        output = tmp_path / "m.h5"
+        row = Row("m.toml", "m.toml", "m.h5", **summary(tmp_path / "m.toml", output))
+        line = summary_line([row])
+        assert words in line and ("[check]" in line) is bool(words)
+
+
+def summary(source, output):
+    """The fields of a row, of a run in this process."""
+    fields = work.run(str(source), str(output))
+    return {name: value for name, value in fields.items() if name != "seal"}

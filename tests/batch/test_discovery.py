@@ -170,3 +170,13 @@ def test_a_submodule_in_an_ignored_folder_counts(repository, tmp_path_factory):
     add = ["-c", "protocol.file.allow=always", "submodule", "--quiet", "add", "-f", str(inner), "build/inner"]
     subprocess.run(["git", "-C", str(repository), *add], check=True)
     assert "build/inner/s.toml" in names(repository) and "build/b.toml" not in names(repository)
+
+
+def test_a_submodule_in_a_folder_with_a_dot_counts(repository, tmp_path_factory):
+    inner = tmp_path_factory.mktemp("inner")
+    (inner / "s.toml").write_text(MANIFEST)
+    for words in (["init", "-q"], ["add", "."], ["-c", "user.name=t", "-c", "user.email=t@t", "commit", "-qm", "one"]):
+        subprocess.run(["git", "-C", str(inner), *words], check=True)
+    add = ["-c", "protocol.file.allow=always", "submodule", "--quiet", "add", "-f", str(inner), ".parts/inner"]
+    subprocess.run(["git", "-C", str(repository), *add], check=True)
+    assert ".parts/inner/s.toml" in names(repository)

@@ -144,6 +144,27 @@ def test_what_git_could_run_is_not_run(repository):
     assert not marker.exists()
 
 
+def test_a_design_in_a_submodule_is_compared_with_what_the_outer_repository_had(
+    repository, tmp_path_factory, monkeypatch
+):
+    inner = tmp_path_factory.mktemp("inner")
+    for name in ("alone.toml", "alone.stl"):
+        (inner / name).write_text(FILES[name] + " ")
+    git(inner, "init", "-q", "-b", "main")
+    git(inner, "add", ".")
+    git(inner, "commit", "-qm", "a design that the outer repository never had")
+    git(repository, "branch", "main")
+    git(repository, "checkout", "-q", "-b", "request")
+    git(repository, "rm", "-q", "-r", "sub")
+    git(repository, "-c", "protocol.file.allow=always", "submodule", "add", "-q", str(inner), "sub")
+    git(repository, "commit", "-qm", "the folder is a submodule")
+    assert "sub/alone.toml" in touched(repository, "main")
+    monkeypatch.chdir(repository)
+    assert "sub/alone.toml" in touched(repository, "main")
+    monkeypatch.chdir(repository / "sub")
+    assert touched(repository / "sub", "main") == []
+
+
 def test_a_submodule_at_another_commit_touches_what_names_its_files(repository, tmp_path_factory):
     inner = tmp_path_factory.mktemp("inner")
     (inner / "leg.stl").write_text(solid(1))

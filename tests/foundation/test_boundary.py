@@ -136,3 +136,13 @@ def test_outputs_of_a_folder_stay_in_it(own: Path):
     (own / "made" / "meshes").symlink_to("..")
     assert way_out(own / "made" / "meshes" / "x.stl", (), own / "made") == str(own / "made" / "meshes")
     assert way_out(own / "made" / "x.stl", (), own / "made") is None
+
+
+def test_whether_a_link_to_outside_leads_to_a_file_is_not_asked(tmp_path: Path):
+    (tmp_path / ".git").mkdir()
+    (tmp_path / "there").touch()
+    for target in ("there", "nowhere"):
+        folder = tmp_path / f"to_{target}"
+        folder.mkdir()
+        (folder / "package.xml").symlink_to(tmp_path / target)
+        assert design_folder(folder / "m.toml") == str(folder)

@@ -158,3 +158,13 @@ def test_a_text_is_signed_with_a_key_that_is_made_again_where_it_is_damaged(stat
     (state / "key").write_bytes(b"short")
     assert not is_signed("text", code, tmp_path / "a")
     assert is_signed("text", signed("text", tmp_path / "a"), tmp_path / "a")
+
+
+def test_nothing_is_made_where_a_link_of_a_repository_leads(tmp_path, monkeypatch):
+    (tmp_path / "checkout" / ".git").mkdir(parents=True)
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "checkout" / "state").symlink_to(tmp_path / "elsewhere")
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "checkout" / "state"))
+    provenance.record("0" * 64)
+    assert list((tmp_path / "elsewhere").iterdir()) == []
+    assert provenance.fault(tmp_path / "a.h5")

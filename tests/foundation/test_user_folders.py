@@ -115,3 +115,10 @@ def test_a_home_under_version_control_is_the_users(tmp_path: Path, monkeypatch: 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(user_folders, "stated_home", lambda: str(tmp_path))
     assert not is_foreign(tmp_path / ".cache")
+
+
+def test_a_link_of_a_repository_that_leads_out_of_it_is_foreign(tmp_path: Path):
+    (tmp_path / "checkout" / ".git").mkdir(parents=True)
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "checkout" / ".cache").symlink_to(tmp_path / "elsewhere")
+    assert is_foreign(tmp_path / "checkout" / ".cache") and not is_foreign(tmp_path / "elsewhere")

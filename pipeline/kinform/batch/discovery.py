@@ -174,8 +174,12 @@ class _Below:
         except GitError as error:
             self.tell(f"{root}: {error.reason}, so that files that .gitignore names are included")
             return set()
-        paths = (os.path.join(root, name) for name in tracked)
-        return {path for path in paths if _may_be(path) and os.path.lexists(path) and not os.path.isdir(path)}
+        paths = [os.path.join(root, name) for name in tracked]
+        files = {path for path in paths if _may_be(path) and os.path.lexists(path) and not os.path.isdir(path)}
+        for path in paths:  # a submodule is tracked as one name; folders with a dot are not walked
+            if os.path.lexists(os.path.join(path, ".git")) and not os.path.islink(path) and path != folder:
+                files |= self._asked(path)
+        return files
 
     def _of_results(self, path: str) -> bool:
         """Whether a file lies in the folder of results; one that git tracks there is reported."""

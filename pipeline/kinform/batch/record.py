@@ -19,7 +19,7 @@ from kinform.frozen import dataclass
 from kinform.model.findings import SEVERITIES
 from kinform.results import computed_anew, refuse_links, replace_file
 
-SCHEMA = "kinform/batch-record/1"
+SCHEMA = "kinform/batch-record/2"
 NAME = RECORD
 """Of the file in the folder of results."""
 
@@ -41,6 +41,10 @@ class Row:
     """Findings by severity."""
     ran: int = 0
     inconclusive: int = 0
+    ignored: int = 0
+    """Findings that the manifest accepts."""
+    unselected: int = 0
+    """Rules that the manifest leaves out."""
     seconds: float = 0.0
     tries: int = 1
     failure: FailureKind | Literal[""] = ""

@@ -66,13 +66,22 @@ def totals(rows: Sequence[Row], fail_on: str = "error") -> dict[str, int]:
 
 
 def summary_line(rows: Sequence[Row], fail_on: str = "error") -> str:
-    """ "25 designs: 23 consistent, 0 inconsistent, 2 not verified; 20 unchanged"; and how many are trusted."""
+    """ "25 designs: 23 consistent, 0 inconsistent, 2 not verified; 20 unchanged"; how many are
+    trusted; and what manifests set aside."""
     told = totals(rows, fail_on)
     unchanged = told.pop("unchanged")
     counts = ", ".join(f"{many} {word}" for word, many in told.items())
     unknown = sum(not row.failure and not row.recorded for row in rows)
     trusted = f"; {unknown} with {UNKNOWN}" if unknown else ""
-    return f"{counted(len(rows), 'design')}: {counts}; {unchanged} unchanged{trusted}"
+    return f"{counted(len(rows), 'design')}: {counts}; {unchanged} unchanged{trusted}{_by_manifests(rows)}"
+
+
+def _by_manifests(rows: Sequence[Row]) -> str:
+    """ "; by [check]: 2 findings ignored, 65 rules left out": what makes a design consistent that would not be."""
+    ignored, left_out = sum(row.ignored for row in rows), sum(row.unselected for row in rows)
+    told = [f"{counted(ignored, 'finding')} ignored"] if ignored else []
+    told += [f"{counted(left_out, 'rule')} left out"] if left_out else []
+    return f"; by [check]: {', '.join(told)}" if told else ""
 
 
 def exit_code(rows: Sequence[Row], fail_on: str = "error") -> int:

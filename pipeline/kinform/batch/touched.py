@@ -4,8 +4,10 @@ Which files these are is what the readers open: each design whose own file is as
 desk. One that cannot be read counts. What an opened file holds is compared with what the commit has in its place. Where
 files are looked for by name, a file that is gone counts for designs that open another of the same name, and a change of
 a package (`package.xml`, `model.config`) or of a link for all. So a design may be run for nothing, and none is left
-out. A submodule is compared with the commit that the outer one names. Files outside of any repository have no revision:
-they do not count; files in one that it did not have then do.
+out. The revision is one of the repository in which the command runs, else of the outermost that tracks the design: a
+submodule is compared with the commit that the outer one names, whatever its own branches are called, for whoever
+changes the outer one chooses the submodule. Files outside of any repository have no revision: they do not count; files
+in one that it did not have then do.
 """
 
 from __future__ import annotations
@@ -189,13 +191,18 @@ class _Before:
 
     def __init__(self, revision: str):
         self.revision = revision
+        self._here = root_of(os.curdir)
         self._known: dict[Path, _Then] = {}
+        self._outer: dict[Path, Path | None] = {}
 
     def of_source(self, source: Path) -> _Then:
-        """The repository that a design is in, then. Raises InputError where there is none, or no such revision."""
+        """The repository whose revision a design is compared with, then. Raises InputError where there is none, or no
+        such revision."""
         root = root_of(os.path.dirname(os.path.abspath(source)))
         if root is None:
             raise InputError([Problem("is in no repository of git", str(source), None, "leave --changed-since out")])
+        while root != self._here and (outer := self._outer_of(root)) is not None:
+            root = outer
         if root not in self._known:
             commit = self._commit(root)
             try:
@@ -203,6 +210,17 @@ class _Before:
             except GitError as error:
                 raise InputError([Problem(f"--changed-since: {error.reason}", str(root))]) from None
         return self._known[root]
+
+    def _outer_of(self, root: Path) -> Path | None:
+        """The repository around another that tracks it as a submodule, or files in its folder."""
+        if root not in self._outer:
+            outer = root_of(root.parent)
+            try:
+                tracked = b"" if outer is None else git(outer, "ls-files", "-z", "--", os.path.relpath(root, outer))
+            except GitError:
+                tracked = b""
+            self._outer[root] = outer if tracked else None
+        return self._outer[root]
 
     def _commit(self, root: Path) -> str:
         try:

@@ -70,6 +70,8 @@ def summary_of(gist: Design, data: bytes, said: list[str]) -> dict[str, Any]:
         "counts": dict(Counter(finding.severity for finding in report.findings)),
         "ran": report.ran,
         "inconclusive": report.inconclusive,
+        "ignored": len(report.ignored),
+        "unselected": len(report.unselected),
         "notes": tuple(said),
         "lineage": gist.fingerprints.lineage.get("findings", ""),
         "files": dict(gist.fingerprints.files),

@@ -8,8 +8,8 @@ Sub-packages; each imports only those above it:
 
 Beside them: `rounding` (four levels), `constants`, `sorting`, `equal_rows`, `concatenation` for arrays; `processes`,
 `current_work`, `parent_death`, `interpreters`, `git`, `memory`, `lockstep` for how work is run; `confined` for code
-that is not trusted; `boundary`, `user_folders`, `provenance`, `texts`, `escapes`, `regular_files`, `xml_root`,
-`name_hints`, `words`, `units` for files and messages.
+that is not trusted, `no_more_files` for native code; `boundary`, `user_folders`, `provenance`, `texts`, `escapes`,
+`regular_files`, `xml_root`, `name_hints`, `words`, `units` for files and messages.
 """
 
 __all__ = ["CODE_VERSION"]

@@ -233,7 +233,7 @@ def _names(root: str, real: str) -> list[str]:
 
 
 def _is_marked(folder: str) -> bool:
-    return os.path.isfile(_join(folder, _PACKAGE)) or os.path.lexists(_join(folder, _REPOSITORY))
+    return any(os.path.lexists(_join(folder, name)) for name in (_PACKAGE, _REPOSITORY))  # links are not followed
 
 
 def _upwards(folder: str) -> Iterator[str]:

@@ -111,6 +111,8 @@ def _folder(*, create: bool = False) -> Path:
     if not os.path.isabs(state):
         raise _UnusableError("the user has no home folder")
     folder = Path(state) / "kinform"
+    if is_foreign(folder):  # before it is made: a link of strangers may say where
+        raise _UnusableError(f"{folder} lies in a repository, a package or the working folder")
     if create and not folder.exists():
         folder.parent.mkdir(parents=True, exist_ok=True)
         folder.mkdir(mode=0o700, exist_ok=True)

@@ -14,6 +14,8 @@ JSON_DEPTH = 32
 """Deepest nesting of brackets in a JSON file: those that kinform writes have five, and Python's parser recurses."""
 JSON_DIGITS = 18
 """Most digits of a whole number in a JSON file: those of a 64-bit integer."""
+JSON_NAME = 40
+"""Characters of a name that a message shows. Chosen, not measured."""
 JSON_LARGEST = 1e60
 """The largest magnitude of a number in a JSON file: moments of inertia of mountains in g·mm² are smaller, and cubes of
 it are still finite."""
@@ -32,7 +34,8 @@ class TextError(Exception):
 
 def read_text(path: Path, most: int, what: str, boundary: Boundary | None = None) -> str:
     """The UTF-8 text of a file of at most so many bytes, without its byte order mark; `what` it should be, and where it
-    may lie if not everywhere. Raises TextError."""
+    may lie if not everywhere. Lines end in a line feed, or all of them in a carriage return: one among other line ends
+    shows a reader one line, such as a comment, where there are two. Raises TextError."""
     if boundary is not None and not boundary.allows(path):
         raise TextError(OUTSIDE, OUTSIDE_REMEDY)
     fault = not_a_file(path)
@@ -46,14 +49,19 @@ def read_text(path: Path, most: int, what: str, boundary: Boundary | None = None
     if len(data) > most:
         raise TextError(f"is larger than {most >> 20} MiB, and {what} is not", f"name {what}, or divide it")
     try:
-        return data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+        text = data.decode("utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError as error:
         raise TextError(f"is not UTF-8 text (byte {error.start})", "save it as UTF-8") from None
+    alone = text.find("\r")
+    if alone >= 0 and "\n" in text:
+        line = text.count("\n", 0, alone) + 1
+        raise TextError(f"has a carriage return without line feed in line {line}", "remove it, or end the line there")
+    return text
 
 
 def parse_json(text: str) -> Any:
-    """The value of a JSON text, all of whose numbers are finite; raises ValueError where it is none, nests too deep, or
-    has a number too long to be one."""
+    """The value of a JSON text, all of whose numbers are finite; raises ValueError where it is none, nests too deep,
+    has a number too long to be one, or gives a name twice in one object."""
     depth = 0
     for token in _JSON_TOKEN.finditer(text):
         if token[0] in "[{":
@@ -63,7 +71,19 @@ def parse_json(text: str) -> Any:
                 raise ValueError(f"more than {JSON_DEPTH} brackets in each other at line {line}")
         elif token[0] in "]}":
             depth -= 1
-    return json.loads(text, parse_float=_finite, parse_int=_whole, parse_constant=_no_constant)
+    return json.loads(
+        text, parse_float=_finite, parse_int=_whole, parse_constant=_no_constant, object_pairs_hook=_each_once
+    )
+
+
+def _each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """A table; of a name that is given twice readers would take one or the other."""
+    table = dict(pairs)
+    if len(table) < len(pairs):
+        names = [name for name, _ in pairs]
+        twice = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"the name {twice[:JSON_NAME]!r} is given twice in one object")
+    return table
 
 
 def _finite(text: str) -> float:

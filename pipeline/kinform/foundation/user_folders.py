@@ -48,13 +48,19 @@ def is_foreign(folder: Path) -> bool:
     working folder or under version control.
     """
     try:
-        place, working = os.path.realpath(folder), os.path.realpath(os.curdir)
+        places = {os.path.realpath(folder), os.path.abspath(folder)}  # a link of strangers may lead out of their folder
+        working = os.path.realpath(os.curdir)
     except OSError:
         return True
-    own = stated_home()
-    above = Path(os.path.realpath(own)) if own else Path(os.path.abspath(os.sep))
-    for each in (Path(place), *Path(place).parents):
-        if above.is_relative_to(each):
+    own = stated_home() or os.sep
+    homes = [Path(os.path.realpath(own)), Path(os.path.abspath(own))]
+    return any(_is_marked(Path(place), homes, working) for place in places)
+
+
+def _is_marked(place: Path, homes: list[Path], working: str) -> bool:
+    """Whether the folder, or one above it, is the working folder, a repository or a package, up to the user's home."""
+    for each in (place, *place.parents):
+        if any(home.is_relative_to(each) for home in homes):
             return False
         if str(each) == working or any(os.path.lexists(each / mark) for mark in _MARKS):
             return True

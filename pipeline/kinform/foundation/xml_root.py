@@ -59,6 +59,19 @@ class _Target:
         """The text ends."""
 
 
+_PLAIN = re.compile(
+    r"utf-?(8|16|32)(le|be)?|(iso-10646-)?ucs-?[24]|(us-)?ascii|iso-?8859-?\d+|latin-?\d+|(windows-|cp)125\d|koi8-[ru]|"
+    r"gb(2312|k|18030)|big5|euc-(jp|kr|cn|tw)|shift-?jis|macintosh"
+)
+"""Encodings in which what stands for a character of ASCII is that character, but within another one. In others (UTF-7,
+ISO-2022) what a person takes for a comment may be elements."""
+
+
+def is_plain(encoding: str | None) -> bool:
+    """Whether an XML text in this encoding, as its first line names it, is what it looks like."""
+    return encoding is None or _PLAIN.fullmatch(encoding.lower().replace("_", "-")) is not None
+
+
 def root_of(data: bytes, *, inner: bool = False) -> Root | None:
     """The root of an XML text in any encoding that libxml2 reads, with the elements in it where they are asked for;
     None where there is no element. Entities of elements are not expanded, nothing else is read."""

@@ -18,8 +18,12 @@ import kinform
 from kinform import form
 from kinform.errors import InputError
 from kinform.form.readers.assembly import load
+from kinform.form.scenes import step
 from kinform.form.sources import Reading
+from kinform.foundation.no_more_files import open_no_more_files
+from kinform.foundation.processes import in_own_process
 
+FILES = Path(__file__).parent / "step"
 PAIRS = {
     "revolute_collars": FIXTURES / "pairs",
     "prismatic_dovetail": FIXTURES / "pairs",
@@ -147,3 +151,49 @@ def test_the_end_of_the_native_reader_is_told(tmp_path, monkeypatch):
 def test_units_of_a_step_file_are_refused(tmp_path):
     with pytest.raises(InputError):
         kinform.run(step_copy(tmp_path, "names"), units="mm")
+
+
+def referring(text: str, file: str) -> str:
+    """The dovetail, whose rail is said to be in another file."""
+    whole = "PRODUCT_DEFINITION('design','',#32,#35)"
+    assert f"#31 = {whole}" in text
+    text = text.replace(
+        f"#31 = {whole}", "#31 = PRODUCT_DEFINITION_WITH_ASSOCIATED_DOCUMENTS('design','',#32,#35,(#9001))"
+    )
+    more = (
+        "#9001=DOCUMENT_FILE('x','',$,#9002,'',$);\n#9002=DOCUMENT_TYPE('geometry');\n"
+        f"#9003=APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT('{file}',#9004,#9005,(#9001));\n"
+        "#9004=IDENTIFICATION_ROLE('external document id and location',$);\n#9005=EXTERNAL_SOURCE(IDENTIFIER('x'));\n"
+    )
+    before, end, after = text.rpartition("ENDSEC;")
+    return before + more + end + after
+
+
+@pytest.mark.usefixtures("reader")
+def test_other_files_that_a_step_file_refers_to_are_not_read(tmp_path):
+    (tmp_path / "elsewhere").mkdir()
+    other = tmp_path / "elsewhere" / "other.step"
+    other.write_text((FILES / "revolute_collars.step").read_text())
+    text = referring((FILES / "prismatic_dovetail.step").read_text(), str(other))
+    for spelled in (text, text.replace("DOCUMENT_FILE", "DCMFL")):
+        path = tmp_path / "a.step"
+        path.write_text(spelled)
+        with pytest.raises(InputError):
+            form.load(path)
+    if in_own_process(open_no_more_files):  # native code that would read them all the same cannot
+        said = step._converted(text.encode(), Reading())[1]
+        assert "shaft" not in said
+
+
+def test_no_file_is_opened_after_that(tmp_path):
+    (tmp_path / "a").write_text("a")
+
+    def tried() -> str:
+        if not open_no_more_files():
+            return "not here"
+        try:
+            return (tmp_path / "a").read_text()
+        except OSError:
+            return "refused"
+
+    assert in_own_process(tried) in ("refused", "not here")

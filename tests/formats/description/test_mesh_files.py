@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from kinform.formats.description import mesh_files
 from kinform.formats.description.mesh_files import ENTRIES_MOST
 
@@ -36,3 +38,24 @@ def test_a_home_folder_is_not_searched_to_its_end(tmp_path: Path, monkeypatch) -
     monkeypatch.setattr(mesh_files, "ENTRIES_MOST", 50)
     assert mesh_files.files_below(tmp_path, (".urdf",)) == [tmp_path / "near" / "n.urdf"]
     assert ENTRIES_MOST >= 1453  # entries of the largest public package tried
+
+
+@pytest.mark.parametrize("variable", ["ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"])
+@pytest.mark.parametrize("repository", [True, False])
+def test_a_link_of_the_repository_in_a_search_path_opens_nothing_outside(
+    tmp_path: Path, variable: str, repository: bool
+):
+    """A link in a folder of the user's own does, as in workspaces."""
+    outside, checkout = tmp_path / "outside", tmp_path / "checkout"
+    outside.mkdir()
+    (outside / "a.stl").write_text("x")
+    (outside / "package.xml").write_text("<name>arm</name>")
+    named = checkout / "install"
+    packages = named / "share" if variable == "AMENT_PREFIX_PATH" else named
+    packages.mkdir(parents=True)
+    (packages / "arm").symlink_to(outside)
+    if repository:
+        (checkout / ".git").mkdir()
+    (checkout / "robot").mkdir()
+    files = mesh_files.MeshFiles(checkout / "robot" / "r.urdf", {}, {variable: str(named)})
+    assert (files.find("package://arm/a.stl").path is None) is repository

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 
@@ -14,6 +15,8 @@ from tests.support.scenes import assert_same_joints, glb, nodes, over, scene_of
 import kinform
 from kinform import form
 from kinform.errors import InputError
+from kinform.form.meshes.raw import MeshError
+from kinform.formats.gltf.reading.reader import read_gltf
 
 FOUR_BAR = FIXTURES / "mechanisms" / "four_bar" / "four_bar.toml"
 COLLARS = FIXTURES / "pairs" / "revolute_collars" / "revolute_collars.toml"
@@ -155,6 +158,28 @@ def test_a_scene_that_is_cut_short_or_given_units_is_refused(tmp_path):
         form.load(glb(tmp_path, cut=20))
     with pytest.raises(InputError):
         kinform.run(glb(tmp_path), units="mm")
+
+
+def test_a_buffer_in_the_git_folder_of_the_repository_is_refused(tmp_path):
+    secret = bytes(range(48))
+    (tmp_path / ".git").mkdir()
+    (tmp_path / "plain").write_bytes(secret)
+    (tmp_path / ".git" / "config").write_bytes(secret)
+    (tmp_path / "link.bin").symlink_to(".git/config")
+    points = {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}
+    for uri, read in (("plain", True), (".git/config", False), ("a/../.git/config", False), ("link.bin", False)):
+        header = {
+            "asset": {"version": "2.0"}, "nodes": [{"mesh": 0}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "accessors": [points],
+            "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"uri": uri, "byteLength": 36}],
+        }  # fmt: skip
+        path = tmp_path / "a.gltf"
+        path.write_text(json.dumps(header))
+        if read:
+            assert read_gltf(path.read_bytes(), path).files == (tmp_path / "plain",)
+        else:
+            with pytest.raises(MeshError):
+                read_gltf(path.read_bytes(), path)
 
 
 def test_what_moved_in_a_scene_is_read_again(tmp_path):

@@ -184,3 +184,18 @@ def test_what_has_no_end_is_refused_in_bounded_time_and_memory(tmp_path, monkeyp
 def test_what_hangs_on_which_files_there_are_is_never_taken_for_unchanged(tmp_path, include, settled):
     _, contents = load_with_contents(write(tmp_path, include))
     assert bool(contents) == settled
+
+
+def test_a_pattern_that_fits_files_outside_tells_no_name_of_them(tmp_path):
+    outside, folder = tmp_path / "outside", tmp_path / "design"
+    outside.mkdir()
+    folder.mkdir()
+    (outside / "private.xacro").write_text("<robot/>")
+    (folder / "link").symlink_to(outside)
+    path = folder / "r.urdf.xacro"
+    path.write_text(
+        '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:include filename="li*/p*"/></robot>'
+    )
+    with pytest.raises(InputError) as caught:
+        load_with_contents(path)
+    assert "private" not in str(caught.value)

@@ -11,7 +11,7 @@ import pytest
 from support.markup import NASTY, read
 from support.places import FIXTURES
 
-from kinform import results, stages
+from kinform import results, run, stages
 from kinform.consistency.comparisons.answers import answers
 from kinform.model.findings import CheckReport, Finding, RuleOutcome
 from kinform.reports.page import Scene, facts, page_html, page_summary
@@ -259,3 +259,13 @@ def test_counts_of_rows_are_told_as_a_person_would(derive_design, page_of):
     text = " ".join(found.texts)
     assert re.search(r"\b\d+ agree\b", text)
     assert not re.search(r"\b(?!1 )\d+ (agrees|disagrees|contradicts)\b", text)
+
+
+def test_a_rule_whose_findings_are_ignored_is_on_the_page(tmp_path):
+    (tmp_path / "m.toml").write_text(
+        'schema = 1\n[assembly]\nname = "a"\nunits = "mm"\n[[part]]\nname = "a"\n[[part]]\nname = "b"\n'
+        '[function]\nmobility = 0\n[[check.ignore]]\ncode = "KF301"\nreason = "r"\n'
+    )
+    design = run(tmp_path / "m.toml").design
+    assert "ignored" in {rule.outcome for rule in facts.rules(design)}
+    assert "KF301" in page_html(design)

@@ -29,6 +29,8 @@ FACE_BYTES = 4 << 20
 _SKIPPED = frozenset(
     b"vt vn vp s l p usemtl mtllib usemap maplib lod mg bevel c_interp d_interp shadow_obj trace_obj".split()
 )
+_WORD = re.compile(rb"[A-Za-z_]{1,16}")
+"""What may be the first word of a line in a mesh."""
 _FREEFORM = frozenset(
     b"cstype deg bmat step curv curv2 surf parm trim hole scrv sp end con ctech stech bzp cdc cdp res".split()
 )
@@ -203,7 +205,8 @@ def _sort_line(number: int, line: bytes, contents: _Contents) -> None:
         message = f"has free-form geometry ({_shown(word)!r} at line {number}), which is not read"
         contents.faults.add(message, "export triangles or polygons", number)
     else:
-        message = f"has {_shown(word[:40])!r} at line {number}, which OBJ does not know"
+        said = repr(_shown(word)) if _WORD.fullmatch(word) else "a line"  # what a link leads to may be no mesh
+        message = f"has {said} at line {number}, which OBJ does not know"
         contents.faults.add(message, f"remove the line, or {REEXPORT}", number)
 
 

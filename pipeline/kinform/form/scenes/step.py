@@ -1,9 +1,10 @@
 """STEP (ISO 10303-21): solids of a CAD program, tessellated by OpenCASCADE through cascadio, an optional package.
 
-OpenCASCADE is native code that may end the process, writes to the terminal, and takes a broken file for as much of it
-as it can read: the frame of the file is looked at before, it runs in a process of its own, and what it says is read
-after. It gives a GLB in metres, whose vertices lie on the surfaces; what lies between them is measured on the facets,
-as that of any mesh (`chord` of surfaces).
+OpenCASCADE is native code that may end the process, writes to the terminal, reads its configuration in the working
+folder and other files that a file refers to wherever they are, and takes a broken file for as much of it as it can
+read: the frame of the file is looked at before, it runs in a process of its own, which leaves the working folder and on
+Linux can open no file, and what it says is read after. It gives a GLB in metres, whose vertices lie on the surfaces;
+what lies between them is measured on the facets, as that of any mesh (`chord` of surfaces).
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from kinform.form.scenes.scene import EXPORT, Scene
 from kinform.form.sources import AS_IT_IS, Reading
 from kinform.formats.gltf.reading.reader import read_gltf
 from kinform.foundation.name_hints import first_names, in_quotes
+from kinform.foundation.no_more_files import open_no_more_files
 from kinform.foundation.processes import Crash, in_own_process
 from kinform.foundation.words import counted
 
@@ -45,6 +47,8 @@ _COMMENT = re.compile(rb"/\*.*?\*/", re.DOTALL)
 _LENGTH = re.compile(rb"\bLENGTH_UNIT\s*\(", re.IGNORECASE)
 _SI = re.compile(rb"SI_UNIT\s*\(\s*(\$|\.[A-Z]+\.)\s*,\s*\.METRE\.\s*\)")
 _CONVERSION = re.compile(rb"CONVERSION_BASED_UNIT\s*\(\s*'(INCH|FOOT)'", re.IGNORECASE)
+_REFERENCE = re.compile(rb"\b(DOCUMENT_FILE|DCMFL)\s*\(", re.IGNORECASE)
+"""A file that OpenCASCADE would open, in the long form of its keyword and the short one."""
 _FAILS = re.compile(r"Fails Count\s*:\s*(\d+)")
 _SYNTAX = re.compile(r"Line (\d+):\s*(.*?)\s*\**\s*$", re.MULTILINE)
 _SKIPPED = re.compile(r"skipped node '(.*?)' without geometry")
@@ -88,6 +92,8 @@ def _check_frame(data: bytes) -> None:
     if b"END-ISO-10303-21" not in data[-STEP_END:]:
         last = data.rstrip().count(b"\n") + 1
         raise MeshError([Fault("is cut short: END-ISO-10303-21 is missing at its end", EXPORT, last)])
+    if _REFERENCE.search(data):
+        raise MeshError([Fault("refers to other files for its shapes, which are not read", "export all in one file")])
     if not _LENGTH.search(data):
         raise MeshError([Fault("states no unit of length (LENGTH_UNIT): its lengths could be of any", EXPORT)])
 
@@ -143,6 +149,8 @@ def _in_the_fork(data: bytes, reading: Reading) -> tuple[bytes, str]:
     with tempfile.TemporaryFile() as said:
         for stream in (1, 2):
             os.dup2(said.fileno(), stream)
+        os.chdir(os.sep)  # OpenCASCADE looks for its configuration in the working folder
+        open_no_more_files()
         glb = cascadio.to_glb_bytes(
             data,
             cascadio.FileType.STEP,

@@ -20,6 +20,7 @@ from kinform.formats.description.robot import At
 from kinform.foundation.boundary import Boundary
 from kinform.foundation.colours import told
 from kinform.foundation.name_hints import in_quotes
+from kinform.foundation.xml_root import is_plain
 
 XML_DEPTH = 255
 """Elements in each other that are read: the limit of libxml2 without its option for huge trees is 256. Bodies of MJCF
@@ -74,6 +75,11 @@ def parse_xml(data: bytes, file: str, problems: Problems) -> Element | None:
         else:
             remedy = next((remedy for said, remedy in _SYNTAX if said in words), "correct the syntax there")
             problems.add(f"is not well-formed XML: {words}", file, line, remedy)
+        return None
+    encoding = root.getroottree().docinfo.encoding
+    if not is_plain(encoding):
+        problems.add(f"is in the encoding {encoding[:20]}, in which a text is not what it looks like", file, 1,
+                     "save it as UTF-8")  # fmt: skip
         return None
     declared = root.getroottree().docinfo.internalDTD
     if declared is not None and any(True for _ in declared.iterentities()):

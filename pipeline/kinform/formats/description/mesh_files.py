@@ -10,7 +10,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from kinform.form.constants import NAME_LENGTH, VALUE_LENGTH
-from kinform.foundation.boundary import OUTSIDE, OUTSIDE_REMEDY, Boundary
+from kinform.foundation.boundary import OUTSIDE, OUTSIDE_REMEDY, Boundary, way_out
 from kinform.foundation.regular_files import not_a_file
 from kinform.frozen import dataclass
 
@@ -157,8 +157,10 @@ class MeshFiles:
         return self.boundary.is_folder(folder)
 
     def _granted(self, folder: Path) -> Path:
-        """A folder that a variable of the user names."""
-        self.boundary.grant(folder)
+        """A folder that a variable of the user names. It may be read, unless a link in a repository or in the design's
+        folder leads out of that: such a link is not the user's."""
+        if way_out(folder, (self.boundary.top,), folder=True) is None:
+            self.boundary.grant(folder)
         return folder
 
     def _above(self, levels: int | None) -> list[Path]:
@@ -207,7 +209,7 @@ def package_name(folder: Path) -> str | None:
 
 
 def _is_package(folder: Path) -> bool:
-    return any((folder / name).is_file() for name in _PACKAGE_FILES)
+    return any(os.path.lexists(folder / name) for name in _PACKAGE_FILES)  # links are not followed
 
 
 def files_below(folder: Path, suffixes: Sequence[str]) -> list[Path]:

@@ -245,8 +245,8 @@ def assumptions(design: Design) -> list[Assumed]:
 
 
 def rules(design: Design) -> list[RuleOutcome]:
-    """All rules, their names in words: what could not be decided first, then what failed, passed, was skipped."""
-    order = ("inconclusive", "failed", "passed", "skipped")
+    """All rules, their names in words: what is undecided first, then what failed, was ignored, passed, was skipped."""
+    order = ("inconclusive", "failed", "ignored", "passed", "skipped")
     outcomes = [] if design.report is None else design.report.rules
     spelt = [replace(rule, rule=rule.rule.replace("-", " ")) for rule in outcomes]
     return sorted(spelt, key=lambda rule: order.index(rule.outcome))

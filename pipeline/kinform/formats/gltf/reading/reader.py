@@ -21,6 +21,7 @@ from kinform.form.constants import TEXT_BYTES
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate, prevailing
 from kinform.form.scenes.scene import EXPORT, Node, Scene
 from kinform.form.sources import AS_IT_IS, Reading
+from kinform.foundation.boundary import Boundary
 from kinform.foundation.colours import of_light
 from kinform.foundation.name_hints import in_quotes
 from kinform.foundation.regular_files import not_a_file
@@ -256,13 +257,15 @@ class _Reader:
         folder = self.path.parent
         path = folder / name
         inside = os.path.join(os.path.realpath(folder), "")
-        if "://" in name or "\x00" in name or not os.path.realpath(path).startswith(inside):
+        boundary = Boundary(self.path)  # in which the `.git` of a repository is outside
+        beside = "://" not in name and "\x00" not in name and os.path.realpath(path).startswith(inside)
+        if not beside or not boundary.allows(path):
             raise MeshError([Fault(f"names the buffer {in_quotes(name)}, outside of its folder", "export it as GLB")])
-        if not path.is_file() or not_a_file(path):
+        if not boundary.is_file(path) or not_a_file(path):
             raise MeshError([Fault(f"names the buffer {in_quotes(name)}, which is not there",
                                    "put it beside the file, or export GLB")])  # fmt: skip
         self.files.append(path)
-        return path.read_bytes()
+        return boundary.read(path)
 
     def _list(self, table: Any, key: str) -> list[Any]:
         value = table.get(key, [])

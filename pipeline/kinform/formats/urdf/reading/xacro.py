@@ -180,8 +180,9 @@ class _Host:
         if ".." in parts[first:] or not self.meshes.boundary.allows(folder):
             return self._outside(pattern)
         names = sorted(glob.glob(pattern))
-        strange = next((name for name in names if not self.meshes.boundary.allows(name)), None)
-        return b"+" + json.dumps(names[: XACRO_FILES + 1]).encode() if strange is None else self._outside(strange)
+        if not all(map(self.meshes.boundary.allows, names)):
+            return self._outside(pattern)  # which tells no name of what is there
+        return b"+" + json.dumps(names[: XACRO_FILES + 1]).encode()
 
     def _content(self, name: str, at: str, *, xml: bool) -> bytes:
         """The content of a file."""
