@@ -6,6 +6,7 @@ import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
+from itertools import tee
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -24,6 +25,8 @@ PACKAGE_BYTES = 64 << 10
 ENTRIES_MOST = 20_000
 """Files and folders that are looked at for these, at most: about a second. The largest public package tried has 1,453;
 what is more is a home folder that holds a description."""
+PATH_LENGTH = 4096
+"""Characters of a path: what Linux takes."""
 
 
 _PACKAGE = re.compile(r"(?:package|model)://([^/]*)/?(.*)", re.DOTALL)
@@ -40,7 +43,9 @@ class Found:
     """A file, which may be read if it is there, or the reason why there is none with its remedy."""
 
     path: Path | None
-    message: str = ""
+    stated: str = ""
+    fault: str = ""
+    """What is wrong with the name that is stated, as the end of a sentence about it."""
     remedy: str = ""
 
 
@@ -64,6 +69,8 @@ class MeshFiles:
         self._environment = os.environ if environment is None else environment
         self.home = _home(self.folder, self.boundary)
         """The package of the description."""
+        self._there: dict[tuple[Path, str], bool] = {}
+        self._looked_for: dict[str, Iterator[Path]] = {}
 
     def beside(self, description: Path) -> MeshFiles:
         """The same for another description that this one names."""
@@ -73,17 +80,16 @@ class MeshFiles:
         """The file that a description names; `folder` is where plain paths begin, else that of the description."""
         text = unquote(stated.strip()) if "://" in stated else stated.strip()
         text = text.replace("\\", "/")
-        if any(len(os.fsencode(part)) > NAME_LENGTH for part in text.split("/")):
-            return Found(
-                None, message=f"{stated[:VALUE_LENGTH]}… has a name that no file can have", remedy="shorten it"
-            )
+        long = len(text) > PATH_LENGTH or any(len(os.fsencode(part)) > NAME_LENGTH for part in text.split("/"))
+        if long:
+            return Found(None, f"{stated[:VALUE_LENGTH]}…", "has a name that no file can have", "shorten it")
         match = _PACKAGE.fullmatch(text)
         if match:
             return self._in_package(match[1], match[2], text)
         if text.startswith("file:"):
             text = re.sub(r"^file:(//)?", "", text)
         elif "://" in text:
-            return Found(None, message=f"{stated} is not a path in a file system", remedy="name a file")
+            return Found(None, stated, "is not a path in a file system", "name a file")
         return self._inside((folder or self.folder) / text, stated)
 
     def package(self, name: str) -> Path | None:
@@ -98,7 +104,7 @@ class MeshFiles:
         """The file of that path, if it lies where the description may read."""
         if self.boundary.allows(path):
             return Found(path)
-        return Found(None, message=f"{stated} {OUTSIDE}", remedy=OUTSIDE_REMEDY)
+        return Found(None, stated, OUTSIDE, OUTSIDE_REMEDY)
 
     def _in_package(self, name: str, rest: str, stated: str) -> Found:
         is_file = self.boundary.is_file
@@ -108,7 +114,7 @@ class MeshFiles:
                 return Found(path)
         parts = rest.split("/")
         for base in self._above(PACKAGE_LEVELS):  # a package that was renamed, or copied without its folder
-            for k in range(len(parts)):
+            for k in (k for k, part in enumerate(parts) if self._has(base, part)):
                 path = base.joinpath(*parts[k:])
                 if is_file(path):
                     return Found(path)
@@ -116,13 +122,26 @@ class MeshFiles:
         if known is not None:
             return self._inside(known / rest, stated)  # it is not there, which is told as of any other path
         for base in self._above(PACKAGE_LEVELS):
-            for k in range(len(parts) - 2):  # two of its folders stand there, and the file does not
-                if self.boundary.is_folder(base.joinpath(*parts[k:-1])):
+            for k, part in enumerate(parts[:-2]):  # two of its folders stand there, and the file does not
+                if self._has(base, part) and self.boundary.is_folder(base.joinpath(*parts[k:-1])):
                     return self._inside(base.joinpath(*parts[k:]), stated)
         remedy = f"add --package {name}=FOLDER, or set ROS_PACKAGE_PATH"
-        return Found(None, message=f"{stated} is not found: no folder {name} is known", remedy=remedy)
+        return Found(None, stated, f"is not found: no folder {name} is known", remedy)
+
+    def _has(self, folder: Path, name: str) -> bool:
+        """Whether a folder that may be read has something of that name."""
+        if (folder, name) not in self._there:
+            self._there[folder, name] = self.boundary.allows(folder) and os.path.lexists(folder / name)
+        return self._there[folder, name]
 
     def _roots(self, name: str) -> Iterator[Path]:
+        """As `_new_roots`, which are looked for once."""
+        if name not in self._looked_for:
+            self._looked_for[name] = self._new_roots(name)
+        again, self._looked_for[name] = tee(self._looked_for[name])
+        return again
+
+    def _new_roots(self, name: str) -> Iterator[Path]:
         """Folders that may be the package, all of which may be read: as stated, beside the description, then as the
         environment says."""
         if name in ("", ".", ".."):
