@@ -4,8 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
+from kinform import form
+from kinform.errors import InputError
 from kinform.formats.description import mesh_files
 from kinform.formats.description.mesh_files import ENTRIES_MOST
+from kinform.foundation.boundary import Boundary
 
 
 def test_files_of_a_package_are_found_whatever_their_depth(tmp_path: Path) -> None:
@@ -36,3 +41,25 @@ def test_a_home_folder_is_not_searched_to_its_end(tmp_path: Path, monkeypatch) -
     monkeypatch.setattr(mesh_files, "ENTRIES_MOST", 50)
     assert mesh_files.files_below(tmp_path, (".urdf",)) == [tmp_path / "near" / "n.urdf"]
     assert ENTRIES_MOST >= 1453  # entries of the largest public package tried
+
+
+def test_a_package_whose_file_lies_outside_is_none(tmp_path: Path) -> None:
+    (tmp_path / "package.xml").write_text("<package><name>outside</name></package>")
+    top = tmp_path / "top"
+    for name in ("own", "linked"):
+        (top / name).mkdir(parents=True)
+    (top / ".git").mkdir()
+    (top / "own" / "package.xml").write_text("<package><name>inside</name></package>")
+    (top / "linked" / "package.xml").symlink_to(tmp_path / "package.xml")
+    boundary = Boundary(top / "own" / "a.urdf")
+    assert mesh_files.packages_below(top, 1, boundary) == {"inside": top / "own"}
+
+
+@pytest.mark.parametrize("folder", ["../", "package://gone/", "http://a/"])
+def test_what_one_cause_keeps_from_being_found_is_one_problem(tmp_path: Path, folder: str) -> None:
+    shapes = "".join(f'<visual><geometry><mesh filename="{folder}{k}.stl"/></geometry></visual>' for k in range(5))
+    (tmp_path / "a.urdf").write_text(f'<robot name="a"><link name="l">{shapes}</link></robot>')
+    with pytest.raises(InputError) as caught:
+        form.load(tmp_path / "a.urdf")
+    (problem,) = caught.value.problems
+    assert "0.stl" in problem.message and "4" in problem.message and problem.line == 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 
@@ -14,6 +15,8 @@ from tests.support.scenes import assert_same_joints, glb, nodes, over, scene_of
 import kinform
 from kinform import form
 from kinform.errors import InputError
+from kinform.form.meshes.raw import MeshError
+from kinform.formats.gltf.reading.reader import read_gltf
 
 FOUR_BAR = FIXTURES / "mechanisms" / "four_bar" / "four_bar.toml"
 COLLARS = FIXTURES / "pairs" / "revolute_collars" / "revolute_collars.toml"
@@ -185,3 +188,23 @@ def test_morph_targets_that_move_vertices_are_said_to_be_left_out(tmp_path):
 
     notes = form.load(glb(tmp_path, morphed)).notes
     assert [('"a"' in note, '"b"' in note) for note in notes] == [(True, False)]
+
+
+def test_a_buffer_that_becomes_a_link_after_it_was_looked_at_is_not_followed(tmp_path, monkeypatch):
+    outside, folder = tmp_path / "outside.bin", tmp_path / "design"
+    folder.mkdir()
+    outside.write_bytes(bytes(72))
+    (folder / "b.bin").write_bytes(bytes(72))
+
+    def exchanged(path):
+        path.unlink()
+        path.symlink_to(outside)
+
+    monkeypatch.setattr("kinform.formats.gltf.reading.reader.not_a_file", exchanged)
+    header = {"asset": {"version": "2.0"}, "buffers": [{"byteLength": 72, "uri": "b.bin"}],
+              "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+              "bufferViews": [{"buffer": 0, "byteLength": 72}],
+              "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}]}  # fmt: skip
+    with pytest.raises(MeshError) as caught:
+        read_gltf(json.dumps(header).encode(), folder / "a.gltf")
+    assert "b.bin" in caught.value.faults[0].message

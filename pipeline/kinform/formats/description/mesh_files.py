@@ -12,7 +12,6 @@ from urllib.parse import unquote
 
 from kinform.form.constants import NAME_LENGTH, VALUE_LENGTH
 from kinform.foundation.boundary import OUTSIDE, OUTSIDE_REMEDY, Boundary
-from kinform.foundation.regular_files import not_a_file
 from kinform.frozen import dataclass
 
 PACKAGE_LEVELS = 4
@@ -98,7 +97,7 @@ class MeshFiles:
         if name in self.packages and self.packages[name].is_dir():
             return self.packages[name]
         there = [root for root in self._roots(name) if root.is_dir()]
-        return next((root for root in there if _is_package(root)), next(iter(there), None))
+        return next((root for root in there if _is_package(root, self.boundary.allows)), next(iter(there), None))
 
     def _inside(self, path: Path, stated: str) -> Found:
         """The file of that path, if it lies where the description may read."""
@@ -170,7 +169,7 @@ class MeshFiles:
         """Whether it is a folder that may be read; a package of the design's repository may be from now on. Others are
         not looked at."""
         if not self.boundary.allows(folder):
-            if not self.boundary.holds_package(folder) or not _is_package(folder):
+            if not _is_package(folder, self.boundary.holds_package):
                 return False
             self.boundary.grant(folder)
         return self.boundary.is_folder(folder)
@@ -193,10 +192,11 @@ class MeshFiles:
         below, levels = (full.parent, 1) if source is None else (source, WORKSPACE_LEVELS)
         if not below.is_relative_to(top):
             below = top
-        return {name: folder for name, folder in packages_below(below, levels).items() if self._is_own(folder)}
+        found = packages_below(below, levels, self.boundary)
+        return {name: folder for name, folder in found.items() if self._is_own(folder)}
 
 
-def packages_below(folder: Path, levels: int) -> dict[str, Path]:
+def packages_below(folder: Path, levels: int, boundary: Boundary) -> dict[str, Path]:
     """The packages in a folder, and so many levels of folders below it, by the names that they give themselves; of
     several of one name the nearest, then the first by name. Linked folders are packages, or not entered."""
     out: dict[str, Path] = {}
@@ -204,7 +204,7 @@ def packages_below(folder: Path, levels: int) -> dict[str, Path]:
         for entry in entries:
             if entry.name.startswith(".") or not _is(entry.is_dir):
                 continue
-            name = package_name(Path(entry.path))
+            name = package_name(Path(entry.path), boundary)
             if name is not None:
                 out.setdefault(name, Path(entry.path))
             elif not entry.is_symlink():
@@ -212,21 +212,20 @@ def packages_below(folder: Path, levels: int) -> dict[str, Path]:
     return out
 
 
-def package_name(folder: Path) -> str | None:
-    """The name that a package gives itself; None where the folder is none."""
+def package_name(folder: Path, boundary: Boundary) -> str | None:
+    """The name that a package gives itself; None where the folder is none, or lies where nothing may be read."""
     file = folder / _PACKAGE_FILES[0]
     try:
-        if not_a_file(file) is not None:
-            return None
-        with open(file, "rb") as stream:
+        with boundary.open(file, of_package=True) as stream:
             stated = _NAME.search(stream.read(PACKAGE_BYTES))
     except OSError:
         return None
     return None if stated is None else stated[1].decode("utf-8", "replace")
 
 
-def _is_package(folder: Path) -> bool:
-    return any((folder / name).is_file() for name in _PACKAGE_FILES)
+def _is_package(folder: Path, is_inside: Callable[[Path], bool]) -> bool:
+    """Whether a folder holds what makes it a package. Files that are not inside are not asked for."""
+    return any(is_inside(file) and file.is_file() for file in (folder / name for name in _PACKAGE_FILES))
 
 
 def files_below(folder: Path, suffixes: Sequence[str]) -> list[Path]:
@@ -282,6 +281,6 @@ def _home(folder: Path, boundary: Boundary) -> Path:
     """The nearest folder above with the file of a package; else the one above the description's, if it may be read."""
     full = folder.resolve()
     for above in [full, *full.parents][:PACKAGE_LEVELS]:
-        if boundary.allows(above) and _is_package(above):
+        if _is_package(above, boundary.allows):
             return above
     return full.parent if boundary.allows(full.parent) else full

@@ -21,6 +21,7 @@ from kinform.form.constants import TEXT_BYTES
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate, prevailing
 from kinform.form.scenes.scene import EXPORT, Node, Scene
 from kinform.form.sources import AS_IT_IS, Reading
+from kinform.foundation.boundary import Boundary
 from kinform.foundation.colours import of_light
 from kinform.foundation.name_hints import in_quotes
 from kinform.foundation.regular_files import not_a_file
@@ -44,7 +45,7 @@ _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 
 def read_gltf(data: bytes, path: Path, reading: Reading = AS_IT_IS) -> Scene:
     """The scene of a file at `path`, beside which its buffers lie. Raises MeshError."""
-    return _Reader(*_chunks(data), path).scene()
+    return _Reader(*_chunks(data), path, reading.boundary or Boundary(path)).scene()
 
 
 def _chunks(data: bytes) -> tuple[Any, bytes | None]:
@@ -83,8 +84,8 @@ def _chunks(data: bytes) -> tuple[Any, bytes | None]:
 class _Reader:
     """Reads what a header names; every index and size is looked at before it is used."""
 
-    def __init__(self, header: dict[str, Any], binary: bytes | None, path: Path):
-        self.header, self.binary, self.path = header, binary, path
+    def __init__(self, header: dict[str, Any], binary: bytes | None, path: Path, boundary: Boundary):
+        self.header, self.binary, self.path, self.boundary = header, binary, path, boundary
         self.files: list[Path] = []
         self.notes: list[str] = []
         self._buffers: dict[int, bytes] = {}
@@ -261,8 +262,14 @@ class _Reader:
         if not path.is_file() or not_a_file(path):
             raise MeshError([Fault(f"names the buffer {in_quotes(name)}, which is not there",
                                    "put it beside the file, or export GLB")])  # fmt: skip
+        try:
+            data = self.boundary.read(path)
+        except OSError:  # no more what it was, or outside
+            raise MeshError(
+                [Fault(f"names the buffer {in_quotes(name)}, which cannot be read", "export GLB")]
+            ) from None
         self.files.append(path)
-        return path.read_bytes()
+        return data
 
     def _list(self, table: Any, key: str) -> list[Any]:
         value = table.get(key, [])
