@@ -17,7 +17,7 @@ from urllib.parse import unquote
 
 import numpy as np
 
-from kinform.form.constants import TEXT_BYTES
+from kinform.form.constants import LARGEST_NUMBER, TEXT_BYTES
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate, prevailing
 from kinform.form.scenes.scene import EXPORT, Node, Scene
 from kinform.form.sources import AS_IT_IS, Reading
@@ -39,6 +39,8 @@ DECODED_TIMES = 64
 and ten where meshes share their vertices. Chosen, not measured."""
 DECODED_FREELY = 100 << 20
 """Bytes of coordinates and indices that need no such ratio."""
+_PLACING = ("matrix", "rotation", "scale", "translation")
+"""Keys of a node that place it."""
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 """Modes of primitives whose facets are read."""
 
@@ -316,11 +318,14 @@ def _matrix(table: dict[str, Any], what: str) -> Array:
     """The pose of a node in its parent, 4×4."""
 
     def numbers(key: str, size: int, usual: list[float]) -> Array:
-        values = np.array(table.get(key, usual), dtype=np.float64)
-        if values.shape != (size,) or not is_coordinate(values).all():
+        values = table.get(key, usual)
+        fits = isinstance(values, list) and len(values) == size
+        if not fits or not all(isinstance(v, int | float) and abs(v) <= LARGEST_NUMBER for v in values):
             raise MeshError([Fault(f"has a {key} of {what} that is not {size} numbers", EXPORT)])
-        return values
+        return np.array(values, dtype=np.float64)
 
+    if table.keys().isdisjoint(_PLACING):
+        return np.eye(4)
     if "matrix" in table:
         return np.asarray(numbers("matrix", 16, []).reshape(4, 4).T)
     X = np.eye(4)
