@@ -5,12 +5,17 @@ Nothing here raises or prints: where names cannot be had there are none.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from kinform.design import Design
+
+_PLAIN = re.compile(r"[\w./#~+@%:,=-]+(?: [\w./#~+@%:,=-]+)*")
+"""Names that are offered: shells and their completion scripts put others into a command as they are, where quotes,
+dollars, semicolons and line ends have a meaning."""
 
 
 def codes(incomplete: str) -> list[str]:
@@ -52,4 +57,4 @@ def _named(ctx: Any, incomplete: str, names: Callable[[Design], list[str]]) -> l
         design = results.read(Path(source))
     except (KinformError, OSError):
         return []
-    return sorted({name for name in names(design) if name.startswith(incomplete)})
+    return sorted({name for name in names(design) if name.startswith(incomplete) and _PLAIN.fullmatch(name)})

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 from support.places import FIXTURES
 
 from kinform import results
 from kinform.consistency import RULES
+from kinform_cli import completion
 
 
 @pytest.fixture(scope="module")
@@ -33,3 +36,11 @@ def test_a_shell_is_offered_names(kinform, file, line, offered):
     ran = kinform(_KINFORM_COMPLETE="complete_bash", COMP_WORDS=words, COMP_CWORD=str(len(words.split()) - 1))
     assert set(ran.stdout.split()) == offered, ran.stderr
     assert ran.stderr == ""
+
+
+def test_no_name_is_offered_that_a_shell_would_obey(monkeypatch):
+    names = ["base plate", "arm/a.1", "a$(id)", "a`id`", "a;id", "a\nid", "a\x1b[2J", "a'b", 'a"b', "a|b", "a*", "a\\b"]
+    parts = tuple(SimpleNamespace(name=name) for name in names)
+    design = SimpleNamespace(assembly=SimpleNamespace(parts=parts, groups=()), kinematics=None)
+    monkeypatch.setattr(results, "read", lambda path: design)
+    assert completion.parts(SimpleNamespace(params={"source": "a.h5"}, args=[]), "") == ["arm/a.1", "base plate"]

@@ -111,7 +111,62 @@ def _unknown_members(members: int) -> str:
     return HEAD + parts + '[[group]]\nname = "g"\nparts = [' + ",".join(f'"q{k}"' for k in range(members)) + "]\n"
 
 
+def _attributes(root: str, inside: str = "") -> str:
+    return f"<{root} " + " ".join(f'a{k}="1"' for k in range(80_000)) + f">{inside}</{root}>"
+
+
+def _classes() -> str:
+    classes = "".join(f'<default class="c{k}"><geom size="1"/></default>' for k in range(14_000))
+    kinds = "".join(f'<k{k} a="1"/>' for k in range(8_000))
+    return f'<mujoco><default>{kinds}{classes}</default><worldbody><geom class="x"/></worldbody></mujoco>'
+
+
+def _repeated(head: str, each: str, count: int, tail: str = "") -> str:
+    return head + "".join(each.format(k) for k in range(count)) + tail
+
+
+MESH_OF = '<visual><geometry><mesh filename="{}"/></geometry></visual>'
+
 CASES = {
+    "attributes-urdf": ("a.urdf", lambda: _attributes("robot", '<link name="l"/>')),
+    "attributes-xml": ("a.xml", lambda: _attributes("mujoco", "<worldbody/>")),
+    "attributes-sdf": ("a.sdf", lambda: _attributes("sdf")),
+    "elements-mjcf": ("a.mjcf", lambda: "<mujoco>" + "<a/>" * 240_000 + "</mujoco>"),
+    "doctypes-urdf": ("a.urdf", lambda: "<!DOCTYPE " * 90_000),
+    "classes-mjcf": ("a.xml", _classes),
+    "unknown-meshes-mjcf": (
+        "a.xml",
+        lambda: _repeated("<mujoco><worldbody>", '<geom type="mesh" mesh="m{}"/>', 24_000, "</worldbody></mujoco>"),
+    ),
+    "deep-paths-urdf": (
+        "a.urdf",
+        lambda: '<robot name="a"><link name="l">' + MESH_OF.format("package://p/" + "a/" * 450_000 + "m.stl"),
+    ),
+    "packages-urdf": (
+        "a.urdf",
+        lambda: _repeated(
+            '<robot name="a"><link name="l">',
+            MESH_OF.replace("{}", "package://p{}/" + "a/" * 40 + "m.stl"),
+            5_000,
+            "</link></robot>",
+        ),
+    ),
+    "unknown-links-sdf": (
+        "a.sdf",
+        lambda: _repeated(
+            '<sdf version="1.9"><model name="m"><link name="l"/>',
+            '<joint name="j{0}" type="fixed"><parent>l</parent><child>x{0}</child></joint>',
+            12_000,
+            "</model></sdf>",
+        ),
+    ),
+    "one-unknown-key": ("m.toml", lambda: _repeated(HEAD, '[[part]]\nname = "p{}"\nz = 1\n', 900) + _parts(8_000)),
+    "missing-meshes": ("m.toml", lambda: _repeated(HEAD, '[[part]]\nname = "p{0}"\nmesh = "m{0}.stl"\n', 10_000)),
+    "row-of-vertices-obj": (
+        "m.toml",
+        lambda: HEAD + '[[part]]\nname = "p"\nmesh = "a.obj"\n',
+        lambda: _repeated("", "v {0} 0 0\nv {0} 1 0\nv {0} 0 1\nf -1 -2 -3\n", 18_000),
+    ),
     "copies-glb": ("a.glb", lambda: _doubling(41)),
     "copies-glb-beyond-all-numbers": ("a.glb", lambda: _doubling(63)),
     "too-many-parts-glb": ("a.glb", lambda: _doubling(17)),
@@ -134,8 +189,14 @@ CASES = {
 }
 
 
+def _parts(count: int) -> str:
+    return "".join(f'[[part]]\nname = "q{k}"\n' for k in range(count))
+
+
 def _written(folder, name: str) -> str:
-    file, make = CASES[name]
+    file, make, *beside = CASES[name]
+    for more in beside:
+        (folder / "a.obj").write_text(more())
     data = make()
     data = data.encode() if isinstance(data, str) else data
     assert len(data) <= 1_000_000

@@ -6,6 +6,7 @@ import hashlib
 import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, scaled
@@ -143,7 +144,7 @@ class DesignFiles:
     ):
         self.top = top
         self.problems = problems
-        self.reading = reading
+        self.reading = replace(reading, boundary=boundary)
         self.names: set[str] = set()
         self.listed: set[Path] = set()
         """Folders whose list of files was read."""

@@ -14,8 +14,10 @@ class Problems:
 
     def __init__(self) -> None:
         self._items: dict[Problem, None] = {}
-        self._alike: dict[tuple[str, str | None], list[str]] = {}
+        self._alike: dict[tuple[str, str | None], dict[str, None]] = {}
         self._noted = 0
+        self.elements = 0
+        """Elements of XML that were read so far: their number is limited for all files of a design."""
 
     def __len__(self) -> int:
         return len(self._items)
@@ -24,17 +26,21 @@ class Problems:
         """Note a problem; the same problem is kept once. Raises InputError with all where there were very many,
         repeated ones included: looking for more takes long, and these are to be repaired first."""
         self._items.setdefault(Problem(message=message, file=file, line=line, remedy=remedy, column=column))
+        self._count()
+
+    def _count(self) -> None:
         self._noted += 1
         if self._noted >= PROBLEMS_MOST:
             self.raise_if_any()
 
     def add_alike(self, what: str, fault: str, file: str | None, line: int | None, remedy: str) -> None:
-        """Note that `what` has a `fault` that others of the file have too: they become one problem, at the first."""
-        others = self._alike.setdefault((fault, file), [])
+        """Note that `what` has a `fault` that others of the file have too: they become one problem, at the first.
+        Raises as `add`."""
+        others = self._alike.setdefault((fault, file), {})
         if not others:
             self._items.setdefault(Problem(message=fault, file=file, line=line, remedy=remedy))
-        if what not in others:
-            others.append(what)
+        others.setdefault(what)
+        self._count()
 
     def _told(self, problem: Problem) -> Problem:
         """The problem with how many have it."""
@@ -42,7 +48,7 @@ class Problems:
         if alike is None:
             return problem
         many = f" (and {counted(len(alike) - 1, 'more such file')})" if len(alike) > 1 else ""
-        return replace(problem, message=f"{alike[0]} {problem.message}{many}")
+        return replace(problem, message=f"{next(iter(alike))} {problem.message}{many}")
 
     def raise_if_any(self) -> None:
         """Raise InputError with all problems, by file in the order of their first problem, then by line."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
@@ -57,6 +57,8 @@ class Reading:
     """Other values for keys of the top manifest: paths as of `kinform.form.keys`, and values."""
     allow_xacro: bool = False
     """Whether xacro files are expanded by xacro itself, which runs what their expressions say."""
+    boundary: Boundary | None = field(default=None, compare=False, repr=False)
+    """What files that a scene names may be; without one, those of the design's folder of the scene."""
 
     @property
     def of_files(self) -> Reading:

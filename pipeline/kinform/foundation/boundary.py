@@ -103,12 +103,15 @@ class Boundary:
         """As `is_file`, of a folder."""
         return self.allows(path) and os.path.isdir(_real(path))
 
-    def open(self, path: Path) -> BufferedReader:
-        """A file, open for reading. Raises OutsideError, and OSError where it cannot be opened or is no file."""
+    def open(self, path: Path, *, of_package: bool = False) -> BufferedReader:
+        """A file, open for reading. Raises OutsideError, and OSError where it cannot be opened or is no file.
+        `of_package`: it says what a package of the design's repository is."""
         real = _real(path)
         if self._everything:
             return _as_file(os.open(real, _READ), path)
         root = self._root_of(real)
+        if root is None and of_package and _holds(self.top, real):
+            root = self.top
         if root is None:
             raise OutsideError(path)
         return _as_file(_open_below(root, real), path)

@@ -21,16 +21,11 @@ import hashlib
 import hmac
 import os
 import re
-import stat
+from collections.abc import Iterator
 from pathlib import Path
 
 from kinform.foundation.boundary import repository_of
-from kinform.foundation.user_folders import is_foreign
-
-try:
-    import fcntl
-except ImportError:  # Windows: of two processes that find a file full at once, one loses what the other has written
-    fcntl = None  # type: ignore[assignment]
+from kinform.foundation.user_folders import PrivateFolder, examined, is_foreign
 
 FULL = 4096 * 65
 """Bytes of a file of digests: 4096 lines. So there are at most 131072 digests in 8.5 MB, and one is found in 0.3 ms.
@@ -40,30 +35,25 @@ _KEY_BYTES = 32
 """Of the key of `signed`: as many as SHA-256 has."""
 
 
-class _UnusableError(Exception):
-    """Why the folder cannot be used."""
-
-
 def record(digest: str) -> None:
     """Remember that the file with this SHA-256 (hex) was written by this user's kinform; call it before the file gets
     its name, so that no file stands there unrecorded."""
-    with contextlib.suppress(OSError, ValueError, _UnusableError):
-        folder = _folder(create=True)
-        if _DIGEST.fullmatch(digest) and not _holds(folder / digest[0], digest):
+    with contextlib.suppress(OSError, ValueError), _opened(make=True) as folder:
+        if _DIGEST.fullmatch(digest) and not _holds(folder, digest[0], digest):
             _append(folder, digest)
 
 
 def is_recorded(digest: str, file: str | Path) -> bool:
     """Whether this user's kinform wrote the file with this SHA-256 (hex), which stands at `file`."""
     try:
-        folder = _folder()
-        if not _DIGEST.fullmatch(digest) or _in_reach(folder, file):
+        if not _DIGEST.fullmatch(digest) or _in_reach(_place(), file):
             return False
-        if _holds(folder / digest[0], digest):
-            return True
-        if not _holds(folder / f"{digest[0]}.old", digest):
-            return False
-    except (OSError, ValueError, _UnusableError):
+        with _opened() as folder:
+            if _holds(folder, digest[0], digest):
+                return True
+            if not _holds(folder, f"{digest[0]}.old", digest):
+                return False
+    except (OSError, ValueError):
         return False
     record(digest)
     return True
@@ -73,16 +63,16 @@ def fault(file: str | Path) -> str:
     """Why it cannot be known who wrote the file, as in "/home/me/.local/state/kinform is not writable"; "" where
     it can."""
     try:
-        folder = _folder(create=True)
-        if _in_reach(folder, file):
-            return f"{folder} lies in a repository, a package or the working folder"
-        if not os.access(folder, os.W_OK | os.X_OK):
-            return f"{folder} is not writable"
-    except _UnusableError as error:
-        return str(error)
+        place = _place()
+        with _opened(make=True):
+            if _in_reach(place, file):
+                return f"{place} lies in a repository, a package or the working folder"
+            if not os.access(place, os.W_OK | os.X_OK):
+                return f"{place} is not writable"
     except (OSError, ValueError) as error:
-        place = f"{error.filename}: " if isinstance(error, OSError) and error.filename else ""
-        return f"{place}{getattr(error, 'strerror', None) or error}"
+        words = getattr(error, "strerror", None) or str(error)
+        of = getattr(error, "filename", None)
+        return f"{of} {words}" if of and words.startswith(("is ", "belongs ")) else f"{of}: {words}" if of else words
     return ""
 
 
@@ -90,11 +80,11 @@ def signed(text: str, file: str | Path) -> str:
     """A code (hex) for a text in a file that is written bit by bit: only this user's kinform can make it, with a key
     that stands in its folder. "" where that cannot be used."""
     try:
-        folder = _folder(create=True)
-        if _in_reach(folder, file):
-            return ""
-        return hmac.new(_key(folder), text.encode("utf-8", "surrogatepass"), hashlib.sha256).hexdigest()
-    except (OSError, ValueError, _UnusableError):
+        with _opened(make=True) as folder:
+            if _in_reach(_place(), file):
+                return ""
+            return hmac.new(_key(folder), text.encode("utf-8", "surrogatepass"), hashlib.sha256).hexdigest()
+    except (OSError, ValueError):
         return ""
 
 
@@ -104,30 +94,26 @@ def is_signed(text: str, code: object, file: str | Path) -> bool:
     return bool(made) and isinstance(code, str) and hmac.compare_digest(made.encode(), code.encode("utf-8", "replace"))
 
 
-def _folder(*, create: bool = False) -> Path:
-    """The folder, which may not be there yet. Raises _UnusableError and OSError."""
+def _place() -> Path:
+    """Where the folder is, or would be. Raises OSError."""
     named = os.environ.get("XDG_STATE_HOME", "")
     state = named if os.path.isabs(named) else os.path.join(os.path.expanduser("~"), ".local", "state")
     if not os.path.isabs(state):
-        raise _UnusableError("the user has no home folder")
-    folder = Path(state) / "kinform"
-    if is_foreign(folder):  # before it is made: a link of strangers may say where
-        raise _UnusableError(f"{folder} lies in a repository, a package or the working folder")
-    if create and not folder.exists():
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        folder.mkdir(mode=0o700, exist_ok=True)
+        raise OSError("the user has no home folder")
+    return Path(state) / "kinform"
+
+
+@contextlib.contextmanager
+def _opened(*, make: bool = False) -> Iterator[PrivateFolder]:
+    """The folder. Raises OSError."""
+    place = _place()
+    if is_foreign(place):  # before it is made: a link of strangers may say where
+        raise OSError(f"{place} lies in a repository, a package or the working folder")
+    folder = examined(place, make=make)
     try:
-        status = os.lstat(folder)
-    except FileNotFoundError:
-        return folder
-    if not stat.S_ISDIR(status.st_mode):
-        raise _UnusableError(f"{folder} is not a folder")
-    if hasattr(os, "geteuid"):
-        if status.st_uid != os.geteuid():
-            raise _UnusableError(f"{folder} belongs to another user")
-        if stat.S_IMODE(status.st_mode) & 0o077:
-            raise _UnusableError(f"{folder} is open to other users (chmod 700)")
-    return folder
+        yield folder
+    finally:
+        folder.close()
 
 
 def _in_reach(folder: Path, file: str | Path) -> bool:
@@ -138,65 +124,43 @@ def _in_reach(folder: Path, file: str | Path) -> bool:
     return is_foreign(folder) or any(inside.startswith(os.path.join(str(root), "")) for root in roots)
 
 
-def _open(path: Path, flags: int) -> int:
-    """A regular file of the user, open; never a link, and nothing that would wait. Raises OSError."""
-    more = (getattr(os, name, 0) for name in ("O_NOFOLLOW", "O_NONBLOCK", "O_CLOEXEC", "O_BINARY"))
-    for flag in more:
-        flags |= flag
-    handle = os.open(path, flags, 0o600)
-    status = os.fstat(handle)
-    if not stat.S_ISREG(status.st_mode) or (hasattr(os, "geteuid") and status.st_uid != os.geteuid()):
-        os.close(handle)
-        raise OSError("is no file of the user")
-    return handle
-
-
-def _content(path: Path, most: int) -> bytes:
+def _content(folder: PrivateFolder, name: str, most: int) -> bytes:
     """The first so many bytes of a file; none where it is not there."""
     try:
-        with os.fdopen(_open(path, os.O_RDONLY), "rb") as stream:
+        with os.fdopen(folder.open(name, os.O_RDONLY), "rb") as stream:
             return stream.read(most)
     except FileNotFoundError:
         return b""
 
 
-def _holds(path: Path, digest: str) -> bool:
-    return f"{digest}\n".encode() in _content(path, 2 * FULL)  # several may append to a file that is just full
+def _holds(folder: PrivateFolder, name: str, digest: str) -> bool:
+    # several may append to a file that is just full
+    return f"{digest}\n".encode() in _content(folder, name, 2 * FULL)
 
 
-def _append(folder: Path, digest: str) -> None:
-    path = folder / digest[0]
-    handle = _open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT)
-    try:
-        os.write(handle, f"{digest}\n".encode())
-        full = os.fstat(handle).st_size >= FULL
-    finally:
-        os.close(handle)
+def _append(folder: PrivateFolder, digest: str) -> None:
+    name = digest[0]
+    with os.fdopen(folder.open(name, os.O_WRONLY | os.O_APPEND | os.O_CREAT), "ab", buffering=0) as stream:
+        stream.write(f"{digest}\n".encode())
+        full = os.fstat(stream.fileno()).st_size >= FULL
     if full:
-        _turn_over(folder, path)
+        _turn_over(folder, name)
 
 
-def _turn_over(folder: Path, path: Path) -> None:
+def _turn_over(folder: PrivateFolder, name: str) -> None:
     """Let a full file be the old one, once; who writes into it meanwhile writes into the old one."""
-    handle = None if fcntl is None else os.open(folder, os.O_RDONLY)
-    try:
-        if fcntl is not None and handle is not None:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        if path.stat().st_size >= FULL:
-            path.replace(path.with_name(f"{path.name}.old"))
-    finally:
-        if handle is not None:
-            os.close(handle)
+    with folder.locked():
+        if len(_content(folder, name, FULL)) >= FULL:
+            folder.rename(name, f"{name}.old")
 
 
-def _key(folder: Path) -> bytes:
+def _key(folder: PrivateFolder) -> bytes:
     """The key of `signed`, made where there is none. Raises OSError."""
-    path = folder / "key"
-    key = _content(path, _KEY_BYTES)
+    key = _content(folder, "key", _KEY_BYTES)
     if len(key) < _KEY_BYTES:
-        draft = folder / f"key.{os.urandom(8).hex()}"
-        with os.fdopen(_open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL), "wb") as stream:
+        draft = f"key.{os.urandom(8).hex()}"
+        with os.fdopen(folder.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL), "wb") as stream:
             stream.write(os.urandom(_KEY_BYTES))
-        draft.replace(path)
-        key = _content(path, _KEY_BYTES)
+        folder.rename(draft, "key")
+        key = _content(folder, "key", _KEY_BYTES)
     return key

@@ -8,12 +8,18 @@ never through a link, so that nobody can exchange one for another in between.
 from __future__ import annotations
 
 import contextlib
+import errno
 import hashlib
 import os
 import stat
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]
 
 _SUM = hashlib.sha256().digest_size
 """Bytes before the content of a file, which show that it is whole."""
@@ -95,10 +101,8 @@ class PrivateFolder:
     def read(self, name: str) -> bytes | None:
         """The content of a file that this user wrote, whole; None where it is missing, another's or damaged."""
         try:
-            handle = os.open(self._place(name), os.O_RDONLY | _CAREFULLY, dir_fd=self._handle)
-            with os.fdopen(handle, "rb") as stream:
-                facts = os.fstat(stream.fileno())
-                if not stat.S_ISREG(facts.st_mode) or not _is_own(facts, forbidden=0o022):
+            with os.fdopen(self.open(name, os.O_RDONLY), "rb") as stream:
+                if not _is_own(os.fstat(stream.fileno()), forbidden=0o022):
                     return None
                 data = stream.read()
         except OSError:
@@ -110,20 +114,46 @@ class PrivateFolder:
         """Put a file there, whole or not at all; False where that cannot be done."""
         passing = f"{name}.{os.getpid()}.{os.urandom(4).hex()}"
         try:
-            new = os.O_WRONLY | os.O_CREAT | os.O_EXCL | _CAREFULLY
-            handle = os.open(self._place(passing), new, 0o600, dir_fd=self._handle)
+            handle = self.open(passing, os.O_WRONLY | os.O_CREAT | os.O_EXCL)
         except OSError:
             return False
         try:
             with os.fdopen(handle, "wb") as stream:
                 stream.write(hashlib.sha256(content).digest())
                 stream.write(content)
-            os.replace(self._place(passing), self._place(name), src_dir_fd=self._handle, dst_dir_fd=self._handle)
+            self.rename(passing, name)
         except OSError:
             with contextlib.suppress(OSError):
                 os.unlink(self._place(passing), dir_fd=self._handle)
             return False
         return True
+
+    def open(self, name: str, flags: int) -> int:
+        """A file of this user, open; never a link, and nothing that would wait. Raises OSError."""
+        handle = os.open(
+            self._place(name), flags | _CAREFULLY | getattr(os, "O_CLOEXEC", 0), 0o600, dir_fd=self._handle
+        )
+        facts = os.fstat(handle)
+        if not stat.S_ISREG(facts.st_mode) or not _is_own(facts, forbidden=0):
+            os.close(handle)
+            raise OSError(errno.EACCES, "is no file of the user", name)
+        return handle
+
+    def rename(self, name: str, other: str) -> None:
+        """Let a file take the place of another. Raises OSError."""
+        os.replace(self._place(name), self._place(other), src_dir_fd=self._handle, dst_dir_fd=self._handle)
+
+    @contextlib.contextmanager
+    def locked(self) -> Iterator[None]:
+        """While one process has the folder to itself; raises OSError where another has. On Windows all do."""
+        handle = None if self._handle is None else os.open(os.curdir, os.O_RDONLY, dir_fd=self._handle)
+        try:
+            if fcntl is not None and handle is not None:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            yield
+        finally:
+            if handle is not None:
+                os.close(handle)
 
     def close(self) -> None:
         """Give the handle back."""
@@ -143,7 +173,7 @@ def private_folder(top: Path | None, *inner: str, make: bool = False) -> Iterato
     opened = None
     if top is not None:
         with contextlib.suppress(OSError):
-            opened = _examined(top, inner, make)
+            opened = examined(top, *inner, make=make)
     try:
         yield opened
     finally:
@@ -151,8 +181,8 @@ def private_folder(top: Path | None, *inner: str, make: bool = False) -> Iterato
             opened.close()
 
 
-def _examined(top: Path, inner: tuple[str, ...], make: bool) -> PrivateFolder:
-    """The folder, opened. Raises OSError."""
+def examined(top: Path, *inner: str, make: bool = False) -> PrivateFolder:
+    """As `private_folder`, to be closed. Raises OSError, which says of which folder what is wrong."""
     if make:
         top.parent.mkdir(parents=True, exist_ok=True)
     place, handle = top.parent, _opened(str(top.parent), None, follow=True)
@@ -163,12 +193,19 @@ def _examined(top: Path, inner: tuple[str, ...], make: bool) -> PrivateFolder:
             if make:
                 with contextlib.suppress(FileExistsError):
                     os.mkdir(name, 0o700, dir_fd=handle)
-            below = _opened(name, handle, follow=False)
+            try:
+                below = _opened(name, handle, follow=False)
+            except OSError as error:
+                words = "is not a folder" if error.errno in (errno.ELOOP, errno.ENOTDIR) else error.strerror
+                raise OSError(error.errno, words, str(place)) from None
             if handle is not None:
                 os.close(handle)
             handle = below
-            if not _is_own(os.stat(place) if handle is None else os.fstat(handle), forbidden=0o077):
-                raise PermissionError(name)
+            facts = os.stat(place) if handle is None else os.fstat(handle)
+            if not _is_own(facts, forbidden=0):
+                raise OSError(errno.EACCES, "belongs to another user", str(place))
+            if not _is_own(facts, forbidden=0o077):
+                raise OSError(errno.EACCES, "is open to other users (chmod 700)", str(place))
     except OSError:
         if handle is not None:
             os.close(handle)
@@ -180,7 +217,7 @@ def _opened(name: str, above: int | None, *, follow: bool) -> int | None:
     """A handle of the folder; None on systems that open no folders. Raises OSError, unless `follow` also for a link."""
     if os.open not in os.supports_dir_fd:
         if not follow and (os.path.islink(name) or not os.path.isdir(name)):
-            raise NotADirectoryError(name)
+            raise NotADirectoryError(errno.ENOTDIR, "is not a folder", name)
         return None
     flags = os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC | (0 if follow else os.O_NOFOLLOW)
     return os.open(name, flags, dir_fd=above)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from kinform.errors import InputError
 from kinform.form import load
+from kinform.form.readers.places import Left
 from kinform.form.readers.toml_lines import LineTable
 
 KEYS = st.sampled_from(["name", "mass", "axis of", "[[part]]", "a.b", "#", "é"])
@@ -85,7 +86,7 @@ def test_lines_stay_right_when_tables_are_taken_out(rows, data):
     writer = Writer("\n")
     writer.tables("part", rows, "header", 1)
     gone = data.draw(st.sets(st.integers(0, len(rows) - 1)))
-    left = LineTable(writer.text).without({("part", k) for k in gone})
+    left = Left(LineTable(writer.text), {("part", k) for k in gone})
     kept = [k for k in range(len(rows)) if k not in gone]
     for now, before in enumerate(kept):
         for key in rows[before]:

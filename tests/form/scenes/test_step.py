@@ -136,6 +136,13 @@ def test_what_is_wrong_with_a_step_file_is_one_problem(tmp_path, change):
     assert refused(step_copy(tmp_path, "names", change))
 
 
+@pytest.mark.parametrize("entity", ["DOCUMENT_FILE", "DCMFL", "DOCUMENT_FILE/**/ "])
+def test_references_to_other_files_are_refused(tmp_path, entity):
+    """OpenCASCADE reads parts from the files that these name, wherever they are."""
+    added = f"DATA;\n#99999={entity}('/etc/passwd','','',$,'',$);"
+    assert refused(step_copy(tmp_path, "names", lambda text: text.replace("DATA;", added, 1))).line > 1
+
+
 @pytest.mark.usefixtures("reader")
 def test_the_end_of_the_native_reader_is_told(tmp_path, monkeypatch):
     import cascadio

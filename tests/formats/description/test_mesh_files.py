@@ -6,8 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from kinform import form
+from kinform.errors import InputError
 from kinform.formats.description import mesh_files
 from kinform.formats.description.mesh_files import ENTRIES_MOST
+from kinform.foundation.boundary import Boundary
 
 
 def test_files_of_a_package_are_found_whatever_their_depth(tmp_path: Path) -> None:
@@ -59,3 +62,25 @@ def test_a_link_of_the_repository_in_a_search_path_opens_nothing_outside(
     (checkout / "robot").mkdir()
     files = mesh_files.MeshFiles(checkout / "robot" / "r.urdf", {}, {variable: str(named)})
     assert (files.find("package://arm/a.stl").path is None) is repository
+
+
+def test_a_package_whose_file_lies_outside_is_none(tmp_path: Path) -> None:
+    (tmp_path / "package.xml").write_text("<package><name>outside</name></package>")
+    top = tmp_path / "top"
+    for name in ("own", "linked"):
+        (top / name).mkdir(parents=True)
+    (top / ".git").mkdir()
+    (top / "own" / "package.xml").write_text("<package><name>inside</name></package>")
+    (top / "linked" / "package.xml").symlink_to(tmp_path / "package.xml")
+    boundary = Boundary(top / "own" / "a.urdf")
+    assert mesh_files.packages_below(top, 1, boundary) == {"inside": top / "own"}
+
+
+@pytest.mark.parametrize("folder", ["../", "package://gone/", "http://a/"])
+def test_what_one_cause_keeps_from_being_found_is_one_problem(tmp_path: Path, folder: str) -> None:
+    shapes = "".join(f'<visual><geometry><mesh filename="{folder}{k}.stl"/></geometry></visual>' for k in range(5))
+    (tmp_path / "a.urdf").write_text(f'<robot name="a"><link name="l">{shapes}</link></robot>')
+    with pytest.raises(InputError) as caught:
+        form.load(tmp_path / "a.urdf")
+    (problem,) = caught.value.problems
+    assert "0.stl" in problem.message and "4" in problem.message and problem.line == 1

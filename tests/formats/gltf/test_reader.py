@@ -210,3 +210,23 @@ def test_morph_targets_that_move_vertices_are_said_to_be_left_out(tmp_path):
 
     notes = form.load(glb(tmp_path, morphed)).notes
     assert [('"a"' in note, '"b"' in note) for note in notes] == [(True, False)]
+
+
+def test_a_buffer_that_becomes_a_link_after_it_was_looked_at_is_not_followed(tmp_path, monkeypatch):
+    outside, folder = tmp_path / "outside.bin", tmp_path / "design"
+    folder.mkdir()
+    outside.write_bytes(bytes(72))
+    (folder / "b.bin").write_bytes(bytes(72))
+
+    def exchanged(path):
+        path.unlink()
+        path.symlink_to(outside)
+
+    monkeypatch.setattr("kinform.formats.gltf.reading.reader.not_a_file", exchanged)
+    header = {"asset": {"version": "2.0"}, "buffers": [{"byteLength": 72, "uri": "b.bin"}],
+              "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+              "bufferViews": [{"buffer": 0, "byteLength": 72}],
+              "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}]}  # fmt: skip
+    with pytest.raises(MeshError) as caught:
+        read_gltf(json.dumps(header).encode(), folder / "a.gltf")
+    assert "b.bin" in caught.value.faults[0].message

@@ -112,6 +112,15 @@ def test_code_runs_only_where_the_user_allows_it(tmp_path):
     assert mark.exists()
 
 
+def test_the_command_runs_code_of_xacro_only_with_its_flag(command, tmp_path):
+    path, mark = write(tmp_path), tmp_path / "mark"
+    path.write_text(path.read_text().replace("$(arg reach)", CODE.replace("MARK", str(mark))))
+    refused = command("run", path)
+    assert refused.returncode == 2 and "--allow-xacro" in refused.stderr and not mark.exists()
+    allowed = command("run", path, "--allow-xacro")  # a bar of length 0
+    assert allowed.returncode == 2 and "internal error" not in allowed.stderr and mark.exists()
+
+
 @pytest.mark.parametrize("said", ["$(env SECRET)", "$(optenv SECRET)[::-1]", "$(optenv NONE 1)", "$(eval optenv)"])
 def test_the_environment_is_read_only_where_the_user_allows_it(tmp_path, monkeypatch, said):
     monkeypatch.setenv("SECRET", "12345")

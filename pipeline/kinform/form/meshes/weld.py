@@ -95,11 +95,18 @@ def _beside_another(place: Array, distance: float) -> Ints:
     return np.flatnonzero(kept)
 
 
+_ROUNDS = 64
+"""Rounds in which leaders are found many at a time, before the rest is gone through one by one: copies of corners take
+two or three. Chosen, not measured."""
+
+
 def _leaders(count: int, pairs: Ints) -> Ints:
     """The leader of each vertex: going through them in order, one leads unless it is close to a leader."""
     leader = np.arange(count)
     low, high = pairs.min(axis=1), pairs.max(axis=1)
-    while len(low):
+    for _ in range(_ROUNDS):
+        if not len(low):
+            return leader
         follows = np.zeros(count, dtype=bool)
         follows[high] = True
         settled = ~follows[low]
@@ -109,4 +116,9 @@ def _leaders(count: int, pairs: Ints) -> Ints:
         leader[led] = first[led]
         keep = ~(settled | led[low] | led[high])
         low, high = low[keep], high[keep]
-    return leader
+    order = np.lexsort((low, high))
+    leads = leader.tolist()  # of a row in which each vertex is close to the next only two are settled in a round
+    for v, below in zip(high[order].tolist(), low[order].tolist(), strict=True):
+        if leads[v] == v and leads[below] == below:
+            leads[v] = below
+    return np.array(leads)

@@ -18,7 +18,7 @@ from kinform.form.manifest.parts import Part
 from kinform.form.problems import Problems
 from kinform.form.readers import pydantic_errors
 from kinform.form.readers.overrides import Overlay
-from kinform.form.readers.places import Lines, Places
+from kinform.form.readers.places import Left, Lines, Places
 from kinform.form.readers.toml_lines import LineTable
 from kinform.form.readers.toml_lines import Path as KeyPath
 from kinform.form.readers.toml_text import TomlError, read_toml
@@ -193,7 +193,7 @@ def _validated(
         try:
             kept, dropped = pydantic_errors.without_errors(error, raw)
             refused = frozenset(pydantic_errors.names_of(dropped, raw))
-            return Parsed(Manifest.model_validate(kept), lines.without(dropped), refused, notes)
+            return Parsed(Manifest.model_validate(kept), Left(lines, dropped), refused, notes)
         except ValidationError:
             return None
 

@@ -32,8 +32,8 @@ class Overlay:
         out: dict[str, Any] = {}
         if down in self._below.of:
             self.places[at] = self._below.of[down]
-        if up in self._above.of:
-            self.places[at] = self._above.of[up]
+        if up:
+            self.places[at] = self._above.closest(up)
         for key, value in below.items():
             if key not in above and key not in replaced:
                 out[key] = self._copy(value, self._below, (*at, key), (*down, key))
@@ -45,6 +45,7 @@ class Overlay:
             elif _tables(value) and isinstance(old, list) and _tables(old):
                 out[key] = self._array(value, old, where, upper, lower)
             else:
+                self.places[where] = self._above.closest(upper)
                 out[key] = self._copy(value, self._above, where, upper)
         return out
 

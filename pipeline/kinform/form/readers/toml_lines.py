@@ -1,13 +1,15 @@
 """Lines of tables and keys in a TOML text.
 
 tomllib gives values without their places. This scanner walks a text that tomllib has accepted, and keeps
-only the line on which each key, table and array element begins. It follows TOML 1.0 and checks nothing.
+only the line on which each key, table and array element begins. It follows TOML 1.0 and checks nothing. What a value
+holds that ends on the line on which it begins is not entered: all of it is on the line of its key.
 """
 
 from __future__ import annotations
 
 import re
 import tomllib
+from bisect import bisect_right
 from collections.abc import Collection, Iterator
 
 Path = tuple[str | int, ...]
@@ -20,6 +22,12 @@ _BASIC = re.compile(r'"(?:[^"\\]|\\.)*"')
 _LITERAL = re.compile(r"'[^']*'")
 _LONG_BASIC = re.compile(r'"""(?:[^"\\]|\\.|"(?!"")|\\\n)*"{3,5}', re.DOTALL)
 _LONG_LITERAL = re.compile(r"'''(?:[^']|'(?!''))*'{3,5}", re.DOTALL)
+_SHORT = r"""(?:"(?:[^"\\\n]|\\.)++"|'[^'\n]++'|""(?!")|''(?!'))"""
+"""A string on one line, of one quotation mark at either end."""
+_PLAIN = re.compile(rf"""([A-Za-z0-9_-]++)[ \t]*+=[ \t]*+(?:{_SHORT}|[^\s,\[\]{{}}"'#]++)[ \t]*+(?=\n|\Z)""")
+"""A line with one key, not dotted, and one value, which holds no others; a date is not divided from its time."""
+_BRACKET = re.compile(rf"""[^\[\]{{}}"'#\n]++|{_SHORT}|([\[{{])|([\]}}])""")
+"""What is in an array or an inline table, piece by piece, as far as its line goes."""
 
 
 class LineTable:
@@ -49,20 +57,6 @@ class LineTable:
     def items(self) -> Iterator[tuple[Path, int]]:
         """Each path with its line."""
         yield from self._lines.items()
-
-    def without(self, dropped: Collection[Path]) -> LineTable:
-        """The lines of what is left when these tables are taken out: later elements of their arrays move up."""
-        out = LineTable("")
-        out._lines = {}
-        for path, line in self._lines.items():
-            if any(path[:length] in dropped for length in range(1, len(path) + 1)):
-                continue
-            moved = tuple(
-                step - sum((*path[:n], before) in dropped for before in range(step)) if isinstance(step, int) else step
-                for n, step in enumerate(path)
-            )
-            out._lines[moved] = line
-        return out
 
     def _scan(self) -> None:
         table: Path = ()
@@ -100,6 +94,11 @@ class LineTable:
 
     def _pair(self, table: Path) -> None:
         line = self._here()
+        plain = _PLAIN.match(self._text, self._position)
+        if plain is not None:
+            self._position = plain.end()
+            self._lines.setdefault((*table, plain[1]), line)
+            return
         path = table
         for key in self._keys():
             path = (*path, key)
@@ -129,12 +128,23 @@ class LineTable:
         for pattern in (_LONG_BASIC, _LONG_LITERAL, _BASIC, _LITERAL):
             if self._skip(pattern):
                 return
-        if self._peek("["):
-            self._array(path)
-        elif self._peek("{"):
-            self._inline(path)
-        else:
+        if not (self._peek("[") or self._peek("{")):
             self._skip(_SCALAR)
+        elif not self._passes_line():
+            (self._array if self._peek("[") else self._inline)(path)
+
+    def _passes_line(self) -> bool:
+        """Go behind the brackets that begin here, if they end on this line and hold no long strings. As often as the
+        answer is no, brackets are open at the end of the line."""
+        depth, position = 0, self._position
+        while piece := _BRACKET.match(self._text, position):
+            position = piece.end()
+            if piece.lastindex is not None:
+                depth += 1 if piece.lastindex == 1 else -1
+                if depth == 0:
+                    self._position = position
+                    return True
+        return False
 
     def _array(self, path: Path) -> None:
         for index, _ in enumerate(self._entries("]")):
@@ -172,3 +182,24 @@ class LineTable:
         self._line += self._text.count("\n", self._counted_to, self._position)
         self._counted_to = self._position
         return self._line
+
+
+class Removed:
+    """Tables that are taken out of a manifest: where the elements that move up in their arrays were before."""
+
+    def __init__(self, dropped: Collection[Path]):
+        self._passed: dict[Path, list[int]] = {}
+        for path in dropped:
+            if isinstance(path[-1], int):
+                self._passed.setdefault(path[:-1], []).append(path[-1])
+        for passed in self._passed.values():
+            passed.sort()
+            passed[:] = [place - n for n, place in enumerate(passed)]
+
+    def before(self, path: Path) -> Path:
+        """The path that an element had, by the one that it has now."""
+        out: Path = ()
+        for step in path:
+            passed = self._passed.get(out, ()) if isinstance(step, int) else ()
+            out = (*out, step + bisect_right(passed, step) if isinstance(step, int) else step)
+        return out

@@ -47,8 +47,9 @@ _COMMENT = re.compile(rb"/\*.*?\*/", re.DOTALL)
 _LENGTH = re.compile(rb"\bLENGTH_UNIT\s*\(", re.IGNORECASE)
 _SI = re.compile(rb"SI_UNIT\s*\(\s*(\$|\.[A-Z]+\.)\s*,\s*\.METRE\.\s*\)")
 _CONVERSION = re.compile(rb"CONVERSION_BASED_UNIT\s*\(\s*'(INCH|FOOT)'", re.IGNORECASE)
-_REFERENCE = re.compile(rb"\b(DOCUMENT_FILE|DCMFL)\s*\(", re.IGNORECASE)
-"""A file that OpenCASCADE would open, in the long form of its keyword and the short one."""
+_REFERENCE = re.compile(rb"(?<![A-Z0-9_])(?:DOCUMENT_FILE|DCMFL)(?![A-Z0-9_])", re.IGNORECASE)
+"""The entity, by its name and its short name, without which OpenCASCADE opens no other file: it reads parts from those
+that entities of it name, wherever they are."""
 _FAILS = re.compile(r"Fails Count\s*:\s*(\d+)")
 _SYNTAX = re.compile(r"Line (\d+):\s*(.*?)\s*\**\s*$", re.MULTILINE)
 _SKIPPED = re.compile(r"skipped node '(.*?)' without geometry")
@@ -92,8 +93,11 @@ def _check_frame(data: bytes) -> None:
     if b"END-ISO-10303-21" not in data[-STEP_END:]:
         last = data.rstrip().count(b"\n") + 1
         raise MeshError([Fault("is cut short: END-ISO-10303-21 is missing at its end", EXPORT, last)])
-    if _REFERENCE.search(data):
-        raise MeshError([Fault("refers to other files for its shapes, which are not read", "export all in one file")])
+    reference = _REFERENCE.search(data)
+    if reference is not None:
+        line = data.count(b"\n", 0, reference.start()) + 1
+        raise MeshError([Fault("refers to other files (DOCUMENT_FILE), which are not read",
+                               "export all parts into one file", line)])  # fmt: skip
     if not _LENGTH.search(data):
         raise MeshError([Fault("states no unit of length (LENGTH_UNIT): its lengths could be of any", EXPORT)])
 

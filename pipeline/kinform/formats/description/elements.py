@@ -16,6 +16,7 @@ from lxml import etree
 
 from kinform.form.constants import LARGEST_NUMBER, TEXT_BYTES, VALUE_LENGTH
 from kinform.form.problems import Problems
+from kinform.formats.description.mesh_files import Found
 from kinform.formats.description.robot import At
 from kinform.foundation.boundary import Boundary
 from kinform.foundation.colours import told
@@ -25,6 +26,12 @@ from kinform.foundation.xml_root import is_plain
 XML_DEPTH = 255
 """Elements in each other that are read: the limit of libxml2 without its option for huge trees is 256. Bodies of MJCF
 in a row have one each."""
+
+ELEMENTS_MOST = 200_000
+"""Elements of a description, with those of the files that it includes, counted each time that they are: forty for each
+of the parts of the largest design that was measured."""
+ATTRIBUTES_MOST = 255
+"""Attributes of an element: five times what the richest of MJCF has. Chosen, not measured."""
 
 
 FILE = "{urn:kinform}file"
@@ -36,7 +43,7 @@ Element = Any
 _BOUNDS = ("lower", "upper", "effort", "velocity", "range", "ctrlrange", "forcerange", "actuatorfrcrange")
 """Attributes in which the largest double there is says that there is no bound."""
 
-_ENTITY = re.compile(rb"<!\s*(ENTITY|DOCTYPE[^>\[]*\b(SYSTEM|PUBLIC)\b)")
+_ENTITY = re.compile(rb"<!\s*+(?:ENTITY|DOCTYPE(?:(?!\bSYSTEM\b|\bPUBLIC\b)[^<>\[])*+(?:SYSTEM|PUBLIC)\b)")
 
 
 def declares_entities(data: bytes, file: str, problems: Problems) -> bool:
@@ -85,7 +92,24 @@ def parse_xml(data: bytes, file: str, problems: Problems) -> Element | None:
     if declared is not None and any(True for _ in declared.iterentities()):
         problems.add("declares entities, which are refused", file, 1, "write the text in place of the entities")
         return None
-    return root
+    return root if _is_within_bounds(root, file, problems) else None
+
+
+def _is_within_bounds(root: Element, file: str, problems: Problems) -> bool:
+    """Whether elements and attributes are not too many, which is noted: looking at each takes time, and attributes of
+    one element take time by the square of their number."""
+    for element in root.iter(etree.Element):
+        problems.elements += 1
+        if problems.elements > ELEMENTS_MOST:
+            message = f"has more than {ELEMENTS_MOST:,} elements, with those of the files that it includes"
+            problems.add(message, file, None, "split the description")
+            return False
+        if len(element.attrib) > ATTRIBUTES_MOST:
+            what, many = tag_of(element)[:VALUE_LENGTH], f"{len(element.attrib):,}"
+            message = f"<{what}> has {many} attributes, and {ATTRIBUTES_MOST} are the most"
+            problems.add(message, file, element.sourceline, "remove those that no format has")
+            return False
+    return True
 
 
 _SYNTAX = (
@@ -125,7 +149,10 @@ def colour_of(text: str | None) -> str | None:
 
 def tag_of(element: Element) -> str:
     """The local name of an element."""
-    return re.split("[}:]", element.tag)[-1] if isinstance(element.tag, str) else ""
+    tag = element.tag
+    if not isinstance(tag, str):
+        return ""
+    return re.split("[}:]", tag)[-1] if "}" in tag or ":" in tag else tag
 
 
 class Xml:
@@ -147,6 +174,11 @@ class Xml:
         """Note a problem at an element."""
         at = self.at(element)
         self.problems.add(message, at.file, at.line, remedy)
+
+    def not_found(self, element: Element, what: str, found: Found) -> None:
+        """Note why there is no file of the name that an element states: once for all of the file with that cause."""
+        at = self.at(element)
+        self.problems.add_alike(f"{what} {found.stated}", found.fault, at.file, at.line, found.remedy)
 
     def content(self, element: Element, path: Path, boundary: Boundary) -> bytes | None:
         """The content of a file that an element names; None after noting why it cannot be read."""

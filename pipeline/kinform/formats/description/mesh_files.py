@@ -6,12 +6,12 @@ import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
+from itertools import tee
 from pathlib import Path
 from urllib.parse import unquote
 
 from kinform.form.constants import NAME_LENGTH, VALUE_LENGTH
 from kinform.foundation.boundary import OUTSIDE, OUTSIDE_REMEDY, Boundary, way_out
-from kinform.foundation.regular_files import not_a_file
 from kinform.frozen import dataclass
 
 PACKAGE_LEVELS = 4
@@ -24,6 +24,8 @@ PACKAGE_BYTES = 64 << 10
 ENTRIES_MOST = 20_000
 """Files and folders that are looked at for these, at most: about a second. The largest public package tried has 1,453;
 what is more is a home folder that holds a description."""
+PATH_LENGTH = 4096
+"""Characters of a path: what Linux takes."""
 
 
 _PACKAGE = re.compile(r"(?:package|model)://([^/]*)/?(.*)", re.DOTALL)
@@ -40,7 +42,9 @@ class Found:
     """A file, which may be read if it is there, or the reason why there is none with its remedy."""
 
     path: Path | None
-    message: str = ""
+    stated: str = ""
+    fault: str = ""
+    """What is wrong with the name that is stated, as the end of a sentence about it."""
     remedy: str = ""
 
 
@@ -64,6 +68,8 @@ class MeshFiles:
         self._environment = os.environ if environment is None else environment
         self.home = _home(self.folder, self.boundary)
         """The package of the description."""
+        self._there: dict[tuple[Path, str], bool] = {}
+        self._looked_for: dict[str, Iterator[Path]] = {}
 
     def beside(self, description: Path) -> MeshFiles:
         """The same for another description that this one names."""
@@ -73,17 +79,16 @@ class MeshFiles:
         """The file that a description names; `folder` is where plain paths begin, else that of the description."""
         text = unquote(stated.strip()) if "://" in stated else stated.strip()
         text = text.replace("\\", "/")
-        if any(len(os.fsencode(part)) > NAME_LENGTH for part in text.split("/")):
-            return Found(
-                None, message=f"{stated[:VALUE_LENGTH]}… has a name that no file can have", remedy="shorten it"
-            )
+        long = len(text) > PATH_LENGTH or any(len(os.fsencode(part)) > NAME_LENGTH for part in text.split("/"))
+        if long:
+            return Found(None, f"{stated[:VALUE_LENGTH]}…", "has a name that no file can have", "shorten it")
         match = _PACKAGE.fullmatch(text)
         if match:
             return self._in_package(match[1], match[2], text)
         if text.startswith("file:"):
             text = re.sub(r"^file:(//)?", "", text)
         elif "://" in text:
-            return Found(None, message=f"{stated} is not a path in a file system", remedy="name a file")
+            return Found(None, stated, "is not a path in a file system", "name a file")
         return self._inside((folder or self.folder) / text, stated)
 
     def package(self, name: str) -> Path | None:
@@ -92,13 +97,13 @@ class MeshFiles:
         if name in self.packages and self.packages[name].is_dir():
             return self.packages[name]
         there = [root for root in self._roots(name) if root.is_dir()]
-        return next((root for root in there if _is_package(root)), next(iter(there), None))
+        return next((root for root in there if _is_package(root, self.boundary.allows)), next(iter(there), None))
 
     def _inside(self, path: Path, stated: str) -> Found:
         """The file of that path, if it lies where the description may read."""
         if self.boundary.allows(path):
             return Found(path)
-        return Found(None, message=f"{stated} {OUTSIDE}", remedy=OUTSIDE_REMEDY)
+        return Found(None, stated, OUTSIDE, OUTSIDE_REMEDY)
 
     def _in_package(self, name: str, rest: str, stated: str) -> Found:
         is_file = self.boundary.is_file
@@ -108,7 +113,7 @@ class MeshFiles:
                 return Found(path)
         parts = rest.split("/")
         for base in self._above(PACKAGE_LEVELS):  # a package that was renamed, or copied without its folder
-            for k in range(len(parts)):
+            for k in (k for k, part in enumerate(parts) if self._has(base, part)):
                 path = base.joinpath(*parts[k:])
                 if is_file(path):
                     return Found(path)
@@ -116,13 +121,26 @@ class MeshFiles:
         if known is not None:
             return self._inside(known / rest, stated)  # it is not there, which is told as of any other path
         for base in self._above(PACKAGE_LEVELS):
-            for k in range(len(parts) - 2):  # two of its folders stand there, and the file does not
-                if self.boundary.is_folder(base.joinpath(*parts[k:-1])):
+            for k, part in enumerate(parts[:-2]):  # two of its folders stand there, and the file does not
+                if self._has(base, part) and self.boundary.is_folder(base.joinpath(*parts[k:-1])):
                     return self._inside(base.joinpath(*parts[k:]), stated)
         remedy = f"add --package {name}=FOLDER, or set ROS_PACKAGE_PATH"
-        return Found(None, message=f"{stated} is not found: no folder {name} is known", remedy=remedy)
+        return Found(None, stated, f"is not found: no folder {name} is known", remedy)
+
+    def _has(self, folder: Path, name: str) -> bool:
+        """Whether a folder that may be read has something of that name."""
+        if (folder, name) not in self._there:
+            self._there[folder, name] = self.boundary.allows(folder) and os.path.lexists(folder / name)
+        return self._there[folder, name]
 
     def _roots(self, name: str) -> Iterator[Path]:
+        """As `_new_roots`, which are looked for once."""
+        if name not in self._looked_for:
+            self._looked_for[name] = self._new_roots(name)
+        again, self._looked_for[name] = tee(self._looked_for[name])
+        return again
+
+    def _new_roots(self, name: str) -> Iterator[Path]:
         """Folders that may be the package, all of which may be read: as stated, beside the description, then as the
         environment says."""
         if name in ("", ".", ".."):
@@ -151,7 +169,7 @@ class MeshFiles:
         """Whether it is a folder that may be read; a package of the design's repository may be from now on. Others are
         not looked at."""
         if not self.boundary.allows(folder):
-            if not self.boundary.holds_package(folder) or not _is_package(folder):
+            if not _is_package(folder, self.boundary.holds_package):
                 return False
             self.boundary.grant(folder)
         return self.boundary.is_folder(folder)
@@ -176,10 +194,11 @@ class MeshFiles:
         below, levels = (full.parent, 1) if source is None else (source, WORKSPACE_LEVELS)
         if not below.is_relative_to(top):
             below = top
-        return {name: folder for name, folder in packages_below(below, levels).items() if self._is_own(folder)}
+        found = packages_below(below, levels, self.boundary)
+        return {name: folder for name, folder in found.items() if self._is_own(folder)}
 
 
-def packages_below(folder: Path, levels: int) -> dict[str, Path]:
+def packages_below(folder: Path, levels: int, boundary: Boundary) -> dict[str, Path]:
     """The packages in a folder, and so many levels of folders below it, by the names that they give themselves; of
     several of one name the nearest, then the first by name. Linked folders are packages, or not entered."""
     out: dict[str, Path] = {}
@@ -187,7 +206,7 @@ def packages_below(folder: Path, levels: int) -> dict[str, Path]:
         for entry in entries:
             if entry.name.startswith(".") or not _is(entry.is_dir):
                 continue
-            name = package_name(Path(entry.path))
+            name = package_name(Path(entry.path), boundary)
             if name is not None:
                 out.setdefault(name, Path(entry.path))
             elif not entry.is_symlink():
@@ -195,21 +214,20 @@ def packages_below(folder: Path, levels: int) -> dict[str, Path]:
     return out
 
 
-def package_name(folder: Path) -> str | None:
-    """The name that a package gives itself; None where the folder is none."""
+def package_name(folder: Path, boundary: Boundary) -> str | None:
+    """The name that a package gives itself; None where the folder is none, or lies where nothing may be read."""
     file = folder / _PACKAGE_FILES[0]
     try:
-        if not_a_file(file) is not None:
-            return None
-        with open(file, "rb") as stream:
+        with boundary.open(file, of_package=True) as stream:
             stated = _NAME.search(stream.read(PACKAGE_BYTES))
     except OSError:
         return None
     return None if stated is None else stated[1].decode("utf-8", "replace")
 
 
-def _is_package(folder: Path) -> bool:
-    return any(os.path.lexists(folder / name) for name in _PACKAGE_FILES)  # links are not followed
+def _is_package(folder: Path, is_inside: Callable[[Path], bool]) -> bool:
+    """Whether a folder holds what makes it a package. Files that are not inside are not asked for."""
+    return any(is_inside(file) and file.is_file() for file in (folder / name for name in _PACKAGE_FILES))
 
 
 def files_below(folder: Path, suffixes: Sequence[str]) -> list[Path]:
@@ -265,6 +283,6 @@ def _home(folder: Path, boundary: Boundary) -> Path:
     """The nearest folder above with the file of a package; else the one above the description's, if it may be read."""
     full = folder.resolve()
     for above in [full, *full.parents][:PACKAGE_LEVELS]:
-        if boundary.allows(above) and _is_package(above):
+        if _is_package(above, boundary.allows):
             return above
     return full.parent if boundary.allows(full.parent) else full

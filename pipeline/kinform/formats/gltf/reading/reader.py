@@ -17,7 +17,7 @@ from urllib.parse import unquote
 
 import numpy as np
 
-from kinform.form.constants import TEXT_BYTES
+from kinform.form.constants import LARGEST_NUMBER, TEXT_BYTES
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate, prevailing
 from kinform.form.scenes.scene import EXPORT, Node, Scene
 from kinform.form.sources import AS_IT_IS, Reading
@@ -39,13 +39,15 @@ DECODED_TIMES = 64
 and ten where meshes share their vertices. Chosen, not measured."""
 DECODED_FREELY = 100 << 20
 """Bytes of coordinates and indices that need no such ratio."""
+_PLACING = ("matrix", "rotation", "scale", "translation")
+"""Keys of a node that place it."""
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 """Modes of primitives whose facets are read."""
 
 
 def read_gltf(data: bytes, path: Path, reading: Reading = AS_IT_IS) -> Scene:
     """The scene of a file at `path`, beside which its buffers lie. Raises MeshError."""
-    return _Reader(*_chunks(data), path).scene()
+    return _Reader(*_chunks(data), path, reading.boundary or Boundary(path)).scene()
 
 
 def _chunks(data: bytes) -> tuple[Any, bytes | None]:
@@ -84,8 +86,8 @@ def _chunks(data: bytes) -> tuple[Any, bytes | None]:
 class _Reader:
     """Reads what a header names; every index and size is looked at before it is used."""
 
-    def __init__(self, header: dict[str, Any], binary: bytes | None, path: Path):
-        self.header, self.binary, self.path = header, binary, path
+    def __init__(self, header: dict[str, Any], binary: bytes | None, path: Path, boundary: Boundary):
+        self.header, self.binary, self.path, self.boundary = header, binary, path, boundary
         self.files: list[Path] = []
         self.notes: list[str] = []
         self._buffers: dict[int, bytes] = {}
@@ -257,15 +259,20 @@ class _Reader:
         folder = self.path.parent
         path = folder / name
         inside = os.path.join(os.path.realpath(folder), "")
-        boundary = Boundary(self.path)  # in which the `.git` of a repository is outside
         beside = "://" not in name and "\x00" not in name and os.path.realpath(path).startswith(inside)
-        if not beside or not boundary.allows(path):
+        if not beside or not self.boundary.allows(path):
             raise MeshError([Fault(f"names the buffer {in_quotes(name)}, outside of its folder", "export it as GLB")])
-        if not boundary.is_file(path) or not_a_file(path):
+        if not self.boundary.is_file(path) or not_a_file(path):
             raise MeshError([Fault(f"names the buffer {in_quotes(name)}, which is not there",
                                    "put it beside the file, or export GLB")])  # fmt: skip
+        try:
+            data = self.boundary.read(path)
+        except OSError:  # no more what it was, or outside
+            raise MeshError(
+                [Fault(f"names the buffer {in_quotes(name)}, which cannot be read", "export GLB")]
+            ) from None
         self.files.append(path)
-        return boundary.read(path)
+        return data
 
     def _list(self, table: Any, key: str) -> list[Any]:
         value = table.get(key, [])
@@ -312,11 +319,14 @@ def _matrix(table: dict[str, Any], what: str) -> Array:
     """The pose of a node in its parent, 4×4."""
 
     def numbers(key: str, size: int, usual: list[float]) -> Array:
-        values = np.array(table.get(key, usual), dtype=np.float64)
-        if values.shape != (size,) or not is_coordinate(values).all():
+        values = table.get(key, usual)
+        fits = isinstance(values, list) and len(values) == size
+        if not fits or not all(isinstance(v, int | float) and abs(v) <= LARGEST_NUMBER for v in values):
             raise MeshError([Fault(f"has a {key} of {what} that is not {size} numbers", EXPORT)])
-        return values
+        return np.array(values, dtype=np.float64)
 
+    if table.keys().isdisjoint(_PLACING):
+        return np.eye(4)
     if "matrix" in table:
         return np.asarray(numbers("matrix", 16, []).reshape(4, 4).T)
     X = np.eye(4)

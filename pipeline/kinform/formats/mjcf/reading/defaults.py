@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -41,10 +42,12 @@ class Includes:
     def find_meshes(self, root: Element, folder: str) -> None:
         """Meshes of included files that are not where those of the description are, but beside the file that names
         them, as seen from the folder of meshes."""
+        if not self.files:
+            return
+        below = self._top.parent / folder
         for element in (e for assets in self._xml.children(root, "asset") for e in self._xml.children(assets, "mesh")):
             name, here = (element.get("file") or "").replace("\\", "/"), Path(self._xml.at(element).file).parent
             beside = os.path.relpath(here, Path(self._xml.file).parent)
-            below = self._top.parent / folder
             if name and "://" not in name and beside != "." and not self._meshes.boundary.is_file(below / name):
                 path = Path(beside) / name
                 if self._meshes.boundary.is_file(below / path):
@@ -58,8 +61,6 @@ class Includes:
         beside = self._shown[from_file].parent / name
         if name and not self._meshes.boundary.is_file(path) and self._meshes.boundary.is_file(beside):
             path, shown = beside, Path(from_file).parent / name
-        above = element.getparent()
-        place = above.index(element)
         if not self._meshes.boundary.allows(path):
             self._xml.complain(element, f"the include {in_quotes(name)} {OUTSIDE}", OUTSIDE_REMEDY)
         elif not name or not self._meshes.boundary.is_file(path):
@@ -73,14 +74,14 @@ class Includes:
             self._shown[shown.as_posix()] = path
             data = self._xml.content(element, path, self._meshes.boundary)
             root = None if data is None else parse_xml(data, shown.as_posix(), self._xml.problems)
-            for k, child in enumerate([] if root is None else list(root)):
+            for child in [] if root is None else list(root):
                 child.set(FILE, shown.as_posix())
-                above.insert(place + k, child)
+                element.addprevious(child)
                 if tag_of(child) == "include":
                     self._include(child)
                 else:
                     self.expand(child)
-        above.remove(element)
+        element.getparent().remove(element)
 
 
 ORIENTATIONS = ("quat", "euler", "axisangle", "xyaxes", "zaxis")
@@ -101,6 +102,8 @@ def _turns(key: str, values: tuple[float, ...]) -> bool:
 ACTUATOR = "general"
 ACTUATORS = ("general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle", "adhesion")
 """Actuators, which have one default among them."""
+_KINDS = ("mesh", "material", "joint", "geom", "site", "camera", "light", "pair", "equality", "tendon", ACTUATOR)
+"""What has defaults."""
 
 
 @dataclass(frozen=True)
@@ -208,11 +211,10 @@ class Defaults:
             self._read(top, "main", {})
 
     def _read(self, element: Element, name: str, above: Mapping[str, dict[str, str]]) -> None:
-        own = {kind: dict(said) for kind, said in above.items()}
-        own = {kind: dict(said) for kind, said in self._of.get(name, {}).items()} | own
+        own = {**self._of.get(name, {}), **above}
         for child in self._xml.children(element):
             kind = ACTUATOR if tag_of(child) in ACTUATORS else tag_of(child)
-            if kind != "default":
+            if kind in _KINDS:
                 own[kind] = _over(own.get(kind, {}), child.attrib)
         self._of[name] = own
         for child in self._xml.children(element, "default"):
@@ -259,7 +261,7 @@ def mesh_assets(xml: Xml, root: Element, compiler: Compiler, defaults: Defaults)
             scale = (1.0, 1.0, 1.0)
         position = xml.numbers(element, said.get("refpos", "0 0 0"), "refpos", 3) or (0.0, 0.0, 0.0)
         turned = xml.numbers(element, said.get("refquat", "1 0 0 0"), "refquat", 4) or (1.0, 0.0, 0.0, 0.0)
-        along, X = _scale_and_pose(np.array(scale), quaternion(turned), np.array(position))
+        along, X = _scale_and_pose(scale, turned, position)
         x, y, z = map(float, along)
         inertia = said.get("inertia", compiler.inertia)
         if inertia not in INERTIAS:
@@ -270,10 +272,14 @@ def mesh_assets(xml: Xml, root: Element, compiler: Compiler, defaults: Defaults)
     return out
 
 
-def _scale_and_pose(scale: Array, R: Array, p: Array) -> tuple[Array, Array | None]:
+@lru_cache(maxsize=256)
+def _scale_and_pose(
+    stated: tuple[float, ...], turned: tuple[float, ...], position: tuple[float, ...]
+) -> tuple[Array, Array | None]:
     """MuJoCo scales along the axes of the reference frame, whose pose is R, p: its vertices are diag(s)·Rᵀ·(v − p). As
     a scale (3,) along the axes of the mesh and a pose (4, 4) then; no pose where the mesh is sheared, or scaled to
     nothing."""
+    scale, R, p = np.array(stated), quaternion(turned), np.array(position)
     M = scale[:, None] * R.T
     along = np.linalg.norm(M, axis=0)
     if not (np.outer(along, along) > 0.0).all():

@@ -35,8 +35,6 @@ class Replicas:
 
     def _replicate(self, element: Element) -> None:
         count = int(self._xml.number(element, "count", 0.0) or 0)
-        above = element.getparent()
-        at = above.index(element)
         size = sum(1 for _ in element.iter())
         if count < 1:
             self._xml.complain(element, "<replicate> has no count of at least 1", 'give count="2"')
@@ -45,8 +43,9 @@ class Replicas:
         else:
             self._made += count * size
             for k, X in enumerate(self._poses(element, count)):
-                above.insert(at + k, self._copy(element, X, f"{element.get('sep', '')}{k:0{len(str(count - 1))}d}"))
-        above.remove(element)
+                suffix = f"{element.get('sep', '')}{k:0{len(str(count - 1))}d}"
+                element.addprevious(self._copy(element, X, suffix))
+        element.getparent().remove(element)
 
     def _poses(self, element: Element, count: int) -> list[Array]:
         """(4, 4) of each copy: turned by so many times the angles, and moved by the offset as the one before is turned,

@@ -37,6 +37,8 @@ class Shapes:
         self.files: set[Path] = set()
         """Meshes that were read, for what was fitted to them."""
         self._raw: dict[Path, RawMesh] = {}
+        self._with_inertial: dict[Element, bool] = {}
+        """Whether a body states its mass."""
 
     def inertial(self, element: Element, name: str, X: Array) -> Inertial | None:
         """The stated mass of a body whose pose in F is X; None after noting that there is none."""
@@ -76,7 +78,9 @@ class Shapes:
         body = element.getparent()
         while tag_of(body) == "frame":
             body = body.getparent()
-        inertial = self._xml.child(body, "inertial") is not None and not self._compiler.from_geometry
+        if body not in self._with_inertial:
+            self._with_inertial[body] = self._xml.child(body, "inertial") is not None
+        inertial = self._with_inertial[body] and not self._compiler.from_geometry
         for key in ("mass", "density"):
             if tag_of(body) == "body" and not inertial and said.get(key, "0").strip(" 0.") != "":
                 self._left.add(f"{key} of geoms")
@@ -162,6 +166,6 @@ class Shapes:
             return None
         found = self._meshes.find(asset.file, self._meshes.folder / self._compiler.folder)
         if found.path is None:
-            self._xml.complain(asset.element, f"mesh {in_quotes(stated)} {found.message}", found.remedy)
+            self._xml.not_found(asset.element, f"mesh {in_quotes(stated)}", found)
             return None
         return Shape(name, found.path, asset.scale, X @ asset.X, self._xml.at(element))

@@ -6,6 +6,8 @@ Names are full ones, "outer::inner::name", as SDFormat scopes them; "" is the wo
 
 from __future__ import annotations
 
+from collections.abc import Container
+
 import numpy as np
 
 from kinform.formats.description.elements import Element, Xml
@@ -42,6 +44,8 @@ class Frames:
         self._xml = xml
         self._frames: dict[str, Frame] = {}
         self._poses: dict[tuple[str, str], Array | None] = {}
+        self._attached: dict[str, str] = {}
+        """The links of frames that were asked for."""
 
     def add(self, name: str, frame: Frame) -> None:
         """A frame; what had the name before keeps it: links before joints."""
@@ -56,7 +60,7 @@ class Frames:
             return name
         if stated == MODEL and not scope:
             return WORLD
-        known = [other.removeprefix(scope) for other in self._frames if other.startswith(scope)]
+        known = (other.removeprefix(scope) for other in self._frames if other.startswith(scope))
         self._xml.complain(
             element, f"{what} {in_quotes(stated)} is not there", did_you_mean(stated, known, "the frames")
         )
@@ -66,16 +70,19 @@ class Frames:
         """(4, 4) in the world; None after noting why there is none."""
         return self._pose(name, WORLD, ())
 
-    def link_of(self, name: str, links: dict[str, Element]) -> str | None:
+    def link_of(self, name: str, links: Container[str]) -> str | None:
         """The link that a frame is attached to, "" for the world; None after noting why there is none."""
-        seen: list[str] = []
+        seen: dict[str, None] = {}
         while name not in links and name != WORLD:
+            if name in self._attached:
+                name = self._attached[name]
+                break
             frame = self._frames[name]
             if name in seen:
                 wrong = f"frames are attached to each other in a circle: {in_quotes(name)}"
                 self._xml.complain(frame.element, wrong, "attach one of them to a link")
                 return None
-            seen.append(name)
+            seen[name] = None
             if frame.attached is None:
                 self._xml.complain(frame.element, f"{in_quotes(name)} is attached to no link", "name a link")
                 return None
@@ -83,6 +90,7 @@ class Frames:
             if below is None:
                 return None
             name = below
+        self._attached.update(dict.fromkeys(seen, name))
         return name
 
     def _pose(self, name: str, base: str, above: tuple[str, ...]) -> Array | None:

@@ -110,7 +110,7 @@ class Links:
             return None
         found = self.meshes.find(uri, model.folder)
         if found.path is None:
-            self.xml.complain(kind, f"{what}: the mesh {found.message}", found.remedy)
+            self.xml.not_found(kind, f"{what}: the mesh", found)
             return None
         if self.xml.child(kind, "submesh") is not None:
             self.left.add("<submesh>: the whole file is taken")

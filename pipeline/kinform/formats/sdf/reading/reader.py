@@ -163,8 +163,7 @@ class _Reader:
                 self.xml.complain(element, f"{what} has no <{tag}>", f"add <{tag}>LINK</{tag}>")
                 return None
             full = self.frames.full(model.scope, stated, child, f"{what}: its {tag}")
-            every = {name: e for name, (_, e) in self.links.stated.items()}
-            link = None if full is None else self.frames.link_of(full, every)
+            link = None if full is None else self.frames.link_of(full, self.links.stated)
             if link is None:
                 return None
             ends.append(link)
@@ -295,10 +294,10 @@ class _Reader:
             return None
         leader = model.scope + (mimic.get("joint") or "").strip()
         if leader not in self.stated or leader == name:
-            others = [other.removeprefix(model.scope) for other in self.stated if other != name]
+            others = (other.removeprefix(model.scope) for other in self.stated if other != name)
             message = f"joint {in_quotes(name)} mimics {in_quotes(mimic.get('joint') or '')}, which is no other joint"
             remedy = "remove <mimic>: no joint could lead"
-            if others:
+            if len(self.stated) > 1:
                 remedy = did_you_mean(mimic.get("joint") or "", others, "the joints")
             self.xml.complain(mimic, message, remedy)
             return None

@@ -197,7 +197,7 @@ class _Reader:
             return None
         found = self.meshes.find(kind.get("filename"))
         if found.path is None:
-            self.xml.complain(kind, f"{what}: the mesh {found.message}", found.remedy)
+            self.xml.not_found(kind, f"{what}: the mesh", found)
             return None
         return Shape(label, found.path, (scale[0], scale[1], scale[2]), X, self.xml.at(kind))
 

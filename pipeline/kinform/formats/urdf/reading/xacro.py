@@ -331,10 +331,10 @@ _ENVIRONMENT = re.compile(r"reads the environment: (\S+)")
 def _package(name: str, meshes: MeshFiles) -> Path | None:
     """The folder of a package: that of the description, where its package.xml says so, else as for meshes; it has a
     package.xml, or the user names it."""
-    if package_name(meshes.home) == name:
+    if package_name(meshes.home, meshes.boundary) == name:
         return meshes.home
     folder = meshes.package(name)
-    known = folder is not None and (name in meshes.packages or package_name(folder) is not None)
+    known = folder is not None and (name in meshes.packages or package_name(folder, meshes.boundary) is not None)
     return folder if known else None
 
 
