@@ -30,11 +30,20 @@ of the default alignment tolerance. Chosen, not measured."""
 OFF = 2e-3
 """Distance from the axis up to which a surface goes round it, as a share of the greatest radius, beside what the fits
 leave open: a bearing's eccentricity is less, an eccentric's throw more. Chosen, not measured."""
-VAGUE = math.radians(2.0)
-"""rad: standard uncertainty of an axis from which on it says nothing, as of a single facet or a sliver of a cone."""
+VAGUE = 0.01
+"""rad: standard uncertainty of an axis from which on it says nothing, as of a few facets of a chamfer. Where vertices
+scatter by 3e-4 of random parts, planes and cones of such pieces have 0.02 and more, real flats up to 0.005."""
 UNKNOWN = 0.02
-"""Share of the area that facets of no known surface may have, and surfaces with a vague axis. Where vertices scatter by
-3e-4 of its radius, 1.6 % of a ball is left in such pieces."""
+"""Share of the area that facets of no known surface, and of surfaces with a vague axis, may have that face round the
+axis. Where vertices scatter by 3e-4 of its radius, 1.6 % of a ball is left in such pieces."""
+FACING = 0.25
+"""Sine from which on a facet faces round the axis: sides of a lug have 1, the middles of the halves of a square's sides
+0.3, those of strips of a circle of 12 have 0.09."""
+LOBES = 6
+"""Up to so many lobes round the axis are looked for in facets of no known surface, one being that they are off it."""
+LOBED = 0.01
+"""Mean of the sine to which facets face round the axis as lobes do, up to which they have none: half the throw of an
+eccentric by its radius. Noise has no lobes. Chosen, not measured."""
 REGULAR = 0.02
 """Relative difference of the distances, and rad of the angles, by which the flats of a regular ring may differ. Chosen,
 not measured."""
@@ -129,15 +138,48 @@ def revolution_of(parts: Sequence[Part], surfaces: Mapping[str, MeshSurfaces]) -
     known = [(part, surfaces[digest]) for part, digest in meshed if digest in surfaces]
     if not known or len(known) < len(parts):
         return None
-    every = _Surfaces.together([_Surfaces.of(part, found) for part, found in known])
-    unknown = (every.kinds == FREEFORM) | ((every.kinds != SPHERE) & (every.axis_uncertainty > VAGUE))
-    if float(every.areas[unknown].sum()) > UNKNOWN * float(every.areas.sum()):
-        return None
-    every = every.where(~unknown)
+    members = [_Surfaces.of(part, found) for part, found in known]
+    loose = np.concatenate([_corners(part, found) for part, found in known])
+    every = _Surfaces.together(members)
+    area = float(every.areas.sum())
+    every = every.where(~_unknown(every.kinds, every.axis_uncertainty))
     found = _main(every)
     if found is None and np.count_nonzero(every.kinds == PLANE) > COARSE:
         found = _coarse(known)
-    return found if found is not None and _goes_round(every, found) else None
+    return found if found is not None and _goes_round(every, found) and _face_out(loose, found, area) else None
+
+
+def _unknown(kinds: Ints, axis_uncertainty: Array) -> Flags:
+    """(s,) which surfaces say nothing of their own."""
+    return np.asarray((kinds == FREEFORM) | ((kinds != SPHERE) & (axis_uncertainty > VAGUE)))
+
+
+def _corners(part: Part, found: MeshSurfaces) -> Array:
+    """(n, 3, 3) m: corners of the facets of surfaces that say nothing, in the world's frame."""
+    assert part.mesh is not None
+    kinds = np.array([KINDS.index(surface.kind) for surface in found.surfaces])
+    loose = _unknown(kinds, np.array([surface.axis_uncertainty for surface in found.surfaces]))
+    facets = [found.surfaces[k].faces for k in np.flatnonzero(loose)]
+    corners = part.mesh.vertices[part.mesh.faces[np.concatenate(facets)]] if facets else np.zeros((0, 3, 3))
+    return np.asarray(corners @ part.X_WP[:3, :3].T + part.X_WP[:3, 3])
+
+
+def _face_out(corners: Array, about: Revolution, area: float) -> bool:
+    """Whether facets of no known surface (n, 3, 3) lie as those of a surface of revolution do, but for a small share of
+    the `area` (m²) of the body: they face outwards, inwards or along the axis, and those that scatter do so at random.
+    Beside a ball only such a share is let be."""
+    spans = 0.5 * cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    areas = lengths(spans)
+    if about.axis is None or not len(corners):
+        return float(areas.sum()) <= UNKNOWN * area
+    u, v = perpendicular(about.axis)
+    arms = corners.mean(axis=1) - about.point
+    azimuth = np.arctan2(arms @ v, arms @ u)
+    round_ = -np.sin(azimuth) * (spans @ u) + np.cos(azimuth) * (spans @ v)
+    if float(areas[np.abs(round_) > FACING * areas].sum()) > UNKNOWN * area:
+        return False
+    waves = np.exp(1j * np.outer(np.arange(1, LOBES + 1), azimuth)) @ round_
+    return float(np.abs(waves).max()) <= max(LOBED * float(areas.sum()), 0.5 * UNKNOWN * area)
 
 
 def _main(every: _Surfaces) -> Revolution | None:
