@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.assemblies import assembly, assume, between, contacts, intended, part
 from support.four_bar import four_bar, hinge
-from support.patches import Z, cylinder, plane, ring, sphere
+from support.patches import Z, cylinder, plane, ring
 
 from kinform.kinematics import derive, functional
 
@@ -95,41 +95,6 @@ def test_of_equally_heavy_bodies_the_first_is_ground_whichever_was_rounded_up(he
     for density in (None, 2700.0):
         parts = (part("a", volume=1e-6, density=density), part("b", volume=1e-6 * (1.0 + heavier), density=density))
         assert derive(assembly(*parts), {}, patches).body_of(ground).ground
-
-
-def test_a_pin_that_only_spins_is_idle_until_function_names_it():
-    model = assembly(part("base"), part("door"), part("pin"), ground="base")
-    touching = contacts(
-        *hinge("door", "base", (0, 0, 0.1)),
-        *hinge("pin", "base", (0, 0, 0), radius=0.002),
-        between(cylinder(0.002, 0.02, point=(0, 0, 0.04)), "pin", "door"),
-    )
-    wanted = [intended("swing", "base", "door")]
-    found = derive(assembly(*model.parts, ground="base", joints=wanted), {}, touching).mobility
-    assert (found.instantaneous, found.idle, found.effective) == (2, 1, 1)
-    both = [*wanted, intended("spin", "base", "pin")]
-    found = derive(assembly(*model.parts, ground="base", joints=both), {}, touching).mobility
-    assert (found.instantaneous, found.idle, found.effective) == (2, 0, 2)
-
-
-def test_a_rod_between_two_balls_spins_idly():
-    model = assembly(part("base"), part("rod"), part("slider"), ground="base")
-    slot = [
-        between(plane((0.1, 0, -0.02), Z), "base", "slider"),
-        between(plane((0.1, 0.02, 0), (0, 1, 0)), "base", "slider"),
-        between(plane((0.1, -0.02, 0), (0, -1, 0)), "base", "slider"),
-    ]
-    found = derive(
-        model,
-        {},
-        contacts(
-            between(sphere(0.005), "rod", "base"),
-            between(sphere(0.005, (0, 0.05, 0)), "rod", "slider"),
-            *slot,
-        ),
-    ).mobility
-    # the slide is perpendicular to the rod, so it is free at this pose; the spin of the rod is idle
-    assert (found.instantaneous, found.idle) == (2, 1)
 
 
 def test_an_untouched_part_has_six_freedoms():

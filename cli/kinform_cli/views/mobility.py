@@ -30,10 +30,10 @@ MOST_MOVES = 12
 
 
 _MEANINGS = (
-    ("effective", "without idle freedoms: what `mobility` is compared with"),
+    ("effective", "without idle freedoms: `mobility` states these, and idle ones or not"),
     ("instantaneous", "velocities that the bilateral constraints leave"),
     ("finite", "of these, motions that go on over a distance"),
-    ("idle", "of one body within surfaces that slide on themselves"),
+    ("idle", "turns of single bodies that nobody sees, as of a pin"),
     ("redundant", "constraints more than are needed"),
     ("gruebler", "6(N−1) − Σ(6−f): the count that knows no geometry"),
     ("blocked_mobility", "instantaneous, with everything that blocks"),

@@ -76,11 +76,11 @@ GLOSSARY: dict[str, tuple[str, str]] = {
     "mobility": (COUNT, "How many independent motions the whole has relative to ground."),
     "instantaneous": (COUNT, "Freedoms at first order, at the pose of the meshes."),
     "finite": (COUNT, "Freedoms that go on as motions: those of first order without those that lock at once."),
-    "effective": (COUNT, "What is compared with `function.mobility`: finite freedoms without idle ones."),
+    "effective": (COUNT, "Finite freedoms without idle ones; `function.mobility` may count idle ones too."),
     "idle": (
         COUNT,
-        "Freedoms of one body that slides on itself all round and moves nothing else: a pin or a bolt that spins "
-        "(KF304). A joint that [function] names is never idle.",
+        "Turns that nobody sees: of a bare solid of revolution, a ball or a fastener, as a pin that spins (KF304). "
+        "What slides counts, and so does a turn that a joint of [function] names.",
     ),
     "redundant": (COUNT, "Constraints more than are needed to hold what is held (KF303): two hinges on one axis."),
     "consistent": (OUTCOME, "Every rule that applies ran, and found nothing that fails. Exit code 0."),

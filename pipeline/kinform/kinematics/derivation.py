@@ -23,7 +23,6 @@ from kinform.kinematics.joints.bodies.readings import choose_readings
 from kinform.kinematics.joints.bodies.stated_joints import stated_joints
 from kinform.kinematics.joints.pair.question import Answer
 from kinform.kinematics.mechanism_results import DecidedMechanism, kinematics_of
-from kinform.kinematics.mobility.idle import touching_balls
 from kinform.kinematics.partition import Partition, find_missing_sides, partition, undeclared_joints
 from kinform.kinematics.step_cache import StepCache
 from kinform.mechanism.joint_graph import JointGraph
@@ -61,7 +60,7 @@ def derive(
         clusters=bodies if found is not None else fused.clusters(assembly),
         patches=pairs.patches,
         strict={name: answer.strict for name, answer in decided.answers.items() if answer.strict is not None},
-        balls=touching_balls(assembly, surfaces, contacts.patches),
+        surfaces=surfaces,
         extremes=pairs.extremes,
         cache=cache,
     )

@@ -36,7 +36,8 @@ from kinform.model.kinematics import (
     Mobility,
     Separation,
 )
-from kinform.model.names import JointName, PartName
+from kinform.model.names import JointName
+from kinform.model.surfaces import MeshSurfaces
 
 MOST_BASIS_NUMBERS = 1_000_000
 """Numbers, of 8 MB, up to which the dense basis of freedoms is kept: the named freedoms, which are sparse, say the
@@ -56,8 +57,8 @@ class DecidedMechanism:
     patches: tuple[Patch, ...] = ()
     strict: Mapping[JointName, Array] = field(default_factory=dict)
     """(k, 6) freedoms of blocked joints when every patch counts."""
-    balls: Mapping[tuple[int, PartName], Array] = field(default_factory=dict)
-    """Centres of spheres that touch at points or along lines, by patch and part."""
+    surfaces: Mapping[str, MeshSurfaces] = field(default_factory=dict)
+    """Of each mesh, by its digest."""
     extremes: Mapping[int, Ints] = field(default_factory=dict)
     """Samples that bound patches, of those that are known."""
     cache: StepCache | None = None
@@ -86,30 +87,31 @@ def _mobility(mechanism: DecidedMechanism, opened: frozenset[JointName]) -> tupl
     count = closure.mobility
     hard = [strict.get(joint.name, joint.twists) for joint in joints]
     blocked = graph.close(size, doubts, hard).mobility if strict else count
-    turns = idle_turns(assembly, graph, patches, size, mechanism.balls)
-    idle = sum(map(len, turns.values()))
+    turns = idle_turns(assembly, graph, patches, size, mechanism.surfaces)
+    named = named_freedoms(graph, closure, turns, mechanism.places, mechanism.size)
+    idle = [freedom.body for freedom in named if freedom.idle]
     couplings = couplings_between(assembly, graph, patches, closure)
     constant = {coupling.through for coupling in couplings if coupling.meshing is not None}
     finite = finite_mobility(graph.edges, joints, nodes, count, size, couplings)
-    effective = (count if finite.count is None else finite.count) - idle
+    effective = (count if finite.count is None else finite.count) - len(idle)
     low, high = mobility_ends(assembly, graph, opened, effective, count, size, doubts)
     within = [redundancy_within(joint, patches, assembly.tolerances) for joint in joints]
     mobility = Mobility(
         instantaneous=count,
         finite=finite.count,
         effective=effective,
-        idle=idle,
+        idle=len(idle),
         redundant=count - (6 * (nodes - 1) - sum(6 - joint.freedoms for joint in joints)),
         blocked=blocked,
         freedoms=freedom_basis(closure, graph),
-        idle_bodies=tuple(sorted(name for name, twists in turns.items() if len(twists))),
+        idle_bodies=tuple(sorted(set(idle))),
         uncertain=tuple(joint.name for joint in joints if _uncertain(joint, constant)),
         finite_reason=finite.reason,
         infinitesimal=finite.infinitesimal,
         singular=finite.singular,
         on_edge=finite.on_edge,
         certificates=finite.certificates,
-        named=named_freedoms(graph, closure, turns, mechanism.places, mechanism.size),
+        named=named,
         redundancies=(*filter(None, within), *redundancies_of_loops(joints, closure, size)),
         low=low,
         high=high,

@@ -7,6 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from support.analytic_solids import surface
 from support.assemblies import assembly, between, contacts, part
 from support.linkages import CLOSED, bennett
 from support.patches import cylinder, patch, plane, ring
@@ -14,6 +15,7 @@ from support.patches import cylinder, patch, plane, ring
 from kinform.design import Design
 from kinform.kinematics import Motions, derive
 from kinform.kinematics.queries.motion_query import query
+from kinform.model.surfaces import MeshSurfaces
 
 X, Y, Z = np.eye(3)
 
@@ -53,9 +55,13 @@ def closed_chain(points, axes, names):
     return [p for a, b, point, axis in joined for p in hinge(a, b, 0.1 * np.asarray(point, float), axis)]
 
 
-def derived(patches, ground, **settings):
+def derived(patches, ground, round_about_z=(), **settings):
+    """Kinematics of these contacts; parts named in `round_about_z` are rods about the z axis, others have no shape."""
     names = sorted({name for p in patches for name in p.parts})
-    return derive(assembly(*(part(name) for name in names), ground=ground, **settings), {}, contacts(*patches))
+    parts = [part(name, volume=2e-6 if name in round_about_z else 1e-6) for name in names]
+    rod = surface("cylinder", [0], np.array([1e-4]), axis=Z, radius=0.005)
+    shapes = {"2e-06": MeshSurfaces("2e-06", (rod,), np.zeros(4, np.int64), 0.0)}
+    return derive(assembly(*parts, ground=ground, **settings), shapes, contacts(*patches))
 
 
 def of_kind(kinematics, *kinds):
@@ -213,7 +219,7 @@ def test_a_pin_that_only_spins_is_idle_and_the_arm_keeps_its_turn():
     patches = (
         hinge("base", "pin", (0, 0, 0)) + hinge("arm", "pin", (0, 0, 0.05)) + hinge("arm", "tool", (0.2, 0, 0.1), Y)
     )
-    found = derived(patches, "base")
+    found = derived(patches, "base", round_about_z=["pin"])
     idle = [f for f in found.mobility.named if f.idle]
     assert found.mobility.idle == len(idle) and [f.body for f in idle if f.body == "pin"] == ["pin"]
     spin = next(f for f in idle if f.body == "pin")

@@ -3,33 +3,73 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
+from kinform.consistency.questions.immobile_joints import bodies_between, is_immobile
+from kinform.design import Design
+from kinform.frozen import dataclass
 from kinform.kinematics.mobility.finite_motion import finite_mobility
+from kinform.kinematics.mobility.idle import idle_turns
+from kinform.kinematics.mobility.named_freedoms import named_freedoms
+from kinform.mechanism.first_order import body_twists
 from kinform.mechanism.joint_graph import JointGraph
 from kinform.model.kinematics import Kinematics
 
 
-def mobility_within(kinematics: Kinematics, part_names: Sequence[str]) -> int | None:
-    """Freedoms of some parts among themselves, finite where that is known: the bodies they belong to and
-    the joints between those, relative to the first of these bodies (or ground, if it is among them); None where two
-    ways to count them disagree."""
-    wanted = set(part_names)
-    bodies = tuple(b for b in kinematics.bodies if wanted.intersection(b.parts))
-    if not bodies:
-        return 0
-    names = {body.name for body in bodies}
-    graph = JointGraph(bodies, tuple(j for j in kinematics.joints if names.issuperset(j.bodies)))
+@dataclass(frozen=True, eq=False)
+class InnerMobility:
+    """Freedoms of some parts among themselves."""
+
+    count: int
+    """All, finite ones where that is known."""
+    idle: int
+    """Of them, turns of single bodies that nobody sees."""
+    still: tuple[str, ...]
+    """Stated joints among these parts that none of the freedoms moves."""
+
+    @property
+    def effective(self) -> int:
+        """All but the idle ones."""
+        return self.count - self.idle
+
+
+def inner_mobility(design: Design, part_names: Sequence[str]) -> InnerMobility | None:
+    """Freedoms of some parts among themselves: of the bodies they belong to, by the joints between those, relative to
+    the first of these bodies, or to ground if it is among them. None where two ways to count them disagree. Raises
+    AssertionError without kinematics."""
+    kinematics = design.kinematics
+    assert kinematics is not None
+    graph = _graph_within(kinematics, part_names)
+    if graph is None:
+        return InnerMobility(0, 0, ())
     size = kinematics.matrix.length
-    count = graph.close(size).mobility
-    finite = finite_mobility(graph.edges, graph.joints, len(bodies), count, size)
+    closure = graph.close(size)
+    finite = finite_mobility(graph.edges, graph.joints, len(graph.bodies), closure.mobility, size)
     if finite.on_edge:
         return None
-    return count if finite.count is None else finite.count
+    wanted, assembly = set(part_names), design.assembly
+    inside = [j for j in assembly.function.joints if all(wanted.issuperset(assembly.parts_of(n)) for n in j.between)]
+    alone = replace(assembly, function=replace(assembly.function, joints=tuple(inside)))
+    # what is stated as ground of the whole need not be among them
+    alone = alone if any(body.ground for body in graph.bodies) else replace(alone, ground=None)
+    idle = 0
+    if design.contacts is not None:
+        based = replace(graph, bodies=tuple(replace(b, ground=k == graph.ground) for k, b in enumerate(graph.bodies)))
+        turns = idle_turns(alone, based, design.contacts.patches, size, design.surfaces)
+        places = [assembly.part(body.parts[0]).X_WP[:3, 3] for body in graph.bodies]
+        idle = sum(freedom.idle for freedom in named_freedoms(graph, closure, turns, places, size))
+    twists, still = body_twists(closure, graph.edges, graph.spaces), []
+    for joint in inside:
+        first, second = bodies_between(assembly, kinematics, joint)
+        if is_immobile(joint, twists[:, graph.node[second]] - twists[:, graph.node[first]]):
+            still.append(joint.name)
+    return InnerMobility(closure.mobility if finite.count is None else finite.count, idle, tuple(still))
 
 
-def idle_within(kinematics: Kinematics, part_names: Sequence[str]) -> int:
-    """Idle freedoms of bodies all of whose joints are between some parts: `mobility_within` counts them."""
+def _graph_within(kinematics: Kinematics, part_names: Sequence[str]) -> JointGraph | None:
+    """The bodies of some parts with the joints between them; None where there are no bodies."""
     wanted = set(part_names)
-    names = {body.name for body in kinematics.bodies if wanted.intersection(body.parts)}
-    outside = {name for joint in kinematics.joints if not names.issuperset(joint.bodies) for name in joint.bodies}
-    return sum(freedom.idle and freedom.body in names - outside for freedom in kinematics.mobility.named)
+    bodies = tuple(b for b in kinematics.bodies if wanted.intersection(b.parts))
+    names = {body.name for body in bodies}
+    joints = tuple(j for j in kinematics.joints if names.issuperset(j.bodies))
+    return JointGraph(bodies, joints) if bodies else None

@@ -1,11 +1,12 @@
 """The assembly has more or fewer freedoms than `function.mobility` states.
 
 Compared with the *effective* mobility: independent motions of the whole assembly relative to ground,
-without freedoms that only spin or slide a single body on itself and that no intended joint names, and without
-freedoms that lead nowhere over a distance (KF305, KF306), where that is known. Blocked joints count by their
-type. Inconclusive when a joint is ambiguous, and where a body that no joint connects with ground overlaps with the
-rest: it would count as free, and what is drawn there may hold it. So it is where there are too many freedoms, or bodies
-that nothing holds, and a part has play between two bodies (KF203): it may hold them.
+without idle freedoms (KF304: a pin that only spins), and without freedoms that lead nowhere over a distance (KF305,
+KF306), where that is known. A number that counts some or all of the idle freedoms is right, too, as long as every
+intended joint that is to move can: the outcome says which it counts. Blocked joints count by their type. Inconclusive
+when a joint is ambiguous, and where a body that no joint connects with ground overlaps with the rest: it would count as
+free, and what is drawn there may hold it. So it is where there are too many freedoms, or bodies that nothing holds, and
+a part has play between two bodies (KF203): it may hold them.
 
 Why it matters: one freedom too few and the mechanism jams; one too many and something moves that no
 drive holds.
@@ -23,6 +24,7 @@ from __future__ import annotations
 from kinform.consistency.comparisons.near import nearly_moves, out_of_place
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive
+from kinform.consistency.questions.immobile_joints import immobile_joints
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, quoted
 from kinform.kinematics import disconnected_bodies, disconnected_in_words
@@ -43,24 +45,29 @@ def check(context: Context) -> Outcome:
     if mobility.on_edge:
         return inconclusive(mobility.finite_reason)
     adrift_bodies = any(freedom.driver is None for freedom in mobility.named)
-    if contacts is not None and (mobility.effective > intended or (mobility.effective == intended and adrift_bodies)):
+    spins = intended - mobility.effective  # idle freedoms that the stated number counts, if it is right
+    if contacts is not None and (spins < 0 or (spins <= mobility.idle and adrift_bodies)):
         afloat = context.with_play()
         if afloat is not None:
             return inconclusive(f"the counts take for free what may not be: {afloat.words()}")
-    if mobility.effective == intended:
-        return decided(reason=f"{counted(intended, 'freedom')}, as intended")
+    if spins == 0:
+        return decided(reason=f"{counted(intended, 'freedom')}, as intended{_details(kinematics)}")
     low, high = mobility.ends
-    if intended in (low, high):
+    if spins != 0 and intended in (low, high):
         which = "all contact holds as it is drawn" if intended == low else "contact that only pushes is left out"
         return decided(reason=f"{counted(intended, 'freedom')}, as intended, where {which} ({_ends(mobility)})")
+    near = nearly_moves(context) if spins > 0 else ""
+    still = immobile_joints(context.assembly, kinematics) if 0 < spins <= mobility.idle else ()
+    if 0 < spins <= mobility.idle and not near and not still:
+        return decided(reason=f"{counted(intended, 'freedom')}, as intended: {_with_idle(kinematics, spins)}")
     if low < intended < high:
         return inconclusive(f"{_ends(mobility)}: which contact holds while it moves is not known")
     whole, line = context.assembly.source, context.function.mobility_line
-    near = nearly_moves(context) if mobility.effective < intended else ""
     usual = "See the freedoms with `kinform show F.h5 mobility`; correct the joints, or `mobility`."
     finding = RULE.finding(
         (context.assembly.name,),
         f"the assembly has {counted(mobility.effective, 'freedom')}, intended are {intended}{_details(kinematics)}"
+        + (f"; nothing moves {quoted(still)}" if still else "")
         + (f": {near}" if near else ""),
         found=str(mobility.effective),
         intended=str(intended),
@@ -77,6 +84,15 @@ def _ends(mobility: Mobility) -> str:
     """Both ends of the mobility."""
     low, high = mobility.ends
     return f"{low} with all contact kept, {high} without contact that only pushes"
+
+
+def _with_idle(kinematics: Kinematics, spins: int) -> str:
+    """How a stated number comes about that counts so many of the idle freedoms."""
+    mobility = kinematics.mobility
+    which = f"all {mobility.idle}" if spins == mobility.idle else f"{spins} of {mobility.idle}"
+    noun = "freedom" if mobility.idle == 1 else "freedoms"
+    which = "the" if spins == mobility.idle == 1 else which
+    return f"{mobility.effective} effective and {which} idle {noun} of {quoted(mobility.idle_bodies)}"
 
 
 def _details(kinematics: Kinematics) -> str:

@@ -1,8 +1,8 @@
 """A sub-assembly, taken alone, has more or fewer freedoms than its manifest states.
 
 Why it matters: a sub-assembly that is reused, such as a motor, must move inside every design as it does
-on its own. Contacts with the surrounding parts are left out, and so are idle freedoms, as in KF301: pins and
-screws that only spin. Inconclusive as in KF301.
+on its own. Contacts with the surrounding parts are left out. Idle freedoms, of pins and screws that only spin, may be
+counted or not, as in KF301. Inconclusive as in KF301.
 
 What to do: check the sub-assembly on its own with `kinform run`; correct it, or its `mobility`.
 
@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled
-from kinform.consistency.questions.subassembly_mobility import idle_within, mobility_within
+from kinform.consistency.questions.subassembly_mobility import inner_mobility
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, quoted
 
@@ -28,24 +28,22 @@ def check(context: Context) -> Outcome:
         bodies = {kinematics.body_of(part).name for part in parts}
         inside = [j for j in kinematics.joints if bodies.issuperset(j.bodies)]
         ambiguous = any(joint.status == "ambiguous" for joint in inside)
-        mobility = None if ambiguous else mobility_within(kinematics, parts)
-        if mobility is None:
+        found = None if ambiguous else inner_mobility(context.design, parts)
+        if found is None or sub.mobility is None:
             unknown.append(sub.name)
             continue
-        idle = idle_within(kinematics, parts)
-        mobility -= idle
-        too_many = sub.mobility is not None and mobility > sub.mobility
-        if too_many and context.design.contacts is not None and context.with_play(parts) is not None:
+        spins = sub.mobility - found.effective
+        if spins < 0 and context.design.contacts is not None and context.with_play(parts) is not None:
             unknown.append(sub.name)
             continue
-        if mobility != sub.mobility:
-            spinning = f" ({counted(idle, 'idle freedom')} not counted)" if idle else ""
+        if spins and not (0 < spins <= found.idle and not found.still):
+            idle = f" ({counted(found.idle, 'idle freedom')} not counted)" if found.idle else ""
             findings.append(
                 RULE.finding(
                     [sub.name],
-                    f"the sub-assembly {quoted([sub.name])} has {counted(mobility, 'freedom')} of its own, "
-                    f"intended are {sub.mobility}{spinning}",
-                    found=str(mobility),
+                    f"the sub-assembly {quoted([sub.name])} has {counted(found.effective, 'freedom')} of its own, "
+                    f"intended are {sub.mobility}{idle}",
+                    found=str(found.effective),
                     intended=str(sub.mobility),
                     declared=sub.source,
                     remedy="Check the sub-assembly on its own; correct its joints, or its `mobility`.",

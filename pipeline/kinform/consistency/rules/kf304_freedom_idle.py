@@ -1,7 +1,8 @@
-"""A body can spin or slide on itself without moving anything else.
+"""A pin, a roller, a ball or a screw can spin, which nobody could see.
 
-Such freedoms are not counted in the effective mobility: all contact surfaces of the body slide on
-themselves, and no intended joint names it.
+Its body is a bare solid of revolution about the axis, a ball, or a fastener, and no intended joint names the turn. It
+is not counted in the effective mobility, and a stated mobility may count it or not (KF301). What slides, and what has a
+lug, a keyway or a crank pin, is seen to move, and counts.
 
 Why it matters: a bolt or roller that spins is harmless, a shaft that should be driven is not.
 
@@ -24,11 +25,11 @@ def check(context: Context) -> Findings:
     for name in sorted(kinematics.mobility.idle_bodies):
         yield RULE.finding(
             [name],
-            f"{quoted([name])} can move on its own without moving anything else; this freedom is not counted",
+            f"{quoted([name])} rotates on itself; not counted in the effective mobility",
             found="idle freedom",
             intended="freedoms that move something else",
             declared=context.assembly.part(bodies[name].parts[0]).source,
-            remedy="Nothing if the part may spin or slide; otherwise hold it by a flat, a key or a [[group]].",
+            remedy="Nothing if the part may spin; otherwise hold it by a flat, a key or a [[group]].",
         )
 
 
