@@ -10,12 +10,17 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from support.hostile import DESIGN, REPORT
 from support.places import FIXTURES
 
 from kinform import results
 from kinform.design import Design
 from kinform.function import designers_joints, resolve_joint
+from kinform.model.findings import Witness
 from kinform.reports.values.runs import simulation_values
+from kinform.results.groups import findings
+from kinform.results.held import hold
+from kinform.results.records import columns_of, hint
 
 GROUPS = {
     "assembly", "surfaces", "contacts", "constraints", "joints", "mobility", "mass", "behaviour", "simulation",
@@ -197,3 +202,24 @@ def test_json_keeps_the_derived_joint_and_adds_the_designers_name_and_sense(driv
         assert item["intended_position"]["end"] == sign * values[-1]
         assert item["intended_position"]["highest"] == (sign * values).max()
     assert -1.0 in senses
+
+
+def test_findings_of_files_from_before_there_were_witnesses_are_read() -> None:
+    later = {label for column in columns_of(hint(Witness)) for label in column.labels}
+    with h5py.File(io.BytesIO(), "w") as file:
+        findings.write(file.create_group("findings"), replace(DESIGN, report=REPORT))
+        assert findings.read(hold(file).group("findings")) == REPORT
+        for name in ("findings/findings", "findings/ignored"):
+            table, units = file[name][()], file[name].attrs["units"]
+            dtype, labels = file[name].dtype, table.dtype.names
+            kept = [label for label in labels if label not in later]
+            assert len(kept) == len(labels) - len(later)
+            older = np.zeros(len(table), [(label, dtype[label]) for label in kept])
+            for label in kept:
+                older[label] = table[label]
+            del file[name]
+            made = file.create_dataset(name, data=older)
+            made.attrs["units"] = [unit for label, unit in zip(labels, units, strict=True) if label in kept]
+        read = findings.read(hold(file).group("findings"))
+    assert read.findings == tuple(replace(finding, witness=None) for finding in REPORT.findings)
+    assert read.ignored == REPORT.ignored

@@ -6,7 +6,7 @@ import dataclasses
 
 from kinform.design import Design
 from kinform.model.assembly import Source
-from kinform.model.findings import CheckReport, Finding, Ignored, RuleOutcome
+from kinform.model.findings import CheckReport, Finding, Ignored, RuleOutcome, Witness
 from support.assemblies import assembly, part
 
 NAMES = (
@@ -35,6 +35,10 @@ DESIGN = Design(
 ERROR = Finding(
     "KF402", "joint-wrong-type", "error", ("el\nbow",), "the joint is fixed, a revolute one is intended",
     "fixed", "revolute", (0.001, 0.0, -0.02), "parts/arm 1.toml", 12, "Give the shaft a clearance.",
+    Witness(
+        "geometric", (0.0, 0.0, 1.0, 0.0, -0.01, 0.0), (-0.125, 0.25), (0.0005, 0.001), (0.001, 0.0, -0.02),
+        (0.002, 0.0, -0.02), ("a", "b|c"), ("a", "b|c"),
+    ),
 )  # fmt: skip
 WARNING = Finding(
     "KF407", "contact-unintended", "warning", ("a~<b>",), '"a" and "<b>" touch', file="parts/arm 1.toml"

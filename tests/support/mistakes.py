@@ -68,7 +68,11 @@ def drive(joint, kind="motion"):
 
 def blocked(design):
     blocker = Blocker(("block", "shaft"), 0, 1e-6, 0.05, np.zeros(3), 0.0, "rotation about (0, 0, 1)")
-    return changed_joint(design, status="blocked", blockers=(blocker,), reason="1 of 4 patches left out")
+    axis = design.kinematics.joints[0].axis
+    slide = np.concatenate([np.zeros(3), axis])[None]  # collars forbid it in both senses
+    return changed_joint(
+        design, status="blocked", blockers=(blocker,), reason="1 of 4 patches left out", type="prismatic", twists=slide
+    )
 
 
 WRONG = {

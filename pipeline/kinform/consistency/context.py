@@ -21,6 +21,7 @@ from kinform.consistency.comparisons.known import bodies_of
 from kinform.consistency.comparisons.links import Weighed, weighed
 from kinform.consistency.comparisons.plausibility import Doubt, doubts
 from kinform.consistency.outcome import Outcome, inconclusive, skipped
+from kinform.consistency.questions.blocked_joints import BlockedJoints
 from kinform.consistency.questions.captive_parts import CaptivePart, CaptiveParts
 from kinform.design import Design
 from kinform.foundation.meshes.shell_faults import ShellFaults, shell_faults
@@ -269,6 +270,13 @@ class Context:
     def afloat(self) -> CaptiveParts:
         """Parts with play between two others that they do not both touch."""
         return CaptiveParts(self.assembly, self.contacts)
+
+    @cached_property
+    def blocked_joints(self) -> BlockedJoints | None:
+        """Joints that finite steps prove to be blocked; None without contacts."""
+        if self.lacks("contacts") is not None:
+            return None
+        return BlockedJoints(self.assembly, self.design.surfaces, self.contacts)
 
     def with_play(self, parts: Iterable[str] | None = None) -> CaptivePart | None:
         """The first part with play between two bodies, of some parts or of all, that it does not both touch: what these

@@ -10,7 +10,7 @@ from typing import Literal, Protocol
 from kinform.consistency.context import Context, Need
 from kinform.consistency.outcome import Outcome, decided
 from kinform.frozen import dataclass
-from kinform.model.findings import Finding, Severity, severity_of
+from kinform.model.findings import Finding, Severity, Witness, severity_of
 from kinform.requirements.answer import triple
 
 Findings = Iterable[Finding]
@@ -70,6 +70,7 @@ class Rule:
         place: Iterable[float] | None = None,
         declared: Declared | None = None,
         remedy: str | None = None,
+        witness: Witness | None = None,
     ) -> Finding:
         """A finding of this rule; `place` (3,) m in the world, left out unless finite."""
         return Finding(
@@ -84,6 +85,7 @@ class Rule:
             file=None if declared is None else declared.file,
             line=None if declared is None else declared.line,
             remedy=remedy,
+            witness=witness,
         )
 
 

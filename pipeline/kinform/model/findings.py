@@ -18,6 +18,37 @@ Origin = Literal["recorded", "unknown", "refused"]
 read from; it did not, and they count; it did not, and nothing is verified by them."""
 
 
+_TWIST = ("twist_wx", "twist_wy", "twist_wz", "twist_vx", "twist_vy", "twist_vz")
+_BACK, _AHEAD = (tuple(f"{sense}_{axis}" for axis in "xyz") for sense in ("back", "ahead"))
+WitnessKind = Literal["geometric", "textual", "computed"]
+"""geometric: parts interpenetrate at a pose. textual: what a file states. computed: inputs, equation and residual."""
+
+
+@dataclass(frozen=True)
+class Witness:
+    """The proof of a finding. World frame, SI and radians.
+
+    geometric: a motion of one body relative to another is blocked. Steps back and ahead along the twist, from the pose
+    of the meshes, drive the named parts into each other. textual: another place in the files contradicts the finding's.
+    """
+
+    kind: WitnessKind
+    twist: Annotated[tuple[float, float, float, float, float, float], "1", columns(*_TWIST)] | None = None
+    """(ω; v at the origin) of the second body relative to the first: of a unit turn, or of a unit slide."""
+    step: Annotated[tuple[float, float], "rad or m", columns("step_back", "step_ahead")] | None = None
+    depth: Annotated[tuple[float, float], "m", columns("depth_back", "depth_ahead")] | None = None
+    """How deep the parts are in each other at the end of each step."""
+    place_back: Annotated[tuple[float, float, float], "m", columns(*_BACK)] | None = None
+    """Where, at the pose at the end of the step."""
+    place_ahead: Annotated[tuple[float, float, float], "m", columns(*_AHEAD)] | None = None
+    parts_back: Annotated[tuple[str, str], columns("back_part_a", "back_part_b")] | None = None
+    """Sorted."""
+    parts_ahead: Annotated[tuple[str, str], columns("ahead_part_a", "ahead_part_b")] | None = None
+    source_file: str | None = None
+    """Of a textual one: the other place."""
+    source_line: int | None = None
+
+
 @dataclass(frozen=True)
 class Finding:
     """One inconsistency."""
@@ -37,6 +68,8 @@ class Finding:
     file: str | None = None
     line: int | None = None
     remedy: str | None = None
+    witness: Witness | None = None
+    """What proves it; None of results that an earlier version wrote, and of rules that give none yet."""
 
 
 @dataclass(frozen=True)

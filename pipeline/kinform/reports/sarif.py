@@ -9,6 +9,7 @@ pipe changes it.
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
@@ -84,6 +85,7 @@ def _failed(finding: Finding, index: Mapping[str, int], manifest: str) -> dict[s
         "intended": finding.intended,
         "place": None if finding.place is None else list(finding.place),
         "remedy": finding.remedy,
+        "witness": None if finding.witness is None else _present(dataclasses.asdict(finding.witness)),
     }
     return _present(
         {

@@ -166,4 +166,6 @@ def _record_column(name: str, said: Hint) -> Column:
     names = [column.field for column in inner]
     shown = labels if said.columns is None else _labels(name, said.columns.labels)
     make = lambda row: said.type(**dict(zip(names, row, strict=True)))
-    return inline(name, inner, shown, lambda value, column: getattr(value, column.field), make, optional=said.optional)
+    later = {field.name for field in fields(said.type) if field.default is None}
+    get = lambda value, column: getattr(value, column.field)
+    return inline(name, inner, shown, get, make, optional=said.optional, later=later)

@@ -65,6 +65,8 @@ class Column:
     """The arrays, or texts, of each label → the field of all records."""
     optional: bool = True
     """Whether a record may be without it."""
+    later: frozenset[str] = frozenset()
+    """Labels that files from before they were added lack: they stand for None there."""
 
 
 def _write_reals(values: Sequence[float | None]) -> NDArray[np.float64]:
@@ -173,8 +175,11 @@ def inline(
     make: Callable[[Sequence[Any]], Any],
     *,
     optional: bool,
+    later: Container[str] = (),
 ) -> Column:
     """A tuple or record of several values under the labels of their columns; with `optional`, or None: then all are.
+
+    Inner fields that came `later` are None where a file lacks their columns.
 
     `get` gives the value that an inner column holds of one such record, `make` makes one of all of them.
     """
@@ -198,7 +203,8 @@ def inline(
 
     dtypes = tuple(dtype for column in inner for dtype in column.dtypes)
     units = tuple(unit for column in inner for unit in column.units)
-    return Column(field, tuple(labels), dtypes, units, split, join, optional)
+    added = [label for k, c in enumerate(inner) if c.field in later for label in labels[ends[k] : ends[k + 1]]]
+    return Column(field, tuple(labels), dtypes, units, split, join, optional, frozenset(added))
 
 
 def numbers(field: str, unit: str, labels: Sequence[str], shape: tuple[int, ...], *, optional: bool = True) -> Column:
@@ -298,13 +304,15 @@ def read_rows(
 
 def _values(name: str, table: HeldDataset, column: Column) -> list[Any]:
     """What a column holds, of all rows. Raises DatasetError where its kind, or a value, is none of its own."""
-    _check_labels(name, table.dtype, column.labels)
+    absent = column.later.difference(table.dtype.names or ())
+    _check_labels(name, table.dtype, [label for label in column.labels if label not in absent])
     for label, dtype in zip(column.labels, column.dtypes, strict=True):
-        if table.dtype[label].kind != np.dtype(dtype).kind:
+        if label not in absent and table.dtype[label].kind != np.dtype(dtype).kind:
             fault = f"is of the kind {table.dtype[label]}; expected {np.dtype(dtype)}"
             raise DatasetError(f"{name}.{label}", fault)
     try:
-        held = column.join([table.texts(c) if table.dtype[c].kind == "O" else table.data[c] for c in column.labels])
+        of_label = zip(column.labels, column.dtypes, strict=True)
+        held = column.join([_none(dtype, len(table)) if c in absent else _stored(table, c) for c, dtype in of_label])
     except DatasetError:
         raise
     except (ValueError, RecursionError) as error:
@@ -313,6 +321,17 @@ def _values(name: str, table: HeldDataset, column: Column) -> list[Any]:
         place = next(k for k, value in enumerate(held) if value is None)
         raise DatasetError(f"{name}.{column.labels[0]}", f"lacks a value in row {place}")
     return held
+
+
+def _stored(table: HeldDataset, label: str) -> Any:
+    """What is stored under a label."""
+    return table.texts(label) if table.dtype[label].kind == "O" else table.data[label]
+
+
+def _none(dtype: Any, count: int) -> Any:
+    """What is stored under a label of this type where so many records have nothing."""
+    kind = np.dtype(dtype).kind
+    return [None] * count if kind == "O" else np.full(count, _MISSING if kind == "f" else -1, dtype)
 
 
 def _lacks(values: Iterable[Any]) -> bool:

@@ -1,9 +1,16 @@
 """Contact forbids the joint that the function intends: it gives one of another type.
 
+The finding is made only where it is proven: a finite step of one of the intended motions makes the two sides
+interpenetrate beyond the contact tolerance and the form error of their facets, in both senses. Its size, the place and
+the depth are in the finding. A face that stops the motion in one sense forbids nothing, and neither does a clearance.
+A manifest that fastens the two sides to each other, by a [[group]] or an assumption, contradicts the joint too.
+
 Contact that leaves the intended motion free, and more, is KF414. Two sides that are one body have no motion and satisfy
-only `fixed`. Joints that are ambiguous, and types that geometry does not always show (a screw without modelled threads,
-universal), leave the rule inconclusive. Loose parts between the bodies that the function does not name, such as a pin,
-take part in the decision.
+only `fixed`. Joints that are ambiguous, types that geometry does not always show (a screw without modelled threads,
+universal), and joints of which no step proves that they are blocked, leave the rule inconclusive. Loose parts between
+the bodies that the function does not name, such as a pin, take part in the decision. In a robot description, what
+blocks a joint within the radius of the hub about its own axis is often fastened to the output of an actuator that is
+drawn in the mesh of the parent: a note says so.
 
 Why it matters: the mechanism moves in a way that is not wanted, or does not move.
 
@@ -15,35 +22,105 @@ Example: a pitch axis whose shaft has a flat in its bore slides, and does not tu
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from kinform.consistency.comparisons.comparison import Comparison, leaves_more
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, direction, quoted
-from kinform.model.findings import Finding
+from kinform.kinematics.joints.bodies.stated_joints import joint_twists
+from kinform.model.findings import Finding, Witness
 from kinform.model.kinematics import FREEDOMS
+
+AT_HUB = (
+    "the two links interlock at the hub about the axis of the joint: likely the output of the actuator is drawn in the "
+    "mesh of its housing"
+)
+"""Of a description whose joint is blocked there."""
 
 
 def check(context: Context) -> Outcome:
-    """Intended joints of which a type was found that forbids them."""
+    """Intended joints of which a type was found that forbids them, and of which that is proven."""
     present = [c for c in context.comparisons if c.state in ("found", "one body") and not c.loose]
-    findings = [_finding(context, c) for c in present if not c.right_type and not leaves_more(c)]
     unknown = [f"'{c.intended.name}': {c.reason}" for c in context.comparisons if c.state == "undecided"]
+    findings = []
+    for c in present:
+        if c.right_type or leaves_more(c):
+            continue
+        judged = _judged(context, c)
+        if isinstance(judged, Finding):
+            findings.append(judged)
+        if not isinstance(judged, Finding) or judged.severity == "note":
+            unknown.append(f"'{c.intended.name}': {AT_HUB if isinstance(judged, Finding) else judged}")
     return settled(findings, "; ".join(unknown), f"{counted(len(present), 'joint')} compared")
 
 
-def _finding(context: Context, c: Comparison) -> Finding:
+def _judged(context: Context, c: Comparison) -> Finding | str:
+    """The finding of a joint that contact seems to forbid; or why it is not known whether it does."""
+    derived = _derived_type(c)
+    motions, blocked = joint_twists(c.intended), context.blocked_joints
+    if blocked is None:
+        return f"contact gives {derived}, and steps need contacts"
+    first, second, between = _sides(context, c)
+    stated = blocked.rigid_by_text(first, second)
+    if stated is not None:
+        return _finding(context, c, Witness("textual", source_file=stated.file, source_line=stated.line))
+    if motions is None:
+        return f"contact gives {derived}, and the joint does not state where its motions are"
+    answer = blocked.of(first, second, motions, between, c.intended)
+    if answer.witness is not None:
+        return _finding(context, c, answer.witness.record, answer.witness.words(context.units))
+    if answer.at_hub:
+        return _note(c)
+    why = f": {answer.nearest.doubt(context.units)}" if answer.nearest is not None else ""
+    return f"contact gives {derived}, but no step proves that it forbids the intended motion in both senses{why}"
+
+
+def _sides(context: Context, c: Comparison) -> tuple[frozenset[str], frozenset[str], frozenset[str]]:
+    """Parts of both sides, and of what may go with either."""
+    if c.state == "one body":
+        first, second = (frozenset(map(str, context.assembly.parts_of(name))) for name in c.intended.between)
+        return first, second, frozenset(map(str, c.bodies[0].parts)) - first - second
+    first, second = (frozenset(map(str, body.parts)) for body in c.bodies)
+    loose = [context.kinematics.named_bodies[name] for name in c.through]
+    return first, second, frozenset(str(part) for body in loose for part in body.parts)
+
+
+def _note(c: Comparison) -> Finding:
+    """What is said of a joint that is blocked at the hub of its actuator."""
+    return RULE.at("note").finding(
+        [c.intended.name],
+        f"'{c.intended.name}': {AT_HUB}",
+        found=_derived_type(c),
+        intended=c.intended.type,
+        place=c.intended.point,
+        declared=c.intended,
+        remedy="Give the output of the actuator a link of its own, or leave it out of the mesh of its housing.",
+    )
+
+
+def _finding(context: Context, c: Comparison, witness: Witness | None, proof: str = "") -> Finding:
     intended = c.intended
     derived = _derived_type(c)
+    steps = (f"; {proof}" if proof else "") + _chain(context, c)
     return RULE.finding(
         [intended.name],
-        f"joint '{intended.name}' is {derived}, intended is {intended.type}{_consequence(c)}{_chain(context, c)}",
+        f"joint '{intended.name}' is {derived}, intended is {intended.type}{_consequence(c)}{steps}",
         found=derived + (f" about {direction(c.axis)}" if c.axis is not None else ""),
         intended=intended.type + (f" about {direction(intended.axis)}" if intended.axis is not None else ""),
-        place=c.point if c.point is not None else intended.point,
+        place=_place(c, witness),
         declared=intended,
         remedy=_remedy(c),
+        witness=witness,
     )
+
+
+def _place(c: Comparison, witness: Witness | None) -> Iterable[float] | None:
+    """Of the joint, else of what blocks it."""
+    if c.point is not None or c.intended.point is not None:
+        return c.point if c.point is not None else c.intended.point
+    return witness.place_ahead if witness is not None else None
 
 
 def _chain(context: Context, c: Comparison) -> str:
