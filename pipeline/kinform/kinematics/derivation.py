@@ -15,6 +15,7 @@ from kinform.kinematics.joints.axes.proportions import fit_proportions
 from kinform.kinematics.joints.axes.snapping import snap_axes
 from kinform.kinematics.joints.bodies.classification import Pairs, decide_ignored
 from kinform.kinematics.joints.bodies.complete_function import complete_joints, rests
+from kinform.kinematics.joints.bodies.end_play import without_end_play
 from kinform.kinematics.joints.bodies.fasteners import label_inferred, turn_about_suggested_axes
 from kinform.kinematics.joints.bodies.fusing import Fused, fuse_as_given, fuse_by_contact
 from kinform.kinematics.joints.bodies.ignored_contacts import ignored_contacts
@@ -51,7 +52,7 @@ def derive(
     found = partition(assembly, contacts, assembly.function.joints, surfaces) if _complete(assembly) else None
     fused = fuse_by_contact(pairs, contacts) if found is None else fuse_as_given(pairs, found.parts)
     bodies = fused.merger.bodies()
-    decided = _decide_joints(pairs, contacts, fused, bodies, whole=found is not None)
+    decided = _decide_joints(pairs, surfaces, contacts, fused, bodies, whole=found is not None)
     joints, moves = _consistent_axes(pairs, bodies, decided.joints)
     mechanism = DecidedMechanism(
         assembly=assembly,
@@ -101,7 +102,13 @@ class _DecidedJoints:
 
 
 def _decide_joints(
-    pairs: Pairs, contacts: Contacts, fused: Fused, bodies: tuple[Body, ...], *, whole: bool
+    pairs: Pairs,
+    surfaces: Mapping[str, MeshSurfaces],
+    contacts: Contacts,
+    fused: Fused,
+    bodies: tuple[Body, ...],
+    *,
+    whole: bool,
 ) -> _DecidedJoints:
     """The joint of every two bodies: by contact, as somebody states it, or as suggestions complete it.
 
@@ -109,6 +116,7 @@ def _decide_joints(
     """
     assembly, of_part = pairs.assembly, body_of_part(bodies)
     decided = choose_readings(assembly, of_part, fused.decided, pairs.patches, pairs.size)
+    decided = without_end_play(assembly, surfaces, bodies, decided, pairs.patches)
     stated = stated_joints(assembly, of_part)
     answers = {joint.name: answer for pair, (answer, joint) in sorted(decided.items()) if pair not in stated}
     every = {pair: joint for pair, (_, joint) in decided.items()} | stated

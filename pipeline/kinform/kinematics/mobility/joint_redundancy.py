@@ -55,7 +55,8 @@ def redundancy_within(joint: Joint, patches: Sequence[Patch], tolerances: Tolera
     frame = Frame.of(np.concatenate([p.points for p in members]))
     spaces = [_held([members[k] for k in group], joint, frame, tolerances) for group in groups]
     each = [space.shape[1] for space in spaces]
-    needed = 6 - joint.freedoms
+    # what faces hold that stand off, as those that end its end play, is no contact of any site
+    needed = min(6 - joint.freedoms, span(np.hstack(spaces)).shape[1])
     excess = sum(each) - needed
     if excess <= 0:
         return None
