@@ -18,7 +18,7 @@ from kinform.kinematics.mobility.named_freedoms import named_freedoms
 from kinform.kinematics.separation.constraint_matrix import constraint_matrix
 from kinform.kinematics.separation.contact_rows import ContactRows, pair_cones
 from kinform.kinematics.separation.releases import with_releases
-from kinform.kinematics.separation.separations import links_between, separations
+from kinform.kinematics.separation.separations import Leaving, links_between, separations
 from kinform.kinematics.step_cache import StepCache
 from kinform.mechanism.first_order import Closure, body_twists
 from kinform.mechanism.joint_graph import JointGraph
@@ -33,7 +33,6 @@ from kinform.model.kinematics import (
     Kinematics,
     Misfit,
     Mobility,
-    Separation,
 )
 from kinform.model.names import JointName, PartName
 
@@ -70,10 +69,13 @@ class DecidedMechanism:
 
 def kinematics_of(mechanism: DecidedMechanism) -> Kinematics:
     """The kinematics of a mechanism."""
-    matrix, joints, apart, reason = _separations(mechanism)
+    matrix, joints, leaving = _separations(mechanism)
     mobility, couplings = _mobility(mechanism)
     bodies = mechanism.graph.bodies
-    return Kinematics(bodies, joints, matrix, mobility, Misfit(), (), apart, reason, couplings)
+    return Kinematics(
+        bodies, joints, matrix, mobility, Misfit(),
+        separations=leaving.separations, separations_reason=leaving.reason, slides=leaving.slides, couplings=couplings,
+    )  # fmt: skip
 
 
 def _mobility(mechanism: DecidedMechanism) -> tuple[Mobility, tuple[Coupling, ...]]:
@@ -112,10 +114,8 @@ def _mobility(mechanism: DecidedMechanism) -> tuple[Mobility, tuple[Coupling, ..
     return mobility, couplings
 
 
-def _separations(
-    mechanism: DecidedMechanism,
-) -> tuple[ConstraintMatrix, tuple[Joint, ...], tuple[Separation, ...], str]:
-    """J, the joints with how they come apart, what can leave, and why it is not known of the rest."""
+def _separations(mechanism: DecidedMechanism) -> tuple[ConstraintMatrix, tuple[Joint, ...], Leaving]:
+    """J, the joints with how they come apart, and what can leave."""
     bodies, patches, clusters = mechanism.graph.bodies, mechanism.patches, mechanism.clusters
     matrix = constraint_matrix(bodies, mechanism.graph.joints, patches, mechanism.extremes)
     rows = ContactRows(matrix, bodies, patches)
@@ -123,8 +123,7 @@ def _separations(
     joints = with_releases(mechanism.graph.joints, cones)
     links = links_between(clusters, bodies, joints, patches, rows)
     ground = next(k for k, cluster in enumerate(clusters) if cluster.ground)
-    apart, reason = separations([cluster.name for cluster in clusters], ground, links, mechanism.cache)
-    return matrix, joints, apart, reason
+    return matrix, joints, separations([cluster.name for cluster in clusters], ground, links, mechanism.cache)
 
 
 def _uncertain(joint: Joint, constant: Collection[str]) -> bool:

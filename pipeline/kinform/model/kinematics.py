@@ -198,7 +198,7 @@ class Separation:
     bodies: tuple[BodyName, ...]
     """Sorted. Parts or groups, where contact alone makes them one body with others."""
     contacts: tuple[JointName, ...]
-    """The pairs whose contact it breaks."""
+    """The pairs whose contact it breaks; none of those that slide along all their contacts."""
     releases: tuple[Release, ...]
     """Relative to the rest; slides first."""
 
@@ -515,6 +515,8 @@ class Kinematics:
     """What can leave the assembly, ground held; sorted by bodies."""
     separations_reason: str = ""
     """Why it is not known, or not known of all bodies, whether they can leave."""
+    slides: tuple[Separation, ...] = ()
+    """What slides along its contacts, breaking none of them, ground held; sorted by bodies."""
     couplings: tuple[Coupling, ...] = ()
     moves: tuple[Move, ...] = ()
     """What snapping did to each joint that it moved, in the order of the joints; `misfit` has the greatest."""

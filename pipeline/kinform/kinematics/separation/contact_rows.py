@@ -68,6 +68,11 @@ class ContactRows:
         self._points = every[start[owner] + matrix.sample[order]] if len(owner) else every[:0]
         self._normals, self._moments = rows[:, 3:], rows[:, :3] * matrix.length
 
+    @property
+    def frame(self) -> Frame:
+        """About everything that touches."""
+        return Frame(self._matrix.centre, self._matrix.length)
+
     def parts_of(self, body: BodyName) -> frozenset[PartName]:
         """The parts of a body."""
         return self._parts[body]

@@ -1,9 +1,18 @@
-"""`retained`: no part can leave along any direction but those listed."""
+"""`retained`: no part can leave along any direction but those listed.
+
+Contact alone says where a part can go, by itself or with others: its translations make a cone. Whether it gets out
+there is asked of the meshes: along a few directions of the cone the parts are moved until nothing is in their way, or
+something is. One free way is a proof that it leaves. It stays where it is stopped in all of them: within its clearance,
+or while what guides it along the only line that it has still guides it.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import field
+from itertools import combinations, product
 from typing import Annotated, Literal
 
 import numpy as np
@@ -11,13 +20,14 @@ from pydantic import Field
 
 from kinform.form.tables import Reference, Vector
 from kinform.foundation.algebra.subspaces import null_space
+from kinform.foundation.algebra.vectors import perpendicular
 from kinform.foundation.rounding import SINGLE, TINY
-from kinform.foundation.words import direction, quoted
+from kinform.foundation.words import direction, length, quoted
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
-from kinform.model.kinematics import Body, Joint, Kinematics, Release, Separation
+from kinform.model.kinematics import Body, Joint, Kinematics, Separation
 from kinform.requirements.answer import Answer, met, undecided, violated
-from kinform.requirements.evidence import Evidence
+from kinform.requirements.evidence import Evidence, WayOut
 from kinform.requirements.kind import Kind, Record
 from kinform.requirements.quantity import DIRECTION, PLACE
 from kinform.requirements.table import RequirementTable
@@ -25,6 +35,15 @@ from kinform.requirements.table import RequirementTable
 SAME_DIRECTION = math.cos(math.radians(1.0))
 """Cosine of the angle within which directions agree. Chosen, not measured: directions are read off drawings to a
 degree."""
+CLEARANCE = 0.05
+"""Travel, of the size of what moves, within which it stays where it is whatever directions lie between those that were
+tried. Chosen, not measured: clearances are less, and gaps to get out through are wider."""
+MOST_DIRECTIONS = 26
+"""Directions tried of one cone: those to the faces, edges and corners of a cube, where all are free."""
+MOST_PUSHED = 8
+"""Groups that may be pushed along one after the other. Chosen, not measured."""
+_AROUND = np.array([[1, 0], [0, 1], [-1, 0], [0, -1], [1, 1], [-1, 1], [-1, -1], [1, -1]], dtype=np.float64)
+"""Directions across a course, in steps of 45°."""
 REMEDY = "Add a shoulder, a clip, a lid or a screw; or list the direction."
 
 
@@ -44,47 +63,222 @@ class RetainedRecord(Record):
     directions: Array = field(default_factory=lambda: np.zeros((0, 3)))
 
 
+@dataclass(frozen=True, eq=False)
+class _Group:
+    """Bodies that can leave together, as far as contact says."""
+
+    members: tuple[str, ...]
+    """Bodies, groups or parts."""
+    parts: frozenset[str]
+    ways: tuple[Array, ...]
+    """(3,) unit: those of which all others are sums."""
+    line: bool
+    """Whether these are all there are."""
+    breaks: bool
+    """Whether contact opens along any; else it slides."""
+    place: Array | None
+
+
+@dataclass(frozen=True, eq=False)
+class _Course:
+    """What became of a group along one direction."""
+
+    direction: Array
+    parts: frozenset[str]
+    """Those of the group, and those that it pushed along."""
+    end: WayOut
+
+
 def judge(evidence: Evidence, wanted: RetainedRecord) -> Answer:
-    """Ways to leave that are not listed."""
+    """Whether anything leaves along a direction that is not listed."""
     kinematics = evidence.kinematics
     if evidence.lacking("contacts") is not None:
         return undecided("without contacts nothing says whether it is held", "Give the parts meshes.")
     name, listed = wanted.part, wanted.directions.reshape(-1, 3)
     parts = set(evidence.assembly.parts_of(name))
     bodies = [body for body in kinematics.bodies if parts & set(body.parts)]
-    if all(body.ground for body in bodies):
+    if parts <= _ground(evidence):
         return undecided(f"'{name}' is the ground, which is held", "Require it of what shall not leave the ground.")
-    ways = [
-        (way, separation)
-        for separation in kinematics.separations
-        if any(parts & _parts(evidence, member) for member in separation.bodies)
-        for way in separation.releases
-        if not (way.kind == "slide" and _listed(way.direction, listed))
-    ]
-    if ways:
-        return _leaves(evidence, name, *ways[0], more=len(ways) - 1)
+    every = [_group(evidence, item) for item in (*kinematics.separations, *kinematics.slides)]
+    groups = [group for group in every if parts & group.parts]
+    groups += [_untouched(body) for body in bodies if not any(body.name in joint.bodies for joint in kinematics.joints)
+               and len(kinematics.bodies) > 1 and not body.ground]  # fmt: skip
+    doubts: list[Answer] = []
+    courses: list[_Course] = []
+    far: list[tuple[_Group, _Course]] = []
+    for group in sorted(groups, key=lambda group: (len(group.parts), not group.breaks, group.members)):
+        for course in _courses(evidence, group, listed, every):
+            if course.end.status == "free":
+                return _leaves(evidence, name, group, course)
+            courses.append(course)
+            if course.end.status == "unknown":
+                doubts.append(_not_followed(name, course))
+            elif _goes_far(evidence, group, course):
+                far.append((group, course))
+    for group, course in far:
+        aside = _aside(evidence, course)
+        if aside is not None:
+            return _leaves(evidence, name, group, course, aside)
+        doubts.append(_on_its_way(evidence, name, course))
     for body in bodies:
-        if not body.ground and (slide := _slides(kinematics, body, listed)) is not None:
-            return slide
+        if not body.ground and (slide := _slides(kinematics, body, groups, listed)) is not None:
+            if slide.state == "violated":
+                return slide
+            doubts.append(slide)
+    return (doubts + _unknown(evidence, bodies, parts) + [_stays(evidence, bodies, courses)])[0]
+
+
+def _ground(evidence: Evidence) -> set[str]:
+    """Parts that are the ground itself, not held to it by contact."""
+    assembly = evidence.assembly
+    if assembly.ground is None or evidence.kinematics.membership:
+        return {part for body in evidence.kinematics.bodies if body.ground for part in body.parts}
+    out: set[str] = set(assembly.parts_of(assembly.ground))
+    grown = True
+    while grown:
+        more = [set(group.parts) for group in assembly.groups if out & {*group.parts} and not out >= {*group.parts}]
+        grown = bool(more)
+        out.update(*more)
+    return out
+
+
+def _unknown(evidence: Evidence, bodies: Sequence[Body], parts: AbstractSet[str]) -> list[Answer]:
+    """What the kinematics do not know of the bodies."""
+    kinematics = evidence.kinematics
+    out = []
+    for separation in kinematics.separations:
+        turns = [way for way in separation.releases if way.kind != "slide"]
+        if turns and len(turns) == len(separation.releases) and parts & _group(evidence, separation).parts:
+            out.append(undecided(
+                f"{quoted(separation.bodies)} can {turns[0].words}, which opens all contact; where that leads is not "
+                "followed", "See whether it comes out that way, and hold it where it does.",
+            ))  # fmt: skip
     if kinematics.separations_reason:
-        return undecided(kinematics.separations_reason, "Group what is fastened, or export finer meshes.")
-    doubtful = [j for j in kinematics.joints if j.held is None and any(b.name in j.bodies for b in bodies)]
-    if doubtful:
-        why = doubtful[0].held_reason or "its joint is stated, not shown by contact"
-        return undecided(f"contact does not say whether joint '{doubtful[0].name}' holds it: {why}", "See its joints.")
-    return met("contact holds it in every direction that is not listed")
+        out.append(undecided(kinematics.separations_reason, "Group what is fastened, or export finer meshes."))
+    for joint in kinematics.joints:
+        if not any(body.name in joint.bodies for body in bodies):
+            continue
+        if joint.status == "ambiguous" and not joint.readings:
+            said = f"joint '{joint.name}' is ambiguous: {joint.reason}"
+            out.append(undecided(said, "See its joints."))
+        elif joint.held is None:
+            why = joint.held_reason or "its joint is stated, not shown by contact"
+            said = f"contact does not say whether joint '{joint.name}' holds it: {why}"
+            out.append(undecided(said, "See its joints."))
+    return out
 
 
-def _leaves(evidence: Evidence, name: str, way: Release, separation: Separation, more: int) -> Answer:
-    """The requirement is violated by a way out, alone or with what leaves together."""
-    others = [b for b in separation.bodies if name not in (b, *_parts(evidence, b))]
+def _stays(evidence: Evidence, bodies: Sequence[Body], courses: Sequence[_Course]) -> Answer:
+    message = "contact holds it in every direction that is not listed"
+    if courses:
+        far = max(courses, key=lambda course: course.end.travel)
+        stop = f" before {quoted(far.end.by)} stops it" if far.end.by else ""
+        message += f"; it moves {length(far.end.travel, evidence.units, 3)} along {direction(far.direction)}{stop}"
+    names = {body.name for body in bodies}
+    if any(joint.type == "screw" and names & {*joint.bodies} for joint in evidence.kinematics.joints):
+        message += "; it can be unscrewed"
+    return met(message)
+
+
+def _leaves(evidence: Evidence, name: str, group: _Group, course: _Course, aside: Array | None = None) -> Answer:
+    """The requirement is violated by a way out, alone or with what leaves together; `aside`: that after a piece of the
+    course."""
+    of_name = set(evidence.assembly.parts_of(name))
+    others = [b for b in group.members if name != b and not _parts(evidence, b) <= of_name]
+    others += sorted(course.parts - group.parts)
     together = f" together with {quoted(others)}" if others else ""
-    also = f", and in {more} more ways" if more else ""
+    does = "leave" if group.breaks else "slide out"
+    then = "" if aside is None else f" and then along {direction(aside)}"
     return violated(
-        f"'{name}' can {way.words}{together}{also}",
-        found=direction(way.direction), intended="held, but for the listed directions",
-        place=way.point, remedy=REMEDY,
+        f"'{name}' can {does} along {direction(course.direction)}{then}{together}; nothing stops it",
+        found=direction(course.direction), intended="held, but for the listed directions",
+        place=group.place, remedy=REMEDY,
     )  # fmt: skip
+
+
+def _not_followed(name: str, course: _Course) -> Answer:
+    return undecided(
+        f"whether '{name}' can leave along {direction(course.direction)} is not known: {course.end.reason}",
+        "List the direction if it may leave there, or remove what keeps it from being followed.",
+    )
+
+
+def _goes_far(evidence: Evidence, group: _Group, course: _Course) -> bool:
+    """Whether what is stopped has more than its clearance, and no single line on which it stays guided."""
+    meshes = [part.mesh for part in evidence.assembly.parts if part.mesh is not None and part.name in group.parts]
+    end = course.end
+    return end.travel > CLEARANCE * max(m.diagonal for m in meshes) and not (group.line and end.travel < end.left)
+
+
+def _aside(evidence: Evidence, course: _Course) -> Array | None:
+    """A direction across a course in which it is free before it is stopped; None where none was found."""
+    end = course.end
+    start = end.left if end.left < end.travel else 0.0
+    after = 0.5 * (start + end.travel) * course.direction
+    across = np.stack(perpendicular(course.direction))
+    for share in _AROUND:
+        way: Array = share @ across
+        way = way / np.linalg.norm(way)
+        if evidence.way_out(sorted(course.parts), way, after).status == "free":
+            return way
+    return None
+
+
+def _on_its_way(evidence: Evidence, name: str, course: _Course) -> Answer:
+    end = course.end
+    return undecided(
+        f"'{name}' moves {length(end.travel, evidence.units, 3)} along {direction(course.direction)} before "
+        f"{quoted(end.by)} stops it; whether it gets out from there another way is not followed",
+        "Bring what stops it nearer, or list the direction if it may leave there.",
+    )
+
+
+def _courses(evidence: Evidence, group: _Group, listed: Array, every: Sequence[_Group]) -> Iterator[_Course]:
+    """What becomes of a group along the directions of its cone that are not listed."""
+    for sought in _directions(group, listed):
+        parts, pushed = set(group.parts), 0
+        end = evidence.way_out(sorted(parts), sought)
+        while end.status == "stopped" and pushed < MOST_PUSHED:
+            more = [g for g in every if g.parts & {*end.by} and _listed(sought, np.array(g.ways)) and g.parts - parts]
+            if not more:
+                break
+            parts |= min(more, key=lambda g: len(g.parts)).parts
+            pushed += 1
+            end = evidence.way_out(sorted(parts), sought)
+        yield _Course(sought, frozenset(parts), end)
+
+
+def _directions(group: _Group, listed: Array) -> list[Array]:
+    """Unit directions of the cone: those that it is given by, and sums of two and three of them, without sums of
+    listed ones."""
+    out: list[Array] = []
+    allowed = [_listed(way, listed) for way in group.ways]
+    for count in (1,) if group.line else (1, 2, 3):
+        for chosen in combinations(range(len(group.ways)), count):
+            total = np.sum([group.ways[k] for k in chosen], axis=0)
+            size = float(np.linalg.norm(total))
+            if size < SINGLE or all(allowed[k] for k in chosen):
+                continue
+            way = total / size
+            if not _listed(way, listed) and not _listed(way, np.array(out).reshape(-1, 3)):
+                out.append(way)
+    return out[:MOST_DIRECTIONS]
+
+
+def _group(evidence: Evidence, item: Separation) -> _Group:
+    """The bodies of a separation, with the directions in which they slide."""
+    ways = [way for way in item.releases if way.kind == "slide"]
+    line = all(way.extreme for way in ways) and (len(ways) < 2 or (not item.contacts and len(ways) == 2))
+    parts = frozenset(part for member in item.bodies for part in _parts(evidence, member))
+    joints = [j for j in evidence.kinematics.joints if j.name in item.contacts and j.point is not None]
+    place = next((way.point for way in ways if way.point is not None), joints[0].point if joints else None)
+    return _Group(item.bodies, parts, tuple(way.direction for way in ways), line, bool(item.contacts), place)
+
+
+def _untouched(body: Body) -> _Group:
+    """A body that touches nothing, and goes anywhere."""
+    ways = [np.array(way, dtype=np.float64) for way in product((-1, 0, 1), repeat=3) if sum(map(abs, way)) == 1]
+    return _Group((body.name,), frozenset(body.parts), tuple(ways), False, False, None)
 
 
 def _parts(evidence: Evidence, member: str) -> set[str]:
@@ -102,16 +296,15 @@ def _listed(way: Array, listed: Array) -> bool:
     return bool(len(listed) and (listed @ way).max() > SAME_DIRECTION)
 
 
-def _slides(kinematics: Kinematics, body: Body, listed: Array) -> Answer | None:
-    """Slides that keep contact: without an end they lead out of it."""
+def _slides(kinematics: Kinematics, body: Body, groups: Sequence[_Group], listed: Array) -> Answer | None:
+    """Slides that keep contact while other bodies move too: without an end they lead out of it."""
     joints = [joint for joint in kinematics.joints if body.name in joint.bodies]
-    if not joints:
-        return violated(
-            f"'{body.name}' touches nothing and can leave every way", found="free", intended="held", remedy=REMEDY
-        )
     index = [b.name for b in kinematics.bodies].index(body.name)
+    alone = [np.array(group.ways) for group in groups if not group.breaks]
     open_: Answer | None = None
     for line in _pure_slides(kinematics.mobility.freedoms[:, index, :]):
+        if any(_within(line, ways) for ways in alone):
+            continue  # the meshes have said where that ends
         for way in (line, -line):
             if _listed(way, listed):
                 continue
@@ -129,6 +322,12 @@ def _slides(kinematics: Kinematics, body: Body, listed: Array) -> Answer | None:
                 "List the direction if it may leave there, or have the range of its joint found.",
             )
     return open_
+
+
+def _within(line: Array, ways: Array) -> bool:
+    """Whether a unit line (3,) lies in what directions (k, 3) span."""
+    inside = np.linalg.lstsq(ways.T, line, rcond=None)[0] @ ways
+    return float(np.linalg.norm(inside)) > SAME_DIRECTION
 
 
 def _end(joint: Joint, body: Body, way: Array) -> str:
