@@ -204,17 +204,10 @@ def _distinct(ways: Sequence[Array]) -> list[Array]:
 
 def _translations(border: Sequence[_Side]) -> Array:
     """(3, k) perpendicular unit directions in which a group slides along all its contacts."""
-    left = np.eye(3)
-    for side in border:
-        along = side.link.straight
-        if not along.shape[1] or not left.shape[1]:
-            return np.zeros((3, 0))
-        across = left - along @ (along.T @ left)
-        _, values, right = np.linalg.svd(across, full_matrices=True)
-        kept = np.ones(len(right), dtype=np.bool_)
-        kept[: len(values)] = values <= CONE_HELD
-        left = left @ right[kept].T
-    return directions(left)
+    if any(not side.link.straight.shape[1] for side in border):
+        return np.zeros((3, 0))
+    values, vectors = np.linalg.eigh(np.sum([side.link.across for side in border], axis=0))
+    return directions(vectors[:, values <= CONE_HELD**2 * len(border)])
 
 
 def _both_senses(along: Array) -> tuple[Release, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import field
+from functools import cached_property
 
 import numpy as np
 
@@ -32,6 +33,11 @@ class Link:
     """In which the second leaves the first; None where not known yet."""
     straight: Array = field(default_factory=lambda: np.zeros((3, 0)))
     """(3, k) perpendicular unit directions of translations that keep all its contact."""
+
+    @cached_property
+    def across(self) -> Array:
+        """(3, 3) projector onto what these translations do not span."""
+        return np.eye(3) - self.straight @ self.straight.T
 
     def held_in(self, frame: Frame) -> Array:
         """Unit rows (n, 6) of what it holds as long as it does not open, against twists scaled in `frame`."""
