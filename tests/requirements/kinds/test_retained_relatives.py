@@ -37,9 +37,9 @@ def along_y(solid):
     return solid.rotate((-90, 0, 0))
 
 
-def shaft(*steps):
+def shaft(*steps, segments=40):
     """Rods of (radius, from, to) along y."""
-    first, *others = (along_y(rod(radius, low, high)) for radius, low, high in steps)
+    first, *others = (along_y(rod(radius, low, high, segments)) for radius, low, high in steps)
     for other in others:
         first += other
     return first
@@ -148,6 +148,15 @@ CASES = {
     "ball in a socket beyond its equator": (cup(4), "block", "ball", None),
     "ring between two collars": (ring_between_collars(0.0), "shaft", "ring", None),
     "ring between two collars with play": (ring_between_collars(2.0), "shaft", "ring", None),
+    "ring between two collars that touches nothing": (
+        {
+            "shaft": shaft((5, -20, 20), (8, -9, -5.9), (8, 5.9, 9), segments=12),
+            "ring": shaft((9, -5, 5), segments=12) - shaft((5.9, -6, 6), segments=12),
+        }, "shaft", "ring", None,
+    ),
+    "block that touches nothing": (
+        {"table": box(-40, 40, -40, 40, -10, 0), "block": box(-5, 5, -5, 5, 3, 13)}, "table", "block", "any",
+    ),
     "block under a roof slides out": (under_a_roof(0.0), "frame", "block", "any"),
     "block under a roof with play slides out": (under_a_roof(5.0), "frame", "block", "any"),
     "block in a closed box": (under_a_roof(0.0, 10), "frame", "block", None),

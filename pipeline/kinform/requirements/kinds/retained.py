@@ -35,11 +35,13 @@ from kinform.requirements.table import RequirementTable
 SAME_DIRECTION = math.cos(math.radians(1.0))
 """Cosine of the angle within which directions agree. Chosen, not measured: directions are read off drawings to a
 degree."""
+SINE = math.sin(math.radians(1.0))
+"""Sine of the same angle."""
 CLEARANCE = 0.05
 """Travel, of the size of what moves, within which it stays where it is whatever directions lie between those that were
 tried. Chosen, not measured: clearances are less, and gaps to get out through are wider."""
-MOST_DIRECTIONS = 26
-"""Directions tried of one cone: those to the faces, edges and corners of a cube, where all are free."""
+MOST_DIRECTIONS = 14
+"""Directions tried of one cone: those to the faces and corners of a cube, where all are free."""
 MOST_PUSHED = 8
 """Groups that may be pushed along one after the other. Chosen, not measured."""
 _AROUND = np.array([[1, 0], [0, 1], [-1, 0], [0, -1], [1, 1], [-1, 1], [-1, -1], [1, -1]], dtype=np.float64)
@@ -74,8 +76,8 @@ class _Group:
     """(3,) unit: those of which all others are sums."""
     line: bool
     """Whether these are all there are."""
-    breaks: bool
-    """Whether contact opens along any; else it slides."""
+    along: tuple[Array, ...]
+    """Those along which it slides, breaking no contact."""
     place: Array | None
 
 
@@ -99,14 +101,14 @@ def judge(evidence: Evidence, wanted: RetainedRecord) -> Answer:
     bodies = [body for body in kinematics.bodies if parts & set(body.parts)]
     if parts <= _ground(evidence):
         return undecided(f"'{name}' is the ground, which is held", "Require it of what shall not leave the ground.")
-    every = [_group(evidence, item) for item in (*kinematics.separations, *kinematics.slides)]
+    every = _groups(evidence)
     groups = [group for group in every if parts & group.parts]
     groups += [_untouched(body) for body in bodies if not any(body.name in joint.bodies for joint in kinematics.joints)
                and len(kinematics.bodies) > 1 and not body.ground]  # fmt: skip
     doubts: list[Answer] = []
     courses: list[_Course] = []
     far: list[tuple[_Group, _Course]] = []
-    for group in sorted(groups, key=lambda group: (len(group.parts), not group.breaks, group.members)):
+    for group in sorted(groups, key=lambda group: (len(group.parts), group.members)):
         for course in _courses(evidence, group, listed, every):
             if course.end.status == "free":
                 return _leaves(evidence, name, group, course)
@@ -148,7 +150,8 @@ def _unknown(evidence: Evidence, bodies: Sequence[Body], parts: AbstractSet[str]
     out = []
     for separation in kinematics.separations:
         turns = [way for way in separation.releases if way.kind != "slide"]
-        if turns and len(turns) == len(separation.releases) and parts & _group(evidence, separation).parts:
+        members = {part for member in separation.bodies for part in _parts(evidence, member)}
+        if turns and len(turns) == len(separation.releases) and parts & members:
             out.append(undecided(
                 f"{quoted(separation.bodies)} can {turns[0].words}, which opens all contact; where that leads is not "
                 "followed", "See whether it comes out that way, and hold it where it does.",
@@ -187,7 +190,8 @@ def _leaves(evidence: Evidence, name: str, group: _Group, course: _Course, aside
     others = [b for b in group.members if name != b and not _parts(evidence, b) <= of_name]
     others += sorted(course.parts - group.parts)
     together = f" together with {quoted(others)}" if others else ""
-    does = "leave" if group.breaks else "slide out"
+    slides = bool(group.along) and _within(course.direction, np.array(group.along))
+    does = "slide out" if slides else "leave"
     then = "" if aside is None else f" and then along {direction(aside)}"
     return violated(
         f"'{name}' can {does} along {direction(course.direction)}{then}{together}; nothing stops it",
@@ -249,11 +253,12 @@ def _courses(evidence: Evidence, group: _Group, listed: Array, every: Sequence[_
 
 
 def _directions(group: _Group, listed: Array) -> list[Array]:
-    """Unit directions of the cone: those that it is given by, and sums of two and three of them, without sums of
-    listed ones."""
+    """Unit directions of the cone: those that it is given by, and sums of as many of them as it has dimensions, without
+    sums of listed ones."""
     out: list[Array] = []
     allowed = [_listed(way, listed) for way in group.ways]
-    for count in (1,) if group.line else (1, 2, 3):
+    dimensions = 1 if group.line else int(np.linalg.matrix_rank(np.array(group.ways), SINE))
+    for count in dict.fromkeys((1, dimensions)):
         for chosen in combinations(range(len(group.ways)), count):
             total = np.sum([group.ways[k] for k in chosen], axis=0)
             size = float(np.linalg.norm(total))
@@ -265,20 +270,32 @@ def _directions(group: _Group, listed: Array) -> list[Array]:
     return out[:MOST_DIRECTIONS]
 
 
-def _group(evidence: Evidence, item: Separation) -> _Group:
-    """The bodies of a separation, with the directions in which they slide."""
-    ways = [way for way in item.releases if way.kind == "slide"]
-    line = all(way.extreme for way in ways) and (len(ways) < 2 or (not item.contacts and len(ways) == 2))
-    parts = frozenset(part for member in item.bodies for part in _parts(evidence, member))
-    joints = [j for j in evidence.kinematics.joints if j.name in item.contacts and j.point is not None]
-    place = next((way.point for way in ways if way.point is not None), joints[0].point if joints else None)
-    return _Group(item.bodies, parts, tuple(way.direction for way in ways), line, bool(item.contacts), place)
+def _groups(evidence: Evidence) -> list[_Group]:
+    """All that can leave as far as contact says, each with the directions in which it opens contact or slides."""
+    found: dict[tuple[str, ...], list[Separation]] = {}
+    for item in (*evidence.kinematics.separations, *evidence.kinematics.slides):
+        found.setdefault(item.bodies, []).append(item)
+    out = []
+    for members, items in sorted(found.items()):
+        ways = [way for item in items for way in item.releases if way.kind == "slide"]
+        along = tuple(way.direction for item in items if not item.contacts for way in item.releases)
+        line = len(ways) < 2 or (len(ways) == len(along) == 2)
+        broken = {name for item in items for name in item.contacts}
+        joints = [j for j in evidence.kinematics.joints if j.name in broken and j.point is not None]
+        out.append(
+            _Group(
+                members, frozenset(part for member in members for part in _parts(evidence, member)),
+                tuple(way.direction for way in ways), line and all(way.extreme for way in ways), along,
+                joints[0].point if joints else None,
+            )
+        )  # fmt: skip
+    return out
 
 
 def _untouched(body: Body) -> _Group:
     """A body that touches nothing, and goes anywhere."""
     ways = [np.array(way, dtype=np.float64) for way in product((-1, 0, 1), repeat=3) if sum(map(abs, way)) == 1]
-    return _Group((body.name,), frozenset(body.parts), tuple(ways), False, False, None)
+    return _Group((body.name,), frozenset(body.parts), tuple(ways), False, tuple(ways), None)
 
 
 def _parts(evidence: Evidence, member: str) -> set[str]:
@@ -300,7 +317,7 @@ def _slides(kinematics: Kinematics, body: Body, groups: Sequence[_Group], listed
     """Slides that keep contact while other bodies move too: without an end they lead out of it."""
     joints = [joint for joint in kinematics.joints if body.name in joint.bodies]
     index = [b.name for b in kinematics.bodies].index(body.name)
-    alone = [np.array(group.ways) for group in groups if not group.breaks]
+    alone = [np.array(group.along) for group in groups if group.along]
     open_: Answer | None = None
     for line in _pure_slides(kinematics.mobility.freedoms[:, index, :]):
         if any(_within(line, ways) for ways in alone):
