@@ -199,6 +199,12 @@ class DesignEvidence:
         shapes = self.context.shapes
         return way_out(shapes if after is None else displaced(shapes, parts, after), parts, direction)
 
+    def face_normals(self, parts: Sequence[str]) -> Array:
+        """(k, 3) unit normals, up to sign, of the largest flat faces of parts."""
+        from kinform.collisions.ways_out import face_normals
+
+        return face_normals(self.context.shapes, parts)
+
     def mechanism(self) -> MechanismAtRest | str:
         """Everything that joints connect with the ground."""
         from kinform.function.static_load import mechanism_at_rest

@@ -125,7 +125,7 @@ class WayOut:
     travel: float = 0.0
     """m up to where they are stopped."""
     left: float = 0.0
-    """m at which they have left the last contact that guides them along the line."""
+    """m at which they have left so much of the contact that keeps them on the line that it no longer does."""
     by: tuple[str, ...] = ()
     """What stops them."""
     reason: str = ""
@@ -307,6 +307,9 @@ class Evidence(Protocol):
     def way_out(self, parts: Sequence[str], direction: Array, after: Array | None = None) -> WayOut:
         """How far parts go together along a unit direction (3,) while all others rest; `after`: displacement (3,) m by
         which they have left their contacts before. Needs contacts and kinematics."""
+
+    def face_normals(self, parts: Sequence[str]) -> Array:
+        """(k, 3) unit normals, up to sign, of the largest flat faces of parts. Needs contacts and kinematics."""
 
     def mechanism(self) -> Mechanism | str:
         """Everything that joints connect with the ground, or why it has no poses. Needs kinematics and masses."""

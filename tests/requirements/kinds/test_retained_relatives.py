@@ -122,6 +122,13 @@ def door(shut):
     return {"frame": frame, "leaf": leaf - rod(4.02, -1, 61)}
 
 
+def recess(lift):
+    """A block in a recess 1.2 deep, under a roof that lets it rise by `lift`; nothing else is in its way along x."""
+    walls = box(-40, 40, -40, -11, -10, 20 + lift) + box(-40, 40, 11, 40, -10, 20 + lift)
+    frame = box(-40, 40, -40, 40, -10, 1.2) - box(-10, 10, -10, 10, 0, 2) + walls
+    return {"frame": frame + box(-40, 40, -40, 40, 20 + lift, 30), "block": box(-10, 10, -10, 10, 0, 20)}
+
+
 CASES = {
     "headed pin without its clip": (clevis((5, -25, 24), (8, 20, 24)), "fork", "pin", Y),
     "headed pin with the head on the other side": (clevis((5, -24, 25), (8, -24, -20)), "fork", "pin", -Y),
@@ -161,6 +168,8 @@ CASES = {
     "block under a roof with play slides out": (under_a_roof(5.0), "frame", "block", "any"),
     "block in a closed box": (under_a_roof(0.0, 10), "frame", "block", None),
     "block in a closed box with a little play": (under_a_roof(0.8, 10.5), "frame", "block", "not certain"),
+    "block in a recess that it can be lifted out of": (recess(1.7), "frame", "block", "any"),
+    "block in a recess deeper than it can be lifted": (recess(1.1), "frame", "block", None),
     "block in a corner": (corner(), "base", "block", "any"),
     "door off its jamb": (door(shut=False), "frame", "leaf", None),
     "door on its jamb": (door(shut=True), "frame", "leaf", None),
@@ -199,3 +208,17 @@ def test_a_lid_is_held_by_bolts_that_are_fastened(seed):
     loose = design(screwed_lid(), "base", X=pose)
     agrees(retained(loose, "bolt_1"), Z, pose)
     agrees(retained(loose, "lid"), Z, pose)
+
+
+def test_what_is_between_listed_directions_is_listed():
+    pose = random_pose(np.random.default_rng(5), 0.1)
+    made = design(corner(), "base", X=pose)
+    ways = [pose[:3, :3] @ d for d in (X, Y, Z)]
+    assert retained(made, "block", ways).state == "met"
+    assert retained(made, "block", ways[:2]).state == "violated"
+    table = design(
+        {"table": box(-40, 40, -40, 40, -10, 0), "block": box(-5, 5, -5, 5, 0, 10).rotate((0, 0, 30))}, "table"
+    )
+    every = [X, -X, Y, -Y, Z]
+    assert retained(table, "block", every).state == "met"
+    assert retained(table, "block", every[:3] + every[4:]).state == "violated"

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import field
+from dataclasses import field, replace
 from itertools import combinations, product
 from typing import Annotated, Literal
 
@@ -20,7 +20,7 @@ from pydantic import Field
 
 from kinform.form.tables import Reference, Vector
 from kinform.foundation.algebra.subspaces import null_space
-from kinform.foundation.algebra.vectors import perpendicular
+from kinform.foundation.algebra.vectors import cross, perpendicular
 from kinform.foundation.rounding import SINGLE, TINY
 from kinform.foundation.words import direction, length, quoted
 from kinform.frozen import dataclass
@@ -44,8 +44,6 @@ MOST_DIRECTIONS = 14
 """Directions tried of one cone: those to the faces and corners of a cube, where all are free."""
 MOST_PUSHED = 8
 """Groups that may be pushed along one after the other. Chosen, not measured."""
-_AROUND = np.array([[1, 0], [0, 1], [-1, 0], [0, -1], [1, 1], [-1, 1], [-1, -1], [1, -1]], dtype=np.float64)
-"""Directions across a course, in steps of 45°."""
 REMEDY = "Add a shoulder, a clip, a lid or a screw; or list the direction."
 
 
@@ -107,7 +105,8 @@ def judge(evidence: Evidence, wanted: RetainedRecord) -> Answer:
                and len(kinematics.bodies) > 1 and not body.ground]  # fmt: skip
     doubts: list[Answer] = []
     courses: list[_Course] = []
-    far: list[tuple[_Group, _Course]] = []
+    loose: list[tuple[_Group, _Course]] = []
+    """What is stopped, but not guided along a single line until then."""
     for group in sorted(groups, key=lambda group: (len(group.parts), group.members)):
         for course in _courses(evidence, group, listed, every):
             if course.end.status == "free":
@@ -115,13 +114,15 @@ def judge(evidence: Evidence, wanted: RetainedRecord) -> Answer:
             courses.append(course)
             if course.end.status == "unknown":
                 doubts.append(_not_followed(name, course))
-            elif _goes_far(evidence, group, course):
-                far.append((group, course))
-    for group, course in far:
-        aside = _aside(evidence, course)
+            elif not (group.line and course.end.travel < course.end.left):
+                loose.append((group, course))
+    for group, course in loose:
+        far, opens = _goes_far(evidence, group, course), not _slides_along(group, course.direction)
+        aside = _aside(evidence, course) if far or (opens and course.end.travel > 0.0) else None
         if aside is not None:
             return _leaves(evidence, name, group, course, aside)
-        doubts.append(_on_its_way(evidence, name, course))
+        if far:
+            doubts.append(_on_its_way(evidence, name, course))
     for body in bodies:
         if not body.ground and (slide := _slides(kinematics, body, groups, listed)) is not None:
             if slide.state == "violated":
@@ -190,8 +191,7 @@ def _leaves(evidence: Evidence, name: str, group: _Group, course: _Course, aside
     others = [b for b in group.members if name != b and not _parts(evidence, b) <= of_name]
     others += sorted(course.parts - group.parts)
     together = f" together with {quoted(others)}" if others else ""
-    slides = bool(group.along) and _within(course.direction, np.array(group.along))
-    does = "slide out" if slides else "leave"
+    does = "slide out" if _slides_along(group, course.direction) else "leave"
     then = "" if aside is None else f" and then along {direction(aside)}"
     return violated(
         f"'{name}' can {does} along {direction(course.direction)}{then}{together}; nothing stops it",
@@ -208,10 +208,14 @@ def _not_followed(name: str, course: _Course) -> Answer:
 
 
 def _goes_far(evidence: Evidence, group: _Group, course: _Course) -> bool:
-    """Whether what is stopped has more than its clearance, and no single line on which it stays guided."""
+    """Whether something moves farther than its clearance before it is stopped."""
     meshes = [part.mesh for part in evidence.assembly.parts if part.mesh is not None and part.name in group.parts]
-    end = course.end
-    return end.travel > CLEARANCE * max(m.diagonal for m in meshes) and not (group.line and end.travel < end.left)
+    return course.end.travel > CLEARANCE * max(mesh.diagonal for mesh in meshes)
+
+
+def _slides_along(group: _Group, way: Array) -> bool:
+    """Whether a group keeps its contact along a direction."""
+    return bool(group.along) and _within(way, np.array(group.along))
 
 
 def _aside(evidence: Evidence, course: _Course) -> Array | None:
@@ -219,13 +223,26 @@ def _aside(evidence: Evidence, course: _Course) -> Array | None:
     end = course.end
     start = end.left if end.left < end.travel else 0.0
     after = 0.5 * (start + end.travel) * course.direction
-    across = np.stack(perpendicular(course.direction))
-    for share in _AROUND:
-        way: Array = share @ across
-        way = way / np.linalg.norm(way)
+    for way in _across(evidence, sorted(course.parts), course.direction):
         if evidence.way_out(sorted(course.parts), way, after).status == "free":
             return way
     return None
+
+
+def _across(evidence: Evidence, parts: Sequence[str], along: Array) -> list[Array]:
+    """Unit directions across a direction: along and across flat faces of the parts, or all round where they have
+    none."""
+    out: list[Array] = []
+    for normal in evidence.face_normals(parts):
+        flat = normal - (normal @ along) * along
+        if float(np.linalg.norm(flat)) > SAME_DIRECTION:
+            first = flat / np.linalg.norm(flat)
+            second = cross(along, first)
+            out += [w for w in (first, -first, second, -second) if not _listed(w, np.array(out).reshape(-1, 3))]
+    if not out:
+        first, second = perpendicular(along)
+        out = [first, second, -first, -second]
+    return out
 
 
 def _on_its_way(evidence: Evidence, name: str, course: _Course) -> Answer:
@@ -239,7 +256,7 @@ def _on_its_way(evidence: Evidence, name: str, course: _Course) -> Answer:
 
 def _courses(evidence: Evidence, group: _Group, listed: Array, every: Sequence[_Group]) -> Iterator[_Course]:
     """What becomes of a group along the directions of its cone that are not listed."""
-    for sought in _directions(group, listed):
+    for sought in _directions(_with_faces(evidence, group), listed):
         parts, pushed = set(group.parts), 0
         end = evidence.way_out(sorted(parts), sought)
         while end.status == "stopped" and pushed < MOST_PUSHED:
@@ -252,20 +269,31 @@ def _courses(evidence: Evidence, group: _Group, listed: Array, every: Sequence[_
         yield _Course(sought, frozenset(parts), end)
 
 
+def _with_faces(evidence: Evidence, group: _Group) -> _Group:
+    """A group that slides in a plane or in space, along its own flat faces in place of any axes."""
+    if group.line or not group.along:
+        return group
+    faces = [n for n in evidence.face_normals(sorted(group.parts)) if _slides_along(group, n)]
+    if len(faces) < len(group.along) // 2:
+        return group
+    along = tuple(way for face in faces for way in (face, -face))
+    others = tuple(way for way in group.ways if not _slides_along(group, way))
+    return replace(group, ways=others + along, along=along)
+
+
 def _directions(group: _Group, listed: Array) -> list[Array]:
     """Unit directions of the cone: those that it is given by, and sums of as many of them as it has dimensions, without
-    sums of listed ones."""
+    what is listed."""
     out: list[Array] = []
-    allowed = [_listed(way, listed) for way in group.ways]
     dimensions = 1 if group.line else int(np.linalg.matrix_rank(np.array(group.ways), SINE))
     for count in dict.fromkeys((1, dimensions)):
         for chosen in combinations(range(len(group.ways)), count):
             total = np.sum([group.ways[k] for k in chosen], axis=0)
             size = float(np.linalg.norm(total))
-            if size < SINGLE or all(allowed[k] for k in chosen):
+            if size < SINGLE:
                 continue
             way = total / size
-            if not _listed(way, listed) and not _listed(way, np.array(out).reshape(-1, 3)):
+            if not _allowed(way, listed) and not _listed(way, np.array(out).reshape(-1, 3)):
                 out.append(way)
     return out[:MOST_DIRECTIONS]
 
@@ -311,6 +339,13 @@ def _parts(evidence: Evidence, member: str) -> set[str]:
 
 def _listed(way: Array, listed: Array) -> bool:
     return bool(len(listed) and (listed @ way).max() > SAME_DIRECTION)
+
+
+def _allowed(way: Array, listed: Array) -> bool:
+    """Whether a direction is listed, or between listed ones."""
+    from scipy.optimize import nnls
+
+    return bool(len(listed) and nnls(listed.T, way)[1] < SINE)
 
 
 def _slides(kinematics: Kinematics, body: Body, groups: Sequence[_Group], listed: Array) -> Answer | None:
