@@ -148,9 +148,7 @@ def _leaving(kinematics: Kinematics, short: bool) -> list[RenderableType]:
     if held:
         lines.append(f"{'' if loose else chr(10)}held by contact: {held} of {counted(len(kinematics.joints), 'joint')}")
     if kinematics.separations:
-        lines.append(
-            Text("\nNothing stated holds these; contact alone lets them leave, the rest at rest", style="bold")
-        )
+        lines.append(Text("\nNo contact holds these in these directions, the rest at rest", style="bold"))
         leaving = beginning(kinematics.separations, short)
         lines += [f"  {', '.join(item.bodies)}: {_ways(item.releases)}" for item in leaving]
     if kinematics.separations_reason:

@@ -1,9 +1,10 @@
 """What motions run into: the range of joints, collisions along a run. By FCL on the meshes.
 
-Two questions are asked from outside, each in a module of its own: `joint_ranges`, how far each joint goes, and
-`run_collisions`, what parts meet along a run that was computed, whose bodies `between_outputs` takes on between its
-outputs; where very many meet, the earliest of them (`first_crossings`). Both come down to one: where on its course
-relative to another does a part first meet it (`pair`)? Read the sub-packages in this order:
+Three questions are asked from outside, each in a module of its own: `joint_ranges`, how far each joint goes;
+`ways_out`, whether parts leave along a straight line; and `run_collisions`, what parts meet along a run that was
+computed, whose bodies `between_outputs` takes on between its outputs; where very many meet, the earliest of them
+(`first_crossings`). All come down to one: where on its course relative to another does a part first meet it (`pair`)?
+Read the sub-packages in this order:
 
 1. `parts`: what is asked of one part. `slippage` says which of its surfaces a motion maps onto themselves; their facets
    are left out, so that journals, guides and threads need not be told from collisions by any depth.

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import field
 from functools import cached_property
-from typing import Literal, TypeVar
+from typing import TYPE_CHECKING, Literal, TypeVar
 
 import numpy as np
 
@@ -34,6 +34,9 @@ from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.mass import MassReport
 from kinform.model.simulation import Simulation
 from kinform.requirements.answer import Answer, triple
+
+if TYPE_CHECKING:
+    from kinform.collisions.parts.shapes import Shapes
 
 DAMPED_UNSEEN = 1e-6
 """Share of the energy exchanged that went with vibrations which the solver damped, up to which the motion is known:
@@ -196,6 +199,13 @@ class Context:
             return frozenset()
         of_part = {part: body.name for body in self.design.kinematics.bodies for part in body.parts}
         return frozenset(of_part[part.name] for part in self.assembly.parts if part.mesh is not None)
+
+    @cached_property
+    def shapes(self) -> Shapes:
+        """The meshes of all parts, for questions about motions. Needs contacts and kinematics."""
+        from kinform.collisions.joint_ranges import shapes_of  # most designs ask for no motion here
+
+        return shapes_of(self.assembly, self.design.surfaces, self.contacts, self.kinematics)
 
     @cached_property
     def doubts(self) -> tuple[Doubt, ...]:

@@ -17,7 +17,17 @@ from kinform.model.contacts import Contacts
 from kinform.model.function import PASSIVE, Function
 from kinform.model.kinematics import Body, Joint, Kinematics
 from kinform.model.simulation import Simulation
-from kinform.requirements.evidence import Amount, Coverage, Deviation, Driving, FitClearance, Resolved, Stage, Swept
+from kinform.requirements.evidence import (
+    Amount,
+    Coverage,
+    Deviation,
+    Driving,
+    FitClearance,
+    Resolved,
+    Stage,
+    Swept,
+    WayOut,
+)
 
 if TYPE_CHECKING:
     from kinform.function.clearances import Apart
@@ -181,6 +191,19 @@ class DesignEvidence:
 
         found = apart(self.assembly, self.contacts, self.context.design.surfaces, parts, others)
         return None if found is None else TwoGroups(self.context, (first.name, second.name), found)
+
+    def way_out(self, parts: Sequence[str], direction: Array, after: Array | None = None) -> WayOut:
+        """How far parts go together along a unit direction (3,) while all others rest."""
+        from kinform.collisions.ways_out import displaced, way_out
+
+        shapes = self.context.shapes
+        return way_out(shapes if after is None else displaced(shapes, parts, after), parts, direction)
+
+    def face_normals(self, parts: Sequence[str]) -> Array:
+        """(k, 3) unit normals, up to sign, of the largest flat faces of parts."""
+        from kinform.collisions.ways_out import face_normals
+
+        return face_normals(self.context.shapes, parts)
 
     def mechanism(self) -> MechanismAtRest | str:
         """Everything that joints connect with the ground."""

@@ -19,7 +19,7 @@ from kinform.kinematics.mobility.two_ends import mobility_ends
 from kinform.kinematics.separation.constraint_matrix import constraint_matrix
 from kinform.kinematics.separation.contact_rows import ContactRows, pair_cones
 from kinform.kinematics.separation.releases import with_releases
-from kinform.kinematics.separation.separations import links_between, separations
+from kinform.kinematics.separation.separations import Leaving, links_between, separations
 from kinform.kinematics.step_cache import StepCache
 from kinform.mechanism.first_order import Closure, body_twists
 from kinform.mechanism.joint_graph import JointGraph
@@ -34,7 +34,6 @@ from kinform.model.kinematics import (
     Kinematics,
     Misfit,
     Mobility,
-    Separation,
 )
 from kinform.model.names import JointName
 from kinform.model.surfaces import MeshSurfaces
@@ -72,10 +71,13 @@ class DecidedMechanism:
 
 def kinematics_of(mechanism: DecidedMechanism) -> Kinematics:
     """The kinematics of a mechanism."""
-    matrix, joints, apart, reason, opened = _separations(mechanism)
-    mobility, couplings = _mobility(mechanism, opened)
+    matrix, joints, leaving = _separations(mechanism)
+    mobility, couplings = _mobility(mechanism, leaving.opened)
     bodies = mechanism.graph.bodies
-    return Kinematics(bodies, joints, matrix, mobility, Misfit(), (), apart, reason, couplings)
+    return Kinematics(
+        bodies, joints, matrix, mobility, Misfit(),
+        separations=leaving.separations, separations_reason=leaving.reason, slides=leaving.slides, couplings=couplings,
+    )  # fmt: skip
 
 
 def _mobility(mechanism: DecidedMechanism, opened: frozenset[JointName]) -> tuple[Mobility, tuple[Coupling, ...]]:
@@ -119,10 +121,8 @@ def _mobility(mechanism: DecidedMechanism, opened: frozenset[JointName]) -> tupl
     return mobility, couplings
 
 
-def _separations(
-    mechanism: DecidedMechanism,
-) -> tuple[ConstraintMatrix, tuple[Joint, ...], tuple[Separation, ...], str, frozenset[JointName]]:
-    """J, the joints with how they come apart, what can leave, why that is not known of the rest, and what opens."""
+def _separations(mechanism: DecidedMechanism) -> tuple[ConstraintMatrix, tuple[Joint, ...], Leaving]:
+    """J, the joints with how they come apart, and what can leave."""
     bodies, patches, clusters = mechanism.graph.bodies, mechanism.patches, mechanism.clusters
     matrix = constraint_matrix(bodies, mechanism.graph.joints, patches, mechanism.extremes)
     rows = ContactRows(matrix, bodies, patches)
@@ -130,8 +130,7 @@ def _separations(
     joints = with_releases(mechanism.graph.joints, cones)
     links = links_between(clusters, bodies, joints, patches, rows)
     ground = next(k for k, cluster in enumerate(clusters) if cluster.ground)
-    apart, reason, opened = separations([cluster.name for cluster in clusters], ground, links, mechanism.cache)
-    return matrix, joints, apart, reason, opened
+    return matrix, joints, separations([cluster.name for cluster in clusters], ground, links, mechanism.cache)
 
 
 def _uncertain(joint: Joint, constant: Collection[str]) -> bool:

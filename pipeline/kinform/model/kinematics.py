@@ -212,6 +212,12 @@ class Joint:
     readings: tuple[Reading, ...] = ()
     """What else the contact may mean: of an ambiguous joint the other answers, of an inferred one those not chosen."""
 
+    @property
+    def touching(self) -> tuple[int, ...]:
+        """Indices into Contacts.patches, ascending: what carries it, what blocks it and what ends it."""
+        beside = (one.patch for some in (self.blockers, self.at_stop) for one in some)
+        return tuple(sorted({*self.patches, *beside}))
+
     def __repr__(self) -> str:
         return f"Joint {self.name}: {self.type} ({self.status})"
 
@@ -223,7 +229,7 @@ class Separation:
     bodies: tuple[BodyName, ...]
     """Sorted. Parts or groups, where contact alone makes them one body with others."""
     contacts: tuple[JointName, ...]
-    """The pairs whose contact it breaks."""
+    """The pairs whose contact it breaks; none of those that slide along all their contacts."""
     releases: tuple[Release, ...]
     """Relative to the rest; slides first."""
 
@@ -549,6 +555,8 @@ class Kinematics:
     """What can leave the assembly, ground held; sorted by bodies."""
     separations_reason: str = ""
     """Why it is not known, or not known of all bodies, whether they can leave."""
+    slides: tuple[Separation, ...] = ()
+    """What slides along its contacts, breaking none of them, ground held; sorted by bodies."""
     couplings: tuple[Coupling, ...] = ()
     moves: tuple[Move, ...] = ()
     """What snapping did to each joint that it moved, in the order of the joints; `misfit` has the greatest."""

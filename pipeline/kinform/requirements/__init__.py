@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["CODE_VERSION", "KINDS", "all_kinds", "kind_of"]
 
-CODE_VERSION: int = 1
+CODE_VERSION: int = 2
 """Bumped when results of stages that use this package change for the same input."""
 
 KINDS = frozenset(module.name for module in iter_modules([f"{path}/kinds" for path in __path__]))

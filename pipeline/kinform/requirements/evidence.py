@@ -117,6 +117,21 @@ class Swept:
     poses: int
 
 
+@dataclass(frozen=True, eq=False)
+class WayOut:
+    """What becomes of parts that move along a straight line, all others at rest."""
+
+    status: Literal["free", "stopped", "unknown"]
+    travel: float = 0.0
+    """m up to where they are stopped."""
+    left: float = 0.0
+    """m at which they have left so much of the contact that keeps them on the line that it no longer does."""
+    by: tuple[str, ...] = ()
+    """What stops them."""
+    reason: str = ""
+    """Why it is not known."""
+
+
 class Coordinate(Protocol):
     """One coordinate of a chain. Values in rad, or m, of the joint as kinform signs it."""
 
@@ -288,6 +303,13 @@ class Evidence(Protocol):
 
     def groups(self, first: Body, parts: Sequence[str], second: Body, others: Sequence[str]) -> PairOfGroups | None:
         """Parts of two bodies; None where one group has no mesh. Needs contacts and kinematics."""
+
+    def way_out(self, parts: Sequence[str], direction: Array, after: Array | None = None) -> WayOut:
+        """How far parts go together along a unit direction (3,) while all others rest; `after`: displacement (3,) m by
+        which they have left their contacts before. Needs contacts and kinematics."""
+
+    def face_normals(self, parts: Sequence[str]) -> Array:
+        """(k, 3) unit normals, up to sign, of the largest flat faces of parts. Needs contacts and kinematics."""
 
     def mechanism(self) -> Mechanism | str:
         """Everything that joints connect with the ground, or why it has no poses. Needs kinematics and masses."""

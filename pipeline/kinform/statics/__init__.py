@@ -2,5 +2,5 @@
 
 __all__ = ["CODE_VERSION"]
 
-CODE_VERSION: int = 4
+CODE_VERSION: int = 5
 """Changes whenever a result changes; results of other versions are computed again."""

@@ -246,7 +246,7 @@ def _patches(reactions: _Reactions, joint: Joint) -> Iterator[_Patch]:
     design, rows = reactions.design, reactions.rows
     assert design.contacts is not None
     of_first = rows.parts_of(joint.bodies[0])
-    for k in sorted({*joint.patches, *(blocker.patch for blocker in joint.blockers)}):
+    for k in joint.touching:
         patch = design.contacts.patches[k]
         turned = patch.parts[0] not in of_first
         points, normals, _ = rows.samples(k, turned=turned)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from support.numbers import numbers
-from support.solids import block, save
+from support.solids import block, centred_rod, save
 
 from kinform import stages
 from kinform.statics.carrying import pushes_at, uncarried
@@ -148,6 +148,44 @@ def test_a_carriage_disengages_beyond_the_end_of_its_rail(tmp_path, amplitude, l
         assert 120.0 in map(abs, numbers(found[0].intended))
 
 
+def bar_in_two_guides(folder, stroke):
+    """A square bar along x through a plate of the base and through one of a sledge, which slides along the base and is
+    driven not to: the bar leaves the first 25 mm on, the second 65 mm on."""
+    hole = block(0.4, 0.01, 0.01).translate((0, 0, 0.03))
+    groove = block(0.3, 0.02, 0.01).translate((0, 0, -0.015)) + block(0.3, 0.012, 0.03).translate((0, 0, -0.005))
+    plate = block(0.02, 0.04, 0.05).translate((0, 0, 0.025))
+    base = block(0.2, 0.04, 0.04).translate((0, 0, -0.02)) - groove + (plate - hole)
+    runner = block(0.02, 0.02, 0.01).translate((0, 0, -0.015)) + block(0.02, 0.012, 0.02).translate((0, 0, -0.005))
+    sledge = (runner + plate).translate((0.04, 0, 0)) - hole
+    save(base, folder / "base.stl")
+    save(sledge, folder / "sledge.stl")
+    save(block(0.085, 0.01, 0.01).translate((0.0275, 0, 0.03)), folder / "bar.stl")
+    text = '[assembly]\nname = "guides"\nunits = "m"\nground = "base"\n'
+    for name in ("base", "sledge", "bar"):
+        text += f'[[part]]\nname = "{name}"\nmesh = "{name}.stl"\ndensity = 1000\n'
+    for name, part, amplitude in (("still", "sledge", 0.0), ("stroke", "bar", stroke)):
+        text += f'''[[function.joint]]
+name = "{name}"
+between = ["base", "{part}"]
+type = "prismatic"
+axis = [1, 0, 0]
+[[function.drive]]
+joint = "{name}"
+kind = "motion"
+law = {{type = "ramp", rate = {amplitude}}}
+'''
+    (folder / "guides.toml").write_text(f"schema = 1\n{text}[simulation]\nduration = 1.0\nstep = 0.02\n")
+    return run(folder / "guides.toml")
+
+
+@pytest.mark.parametrize(("stroke", "leaves"), [(0.02, []), (0.05, []), (0.08, ["bar~sledge"])])
+def test_a_bar_disengages_with_the_last_of_the_guides_that_hold_it_alike(tmp_path, stroke, leaves):
+    design = bar_in_two_guides(tmp_path, stroke)
+    assert [joint.type for joint in design.kinematics.joints] == ["prismatic"] * 3
+    assert design.simulation.status == "done"
+    assert [finding.subject for finding in findings(design, "KF507")] == [(name,) for name in leaves]
+
+
 def test_a_carriage_overhanging_its_rail_tips_once_its_middle_is_beyond_the_end(tmp_path):
     """Contact that does not enclose: on the overlap that is left, the weight stands until 100 mm."""
     assert not findings(carriage(tmp_path, 0.095), "KF506")
@@ -199,3 +237,33 @@ def test_however_a_load_is_shared_by_redundant_supports_it_must_be_between_them(
     for finding in found:
         assert finding.severity == "warning"
         assert set(finding.subject) == {"beam~left", "beam~right", "left~table", "right~table"}
+
+
+def clevis(folder, force):
+    """A pin with a head at y = 20 mm, without a clip, through a fork and an arm; a force (N) along y pushes it."""
+    rod = lambda radius, length, at: round_block(radius, length).translate((0, at, 0))
+    bore = rod(0.00503, 0.08, 0.0)
+    cheeks = [block(0.024, 0.01, 0.024).translate((0, y, 0)) for y in (-0.015, 0.015)]
+    save(cheeks[0] + cheeks[1] + block(0.024, 0.04, 0.008).translate((0, 0, -0.016)) - bore, folder / "fork.stl")
+    save(block(0.02, 0.0199, 0.02) - bore, folder / "arm.stl")
+    save(rod(0.005, 0.049, -0.0005) + rod(0.008, 0.004, 0.022), folder / "pin.stl")
+    text = 'schema = 1\n[assembly]\nname = "clevis"\nunits = "m"\nground = "fork"\n'
+    for name in ("fork", "arm", "pin"):
+        text += f'[[part]]\nname = "{name}"\nmesh = "{name}.stl"\ndensity = 1000\n'
+    text += f"[[function.load]]\npart = 'pin'\nforce = [0, {force}, 0]\npoint = [0, 0, 0]\n"
+    (folder / "clevis.toml").write_text(text + "[simulation]\nduration = 0.02\nstep = 0.01\n")
+    return run(folder / "clevis.toml")
+
+
+def round_block(radius, length):
+    """A rod along y about the origin."""
+    return centred_rod(radius, length, 48).rotate((-90, 0, 0))
+
+
+@pytest.mark.parametrize(("force", "leaves"), [(-5.0, False), (5.0, True)])
+def test_a_pin_is_pushed_out_past_the_side_where_it_has_no_head(tmp_path, force, leaves):
+    design = clevis(tmp_path, force)
+    assert design.simulation.status == "done"
+    found = findings(design, "KF506")
+    assert [finding.subject for finding in found if finding.severity == "warning"] == [("fork~pin",)] * leaves
+    assert leaves or outcome(design, "KF506") == "passed"

@@ -58,6 +58,17 @@ def drive_alone(shapes: Shapes, joint: Joint, still: Sequence[str], moving: Sequ
     return JointRange(joint.name, done[0], done[1], tuple(sorted(left_out)))
 
 
+def slide_end(shapes: Shapes, direction: Array, still: Sequence[str], moving: Sequence[str]) -> RangeEnd:
+    """How far parts go along a unit direction (3,) m while the others rest, whatever guides them; unbounded where they
+    get past all of these."""
+    twist = np.concatenate([np.zeros(3), direction])
+    profiles = {name: _profile(shapes, name, twist) for name in (*still, *moving)}
+    candidates = _candidates(shapes, profiles, twist, still, moving)
+    end, _ = _end(candidates, 1, _clear(list(profiles.values())), 0.0)
+    stuck = _stuck([end], candidates)
+    return RangeEnd("unknown", reason=overlap_words(stuck, candidates[0].units)) if stuck else end
+
+
 def _stuck(ends: Sequence[RangeEnd], candidates: Sequence[Candidate]) -> list[Overlap]:
     """What overlaps as it is drawn, where that stops a joint both ways before it has moved: it is drawn too tight, by
     less than mates may overlap, and how far it would go is not known. Parts that just touch both ways overlap in

@@ -83,7 +83,9 @@ def _compared(
     admitted = False
     if state == "found" and motion is None and direct is not None and direct.type != intended.type:
         wanted = joint_twists(intended)
-        admitted = wanted is not None and admits(_every_patch(direct, every), wanted, _first(kinematics, direct).parts)
+        admitted = wanted is not None and admits(
+            [every[k] for k in direct.touching], wanted, _first(kinematics, direct).parts
+        )
     return Comparison(
         intended,
         bodies,
@@ -104,12 +106,6 @@ def _compared(
         position_limit=assembly.tolerances.offset_limit(size),
         admitted=admitted,
     )
-
-
-def _every_patch(joint: Joint, patches: Sequence[Patch]) -> list[Patch]:
-    """The patches of a joint, those that end or block it too."""
-    every = {*joint.patches, *(one.patch for one in joint.at_stop), *(one.patch for one in joint.blockers)}
-    return [patches[k] for k in sorted(every)]
 
 
 def _first(kinematics: Kinematics, joint: Joint) -> Body:

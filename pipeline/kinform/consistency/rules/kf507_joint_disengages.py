@@ -1,7 +1,8 @@
 """In the simulated motion, a slider leaves the last of the surfaces that guide it.
 
 Of joints that slide along an axis (prismatic, cylindrical, screw), the extents along it of both sides of each patch are
-compared at every output time: the finding names the first at which no patch is left. Joints that are stated rather
+compared at every output time: the finding names the first at which no patch is left. A joint that is left while others
+still guide its bodies the same way is not reported: a bar in two bushes may leave one. Joints that are stated rather
 than found in contact have no patches to leave, and planar joints are not looked at.
 
 Why it matters: beyond there the joint does not exist; the simulated motion means nothing.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 import numpy as np
 
@@ -49,22 +49,33 @@ def guide(
     if contacts is None or joint.axis is None:
         return -math.inf, math.inf
     rate = 1.0 if joint.type == "prismatic" else (joint.pitch or 0.0) / (2.0 * math.pi)
+    guides = [patch for k in joint.patches if preserved(patch := contacts.patches[k], joint_twist(joint)[None])]
+    span = overlap_along(assembly, surfaces, guides, joint.axis, second)
+    if span is None or rate == 0.0:
+        return -math.inf, math.inf
+    pair = (span[0] / rate, span[1] / rate)
+    return min(pair), max(pair)
+
+
+def overlap_along(
+    assembly: Assembly,
+    surfaces: Mapping[str, MeshSurfaces],
+    patches: Iterable[Patch],
+    axis: Array,
+    second: Collection[str],
+) -> tuple[float, float] | None:
+    """Slides (m) along `axis` of the parts `second` at which they have left the last of these patches; None where the
+    surfaces of none are known."""
     ends = []
-    for k in joint.patches:
-        patch = contacts.patches[k]
-        if not preserved(patch, joint_twist(joint)[None]):
-            continue
+    for patch in patches:
         sides = zip(patch.parts, patch.surfaces, strict=True)
-        a, b = (span_along(assembly, surfaces, name, surface, joint.axis) for name, surface in sides)
-        assert a is not None and b is not None
+        a, b = (span_along(assembly, surfaces, name, surface, axis) for name, surface in sides)
+        if a is None or b is None:
+            continue
         if patch.parts[1] not in second:
             a, b = b, a
         ends.append((a[0] - b[1], a[1] - b[0]))
-    if not ends or rate == 0.0:
-        return -math.inf, math.inf
-    low, high = min(e[0] for e in ends), max(e[1] for e in ends)
-    pair = (low / rate, high / rate)
-    return min(pair), max(pair)
+    return (min(e[0] for e in ends), max(e[1] for e in ends)) if ends else None
 
 
 def span_along(

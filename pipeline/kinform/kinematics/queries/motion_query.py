@@ -103,7 +103,7 @@ def query_twist(design: DesignView, a: str, b: str, motion: Array, what: str) ->
         residual = _outside(twist, joint.twists, frame)
         in_pair = residual < MOTION_THERE
     outside = _in_assembly(design, first, second, twist, frame)
-    left_out = {blocker.patch for blocker in joint.blockers} if joint is not None else set()
+    left_out = set(joint.touching).difference(joint.patches) if joint is not None else set()
     blockers = _blockers([(k, p) for k, p in patches if in_pair is False or k in left_out], twist, frame)
     if blockers:
         in_pair = False if joint is not None else None

@@ -204,6 +204,18 @@ def opening(rows: Array) -> Opening:
     return Opening(True if dual.status == 0 else None, np.zeros(6), speed)
 
 
+def opens_at_once(rows: Array) -> bool:
+    """Whether one motion opens all unit rows (n, 6) at once, each for certain."""
+    from scipy.optimize import linprog
+
+    n, size = rows.shape
+    aim = np.append(np.zeros(size), -1.0)
+    upper = np.hstack([-rows, np.ones((n, 1))])
+    bounds = [(-1.0, 1.0)] * size + [(0.0, 1.0)]
+    solved = linprog(aim, A_ub=upper, b_ub=np.zeros(n), bounds=bounds, method="highs")
+    return bool(solved.status == 0 and solved.x[-1] > CONE_HELD)
+
+
 def extreme_rays(rows: Array, opposed: Array | None = None) -> Array | None:
     """Extreme rays (k, d), unit, of {x : rows x ≥ 0} without its lineality; None where they are too many.
 

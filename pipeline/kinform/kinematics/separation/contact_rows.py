@@ -68,6 +68,11 @@ class ContactRows:
         self._points = every[start[owner] + matrix.sample[order]] if len(owner) else every[:0]
         self._normals, self._moments = rows[:, 3:], rows[:, :3] * matrix.length
 
+    @property
+    def frame(self) -> Frame:
+        """About everything that touches."""
+        return Frame(self._matrix.centre, self._matrix.length)
+
     def parts_of(self, body: BodyName) -> frozenset[PartName]:
         """The parts of a body."""
         return self._parts[body]
@@ -75,7 +80,7 @@ class ContactRows:
     def members(self, joint: Joint) -> Members:
         """The patches that carry the joint or block it."""
         first = self.parts_of(joint.bodies[0])
-        indices = sorted({*joint.patches, *(blocker.patch for blocker in joint.blockers)})
+        indices = joint.touching
         return [(k, self._patches[k].parts[0] not in first) for k in indices]
 
     def cone(self, members: Members) -> Cone | None:

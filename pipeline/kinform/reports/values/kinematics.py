@@ -42,6 +42,9 @@ def joint_values(design: Design) -> dict[str, Any]:
             for item in kinematics.separations
         ],
         "separations_reason": kinematics.separations_reason or None,
+        "slides": [
+            fields(item, "bodies") | {"releases": [release(way) for way in item.releases]} for item in kinematics.slides
+        ],
     }
 
 

@@ -40,6 +40,12 @@ LAYOUT = Layout(
         ),
     ),
     Texts("separations_reason"),
+    Table(
+        "slides",
+        Table(
+            "slide_releases", field="releases", owner="slide", first=("kind", "direction", "point", "extreme", "words")
+        ),
+    ),
     Table("misfit"),
     Table("moves"),
     Table("misaligned"),

@@ -179,7 +179,7 @@ def _in_force(
         cause, why = "contact", "contact leaves it free and does not hold it"
     elif may_end([patches[k] for k in joint.patches], joint.twists, taken.twists, place, reach, first):
         cause, why = "doubt", "a line of contact holds it in one sense alone, and may be a stop"
-    elif admits(_all_of(joint, patches), taken.twists, first):
+    elif admits([patches[k] for k in joint.touching], taken.twists, first):
         cause, why = "end", "contact leaves it free in one sense, as an end stop does, and does not hold it"
     else:
         return joint
@@ -193,12 +193,6 @@ def _in_force(
         singular_values=joint.singular_values,
         readings=(replace(reading_of(replace(joint, blockers=()), ""), cause=cause),),
     )
-
-
-def _all_of(joint: Joint, patches: Sequence[Patch]) -> list[Patch]:
-    """The patches of a joint, those that block or end it too."""
-    every = {*joint.patches, *(one.patch for one in joint.blockers), *(one.patch for one in joint.at_stop)}
-    return [patches[k] for k in sorted(every)]
 
 
 def _is_just(joint: Joint, taken: Joint, place: Array, reach: float) -> bool:
