@@ -20,10 +20,11 @@ from kinform.kinematics.joints.bodies.stated_joints import Pair, pair_between
 from kinform.kinematics.joints.pair.joint import reading_of, twists_of
 from kinform.kinematics.joints.pair.lower_pairs import name_space
 from kinform.kinematics.joints.pair.question import Answer
+from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Patch
 from kinform.model.function import IntendedJoint
-from kinform.model.kinematics import Joint
+from kinform.model.kinematics import EndStop, Joint, JointType
 from kinform.model.names import BodyName, PartName
 
 Decided = Mapping[Pair, tuple[Answer, Joint]]
@@ -68,8 +69,14 @@ def _closed(joint: Joint, patches: Sequence[Patch]) -> Joint | None:
     if point is not None and form.axis is not None:
         point = foot(point, form.axis, frame.centre)
     reason = f"{joint.reason}; {joint.type} at rest, and {form.type} where what goes in one sense counts, as stated"
+    ending = tuple(k for k in joint.patches if not _slides_on_itself(patches[k], joint.closed))
+    kept = tuple(k for k in joint.patches if k not in ending)
+    if not kept:
+        return None
     return replace(
         joint,
+        patches=kept,
+        at_stop=(*joint.at_stop, *(_end(patches[k], k, form.type) for k in ending)),
         type=form.type,
         axis=form.axis,
         point=point,
@@ -81,6 +88,18 @@ def _closed(joint: Joint, patches: Sequence[Patch]) -> Joint | None:
         evidence=(*joint.evidence, "function"),
         readings=(reading_of(replace(joint, blockers=()), "end"),),
     )
+
+
+def _slides_on_itself(patch: Patch, motions: Array) -> bool:
+    """Whether a patch keeps contact under each of these motions (k, 6)."""
+    speeds = motions[:, None, 3:] + cross(motions[:, None, :3], patch.points[None])
+    across = np.abs(np.einsum("kni,ni->kn", speeds, patch.normals)).max(axis=1)
+    return bool((across <= INTENDED_AXIS * np.linalg.norm(speeds, axis=2).max(axis=1)).all())
+
+
+def _end(patch: Patch, index: int, kind: JointType) -> EndStop:
+    """What a patch ends of a joint that is stated."""
+    return EndStop(patch.parts, index, patch.area, patch.points.mean(axis=0), 0, f"the motion of the {kind} joint")
 
 
 def _as_intended(
