@@ -16,6 +16,9 @@ from kinform.model.arrays import Array, Ints
 
 MOST_FACETS = 16
 """Facets, the largest first, of which each suggests a direction. Chosen, not measured."""
+MOST_COUNTED = 4000
+"""Facets, the largest first, that are counted for these: parts of a mesh of more are each a small share of it. Chosen,
+not measured."""
 ALIKE = 1e-6
 """1 less the cosine (0.08°) of directions that count as one: far above rounding. Chosen, not measured."""
 UNTURNED = 1e-9
@@ -45,8 +48,9 @@ def _heaviest(vectors: Array, least: float = 0.0) -> Array | None:
     """(3,) the unit direction, of those of the longest of vectors (n, 3), that has the greatest lengths along it, of
     either sense; in the sense that has more. None where none is longer than `least`."""
     size = lengths(vectors)
-    chosen = np.argsort(-coarse(size), kind="stable")[:MOST_FACETS]
-    chosen = chosen[size[chosen] > max(least, TINY)]
+    largest = np.argsort(-coarse(size), kind="stable")[:MOST_COUNTED]
+    vectors, size = vectors.take(largest, axis=0), size.take(largest)
+    chosen = np.flatnonzero(size[:MOST_FACETS] > max(least, TINY))
     if not len(chosen):
         return None
     candidates = vectors[chosen] / size[chosen, None]
