@@ -32,6 +32,7 @@ def pairs(rng):
     block = box(-5, 5, -5, 5, -3.95, 3.95) - rod(2.25, -5, 5, 32)
     yield {"block": block, "shaft": scattered(shaft, rng, 0.02)}
     yield {"block": scattered(block, rng, 0.02), "shaft": scattered(shaft, rng, 0.02)}
+    yield {"block": scattered(block, rng, 0.02), "shaft": scattered(rod(2.2, -6, 6, 24), rng, 0.02).rotate((0, 4, 20))}
     tilted = box(-3, 3, -3, 3, 0, 2).rotate((0.7, 0.4, 0.0)).translate((0.0, 0.0, 3.99))
     yield {"block": block, "tilted": tilted}
     yield {"ball": scattered(rod(3.0, 0, 3, 20), rng, 0.01).translate((0, 0, 3.95)), "block": block}

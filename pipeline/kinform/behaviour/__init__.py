@@ -92,5 +92,5 @@ __all__ = [
     "smooth",
 ]
 
-CODE_VERSION: int = 17
+CODE_VERSION: int = 18
 """Bumped when results of this package change for the same input."""

@@ -2,9 +2,10 @@
 
 A journal is a coaxial cylinder; its ends are those of the overlap of both surfaces, and go along with the shorter one.
 A thrust ring is a flat patch across the axis: its mean radius is that of a load spread evenly over it. A thread is a
-helicoid: mean radius and lean of the flanks are those of its samples. A guide between flat faces has their normals.
-What several unlike surfaces would share (journals of different radii, cones, a guide with faces in three directions) is
-not determined by rigid bodies: then there is no radius but the reason, and the manifest can state it, each for itself.
+helicoid: mean radius and lean of the flanks are those of its samples, each as it bears along the axis, which crests and
+roots do not. A guide between flat faces has their normals. What several unlike surfaces would share (journals of
+different radii, cones, a guide with faces in three directions) is not determined by rigid bodies: then there is no
+radius but the reason, and the manifest can state it, each for itself.
 """
 
 from __future__ import annotations
@@ -179,7 +180,7 @@ def _rubs(
     if not patches or joint.axis is None or joint.type not in ("revolute", "prismatic", "cylindrical", "screw"):
         return Rubs()
     if joint.type == "screw":
-        return _thread(joint, [patch for patch in patches if patch.kind == "helicoid"])
+        return _thread(joint, [patch for patch in patches if patch.kind == "helicoid"], doubts)
     axis = joint.axis
     round_ = [p for p in patches if p.kind == "cylinder" and abs(float(p.axis @ axis)) > ALONG_AXIS]
     flat = [p for p in patches if p.kind == "plane"]
@@ -217,18 +218,30 @@ def _rubs(
     return out
 
 
-def _thread(joint: Joint, patches: Sequence[Patch]) -> Rubs:
-    """Mean radius and lean of the flanks of a thread."""
+def _thread(joint: Joint, patches: Sequence[Patch], doubts: dict[str, str]) -> Rubs:
+    """Mean radius and lean of the flanks of a thread whose load is spread evenly over their depth, as the mean diameter
+    of textbooks has it. A doubt where flanks that face either way lean differently: a saw thread carries on one of
+    them."""
     if not patches:
         return Rubs()
     axis, base = joint.axis, joint.point
     assert axis is not None and base is not None
     points, normals, weights = (np.concatenate([getattr(p, name) for p in patches]) for name in _SAMPLES)
-    radius = float(weights @ _distance(points, base, axis) / weights.sum())
+    # rings of one depth have areas in proportion to their radii
+    away = _distance(points, base, axis)
+    along, weights = normals @ axis, weights / away
+    bearing = weights * np.abs(along)
+    radius = float(bearing @ away / bearing.sum())
     out = points - base - ((points - base) @ axis)[:, None] * axis
-    out /= np.linalg.norm(out, axis=1, keepdims=True)
-    lean = np.abs(np.einsum("ij,ij->i", normals, out)) / np.abs(normals @ axis)
-    return Rubs(radius=radius, flank=float(math.atan(weights @ lean / weights.sum())))
+    out /= away[:, None]
+    pressed = weights * np.abs(np.einsum("ij,ij->i", normals, out))
+    sides = [side for side in (along > 0.0, along < 0.0) if side.any()]
+    leans = [math.atan(float(pressed[side].sum() / bearing[side].sum())) for side in sides]
+    low, high = min(leans), max(leans)
+    if 1.0 / math.cos(high) > (1.0 + ALIKE_RADII) / math.cos(low):
+        told = f"its flanks lean by {math.degrees(low):.3g}° and {math.degrees(high):.3g}°, and which carries is open"
+        doubts.setdefault("flank", told)
+    return Rubs(radius=radius, flank=math.atan(float(pressed.sum() / bearing.sum())))
 
 
 _SAMPLES = ("points", "normals", "weights")

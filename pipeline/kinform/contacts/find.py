@@ -11,6 +11,7 @@ from kinform.contacts.overlap.boundaries import boundaries_cross
 from kinform.contacts.overlap.explained import explained
 from kinform.contacts.overlap.solids import SolidStore
 from kinform.contacts.pair import PairContacts, mated_pairs, pair_contacts, touching
+from kinform.contacts.search.along_own_axes import along_own_axes
 from kinform.contacts.search.candidates import Pair, candidate_pairs
 from kinform.contacts.search.pair_view import PairView
 from kinform.foundation.constants import LITTLE_FACETS
@@ -38,8 +39,8 @@ class _Work:
     def __init__(
         self, assembly: Assembly, surfaces: dict[str, MeshSurfaces], tolerance: dict[Pair, float], wanted: list[Pair]
     ):
-        self.assembly, self.surfaces, self.tolerance = assembly, surfaces, tolerance
-        self.parts = {part.name: part for part in assembly.parts}
+        self.assembly, self.tolerance = assembly, tolerance
+        self.parts, self.surfaces = along_own_axes({name for pair in wanted for name in pair}, assembly, surfaces)
         self.store, self.solids = MeshStore(), SolidStore()
         self.order = _by_neighbours(wanted)
         self.number = {pair: number for number, pair in enumerate(self.order)}

@@ -14,5 +14,5 @@ that is not trusted, `no_more_files` for native code; `boundary`, `user_folders`
 
 __all__ = ["CODE_VERSION"]
 
-CODE_VERSION: int = 2
+CODE_VERSION: int = 3
 """Changes whenever a result changes; results of other versions are computed again."""

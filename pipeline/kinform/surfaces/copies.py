@@ -188,6 +188,13 @@ def surfaces_of_copy(surfaces: MeshSurfaces, digest: str, copy: Copy) -> MeshSur
     )
 
 
+def turned_surfaces(surfaces: MeshSurfaces, digest: str, R_CO: Array) -> MeshSurfaces:
+    """The surfaces of a mesh as those of the mesh of this digest, which is it turned by `R_CO` (3, 3)."""
+    X_CO = np.eye(4)
+    X_CO[:3, :3] = R_CO
+    return surfaces_of_copy(surfaces, digest, Copy(surfaces.digest, X_CO, 0.0, 0.0))
+
+
 def _surface_of_copy(surface: Surface, copy: Copy) -> Surface:
     if not surface.axis.any() and not surface.point.any() and surface.kind == "freeform":
         return surface

@@ -4,10 +4,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from manifold3d import CrossSection, Manifold
+from support import solids
 from support.analytic_solids import MM, extrusion, flat_loop
 
 from kinform.foundation.meshes import rings
 from kinform.foundation.meshes.mesh_index import MeshIndex
+from kinform.model.tolerances import Tolerances
+from kinform.surfaces import recover
 
 
 def prism(sides, radius=10.0, squeeze=1.0, phase=0.1, centre=(0.0, 0.0)):
@@ -56,3 +60,20 @@ def test_a_first_sight_leaves_out_nothing_that_a_closer_look_keeps(sides, squeez
         rings._may_be_round = first_sight
     assert [ring.facets.tolist() for ring in quick] == [ring.facets.tolist() for ring in close]
     assert [(ring.corner, ring.flats, ring.turn) for ring in quick] == [(r.corner, r.flats, r.turn) for r in close]
+
+
+@pytest.mark.parametrize("bevel", [0.0, 0.15, 0.6])
+@pytest.mark.parametrize("length", [60.0, 100.0, 200.0])
+def test_the_steps_of_a_long_bar_are_no_ring(length, bevel):
+    # seen across its length a bar of T section is flats that face four ways, with all corners at both ends
+    def rail(low, high):
+        ends = [(-1, low, bevel), (1, low, bevel), (1, high, -bevel), (-1, high, -bevel)]
+        cut = [
+            [(s * length / 2, y + b), (s * (length / 2 - bevel), y)][:: 1 if s * b < 0 or not b else -1]
+            for s, y, b in ends
+        ]
+        return Manifold.extrude(CrossSection([[c for corner in cut for c in corner]]), 4.0)
+
+    solid = rail(-7.0, 7.0) + rail(-4.0, 4.0).translate((0, 0, 4.0)) + rail(-4.0, 7.5).translate((0, 0, 8.0))
+    rail_part = solids.part("rail", solid, np.eye(4))
+    assert not found(rail_part.mesh, recover(rail_part.mesh, Tolerances()))

@@ -22,14 +22,19 @@ from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.graphs.components import components, roots
 from kinform.foundation.meshes.edges import shared_edges
 from kinform.foundation.meshes.near_points import Near
-from kinform.foundation.meshes.surface_table import CYLINDER
+from kinform.foundation.meshes.surface_table import CYLINDER, SPHERE, TORUS
 from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.foundation.sorting import ascending, heads
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Flags, Ints
+from kinform.model.surfaces import KINDS
 
 CURVE_SAMPLES = 6
 """Samples a segment to find where two curves come close; Newton's method does the rest. Chosen, not measured."""
+
+
+_DOUBLY = np.isin(np.arange(len(KINDS)), (SPHERE, TORUS))
+"""Of each kind of surface, whether it bends along every direction."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,6 +207,8 @@ def segments(part: PartView, sheet: Sheet, direction: Array, alignment: float, g
     """Those of the facets that run along `direction` (3,) within `alignment` (rad), and are no strip of a surface
     that bends along it too; ends nearer to each other than `grain` (m) are one."""
     upright = (np.abs(sheet.normals @ direction) < math.sin(alignment)) & sheet.solid
+    # balls and tubes run along no direction, though facets of theirs lie along one by chance
+    upright &= ~_DOUBLY[part.table.kinds.take(part.surfaces.labels.take(sheet.facets))]
     if not upright.any():
         return None
     inner, outer = sheet.bends

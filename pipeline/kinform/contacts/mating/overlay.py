@@ -23,6 +23,9 @@ from kinform.foundation.meshes.boxes import triangle_boxes
 from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
 
+GRID = 1e-6
+"""Step, in contact tolerances, of the coordinates of outlines: a ten-thousandth of what is thin, and a million times
+what doubles of parts of a metre are rounded by."""
 REGION_THIN = 0.01
 """Width, in contact tolerances, below which a region is a line, not a patch. Chosen, not measured."""
 
@@ -55,6 +58,9 @@ def _overlaps(asked: Sequence[tuple[Chart, Array, Array, float, float]]) -> list
     sets = [flat for k in some for flat in flats[k]]
     counts = [len(flat) for flat in sets]
     flat, starts = concatenated(sets), np.cumsum([0, *counts[:-1]])
+    # rounded far below what is thin, so that the last digits do not decide how outlines are cut into triangles
+    grid = np.repeat([GRID * asked[k][3] for k in some for _ in (0, 1)], counts)[:, None, None]
+    flat = np.rint(flat / grid) * grid
     low, high = triangle_boxes(flat)
     least, most = np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)
     least, most = np.maximum(least[0::2], least[1::2]), np.minimum(most[0::2], most[1::2])

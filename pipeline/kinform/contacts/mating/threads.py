@@ -4,17 +4,22 @@ In the coordinates of a screw motion, distance from the axis and height less adv
 profile, whatever its tessellation: each facet is a piece of a line there. Two threads touch where such pieces of
 either side lie against each other and both have facets at that place along the helix; the normals are those of the
 profiles, and so the common screw motion is left exactly free.
+
+A crest or a root is a cylinder about the axis: it holds the threads radially, says nothing along the axis and carries
+no axial load. So its facets are patches of their own, of the kind cylinder, and those of the helicoid are flanks alone.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from kinform.contacts.constants import PATCH_AREA, SAMPLES
+from kinform.contacts.constants import MATING_REACH, PATCH_AREA, SAMPLES
 from kinform.contacts.mating.charts import plane_basis
-from kinform.contacts.mating.mate import Axes, aligned, mean_axes
+from kinform.contacts.mating.mate import Axes, aligned, mean_axes, radial_limit
 from kinform.contacts.mating.patches import classify_fit
 from kinform.contacts.search.pair_view import PairView, PartView, SurfacePair
 from kinform.foundation.algebra.vectors import cross, dot
@@ -31,6 +36,9 @@ PROFILE_SHARES = np.array([1.0, 3.0, 5.0]) / 6.0
 """Where samples lie on the profile of a facet: the middles of its thirds."""
 FLANK_GAP = 0.15
 """Largest gap of two flanks, in leads: beyond, neither is the other's. Chosen, not measured."""
+COAXIAL_SLOPE = math.tan(math.radians(15.0))
+"""Largest rise of a crest or root from the axis, over its length along it. Where a plane cuts a thread a facet of its
+crest has a corner on a chord, a few degrees off; flanks of standard threads rise by 45° at least (saw threads)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,12 +66,16 @@ class _Profile:
         """Some of the facets."""
         return _Profile(*(getattr(self, name)[rows] for name in self.__dataclass_fields__))
 
+    def coaxial(self, tolerance: float) -> Flags:
+        """(n,) which facets are of a crest or a root: of a cylinder about the axis to within `tolerance` (m)."""
+        rise, length = np.abs(self.end - self.start).T
+        return np.asarray((rise <= COAXIAL_SLOPE * length) & (rise <= tolerance))
+
 
 def threaded_patches(pair: PairView, overlap: Flags) -> list[Patch]:
     """Patches between the helicoids flagged in `overlap` (s, t), in the frame of the pair."""
     rows, columns, flags = pair.of_kinds(overlap, "helicoid")
-    patches = (_patch(pair, pair.surfaces(rows[i], columns[j])) for i, j in np.argwhere(flags))
-    return [patch for patch in patches if patch is not None]
+    return [patch for i, j in np.argwhere(flags) for patch in _patches(pair, pair.surfaces(rows[i], columns[j]))]
 
 
 def _fit(pair: PairView, surfaces: SurfacePair) -> tuple[Axes, float, float] | None:
@@ -83,49 +95,106 @@ def _fit(pair: PairView, surfaces: SurfacePair) -> tuple[Axes, float, float] | N
     return (axes, pitch, limit) if aligned(pair, axes, limit, engaged) else None
 
 
-def _patch(pair: PairView, surfaces: SurfacePair) -> Patch | None:
-    """The patch of two threads: samples of either that lie on the other."""
+def _patches(pair: PairView, surfaces: SurfacePair) -> list[Patch]:
+    """The patches of two threads, of samples of either that lie on the other: of their flanks, then of crests on roots;
+    none where no flanks touch."""
     fit = _fit(pair, surfaces)
     if fit is None:
-        return None
+        return []
     axes, pitch, limit = fit
-    a, b = (
+    profiles = [
         _profile(part, facets, axes, pitch / (2 * math.pi))
         for part, facets in zip(pair.parts, surfaces.facets, strict=True)
-    )
-    samples = [_resting(a, b, pitch, limit), _resting(b, a, pitch, limit)]
-    flat, azimuth, height, gaps, areas = (
-        np.concatenate([getattr(side, name) for side in samples])
-        for name in ("points", "azimuth", "height", "gaps", "area")
-    )
-    if not len(flat) or areas.sum() < PATCH_AREA * pair.tolerance**2:
-        return None
-    normal = np.concatenate([samples[0].normal, -samples[1].normal])
+    ]
+    coaxial = [side.coaxial(pair.tolerance) for side in profiles]
+    flanks = [side.select(np.flatnonzero(~of)) for side, of in zip(profiles, coaxial, strict=True)]
+    found = _Touching.of(flanks, pitch, limit)
+    if found.area < PATCH_AREA * pair.tolerance**2:
+        return []
+    patches = [_patch(pair, surfaces, axes, found, pitch)]
+    middle = float(found.weights @ found.points[:, 0]) / found.area
+    cylinders = [side.select(np.flatnonzero(of)) for side, of in zip(profiles, coaxial, strict=True)]
+    for outer in (False, True):
+        rounds = [side.select(np.flatnonzero((side.start[:, 0] > middle) == outer)) for side in cylinders]
+        if not all(len(side.area) for side in rounds):
+            continue
+        radii = [float(side.area @ (side.start + side.end)[:, 0] / (2.0 * side.area.sum())) for side in rounds]
+        play = radial_limit(pair.play, min(radii))
+        found = _Touching.of(rounds, pitch, play)
+        if found.area >= PATCH_AREA * pair.tolerance**2:
+            patches.append(_round_patch(pair, surfaces, axes, found, (radii[0], radii[1]), play))
+    return patches
+
+
+@dataclass(frozen=True, eq=False)
+class _Touching:
+    """Samples of two threads that lie on each other."""
+
+    points: Array
+    """(n, 2) on the profile."""
+    normals: Array
+    """(n, 3) as of `_Profile`, out of the first."""
+    azimuth: Array
+    height: Array
+    gaps: Array
+    weights: Array
+    """(n,) m²."""
+
+    @staticmethod
+    def of(sides: Sequence[_Profile], pitch: float, limit: float) -> _Touching:
+        """Those of two profiles, at most `limit` (m) apart."""
+        first, second = _resting(sides[0], sides[1], pitch, limit), _resting(sides[1], sides[0], pitch, limit)
+        points, azimuth, height, gaps, area = (
+            np.concatenate([getattr(side, name) for side in (first, second)])
+            for name in ("points", "azimuth", "height", "gaps", "area")
+        )
+        return _Touching(points, np.concatenate([first.normal, -second.normal]), azimuth, height, gaps, area)
+
+    @property
+    def area(self) -> float:
+        """m²."""
+        return float(self.weights.sum())
+
+
+def _patch(pair: PairView, surfaces: SurfacePair, axes: Axes, found: _Touching, pitch: float) -> Patch:
+    """The patch of two threads whose flanks touch."""
     base, aside = plane_basis(axes.axis)
-    radial = np.cos(azimuth)[:, None] * base + np.sin(azimuth)[:, None] * aside
-    area = float(areas.sum())
+    radial = np.cos(found.azimuth)[:, None] * base + np.sin(found.azimuth)[:, None] * aside
     return Patch(
         parts=pair.names,
         surfaces=surfaces.ids,
         kind="helicoid",
         one_sided=False,
-        points=axes.point + flat[:, :1] * radial + height[:, None] * axes.axis,
-        normals=_turned(normal, radial, axes.axis),
-        gaps=gaps,
-        weights=areas,
-        area=area,
-        gap=float(areas @ gaps / area),
+        points=axes.point + found.points[:, :1] * radial + found.height[:, None] * axes.axis,
+        normals=_turned(found.normals, radial, axes.axis),
+        gaps=found.gaps,
+        weights=found.weights,
+        area=found.area,
+        gap=float(found.weights @ found.gaps / found.area),
         axis=axes.axis,
-        point=axes.point + float(areas @ height / area) * axes.axis,
+        point=axes.point + float(found.weights @ found.height / found.area) * axes.axis,
         radii=surfaces.radii,
         misalignment=axes.misalignment,
         offset=axes.offset,
         uncertainty=axes.uncertainty,
         mismatch=axes.mismatch,
         chord=surfaces.chord,
-        fit=classify_fit(gaps, surfaces.chord, axes.uncertainty[1], pair.tolerance),
+        fit=classify_fit(found.gaps, surfaces.chord, axes.uncertainty[1], pair.tolerance),
         pitch=pitch,
     )
+
+
+def _round_patch(
+    pair: PairView, surfaces: SurfacePair, axes: Axes, found: _Touching, radii: tuple[float, float], limit: float
+) -> Patch:
+    """The patch of a crest in a root of two threads, cylinders of these radii (m), at most `limit` (m) apart."""
+    outward = np.zeros_like(found.normals)
+    outward[:, 0] = np.sign(found.normals[:, 0])
+    gap = (radii[1] - radii[0]) * float(np.sign(found.weights @ outward[:, 0]))
+    on = replace(found, normals=outward, gaps=np.full(len(found.gaps), gap))
+    on.points[:, 0] = 0.5 * sum(radii)
+    patch = _patch(pair, surfaces, axes, on, 0.0)
+    return replace(patch, kind="cylinder", radii=radii, gap=gap, tolerance=limit / MATING_REACH)
 
 
 def _turned(vectors: Array, radial: Array, axis: Array) -> Array:

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import box, cross, norm
+from kinform.foundation.algebra.vectors import box, cross, lengths, norm, weighted_mean
 from kinform.foundation.rounding import SINGLE, TINY
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
@@ -38,6 +38,13 @@ class Frame:
         low, high = box(points)
         half = 0.5 * norm(high - low)
         return Frame(0.5 * (low + high), half if half > 0.0 else 1.0)
+
+    @staticmethod
+    def about(points: Array, weights: Array) -> Frame:
+        """The mean of points (n, 3) by weights (n,), and how far the farthest is from it: however they are turned."""
+        centre = weighted_mean(points, weights)
+        length = float(lengths(points - centre).max())
+        return Frame(centre, length if length > 0.0 else 1.0)
 
 
 def rows(points: Array, normals: Array, frame: Frame) -> Array:

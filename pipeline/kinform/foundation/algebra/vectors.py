@@ -113,20 +113,42 @@ def lengths(rows: Array) -> Array:
     return np.asarray(np.sqrt(square, out=square))
 
 
+LEAST_BY = 1e-3
+"""Components of a unit vector that differ by less are alike: rounding does not decide which of them is the least."""
+
+
 def perpendicular(axis: Array) -> tuple[Array, Array]:
-    """Two unit vectors that make a right-handed frame (u, v, axis) with the unit axis (3,)."""
+    """Two unit vectors that make a right-handed frame (u, v, axis) with the unit axis (3,): the first across x, y or z,
+    the first of those to which the axis is most nearly perpendicular."""
     x, y, z = axis.tolist()
     size = [abs(x), abs(y), abs(z)]
-    a, b, c = _UNITS[size.index(min(size))]
+    most = min(size) + LEAST_BY
+    a, b, c = _UNITS[0 if size[0] <= most else 1 if size[1] <= most else 2]
     u = np.array([b * z - c * y, c * x - a * z, a * y - b * x])
     u /= norm(u)
     a, b, c = u.tolist()
     return u, np.array([y * c - z * b, z * a - x * c, x * b - y * a])
 
 
+def turning_frame(vectors: Array) -> Array:
+    """(3, 3) right-handed unit axes, row by row, that turn with unit vectors (n, 3), n ≥ 1: the first of these, and
+    across it the first that is well apart."""
+    first = vectors[0]
+    across = vectors - np.outer(vectors @ first, first)
+    size = lengths(across)
+    # 30° from the first, so that rounding does not decide where the second points
+    apart = (size > 0.5).nonzero()[0]
+    if not len(apart):
+        u, v = perpendicular(first)
+        return np.array([first, u, v])
+    second = across[apart[0]] / size[apart[0]]
+    return np.array([first, second, cross(first, second)])
+
+
 def perpendiculars(axes: Array) -> tuple[Array, Array]:
     """The same of many unit axes (n, 3): (n, 3) each."""
-    unit = np.eye(3)[np.abs(axes).argmin(axis=1)]
+    size = np.abs(axes)
+    unit = np.eye(3)[(size <= size.min(axis=1, keepdims=True) + LEAST_BY).argmax(axis=1)]
     u = cross(unit, axes)
     u /= np.sqrt(dot(u, u))[:, None]
     return u, cross(axes, u)

@@ -26,7 +26,7 @@ from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
 
 RING_FEW = 6
-"""Up to so many flats a ring is round only where ..."""
+"""Up to so many directions of its flats a ring is round only where ..."""
 RING_EVEN = 0.05
 """... their distances from the axis differ by no more than this share of that of the corners: those of a box do not."""
 RING_SIDES = 3
@@ -34,6 +34,9 @@ RING_SIDES = 3
 RING_TURN = (np.radians(20.0), np.radians(125.0))
 """rad between two neighbours of a ring: of a triangle they differ by 120°; below 32° strips are found to be round, but
 not where three of them are left."""
+RING_ALIKE = np.radians(10.0)
+"""rad: flats whose normals differ by less face one way: neighbours of a ring turn by twice as much. The steps of a long
+bar do, and their corners, at both of its ends, are on one circle whatever they are."""
 RING_ROUND = 5e-3
 """Largest relative difference of the distances from the axis of the corners of one ring: far above rounding, far below
 the corners of a rectangle. Chosen, not measured."""
@@ -60,7 +63,7 @@ class Ring:
     side: int
     """+1: material inside (a bar); −1: material outside (a socket)."""
     sides: int
-    """How many flats."""
+    """How many ways the flats face."""
     extent: tuple[float, float]
     """Range along `axis` from `point`."""
     surfaces: Ints
@@ -327,6 +330,8 @@ class _Sights:
     """(r,) m of the nearest and the farthest flat from the axis, negative where they look the other way."""
     open: Array
     """(r,) rad: the widest angle about the axis without a flat."""
+    ways: Ints
+    """(r,) how many ways the flats face, at most."""
 
 
 def _first_sights(mesh: Mesh, table: SurfaceTable, rows: list[_Row], label: Ints) -> _Sights:
@@ -342,13 +347,13 @@ def _first_sights(mesh: Mesh, table: SurfaceTable, rows: list[_Row], label: Ints
         sides = np.where(rows[0].every.convex.take([r.edges[0] for r in rows]), 1.0, -1.0)
         reach = sides[row] * dot(points - circles.centre[row], axes)
         low, high = np.minimum.reduceat(reach, starts), np.maximum.reduceat(reach, starts)
-        return _Sights(circles, planes, sides, (low, high), _widest_gaps(axes, circles.axis, row, starts))
+        return _Sights(circles, planes, sides, (low, high), *_round_about(axes, circles.axis, row, starts))
 
 
 def _may_be_round(sights: _Sights, noise: float) -> Flags:
     """(r,) rows that are not left out at first sight: most are boxes, pockets and steps."""
     circles, (low, high) = sights.circles, sights.reach
-    few = np.array([len(planes) <= RING_FEW for planes in sights.planes])
+    few = sights.ways <= RING_FEW
     spare = 1.0 + RING_SPARE
     with np.errstate(invalid="ignore"):
         out = ~(circles.off > spare * (RING_ROUND * circles.radius + SCATTERED * noise))
@@ -358,16 +363,17 @@ def _may_be_round(sights: _Sights, noise: float) -> Flags:
     return np.asarray(out)
 
 
-def _widest_gaps(vectors: Array, axes: Array, row: Ints, starts: Ints) -> Array:
+def _round_about(vectors: Array, axes: Array, row: Ints, starts: Ints) -> tuple[Array, Ints]:
     """(r,) rad: `widest_gap` about unit axes (r, 3) of vectors (n, 3), those of a row after each other, from `starts`
-    (r,) on; `row` (n,)."""
+    (r,) on; `row` (n,). And how many ways they point, at most."""
     u = normalised(cross(np.eye(3)[np.abs(axes).argmin(axis=1)], axes))
     v = cross(axes, u)
     azimuth = np.arctan2(dot(vectors, v[row]), dot(vectors, u[row]))
     azimuth = azimuth[np.lexsort((azimuth, row))]
     gaps = np.diff(azimuth, prepend=0.0)
     gaps[starts] = azimuth[starts] + 2.0 * np.pi - azimuth[np.append(starts[1:], len(row)) - 1]
-    return np.asarray(np.maximum.reduceat(gaps, starts))
+    ways = np.add.reduceat((gaps > (1.0 - RING_SPARE) * RING_ALIKE).astype(np.int64), starts)
+    return np.asarray(np.maximum.reduceat(gaps, starts)), ways
 
 
 def _ring(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, row: _Row, labels: Ints) -> Ring | None:
@@ -396,8 +402,13 @@ def _ring(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, row: _Row, labels: In
     if reach.min() <= 0.0:
         # the walls and the rims of a hole make a ring too, inside out
         return None
-    if len(planes) <= RING_FEW and reach.max() - reach.min() > RING_EVEN * corner:
+    ways = _ways(normals @ u, normals @ v)
+    if ways <= RING_FEW and reach.max() - reach.min() > RING_EVEN * corner:
         # the corners of every box are on a circle
+        return None
+    across = reach < np.cos(0.5 * RING_TURN[1]) * corner
+    if across.any() and _ways(normals[across] @ u, normals[across] @ v) > 1:
+        # both sides of a bar whose ends have bevels; a shaft has one flat that deep
         return None
     facets = np.flatnonzero(np.isin(piece, row.pieces))
     heights = (mesh.vertices[np.unique(mesh.faces[facets])] - point) @ axis
@@ -407,10 +418,17 @@ def _ring(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, row: _Row, labels: In
         corner=corner,
         flats=(float(reach.min()), float(reach.max())),
         side=side,
-        sides=len(labels),
+        sides=ways,
         extent=(float(heights.min()), float(heights.max())),
         surfaces=labels,
         facets=facets,
         turn=median([plane.axis_uncertainty for plane in planes]),
         shift=max(off / SCATTERED, median([plane.point_uncertainty for plane in planes])),
     )
+
+
+def _ways(x: Array, y: Array) -> int:
+    """How many ways vectors (n,) point that are seen along the axis."""
+    azimuth = np.sort(np.arctan2(y, x))
+    gaps = np.append(azimuth[1:], azimuth[0] + 2.0 * np.pi) - azimuth
+    return int(np.count_nonzero(gaps > RING_ALIKE))

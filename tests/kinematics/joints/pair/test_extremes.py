@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import nnls
 from scipy.spatial import ConvexHull
+from scipy.spatial.transform import Rotation
 from support.patches import Z, cylinder, patch, plane, ring, sphere
 
 from kinform.foundation.algebra.vectors import perpendicular, weighted_mean
@@ -112,3 +113,13 @@ def test_the_corners_of_a_hull_are_those_of_qhull(shape: str, count: int) -> Non
     assert ConvexHull(chosen).volume == pytest.approx(ConvexHull(corners).volume, rel=1e-5)
     equations = ConvexHull(chosen).equations
     assert (flat @ equations[:, :2].T + equations[:, 2]).max() < 1e-5 * size
+
+
+@pytest.mark.parametrize("make", [plane, ring, cylinder, sphere, lambda: cylinder(arc=(0.0, 2.0))])
+def test_samples_turn_with_the_patch(make):
+    one = make()
+    wanted = extreme_samples([one])[0].tolist()
+    for seed in range(20):
+        turn = Rotation.random(random_state=seed).as_matrix()
+        moved = {name: getattr(one, name) @ turn.T for name in ("points", "normals", "axis", "point")}
+        assert extreme_samples([replace(one, **moved)])[0].tolist() == wanted

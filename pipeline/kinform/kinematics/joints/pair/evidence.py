@@ -175,17 +175,17 @@ def gather(patches: Sequence[Member], tolerances: Tolerances, contact: float, si
     if not items:
         return None
     points = np.concatenate([item.points for item in items])
-    frame = Frame.of(points)
-    arms = (points - frame.centre) / frame.length
     normals = np.concatenate([item.normals for item in items])
     patch_weight = np.sqrt([item.area for item in items])
     patch_weight /= patch_weight.sum()
-    share = [w * item.weights / item.area for w, item in zip(patch_weight.tolist(), items, strict=True)]
+    share = np.concatenate([w * item.weights / item.area for w, item in zip(patch_weight.tolist(), items, strict=True)])
+    frame = Frame.about(points, share)
+    arms = (points - frame.centre) / frame.length
     return Evidence(
         items=tuple(items),
         frame=frame,
         rows=np.concatenate([cross(arms, normals), normals], axis=1),
-        share=np.concatenate(share),
+        share=share,
         start=np.array([0, *accumulate(len(item.points) for item in items)], dtype=np.int64),
         arms=arms,
         angle=np.array([item.angle for item in items]),

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import norm, perpendicular
+from kinform.foundation.algebra.vectors import norm, perpendicular, turning_frame
 from kinform.foundation.rounding import SINGLE, TINY
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
@@ -19,6 +19,9 @@ from kinform.model.contacts import Patch
 NORMAL_SECTORS = 16
 """Sectors of normals about the axis of a curved patch with many samples; of each its ends are kept. Chosen, not
 measured."""
+FIRST_SECTOR = 0.2
+"""Sectors by which the first begins before the first sample, so that the patch turns with its sectors, and none of the
+samples, which are evenly spaced, is at a border."""
 FEW_SAMPLES = 12
 """Patches with no more samples than this keep them all. Chosen, not measured."""
 HULL_DIRECTIONS = 16
@@ -71,6 +74,8 @@ def _ends_of_sectors(patches: Sequence[Patch]) -> list[Ints]:
     for row, along, patch in zip(angle, height, patches, strict=True):
         u, v = perpendicular(patch.axis)
         np.arctan2(patch.normals @ v, patch.normals @ u, out=row)
+        row -= row[0] - FIRST_SECTOR * 2.0 * np.pi / NORMAL_SECTORS
+        row %= 2.0 * np.pi
         np.matmul(patch.points, patch.axis, out=along)
     sector = np.floor(angle / (2.0 * np.pi / NORMAL_SECTORS)).astype(int)
     turn = np.round(angle / SINGLE)
@@ -215,12 +220,13 @@ def _after(count: int) -> Ints:
 
 
 def _rim(normals: Array) -> Ints:
-    """Normals (n, 3) of a ball that span the same cone: the rim of a cap, or ends in directions all round."""
+    """Normals (n, 3) of a ball that span the same cone: the rim of a cap, or ends in directions all round, which turn
+    with the normals."""
     mean = normals.mean(axis=0)
     along = normals @ mean / max(norm(mean), TINY)
     if along.min() > CAP:
         return hull(normals / along[:, None], mean / norm(mean))
-    ends = _SPREAD @ normals.T
+    ends = (_SPREAD @ turning_frame(normals)) @ normals.T
     return np.unique(ends.argmax(axis=1)).astype(np.int64)
 
 

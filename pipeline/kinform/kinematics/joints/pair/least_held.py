@@ -5,7 +5,8 @@ directions that a plane or a ball leaves, one that is chosen by the axes of the 
 what the facets leave, in one pose, and miss it in another. So theirs are asked for: the speeds along the normals of a
 unit motion in a space of two or three directions are a quadratic form, whose principal axes turn with the bodies.
 
-Where nothing is loose any directions that span the space serve.
+Where nothing is loose any directions that span the space serve: those of all patches, or of their samples, so that
+they turn with the bodies too.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import math
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, perpendicular
+from kinform.foundation.algebra.vectors import cross, perpendicular, turning_frame
 from kinform.kinematics.joints.pair.evidence import Evidence
 from kinform.model.arrays import Array
 
@@ -25,11 +26,10 @@ measured."""
 
 def slides_across(evidence: Evidence, normal: Array) -> list[Array]:
     """Unit directions (3,) across the unit normal of a plane that span what it leaves: those that loose patches hold
-    least and most, all of them together first, then each of the largest."""
+    least and most, all of them together first, then each of the largest; all patches together where none is loose."""
     u, v = perpendicular(normal)
-    across = [(of[:, 3:] @ u, of[:, 3:] @ v) for of in _loose_rows(evidence)]
-    if not across:
-        return [u, v]
+    held = _loose_rows(evidence) or [np.sqrt(evidence.share)[:, None] * evidence.rows]
+    across = [(of[:, 3:] @ u, of[:, 3:] @ v) for of in held]
     forms = [np.array([x @ x, x @ y, y @ y]) for x, y in across]
     out = []
     for xx, xy, yy in _with_sum(forms):
@@ -48,7 +48,9 @@ def turns_about(evidence: Evidence, centre: Array) -> list[Array]:
     for of in _loose_rows(evidence):
         turns = of[:, :3] - cross(arm, of[:, 3:])
         forms.append(turns.T @ turns)
-    return [axis for form in _with_sum(forms) for axis in np.linalg.eigh(form)[1].T] if forms else list(np.eye(3))
+    if not forms:
+        return list(turning_frame(evidence.rows[:, 3:]))
+    return [axis for form in _with_sum(forms) for axis in np.linalg.eigh(form)[1].T]
 
 
 def _loose_rows(evidence: Evidence) -> list[Array]:
