@@ -48,5 +48,5 @@ from kinform.contacts.find import find
 
 __all__ = ["CODE_VERSION", "find"]
 
-CODE_VERSION: int = 36
+CODE_VERSION: int = 37
 """Raised when the same input would give other contacts."""

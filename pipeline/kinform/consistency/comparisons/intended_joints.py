@@ -19,7 +19,7 @@ from kinform.kinematics.joints.bodies.joints_in_force import leaves_free, may_en
 from kinform.kinematics.joints.bodies.stated_joints import joint_twists
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
-from kinform.model.contacts import Contacts, Patch
+from kinform.model.contacts import Contacts, Interference, Patch
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import FREEDOMS, Body, Joint, Kinematics, UndeclaredJoint
 
@@ -53,6 +53,9 @@ def _compared(
             intended, bodies, "one body", reason, one.type, one.axis, one.point, freedoms=freedoms, loose=True
         )
     direct = next(iter(kinematics.joints_between(first.name, second.name)), None)
+    if (direct is None or not direct.patches) and (overlap := _overlap(contacts, bodies)) is not None:
+        depth = f"{quoted(overlap.parts)} overlap by {1e3 * overlap.depth:.2g} mm where nothing mates"
+        return Comparison(intended, bodies, "undecided", f"{depth}: what holds there is not known", joint=direct)
     if direct is not None and direct.status == "stated":
         return Comparison(intended, bodies, "taken", direct.reason, joint=direct)
     if direct is not None and direct.evidence == ("function",):
@@ -106,6 +109,17 @@ def _compared(
         position_limit=assembly.tolerances.offset_limit(size),
         admitted=admitted,
     )
+
+
+def _overlap(contacts: Contacts | None, bodies: tuple[Body, Body]) -> Interference | None:
+    """The deepest overlap of parts of two bodies; None where there is none."""
+    sides = [set(body.parts) for body in bodies]
+    among = [
+        one
+        for one in (() if contacts is None else contacts.interferences)
+        if any(one.parts[0] in a and one.parts[1] in b for a, b in (sides, sides[::-1]))
+    ]
+    return max(among, key=lambda one: (one.depth, one.parts), default=None)
 
 
 def _first(kinematics: Kinematics, joint: Joint) -> Body:
