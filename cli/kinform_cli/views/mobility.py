@@ -31,6 +31,8 @@ MOST_MOVES = 12
 
 _MEANINGS = (
     ("effective", "without idle freedoms: `mobility` states these, and idle ones or not"),
+    ("low_mobility", "effective, with all contact kept as it is drawn"),
+    ("high_mobility", "effective, without contact that only pushes and that no stated joint names"),
     ("instantaneous", "velocities that the bilateral constraints leave"),
     ("finite", "of these, motions that go on over a distance"),
     ("idle", "turns of single bodies that nobody sees, as of a pin"),
@@ -47,8 +49,11 @@ def render(design: Design, *, short: bool = False) -> RenderableType:
     mobility = design.kinematics.mobility
     grid = Rows("count", "", "meaning", title="Mobility relative to ground", right=["count"], keys=2)
     values = mobility_counts(mobility) | {"gruebler": mobility.gruebler}
+    low, high = mobility.ends
     for name, meaning in _MEANINGS:
         value = values[name]
+        if low == high and name in ("low_mobility", "high_mobility"):
+            continue
         grid.add(
             NONE if value is None else str(value),
             name.replace("_", " "),

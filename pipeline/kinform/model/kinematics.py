@@ -411,6 +411,14 @@ class Mobility:
         """The least and the most that `effective` may be."""
         return self.effective if self.low is None else self.low, self.effective if self.high is None else self.high
 
+    def admits(self, stated: int) -> bool | None:
+        """Whether a stated mobility is this one: with or without idle freedoms, or at one of its ends; None strictly
+        between the ends."""
+        low, high = self.ends
+        if stated in (low, high) or self.effective <= stated <= self.effective + self.idle:
+            return True
+        return None if low < stated < high else False
+
     @property
     def gruebler(self) -> int:
         """6(N−1) − Σ(6−f): the count that knows no geometry."""

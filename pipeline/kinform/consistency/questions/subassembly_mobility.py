@@ -11,6 +11,7 @@ from kinform.frozen import dataclass
 from kinform.kinematics.mobility.finite_motion import finite_mobility
 from kinform.kinematics.mobility.idle import idle_turns
 from kinform.kinematics.mobility.named_freedoms import named_freedoms
+from kinform.kinematics.mobility.two_ends import mobility_ends
 from kinform.mechanism.first_order import body_twists
 from kinform.mechanism.joint_graph import JointGraph
 from kinform.model.kinematics import Kinematics
@@ -26,6 +27,8 @@ class InnerMobility:
     """Of them, turns of single bodies that nobody sees."""
     still: tuple[str, ...]
     """Stated joints among these parts that none of the freedoms moves."""
+    ends: tuple[int, int] = (0, 0)
+    """The least and the most that `effective` may be, as contact only pushes (`mobility.two_ends`)."""
 
     @property
     def effective(self) -> int:
@@ -63,7 +66,10 @@ def inner_mobility(design: Design, part_names: Sequence[str]) -> InnerMobility |
         first, second = bodies_between(assembly, kinematics, joint)
         if is_immobile(joint, twists[:, graph.node[second]] - twists[:, graph.node[first]]):
             still.append(joint.name)
-    return InnerMobility(closure.mobility if finite.count is None else finite.count, idle, tuple(still))
+    count = closure.mobility if finite.count is None else finite.count
+    opened = {joint.name for joint in graph.joints if joint.held is False}
+    ends = mobility_ends(alone, graph, opened, count - idle, closure.mobility, size, None)
+    return InnerMobility(count, idle, tuple(still), ends)
 
 
 def _graph_within(kinematics: Kinematics, part_names: Sequence[str]) -> JointGraph | None:

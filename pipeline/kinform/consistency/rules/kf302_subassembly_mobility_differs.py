@@ -33,10 +33,14 @@ def check(context: Context) -> Outcome:
             unknown.append(sub.name)
             continue
         spins = sub.mobility - found.effective
+        low, high = found.ends
+        if spins and low < sub.mobility < high:
+            unknown.append(sub.name)
+            continue
         if spins < 0 and context.design.contacts is not None and context.with_play(parts) is not None:
             unknown.append(sub.name)
             continue
-        if spins and not (0 < spins <= found.idle and not found.still):
+        if spins and sub.mobility not in found.ends and not (0 < spins <= found.idle and not found.still):
             idle = f" ({counted(found.idle, 'idle freedom')} not counted)" if found.idle else ""
             findings.append(
                 RULE.finding(
@@ -49,10 +53,8 @@ def check(context: Context) -> Outcome:
                     remedy="Check the sub-assembly on its own; correct its joints, or its `mobility`.",
                 )
             )
-    return settled(
-        findings,
-        f"joints inside are ambiguous, parts have play, or a rank is on the edge: {quoted(unknown)}" if unknown else "",
-    )
+    doubts = "joints inside are ambiguous, contact only pushes, parts have play, or a rank is on the edge"
+    return settled(findings, f"{doubts}: {quoted(unknown)}" if unknown else "")
 
 
 RULE = Rule(

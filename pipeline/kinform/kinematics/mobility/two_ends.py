@@ -11,7 +11,6 @@ from collections.abc import Collection
 
 import numpy as np
 
-from kinform.kinematics.joints.bodies.stated_joints import pair_between
 from kinform.mechanism.joint_graph import JointGraph
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
@@ -34,7 +33,10 @@ def mobility_ends(
     joints as they are; `size` (m) and `doubts` are those of the closure.
     """
     of_part = body_of_part(graph.bodies)
-    named = {pair_between(assembly, of_part, joint.between) for joint in assembly.function.joints}
+    named = set()
+    for stated in assembly.function.joints:
+        sides = {of_part[part] for name in stated.between for part in assembly.parts_of(name)[:1] if part in of_part}
+        named.add(tuple(sorted(sides)))
     loose = {joint.name for joint in graph.joints if joint.name in opened and joint.bodies not in named}
     low = [_low(joint) for joint in graph.joints]
     high = [np.eye(6) if joint.name in loose else _high(joint) for joint in graph.joints]

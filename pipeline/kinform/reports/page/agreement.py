@@ -112,11 +112,14 @@ class _Table:
             form += f", {words.counted(len(self.design.contacts.patches), 'contact patch', 'contact patches')}"
         behaviour = f"{words.counted(len(kinematics.bodies), 'body', 'bodies')}, mobility {mobility.effective}"
         behaviour += f" and {mobility.idle} idle" if mobility.idle else ""
+        low, high = mobility.ends
+        if low < high:
+            behaviour += f"; {low} with all contact kept, {high} without contact that only pushes"
         if mobility.finite not in (None, mobility.instantaneous):
             behaviour += f"; only {mobility.finite} finite"
         stated = assembly.function.mobility
         row = Row("mobility of the whole", form, behaviour, "" if stated is None else f"mobility {stated}")
-        right = None if stated is None else stated == mobility.effective
+        right = None if stated is None else mobility.admits(stated)
         about = [k for k, finding in enumerate(self.findings) if finding.code[:4] == "KF30"]
         return self._judged(row, about, right, "KF301")
 
