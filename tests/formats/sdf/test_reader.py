@@ -471,3 +471,15 @@ def test_what_cannot_be_merged_is_told_and_not_placed_somewhere_else(tmp_path, p
     with pytest.raises(InputError) as caught:
         form.load(merged(tmp_path, 'merge="true"', platform=platform))
     assert all(problem.line and problem.remedy for problem in caught.value.problems)
+
+
+@pytest.mark.parametrize("around", ["{}", '<world name="w">{}</world>'])
+@pytest.mark.parametrize("frame", ["world", "out", "deep"])
+def test_a_placement_frame_outside_of_its_model_is_told(tmp_path, frame, around):
+    frames = (
+        '<frame name="out"><pose relative_to="world">1 0 0 0 0 0</pose></frame><frame name="deep" attached_to="out"/>'
+    )
+    model = f'<model name="m" placement_frame="{frame}">{link("a")}{frames}</model>'
+    with pytest.raises(InputError) as caught:
+        load(tmp_path, f'<sdf version="1.9">{around.format(model)}</sdf>')
+    assert all(problem.line and problem.remedy for problem in caught.value.problems)

@@ -89,6 +89,10 @@ class Frames:
         """(4, 4) of a frame in `base`, which is the world or the model that it is in."""
         if name == base:
             return np.eye(4)
+        if name == WORLD:
+            wrong = "placement_frame is posed relative to the world, outside of its model"
+            self._xml.complain(self._frames[base].element, wrong, "name a frame that is posed relative to the model")
+            return None
         key = (name, base)
         if key not in self._poses:
             frame = self._frames[name]
