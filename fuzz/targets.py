@@ -56,14 +56,21 @@ def _sweep() -> None:
 
 @functools.cache
 def cheaper() -> None:
-    """Remember what the same files give each time: where paths lead, and hulls. No target moves a file."""
+    """Remember what the same files give each time: where paths lead, hulls and meshes. No target moves a file."""
+    from kinform.form.meshes import health
     from kinform.formats.description import coverage
+
+    def of_mesh(raw, *given, **named):
+        divided = tuple(item.names for item in raw.labellings) if raw.labellings else ()
+        numbers = (raw.vertices.tobytes(), raw.vertices.dtype, raw.faces.tobytes(), raw.written, raw.colour)
+        return (*numbers, divided, *given, *named.values())
 
     os.path.realpath = _remembered(os.path.realpath, lambda path, *, strict=False: (os.fspath(path), strict))
     coverage.hull_of = _remembered(coverage.hull_of, lambda points: (points.shape, points.tobytes()))
+    health.build_mesh = _remembered(health.build_mesh, of_mesh)
 
 
-_REMEMBERED = 4096
+_REMEMBERED = 1024
 """Answers."""
 
 
