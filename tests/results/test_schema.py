@@ -147,3 +147,17 @@ def test_every_array_of_numbers_has_its_form(manifest: Path, derive_design, tmp_
     known = {*schema.ARRAYS, *schema.RAGGED, *(f"{name}_offset" for name in schema.RAGGED)}
     assert arrays
     assert [name for name in arrays if name not in known] == []
+
+
+@pytest.mark.parametrize(("colour", "good"), [(b"#00fF0a", True), (b"//", False), (b"#12345", False), (b"red", False)])
+def test_a_colour_is_six_digits(colour: bytes, good: bool, hinge: bytes, tmp_path: Path) -> None:
+    """Exports read it as numbers, the page puts it into a style."""
+    (tmp_path / "r.h5").write_bytes(hinge)
+    with editing(tmp_path / "r.h5") as file:
+        _cell("assembly/parts", "colour", colour)(file)
+    if good:
+        assert colour.decode() in {part.colour for part in results.read(tmp_path / "r.h5").assembly.parts}
+        return
+    with pytest.raises(ResultsError) as caught:
+        results.read(tmp_path / "r.h5")
+    assert "(assembly/parts.colour " in caught.value.problem.message

@@ -172,7 +172,7 @@ def _check_spelling(file: HeldGroup, column: str) -> None:
     form = re.compile(schema.SPELT[column])
     wrong = next((text for text in _texts(file, column) if not form.fullmatch(text)), None)
     if wrong is not None:
-        raise DatasetError(column, f"holds {wrong!r}, no word of kinform")
+        raise DatasetError(column, f"holds {wrong!r}, which kinform does not write there")
 
 
 def _named(file: HeldGroup, column: str) -> Iterable[str]:
