@@ -198,6 +198,8 @@ ENDLESS: tuple[str, ...] = (
     "assembly/function/joints.range_",
 )  # fmt: skip
 """Beginnings of the columns that may be infinite: nothing bounds them."""
+AS_STATED: tuple[str, ...] = tuple(f"assembly/described_joints.{c}" for c in ("lower", "upper", "effort", "speed"))
+"""Beginnings of the columns that may hold any number: what a description says, where the largest one means no bound."""
 
 SPELT: dict[str, str] = {
     **{f"findings/{table}.code": r"[A-Z]{2}[0-9]{3}" for table in ("findings", "rules", "ignored")},
