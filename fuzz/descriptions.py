@@ -199,9 +199,8 @@ XACRO_MORE = """<robot name="more" xmlns:xacro="http://www.ros.org/wiki/xacro">
     <joint name="${prefix}_${y}_joint" type="revolute"><xacro:insert_block name="origin"/><parent link="${parent}"/>
       <child link="${prefix}_${y}_link"/><axis xyz="0 ${sin(x)} ${1 if y == '1' else -1}"/>
       <limit lower="${-radians(90)}" upper="${max(1, 2**0.5)}" effort="1" velocity="${conf['limits']['v']}"/></joint>
-    <xacro:unless value="${int(y) >= 2}"><xacro:leg prefix="${prefix}" parent="${prefix}_${y}_link" y="${int(y)+1}">
-      <origin><origin xyz="0 0 ${d['a']}"/></origin><visual><geometry><sphere radius="${conf.r}"/></geometry></visual>
-    </xacro:leg></xacro:unless>
+    <xacro:unless value="${int(y) >= 2}"><xacro:tip name="${prefix}_${int(y)+1}" parent="${prefix}_${y}_link"/>
+  </xacro:unless>
   </xacro:macro>
   <link name="base"><xacro:attribute name="class" value="$(arg side)"/></link>
   <xacro:leg parent="base" y="1"><origin><origin xyz="1 ${len([i for i in range(3)])} 0"/></origin><collision>
@@ -210,6 +209,20 @@ XACRO_MORE = """<robot name="more" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <joint name="x" type="fixed"><parent link="base"/><child link="extra_left"/></joint>
   <xacro:if value="${'%s' % late == '2' and not False}"><xacro:call macro="tip" name="t" parent="base"/></xacro:if>
 </robot>
+"""
+XACRO_EXPRESSIONS = """<robot name="e" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="a" default="3"/>
+<xacro:property name="l" value="${[x*2 for x in range(4) if x % 2]}"/>
+  <xacro:property name="s" value="${'a b'.split()}"/>
+<xacro:property name="d" value="${dict(k=(1, 2), n=None)}"/><xacro:property name="t" value="${d['k'][-1] // 2}"/>
+<link name="${'_'.join(sorted(s))}"><visual><geometry><box size="${l[0]} ${l[0] + l[1]} ${fabs(-t)}"/></geometry>
+  </visual></link>
+<link name="${'%s%d' % (s[1], len(d))}"/><link name="${'-'.join(['1', '2']).upper()}"/>
+<joint name="j" type="fixed"><parent link="a_b"/><child link="b2"/>
+<origin xyz="${cos(pi)} ${min(l + [1])} ${0.1 if 'k' in d and not t else round(1.25, 1)}" rpy="0 0 $(eval a ** 2)"/>
+  </joint>
+<joint name="$(arg a)" type="fixed"><parent link="b2"/><child link="1-2"/>
+  <origin xyz="${float('1.5')} 0 0"/>
+</joint></robot>
 """
 MORE_XACRO = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:property name="w" value="${2*3.0}"/>
 <xacro:macro name="tip" params="name parent"><link name="${name}"/><joint name="${name}_j" type="fixed">
@@ -337,7 +350,7 @@ def mjcf() -> list[bytes]:
 
 def xacro() -> list[bytes]:
     """Descriptions with macros, properties and conditions."""
-    return [XACRO.encode(), XACRO_MORE.encode(), URDF.encode()]
+    return [text.encode() for text in (XACRO, XACRO_MORE, XACRO_EXPRESSIONS)]
 
 
 BESIDE = {

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import gc
+import itertools
 import mmap
 import os
 import random
@@ -227,7 +228,7 @@ def _keep(outcome: Outcome, folder: Path, what: str, data: bytes) -> None:
     """Keep the first input of each finding."""
     if what in outcome.findings and what.startswith("process ended") is False:
         return
-    path = folder / f"finding-{len(outcome.findings):03d}"
+    path = next(p for k in itertools.count() if not (p := folder / f"finding-{k:03d}").exists())
     path.write_bytes(data)
     path.with_suffix(".txt").write_text(what + "\n")
     key = what if what not in outcome.findings else f"{what} ({len(outcome.findings)})"
