@@ -163,8 +163,7 @@ class _Reader:
                 self.xml.complain(element, f"{what} has no <{tag}>", f"add <{tag}>LINK</{tag}>")
                 return None
             full = self.frames.full(model.scope, stated, child, f"{what}: its {tag}")
-            every = {name: e for name, (_, e) in self.links.stated.items()}
-            link = None if full is None else self.frames.link_of(full, every)
+            link = None if full is None else self.frames.link_of(full, self.links.stated)
             if link is None:
                 return None
             ends.append(link)
