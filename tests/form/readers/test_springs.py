@@ -32,6 +32,16 @@ def test_an_exponent_that_leaves_no_column_of_gas_is_told(tmp_path, force, expon
     assert problem.line and problem.remedy
 
 
+@pytest.mark.parametrize("lengths", ["[2e-320, 1e-320]", "[1e-300, 1e-301]"])
+@pytest.mark.parametrize("exponent", ["0", "1.2"])
+def test_lengths_that_are_the_same_but_for_less_than_an_atom_are_told(tmp_path, lengths, exponent):
+    (tmp_path / "a.toml").write_text(MANIFEST.format(100, exponent).replace("[300, 200]", lengths))
+    with pytest.raises(InputError) as caught:
+        form.load(tmp_path / "a.toml")
+    (problem,) = caught.value.problems
+    assert problem.line and problem.remedy
+
+
 @pytest.mark.parametrize("exponent", [1.0, 1.4])
 def test_the_column_of_gas_has_the_stated_force_at_both_lengths(tmp_path, exponent):
     (tmp_path / "a.toml").write_text(MANIFEST.format(100, exponent))

@@ -51,6 +51,8 @@ def _spring(
 def _gas_spring(
     reader: FunctionReader, table: Any, name: str, between: tuple[str, str], *path: str | int
 ) -> StatedSpring | None:
+    from kinform.form.meshes.health import SMALLEST_MESH  # meshes are read where there are some
+
     scope, (first, second) = reader.scope, _points(reader, table)
     (extended, compressed), (least, most) = table.lengths, table.forces
     if not extended > compressed:
@@ -60,6 +62,10 @@ def _gas_spring(
         scope.complain("the force of a gas spring does not grow as it is pushed in", "swap them", *path, "forces")
         return None
     stroke = (extended - compressed) * scope.metres
+    if stroke < SMALLEST_MESH:
+        wrong = f"the lengths of a gas spring differ by {stroke:.2g} m, less than an atom"
+        scope.complain(wrong, "correct them, or their units", *path, "lengths")
+        return None
     numbers = {"force": least, "extended": extended * scope.metres, "damping": table.damping}
     if table.exponent:
         # force · (column − what it is pushed in)^n is the same at both lengths.
