@@ -56,8 +56,9 @@ def _sweep() -> None:
 
 @functools.cache
 def cheaper() -> None:
-    """Remember what the same files give each time: where paths lead, hulls and meshes. No target moves a file."""
-    from kinform.form.meshes import health
+    """Remember what the same files give each time: where paths lead, hulls and meshes (no target moves a file); and
+    give primitives fewer facets."""
+    from kinform.form.meshes import health, primitives
     from kinform.formats.description import coverage
 
     def of_mesh(raw, *given, **named):
@@ -65,6 +66,7 @@ def cheaper() -> None:
         numbers = (raw.vertices.tobytes(), raw.vertices.dtype, raw.faces.tobytes(), raw.written, raw.colour)
         return (*numbers, divided, *given, *named.values())
 
+    primitives.ROUND_FACETS = 12
     os.path.realpath = _remembered(os.path.realpath, lambda path, *, strict=False: (os.fspath(path), strict))
     coverage.hull_of = _remembered(coverage.hull_of, lambda points: (points.shape, points.tobytes()))
     health.build_mesh = _remembered(health.build_mesh, of_mesh)
