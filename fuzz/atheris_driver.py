@@ -8,10 +8,15 @@ from __future__ import annotations
 
 import contextlib
 import sys
+import time
 from pathlib import Path
+
+import counts
 
 KEPT = 500
 """Files of a corpus that are kept, the smallest."""
+NOTED = 10_000
+"""Executions that are counted at once."""
 
 
 def run(name: str, folder: Path, *, runs: int | None, seconds: float | None, seed: int) -> None:
@@ -43,9 +48,19 @@ def run(name: str, folder: Path, *, runs: int | None, seconds: float | None, see
     quoted = ("".join(f"\\x{byte:02x}" for byte in word) for word in target.words)
     words.write_text("".join(f'"{word}"\n' for word in quoted))
 
+    done, since = 0, time.process_time()
+
     def once(data: bytes) -> None:
+        nonlocal done, since
         with contextlib.suppress(REFUSED):
             target.run(data)
+        done += 1
+        if done % NOTED == 0:  # libFuzzer ends the process itself
+            now = time.process_time()
+            counts.add(
+                folder.parent, name, "atheris", executions=NOTED, refused=None, seconds=now - since, findings=0
+            )  # fmt: skip
+            since = now
 
     options = [
         f"-seed={seed + 1}",

@@ -5,6 +5,8 @@ from __future__ import annotations
 import random
 import re
 
+from structure import Grammar
+
 _NUMBER = re.compile(rb"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?")
 NUMBERS = (
     b"0", b"-0", b"1", b"-1", b"1e308", b"-1e308", b"1e309", b"1e160", b"1e-320", b"1e18", b"1e19", b"1e-30", b"nan",
@@ -30,8 +32,20 @@ MOST = 40_000
 """Bytes of a mutated input."""
 
 
-def mutated(seed: bytes, others: list[bytes], words: tuple[bytes, ...], rng: random.Random) -> bytes:
-    """The seed after one to some changes; `words` are those of the format."""
+STRUCTURED = 0.85
+"""Share of inputs of a format with a grammar of which the structure is changed; the others stop at its parser."""
+BOTH = 0.05
+"""Share of those whose bytes are changed too."""
+
+
+def mutated(
+    seed: bytes, others: list[bytes], words: tuple[bytes, ...], grammar: Grammar | None, rng: random.Random
+) -> bytes:
+    """The seed after one to some changes; `words` are those of the format, `others` all seeds."""
+    if grammar is not None and rng.random() < STRUCTURED:
+        seed = grammar.changed(seed, others, rng)
+        if rng.random() >= BOTH:
+            return seed
     data = bytearray(seed)
     for _ in range(min(1 + int(rng.expovariate(0.7)), 8)):
         data = rng.choice(_CHANGES)(data, others, words, rng)
@@ -115,36 +129,7 @@ def _splice(data, others, words, rng):
     return data[:at] + other[start : stop + rng.randrange(200)] + data[at + rng.choice((0, stop - start)) :]
 
 
-_ELEMENT = re.compile(rb"<(\w[\w:.-]*)(?:[^<>]*/>|[^<>]*>.*?</\1>)", re.DOTALL)
-_TABLE = re.compile(rb"^\[[^\n]*\n(?:[^\[\n][^\n]*\n)*", re.MULTILINE)
-
-
-def _structure(data, others, words, rng):
-    """An element of XML, or a table of TOML, taken out, doubled, moved, or put in from another seed."""
-    pattern = _ELEMENT if data.lstrip()[:1] == b"<" else _TABLE
-    starts = [place.start() for place in re.finditer(rb"<\w|^\[", data, re.MULTILINE)]
-    place = pattern.match(data, rng.choice(starts)) if starts else None
-    if place is None:
-        return data
-    piece, to = place[0], rng.choice(starts)
-    other = pattern.search(rng.choice(others))
-    change = rng.randrange(4)
-    if change == 0:
-        del data[place.start() : place.end()]
-    elif change == 1:
-        data[to:to] = piece
-    elif change == 2 and not place.start() <= to < place.end():
-        del data[place.start() : place.end()]
-        to -= len(piece) if to > place.start() else 0
-        data[to:to] = piece
-    elif other is not None:
-        data[to:to] = other[0]
-    return data
-
-
 _CHANGES = (
-    _structure,
-    _structure,
     _flip,
     _byte,
     _integer,

@@ -7,9 +7,12 @@ further, the input is a finding, and another process goes on behind it. The same
 from __future__ import annotations
 
 import contextlib
+import gc
+import itertools
 import mmap
 import os
 import random
+import resource
 import signal
 import struct
 import time
@@ -20,14 +23,24 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from mutations import MOST, mutated
-from targets import REFUSED, Target
+from targets import REFUSED, Target, cheaper
 
 HANGS = 10.0
-"""Seconds after which an input takes too long."""
-STUCK = 40.0
-"""Seconds after which native code that does not hear of it is ended."""
+"""Seconds of processor time after which an input takes too long."""
+STUCK = 120.0
+"""Seconds of the clock after which native code that does not hear of it is ended."""
 BEGINS = 600.0
 """Seconds within which the first seed is read: importing and deriving take long on a machine with other work."""
+SLOW = 5.0
+"""Seconds of processor time within which an input is refused: 2 s are promised, and other work on the machine slows."""
+MEMORY = 1 << 30
+"""Bytes that reading may take beside what the process has; an input that takes more is a finding."""
+KEPT = 64
+"""Inputs that were read and are mutated further, at most; each new one takes the place of another."""
+FURTHER = 0.4
+"""Share of inputs that are made of these; the others are made of seeds."""
+SWEPT = 500
+"""Inputs after which unreachable objects are looked for: seldom, since that takes long with all that is imported."""
 _HEAD = struct.Struct("<QI")
 """Twice on the board: inputs done and size of the present one; inputs refused and whether the first seed is read."""
 
@@ -99,14 +112,21 @@ def _work(
     refused = _HEAD.unpack_from(board, _HEAD.size)[0]
     code = 0
     try:
-        signal.signal(signal.SIGALRM, _hang)
+        signal.signal(signal.SIGPROF, _hang)
+        cheaper()
         warnings.simplefilter("error", RuntimeWarning)
         told: set[str] = set()
         with contextlib.suppress(Exception):
             target.run(given[0])  # imports and derives, which takes longer than any input may
         _HEAD.pack_into(board, _HEAD.size, refused, 1)
+        _bound_memory()
+        gc.collect()
+        gc.freeze()
+        gc.disable()
+        kept: list[bytes] = []
+        longest = 2 * max(map(len, given))
         while done < most and time.monotonic() < end:
-            data = mutated(rng.choice(given), given, target.words, rng) if done >= len(given) else given[done]
+            data = given[done] if done < len(given) else _next(target, given, kept, rng)
             place = 2 * _HEAD.size
             board[place : place + len(data)] = data
             _HEAD.pack_into(board, 0, done, len(data))
@@ -118,8 +138,15 @@ def _work(
                 told.add(what)
                 text = what.encode()
                 os.write(writing, struct.pack("<II", len(text), len(data)) + text + data)
+            elif not what and len(data) <= longest:
+                if len(kept) < KEPT:
+                    kept.append(data)
+                else:
+                    kept[rng.randrange(KEPT)] = data
             done += 1
             _HEAD.pack_into(board, 0, done, 0)
+            if done % SWEPT == 0:
+                gc.collect()
     except BaseException:
         traceback.print_exc()
         code = 3
@@ -127,18 +154,33 @@ def _work(
         os._exit(code)
 
 
+def _next(target: Target, given: list[bytes], kept: list[bytes], rng: random.Random) -> bytes:
+    """Another input."""
+    further = target.grammar is not None and kept and rng.random() < FURTHER
+    return mutated(rng.choice(kept if further else given), given, target.words, target.grammar, rng)
+
+
+def _bound_memory() -> None:
+    """Let this process take no more than MEMORY."""
+    pages = int(Path("/proc/self/statm").read_text().split()[0]) if Path("/proc/self/statm").exists() else None
+    if pages is not None:
+        resource.setrlimit(resource.RLIMIT_AS, (pages * resource.getpagesize() + MEMORY, resource.RLIM_INFINITY))
+
+
 def attempt(function: Callable[[bytes], None], data: bytes) -> str:
     """ "" where the bytes were read, "refused", or what happened instead."""
-    signal.setitimer(signal.ITIMER_REAL, HANGS)
+    signal.setitimer(signal.ITIMER_PROF, HANGS)
+    begun = time.process_time()
     try:
         function(data)
-    except REFUSED:
-        return "refused"
+    except REFUSED as error:
+        seconds = time.process_time() - begun
+        return "refused" if seconds < SLOW else f"{where(error)}, after more than {SLOW:g} s"
     except Exception as error:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
         return where(error)
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
     return ""
 
 
@@ -186,7 +228,7 @@ def _keep(outcome: Outcome, folder: Path, what: str, data: bytes) -> None:
     """Keep the first input of each finding."""
     if what in outcome.findings and what.startswith("process ended") is False:
         return
-    path = folder / f"finding-{len(outcome.findings):03d}"
+    path = next(p for k in itertools.count() if not (p := folder / f"finding-{k:03d}").exists())
     path.write_bytes(data)
     path.with_suffix(".txt").write_text(what + "\n")
     key = what if what not in outcome.findings else f"{what} ({len(outcome.findings)})"

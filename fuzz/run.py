@@ -9,6 +9,8 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "pipeline")]
+import counts  # noqa: E402 - from this folder
+
 SECONDS = 600.0
 """Of all targets together."""
 
@@ -17,6 +19,9 @@ def main() -> int:
     """The exit code: 1 where something was found."""
     arguments = _arguments()
     folder: Path = arguments.folder
+    if arguments.table:
+        print(counts.table(folder))
+        return 0
     if arguments.driver == "atheris":
         import atheris_driver
 
@@ -24,7 +29,7 @@ def main() -> int:
             sys.exit("atheris takes one target a process")
         name = arguments.targets[0]
         atheris_driver.run(name, folder / name, runs=arguments.runs, seconds=arguments.seconds, seed=arguments.seed)
-    import own_driver
+    import own_driver  # after the path is set, and not for a table
     from targets import TARGETS
 
     unknown = [name for name in arguments.targets if name not in TARGETS]
@@ -42,16 +47,27 @@ def main() -> int:
         seconds = arguments.seconds
         if seconds is None and arguments.runs is None:
             seconds = SECONDS * target.share / shares
+        before = _processor()
         outcome = own_driver.run(
             target, folder / target.name, runs=arguments.runs, seconds=seconds, seed=arguments.seed
         )  # fmt: skip
         found += len(outcome.findings)
+        counts.add(
+            folder, target.name, "own", executions=outcome.executions, refused=outcome.refused,
+            seconds=_processor() - before, findings=len(outcome.findings),
+        )  # fmt: skip
         memory = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss // 1000
         print(
             f"{outcome.name:<10} {outcome.executions:>11,} {outcome.refused:>11,} {outcome.seconds:>8.0f} "
             f"{len(outcome.findings):>9} {memory:>6}", flush=True,
         )  # fmt: skip
     return 1 if found else 0
+
+
+def _processor() -> float:
+    """Seconds that ended children took of the processor."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 def _arguments() -> argparse.Namespace:
@@ -63,6 +79,9 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--driver", choices=("own", "atheris"), default="own")
     parser.add_argument("--folder", type=Path, default=Path("build/fuzz"), help="for findings and corpora")
     parser.add_argument("--again", type=Path, help="run this input once, and show what is raised")
+    parser.add_argument(
+        "--table", action="store_true", help="print what was executed so far, of all runs in the folder"
+    )
     return parser.parse_args()
 
 

@@ -14,9 +14,12 @@ from pathlib import Path
 
 import numpy as np
 
+import descriptions
+import kinform
 import seeds
 from kinform.errors import KinformError
 from kinform.form.meshes.raw import MeshError
+from structure import Grammar, words_of
 
 REFUSED = (KinformError, MeshError)
 """What a reader raises on purpose."""
@@ -34,6 +37,7 @@ class Target:
     """Words of the format."""
     share: float = 1.0
     """Of the time that all targets have."""
+    grammar: Grammar | None = None
 
 
 _TOP = Path(tempfile.mkdtemp(prefix="kinform-fuzz-", dir="/dev/shm" if Path("/dev/shm").is_dir() else None))
@@ -48,6 +52,42 @@ def _sweep() -> None:
     """Take the files away again; not in a fork."""
     if os.getpid() == _MAKER:
         shutil.rmtree(_TOP, ignore_errors=True)
+
+
+@functools.cache
+def cheaper() -> None:
+    """Remember what the same files give each time: where paths lead, hulls and meshes (no target moves a file); and
+    give primitives fewer facets."""
+    from kinform.form.meshes import health, primitives
+    from kinform.formats.description import coverage
+
+    def of_mesh(raw, *given, **named):
+        divided = tuple(item.names for item in raw.labellings) if raw.labellings else ()
+        numbers = (raw.vertices.tobytes(), raw.vertices.dtype, raw.faces.tobytes(), raw.written, raw.colour)
+        return (*numbers, divided, *given, *named.values())
+
+    primitives.ROUND_FACETS = 12
+    os.path.realpath = _remembered(os.path.realpath, lambda path, *, strict=False: (os.fspath(path), strict))
+    coverage.hull_of = _remembered(coverage.hull_of, lambda points: (points.shape, points.tobytes()))
+    health.build_mesh = _remembered(health.build_mesh, of_mesh)
+
+
+_REMEMBERED = 1024
+"""Answers."""
+
+
+def _remembered(function, key):
+    answers: dict[object, object] = {}
+
+    def asked(*given, **named):
+        place = key(*given, **named)
+        if place not in answers:
+            if len(answers) >= _REMEMBERED:
+                answers.clear()
+            answers[place] = function(*given, **named)
+        return answers[place]
+
+    return asked
 
 
 def _mesh(raw) -> None:
@@ -79,15 +119,17 @@ def _manifest(data: bytes) -> None:
 
     _beside()
     (_FOLDER / "m.toml").write_bytes(data)
-    form.load(_FOLDER / "m.toml")
+    _kept(form.load(_FOLDER / "m.toml"), data)
 
 
 @functools.cache
 def _beside() -> None:
     """Write what a manifest may name; no reader writes."""
     files = {"below.toml": seeds.BELOW.encode(), "a.stl": seeds.stl()[0], "a.obj": seeds.obj()[0]}
-    files |= {"t.csv": seeds.LAW, "p.csv": seeds.PATH, "hand.xml": seeds.HAND.encode()}
+    files |= {"t.csv": seeds.LAW, "p.csv": seeds.PATH}
+    files |= {name: text.encode() for name, text in descriptions.BESIDE.items()}
     for name, content in files.items():
+        (_FOLDER / name).parent.mkdir(exist_ok=True)
         (_FOLDER / name).write_bytes(content)
 
 
@@ -265,9 +307,45 @@ def _source(suffix: str) -> Callable[[bytes], None]:
 
         _beside()
         (_FOLDER / f"robot{suffix}").write_bytes(data)
-        form.load(_FOLDER / f"robot{suffix}")
+        _kept(form.load(_FOLDER / f"robot{suffix}"), data)
 
     return run
+
+
+def _xacro(data: bytes) -> None:
+    """Reads a xacro file; one of `_WHOLE` expands it in a process of its own, as kinform does, the others here."""
+    read = _source(".urdf.xacro")
+    if sum(data) % _WHOLE == 0:
+        read(data)
+        return
+    from kinform.formats.urdf.reading import xacro
+
+    own_process, xacro.confined = xacro.confined, _here
+    try:
+        read(data)
+    finally:
+        xacro.confined = own_process
+
+
+def _here(function, answer, prepare, **limits):
+    """As `confined`, without the process."""
+    prepare()
+    return function(answer)
+
+
+def _kept(assembly, data: bytes) -> None:
+    """Write what was read into results, and read those: of one of `_WHOLE` inputs."""
+    if sum(data) % _WHOLE != 1:
+        return
+    from kinform import results
+    from kinform.design import Design
+    from kinform.errors import ResultsError
+
+    results.write(Design(assembly), _FOLDER / "kept.h5")
+    try:
+        results.read(_FOLDER / "kept.h5")
+    except ResultsError as error:
+        raise AssertionError(f"written and not read: {error}") from error
 
 
 def _scene(data: bytes) -> None:
@@ -322,6 +400,25 @@ _TOML_WORDS = (
     b"\\u0000",
     b"\\U0010ffff", b"1979-05-27T07:32:00Z",
 )  # fmt: skip
+_NAMES = (
+    "p",
+    "b",
+    "c",
+    "g",
+    "s/p",
+    "j",
+    "k",
+    "a.stl",
+    "a.obj",
+    "below.toml",
+    "m.toml",
+    "t.csv",
+    "p.csv",
+    "mm",
+    "in",
+    "KF2",
+)
+"""Of the seeds of manifests."""
 _JSON_WORDS = (
     b"null",
     b"true",
@@ -369,26 +466,70 @@ _OBJ_WORDS = (
     b"\n",
 )
 
+_READERS = Path(kinform.__file__).parent
+_FORMATS = _READERS / "formats"
+
+
+def _xml(*modules: str, values: tuple[str, ...] = ()) -> Grammar:
+    return Grammar("xml", words_of(_READERS / module for module in modules), values)
+
+
+_EXPRESSIONS = (
+    "${1/0}", "${[0]*9}", "${pi}", "${-1}", "${'a'*99}", "${x}", "${name}", "$(arg side)", "$(arg x)", "$(eval 1+1)",
+    "$(find design)", "$(find x)", "$(env HOME)", "$(optenv X y)", "$(cwd)", "$(dirname)", "$${1}", "${{}}", "${[]}",
+    "${dict(a=1)}", "${[i for i in range(9)]}", "${lambda: 1}", "${''.join(['a'])}", "${1 if True else 0}",
+    "${10**400}",
+    "${2**-1}", "${'a' in 'abc'}", "${'%s' % 1}", "${'{}'.format(1)}", "${xacro.load_yaml('values.yaml')}", "${None}",
+    "${(1, 2)[0]}", "${len('a')}", "${int('1')}", "${float('nan')}", "${math.inf}", "${~1}", "${not x}", "${1 < 2 < 3}",
+    "${xacro.arg('side')}", "${python.sorted([2, 1])}", "a:=1 *b **c", "a:=^|1 b:=^", "a:='x y' b", "*b", "**c",
+    "d['b'][0]",
+    "more.xacro", "$(find design)/more.xacro", "*.xacro", "true", "${True}", "parent", "global",
+)  # fmt: skip
+
+
 TARGETS = {
     target.name: target
     for target in (
         Target("stl", _stl, seeds.stl, _STL_WORDS),
         Target("obj", _obj, seeds.obj, _OBJ_WORDS),
-        Target("manifest", _manifest, seeds.manifests, _TOML_WORDS, 2.0),
+        Target(
+            "manifest",
+            _manifest,
+            seeds.manifests,
+            _TOML_WORDS,
+            2.0,
+            Grammar("toml", words_of([_READERS / "form" / "manifest"]), _NAMES),
+        ),
         Target("csv", _csv, seeds.csv, (b",", b"\n", b'"', b";")),
         Target("baseline", _text_error(_baseline), seeds.baselines, _JSON_WORDS, 0.5),
         Target("lock", _text_error(_lock), seeds.locks, _JSON_WORDS),
         Target("catalog", _catalog, seeds.catalogs, (b"CREATE TABLE", b"SELECT", b"joints")),
-        Target("urdf", _source(".urdf"), seeds.urdf, _XML_WORDS),
-        Target("sdf", _source(".sdf"), seeds.sdf, (*_XML_WORDS, *_SDF_WORDS)),
-        Target("mjcf", _source(".xml"), seeds.mjcf, _XML_WORDS),
-        Target("xacro", _source(".urdf.xacro"), seeds.xacro, _XML_WORDS),
+        Target("urdf", _source(".urdf"), descriptions.urdf, _XML_WORDS, grammar=_xml("formats/urdf/reading/reader.py")),
+        Target(
+            "sdf", _source(".sdf"), descriptions.sdf, (*_XML_WORDS, *_SDF_WORDS), grammar=_xml("formats/sdf/reading")
+        ),
+        Target("mjcf", _source(".xml"), descriptions.mjcf, _XML_WORDS, grammar=_xml("formats/mjcf/reading")),
+        Target(
+            "xacro", _xacro, descriptions.xacro, _XML_WORDS, grammar=_xml("formats/urdf/reading", values=_EXPRESSIONS)
+        ),
         Target("scene", _scene, seeds.scenes, (b"element vertex", b"property list", b"OFF", b"\n"), 0.5),
         Target(
             "glb", _source(".glb"), seeds.glb, (b'"children":[0]', b'"mesh":0', b'"matrix":[', b"glTF", *_JSON_WORDS)
         ),
-        Target("3mf", _threemf, seeds.threemf, (*_XML_WORDS, b"transform='1 0 0'", b"unit='inch'", b"objectid='1'")),
-        Target("dae", _dae, seeds.dae, (*_XML_WORDS, b"<instance_node url='#a'/>", b"<matrix>", b"Y_UP", b"meter='0'")),
+        Target(
+            "3mf",
+            _threemf,
+            seeds.threemf,
+            (*_XML_WORDS, b"transform='1 0 0'", b"unit='inch'", b"objectid='1'"),
+            grammar=_xml("form/scenes/threemf.py"),
+        ),
+        Target(
+            "dae",
+            _dae,
+            seeds.dae,
+            (*_XML_WORDS, b"<instance_node url='#a'/>", b"<matrix>", b"Y_UP", b"meter='0'"),
+            grammar=Grammar("xml", descriptions.COLLADA),
+        ),
         Target("step", _source(".step"), seeds.step, _STEP_WORDS, 0.5),
         Target("results", _results, seeds.edits, (), 2.0),
     )

@@ -13,7 +13,7 @@ from support.diagonal import some
 from support.places import FIXTURES
 from support.sealing import editing
 
-from kinform import results
+from kinform import results, stages
 from kinform.errors import ResultsError
 from kinform.results import schema
 
@@ -90,6 +90,8 @@ EDITS: dict[str, tuple[Callable[[h5py.File], None], str]] = {
     "a type that is none": (_cell("joints/joints", "type", b"magic"), "joints/joints.type"),
     "a body that is none": (_cell("joints/joints", "body_a", b"nobody"), "joints/joints.body_a"),
     "an axis that is no number": (_cell("joints/joints", "axis_x", np.nan), "joints/joints.axis_x"),
+    "an axis whose square is no number": (_cell("joints/joints", "axis_x", 1e160), "joints/joints.axis_x"),
+    "a vertex whose square is no number": (_item("assembly/vertices", (0, 0), -1e160), "assembly/vertices"),
     "a patch beyond": (_item("joints/patches", (0,), 99), "joints/patches"),
     "a patch before": (_item("joints/patches", (0,), -1), "joints/patches"),
     "samples of no patch": (_cell("contacts/samples", "patch", 99), "contacts/samples.patch"),
@@ -147,3 +149,40 @@ def test_every_array_of_numbers_has_its_form(manifest: Path, derive_design, tmp_
     known = {*schema.ARRAYS, *schema.RAGGED, *(f"{name}_offset" for name in schema.RAGGED)}
     assert arrays
     assert [name for name in arrays if name not in known] == []
+
+
+@pytest.mark.parametrize(("colour", "good"), [(b"#00fF0a", True), (b"//", False), (b"#12345", False), (b"red", False)])
+def test_a_colour_is_six_digits(colour: bytes, good: bool, hinge: bytes, tmp_path: Path) -> None:
+    """Exports read it as numbers, the page puts it into a style."""
+    (tmp_path / "r.h5").write_bytes(hinge)
+    with editing(tmp_path / "r.h5") as file:
+        _cell("assembly/parts", "colour", colour)(file)
+    if good:
+        assert colour.decode() in {part.colour for part in results.read(tmp_path / "r.h5").assembly.parts}
+        return
+    with pytest.raises(ResultsError) as caught:
+        results.read(tmp_path / "r.h5")
+    assert "(assembly/parts.colour " in caught.value.problem.message
+
+
+@pytest.mark.parametrize("case", ["an axis whose square is no number", "a vertex whose square is no number"])
+def test_numbers_have_squares(case: str, hinge: bytes, tmp_path: Path) -> None:
+    edit, dataset = EDITS[case]
+    (tmp_path / "r.h5").write_bytes(hinge)
+    with editing(tmp_path / "r.h5") as file:
+        edit(file)
+    with pytest.raises(ResultsError) as caught:
+        results.read(tmp_path / "r.h5")
+    assert f"({dataset} " in caught.value.problem.message
+
+
+def test_the_largest_number_stays_where_a_description_states_no_bound_by_it(tmp_path: Path) -> None:
+    most = 1.7976931348623157e308
+    links = "".join(f'<link name="{k}"><visual><geometry><box size="1 1 1"/></geometry></visual></link>' for k in "ab")
+    limit = f'<limit lower="-{most}" upper="{most}" effort="{most}" velocity="{most}"/>'
+    joint = f'<joint name="j" type="prismatic"><parent link="a"/><child link="b"/>{limit}</joint>'
+    (tmp_path / "a.urdf").write_text(f'<robot name="r">{links}{joint}</robot>')
+    results.write(stages.import_(tmp_path / "a.urdf"), tmp_path / "r.h5")
+    (description,) = results.read(tmp_path / "r.h5").assembly.descriptions
+    (found,) = description.joints
+    assert (found.limits, found.effort, found.speed) == ((-most, most), most, most)

@@ -16,6 +16,9 @@ from kinform.results.held import HeldDataset, HeldGroup
 from kinform.results.schema import Form, Last, Length
 from kinform.results.table import DatasetError, missing
 
+LARGEST = 1e150
+"""Of the numbers of a results file: sums of their squares are numbers too. Lengths are at most 1e18 m."""
+
 Check = Callable[[HeldGroup, str], None]
 
 
@@ -44,7 +47,7 @@ def _those(table: dict[str, Any], datasets: set[str]) -> list[str]:
 
 
 def _check_numbers(file: HeldGroup, name: str) -> None:
-    """Every number is one, but for those that are said to be unknown or endless."""
+    """Every number is one up to LARGEST, but for those that are said to be unknown or endless."""
     dataset = file.dataset(name)
     dtype = dataset.dtype
     real = [c for c in dtype.names or ("",) if (dtype[c] if c else dtype).kind == "f"]
@@ -54,9 +57,11 @@ def _check_numbers(file: HeldGroup, name: str) -> None:
     for column in real:
         place = f"{name}.{column}" if column else name
         values = np.asarray(data[column] if column else data)
-        wrong = ~np.isfinite(values)
-        if not wrong.any():
+        if not values.size or (float(values.min()) >= -LARGEST and float(values.max()) <= LARGEST):
             continue
+        wrong = ~(np.abs(values) <= np.float64(LARGEST))
+        if place.startswith(schema.AS_STATED):
+            wrong &= ~np.isfinite(values)
         if place.startswith(schema.UNKNOWN):
             wrong &= ~np.isnan(values)
         if place.startswith(schema.ENDLESS):
@@ -64,7 +69,8 @@ def _check_numbers(file: HeldGroup, name: str) -> None:
         if column:
             wrong &= ~missing(values)
         if wrong.any():
-            raise DatasetError(place, f"row {int(np.argwhere(wrong)[0][0])} holds {values[wrong][0]}, no number")
+            fault = f"holds {values[wrong][0]}, which is no number up to {LARGEST:g}"
+            raise DatasetError(place, f"row {int(np.argwhere(wrong)[0][0])} {fault}")
 
 
 def _check_array(file: HeldGroup, name: str, form: Form) -> None:
@@ -172,7 +178,7 @@ def _check_spelling(file: HeldGroup, column: str) -> None:
     form = re.compile(schema.SPELT[column])
     wrong = next((text for text in _texts(file, column) if not form.fullmatch(text)), None)
     if wrong is not None:
-        raise DatasetError(column, f"holds {wrong!r}, no word of kinform")
+        raise DatasetError(column, f"holds {wrong!r}, which kinform does not write there")
 
 
 def _named(file: HeldGroup, column: str) -> Iterable[str]:

@@ -203,9 +203,13 @@ ENDLESS: tuple[str, ...] = (
     "assembly/function/joints.range_",
 )  # fmt: skip
 """Beginnings of the columns that may be infinite: nothing bounds them."""
+AS_STATED: tuple[str, ...] = tuple(f"assembly/described_joints.{c}" for c in ("lower", "upper", "effort", "speed"))
+"""Beginnings of the columns that may hold any number: what a description says, where the largest one means no bound."""
 
 SPELT: dict[str, str] = {
     **{f"findings/{table}.code": r"[A-Z]{2}[0-9]{3}" for table in ("findings", "rules", "ignored")},
     **{f"findings/{table}.rule": r"[a-z0-9]+(-[a-z0-9]+)*" for table in ("findings", "rules", "ignored")},
+    **{f"assembly/{table}.colour": r"#[0-9a-fA-F]{6}" for table in ("meshes", "parts")},
 }
-"""Columns whose texts are words of kinform, also of versions that have others: renderers write them as they are."""
+"""Columns whose texts are words of kinform, also of versions that have others, or colours: renderers write them as they
+are, or read them as numbers."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 import pytest
 import trimesh
@@ -84,3 +86,37 @@ def test_what_is_wrong_with_a_dae_is_one_problem(tmp_path, text):
         form.load(tmp_path / "a.dae")
     (problem,) = caught.value.problems
     assert problem.file == "a.dae" and problem.remedy
+
+
+def chain(count: int, named: str) -> str:
+    """Nodes of a library that name each other, the last one the box."""
+    nodes = [f'<node id="n{k}"><instance_node url="#n{k + 1}"/></node>' for k in range(count)]
+    nodes.append(f'<node id="n{count}"><instance_geometry url="#gbox"/></node>')
+    nodes = nodes[::-1] if named == "before" else nodes
+    text = dae({"box": BOX}, MM, nodes='<node name="box"><instance_node url="#n0"/></node>')
+    assert "<library_visual_scenes>" in text
+    return text.replace(
+        "<library_visual_scenes>", f"<library_nodes>{''.join(nodes)}</library_nodes><library_visual_scenes>"
+    )
+
+
+@pytest.mark.parametrize("named", ["before", "after"])
+def test_nodes_of_a_library_are_read_in_any_order(tmp_path, named):
+    (tmp_path / "a.dae").write_text(chain(20, named))
+    assert len(form.load(tmp_path / "a.dae").parts) == 1
+
+
+def test_a_long_chain_of_nodes_is_refused_at_once(tmp_path):
+    (tmp_path / "a.dae").write_text(chain(2000, "after"))
+    begun = time.process_time()
+    with pytest.raises(InputError):
+        form.load(tmp_path / "a.dae")
+    assert time.process_time() - begun < 5.0  # 0.2 s on a quiet machine; 10 s where each is tried again for each
+
+
+def test_a_circle_of_nodes_of_a_library_ends(tmp_path):
+    (tmp_path / "a.dae").write_text(
+        chain(3, "after").replace("#gbox", "#n0").replace("instance_geometry", "instance_node")
+    )
+    with pytest.raises(InputError):
+        form.load(tmp_path / "a.dae")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 import pytest
 from tests.support.robots import ring, urdf, write
@@ -471,3 +473,35 @@ def test_what_cannot_be_merged_is_told_and_not_placed_somewhere_else(tmp_path, p
     with pytest.raises(InputError) as caught:
         form.load(merged(tmp_path, 'merge="true"', platform=platform))
     assert all(problem.line and problem.remedy for problem in caught.value.problems)
+
+
+@pytest.mark.parametrize("around", ["{}", '<world name="w">{}</world>'])
+@pytest.mark.parametrize("frame", ["world", "out", "deep"])
+def test_a_placement_frame_outside_of_its_model_is_told(tmp_path, frame, around):
+    frames = (
+        '<frame name="out"><pose relative_to="world">1 0 0 0 0 0</pose></frame><frame name="deep" attached_to="out"/>'
+    )
+    model = f'<model name="m" placement_frame="{frame}">{link("a")}{frames}</model>'
+    with pytest.raises(InputError) as caught:
+        load(tmp_path, f'<sdf version="1.9">{around.format(model)}</sdf>')
+    assert all(problem.line and problem.remedy for problem in caught.value.problems)
+
+
+@pytest.mark.parametrize("chained", ["attached_to", "relative_to", "both"])
+def test_frames_may_hang_on_each_other_to_any_length(tmp_path, chained):
+    """Chains are walked without recursion, and once: the time of n joints at the end of n frames grows with n."""
+    count = 1500
+
+    def frame(k):
+        attached = f' attached_to="f{k + 1}"' if chained != "relative_to" else ""
+        pose = f'<pose relative_to="f{k + 1}">0 0 1 0 0 0</pose>' if chained != "attached_to" else ""
+        return f'<frame name="f{k}"{attached}>{pose}</frame>'
+
+    frames = "".join(map(frame, range(count))) + f'<frame name="f{count}" attached_to="l"/>'
+    joints = "".join(joint(f"j{k}", "f0", "k", "fixed", "") for k in range(count))
+    links = f'<link name="l"/>{link("k", """<pose relative_to="f0">0 0 1 0 0 0</pose>""")}'
+    begun = time.process_time()
+    assembly = load(tmp_path, f'<sdf version="1.9"><model name="m">{links}{frames}{joints}</model></sdf>')
+    assert time.process_time() - begun < 10.0  # 0.5 s on a quiet machine; 30 s where each joint walks the chain
+    heights = [part.X_WP[2, 3] for part in assembly.parts if part.mesh is not None]
+    assert heights == pytest.approx([1.0 + (0 if chained == "attached_to" else count) + 0.1])

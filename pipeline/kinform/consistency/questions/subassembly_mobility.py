@@ -28,7 +28,7 @@ class InnerMobility:
     still: tuple[str, ...]
     """Stated joints among these parts that none of the freedoms moves."""
     ends: tuple[int, int] = (0, 0)
-    """The least and the most that `effective` may be, as contact only pushes (`mobility.two_ends`)."""
+    """The least and the most that `effective` may be, by joints drawn at a stop or in doubt (`mobility.two_ends`)."""
 
     @property
     def effective(self) -> int:
@@ -67,8 +67,7 @@ def inner_mobility(design: Design, part_names: Sequence[str]) -> InnerMobility |
         if is_immobile(joint, twists[:, graph.node[second]] - twists[:, graph.node[first]]):
             still.append(joint.name)
     count = closure.mobility if finite.count is None else finite.count
-    opened = {joint.name for joint in graph.joints if joint.held is False}
-    ends = mobility_ends(alone, graph, opened, count - idle, closure.mobility, size, None)
+    ends = mobility_ends(alone, graph, (), count - idle, closure.mobility, size, None)
     return InnerMobility(count, idle, tuple(still), ends)
 
 

@@ -27,7 +27,8 @@ COUPLED_MOST = 16
 """Joints of one stated coupling: a compound planetary train has at most as many; each is a column of its row."""
 
 
-Share = Annotated[Finite, Field(gt=0.0, le=1.0)]
+Share = Annotated[Finite, Field(ge=1e-9, le=1.0)]
+"""Of power that comes out. One over it is a number that can be worked with; of a nanowatt in a watt nothing is left."""
 
 
 class IntendedJointTable(Table):

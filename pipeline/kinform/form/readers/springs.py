@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 
 from kinform.form.readers.function import FunctionReader
+from kinform.foundation.rounding import SOLVED
 from kinform.model.arrays import Array
 from kinform.model.springs import BUSHING, GAS_SPRING, SPRING, StatedSpring
 
@@ -49,6 +51,8 @@ def _spring(
 def _gas_spring(
     reader: FunctionReader, table: Any, name: str, between: tuple[str, str], *path: str | int
 ) -> StatedSpring | None:
+    from kinform.form.meshes.health import SMALLEST_MESH  # meshes are read where there are some
+
     scope, (first, second) = reader.scope, _points(reader, table)
     (extended, compressed), (least, most) = table.lengths, table.forces
     if not extended > compressed:
@@ -58,10 +62,21 @@ def _gas_spring(
         scope.complain("the force of a gas spring does not grow as it is pushed in", "swap them", *path, "forces")
         return None
     stroke = (extended - compressed) * scope.metres
+    if stroke < SMALLEST_MESH:
+        wrong = f"the lengths of a gas spring differ by {stroke:.2g} m, less than an atom"
+        scope.complain(wrong, "correct them, or their units", *path, "lengths")
+        return None
     numbers = {"force": least, "extended": extended * scope.metres, "damping": table.damping}
     if table.exponent:
         # force · (column − what it is pushed in)^n is the same at both lengths.
-        ratio = float((most / least) ** (1.0 / table.exponent))
+        try:
+            ratio = float((most / least) ** (1.0 / table.exponent))
+        except OverflowError:
+            ratio = math.inf
+        if not 1.0 + SOLVED < ratio < 1.0 / SOLVED:
+            wrong = f"a gas spring with exponent {table.exponent:g} has no column of gas with these forces"
+            scope.complain(wrong, "give 1 (slow) to 1.4 (quick), or 0 for a straight line", *path, "exponent")
+            return None
         numbers |= {"column": stroke * ratio / (ratio - 1.0), "exponent": table.exponent}
     else:
         numbers |= {"stiffness": (most - least) / stroke}

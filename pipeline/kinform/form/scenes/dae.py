@@ -7,6 +7,7 @@ these programs have it. Archives, entities and external document types are refus
 
 from __future__ import annotations
 
+import functools
 import io
 import math
 from collections.abc import Iterator, Mapping
@@ -94,7 +95,7 @@ class _Reader:
         _check(data)
         broken = [collada.common.DaeError]
         try:
-            self.document: Any = collada.Collada(io.BytesIO(data), ignore=broken)
+            self.document: Any = _document_type()(io.BytesIO(data), ignore=broken)
         except Exception as error:  # what it stumbles over is whatever it did not think of
             raise _unreadable(error) from None
         self.metres = float(self.document.assetInfo.unitmeter or 1.0)
@@ -184,6 +185,43 @@ class _Reader:
         every = np.concatenate(vertices)
         single = float(np.finfo(np.float32).eps) * float(np.abs(every).max())
         return RawMesh(every, np.concatenate(faces), written=single, colour=prevailing(every, faces, colours))
+
+
+@functools.cache
+def _document_type() -> Any:
+    """The document of pycollada; nodes of a library are read after those that they name.
+
+    Read in another order, they are tried again for each one that was read: a second for a hundred, a minute for 3000.
+    """
+    import collada
+
+    def load_nodes(document: Any) -> None:
+        for library in document.xmlnode.findall(document.tag("library_nodes")):
+            nodes = library.findall(document.tag("node"))
+            known = set(nodes)
+            others = [element for element in library if element not in known]
+            library[:] = [*others, *_named_first(nodes, document.tag("instance_node"))]
+        collada.Collada._loadNodes(document)
+
+    return type("Document", (collada.Collada,), {"_loadNodes": load_nodes})
+
+
+def _named_first(nodes: list[Any], instance: str) -> list[Any]:
+    """The nodes, each after those that it names, else as they are; what names itself in a circle stays in it."""
+    by_id = {node.get("id"): node for node in nodes}
+    ordered: dict[Any, None] = {}
+    begun: set[Any] = set()
+    todo = [(node, False) for node in reversed(nodes)]
+    while todo:
+        node, ready = todo.pop()
+        if ready:
+            ordered[node] = None
+        elif node not in begun:
+            begun.add(node)
+            todo.append((node, True))
+            named = [by_id.get((inner.get("url") or "").removeprefix("#")) for inner in node.iter(instance)]
+            todo += [(other, False) for other in reversed(named) if other is not None]
+    return list(ordered)
 
 
 def _colour(material: Any) -> str | None:

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.foundation.meshes.hulls import Hull, hull_of
+from kinform.foundation.meshes.hulls import hull_of, outside_of_all
 from kinform.model.arrays import Array, Ints
 from kinform.model.descriptions import Coverage
 
@@ -26,7 +26,7 @@ def coverage_of(visual: Sequence[tuple[Array, Ints]], collision: Sequence[Array]
     size = float(np.linalg.norm(np.ptp(whole.corners, axis=0)))
     corners = np.concatenate([hull.corners for hull in hulls])
     beyond = float(whole.outside(corners).max())
-    outmost = float(_outside(hulls, whole.corners).max())
+    outmost = float(outside_of_all(hulls, whole.corners).max())
     area = bare = 0.0
     for points, faces in visual:
         # Facets of a visual mesh that are held against the collision geometry, about: of larger ones every second,
@@ -34,7 +34,7 @@ def coverage_of(visual: Sequence[tuple[Array, Ints]], collision: Sequence[Array]
         a, b, c = (points[faces[:: 1 + len(faces) // 2000, k]] for k in range(3))
         if not len(a):
             continue
-        out = _outside(hulls, (a + b + c) / 3.0)
+        out = outside_of_all(hulls, (a + b + c) / 3.0)
         areas = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
         outmost = max(outmost, float(out.max()))
         area += float(areas.sum())
@@ -43,8 +43,3 @@ def coverage_of(visual: Sequence[tuple[Array, Ints]], collision: Sequence[Array]
         bare += float(areas @ (out > 0.01 * size))
     across = float(np.linalg.norm(np.ptp(corners, axis=0)))
     return Coverage(max(outmost, 0.0), bare / area if area > 0.0 else 0.0, max(beyond, 0.0), size, across)
-
-
-def _outside(hulls: Sequence[Hull], points: Array) -> Array:
-    """How far each point lies outside of the hull that it is nearest to."""
-    return np.asarray(np.min([hull.outside(points) for hull in hulls], axis=0))

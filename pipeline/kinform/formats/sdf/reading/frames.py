@@ -44,8 +44,8 @@ class Frames:
         self._xml = xml
         self._frames: dict[str, Frame] = {}
         self._poses: dict[tuple[str, str], Array | None] = {}
-        self._attached: dict[str, str] = {}
-        """The links of frames that were asked for."""
+        self._links: dict[str, str | None] = {}
+        """By name of a frame the link that it is attached to."""
 
     def add(self, name: str, frame: Frame) -> None:
         """A frame; what had the name before keeps it: links before joints."""
@@ -60,7 +60,7 @@ class Frames:
             return name
         if stated == MODEL and not scope:
             return WORLD
-        known = (other.removeprefix(scope) for other in self._frames if other.startswith(scope))
+        known = [other.removeprefix(scope) for other in self._frames if other.startswith(scope)]
         self._xml.complain(
             element, f"{what} {in_quotes(stated)} is not there", did_you_mean(stated, known, "the frames")
         )
@@ -68,57 +68,67 @@ class Frames:
 
     def pose(self, name: str) -> Array | None:
         """(4, 4) in the world; None after noting why there is none."""
-        return self._pose(name, WORLD, ())
+        return self._pose(name, WORLD)
 
     def link_of(self, name: str, links: Container[str]) -> str | None:
-        """The link that a frame is attached to, "" for the world; None after noting why there is none."""
-        seen: dict[str, None] = {}
-        while name not in links and name != WORLD:
-            if name in self._attached:
-                name = self._attached[name]
+        """The link that a frame is attached to, "" for the world; None after noting why there is none. The `links` are
+        the same each time."""
+        chain: dict[str, None] = {}
+        end: str | None = name
+        while end is not None and end not in links and end != WORLD:
+            if end in self._links:
+                end = self._links[end]
                 break
-            frame = self._frames[name]
-            if name in seen:
-                wrong = f"frames are attached to each other in a circle: {in_quotes(name)}"
-                self._xml.complain(frame.element, wrong, "attach one of them to a link")
-                return None
-            seen[name] = None
-            if frame.attached is None:
-                self._xml.complain(frame.element, f"{in_quotes(name)} is attached to no link", "name a link")
-                return None
-            below = self.full(frame.scope, frame.attached, frame.element, "attached_to")
-            if below is None:
-                return None
-            name = below
-        self._attached.update(dict.fromkeys(seen, name))
-        return name
+            end = self._attached(end, chain)
+        self._links |= dict.fromkeys(chain, end)
+        return end
 
-    def _pose(self, name: str, base: str, above: tuple[str, ...]) -> Array | None:
+    def _attached(self, name: str, chain: dict[str, None]) -> str | None:
+        """What a frame is attached to, which is added to the chain; None after noting why there is nothing."""
+        frame = self._frames[name]
+        if name in chain:
+            wrong = f"frames are attached to each other in a circle: {in_quotes(name)}"
+            self._xml.complain(frame.element, wrong, "attach one of them to a link")
+            return None
+        chain[name] = None
+        if frame.attached is None:
+            self._xml.complain(frame.element, f"{in_quotes(name)} is attached to no link", "name a link")
+            return None
+        return self.full(frame.scope, frame.attached, frame.element, "attached_to")
+
+    def _pose(self, name: str, base: str) -> Array | None:
         """(4, 4) of a frame in `base`, which is the world or the model that it is in."""
-        if name == base:
-            return np.eye(4)
-        key = (name, base)
-        if key not in self._poses:
-            frame = self._frames[name]
-            if name in above:
-                circle = " → ".join(in_quotes(other) for other in (*above[above.index(name) :], name))
-                self._xml.complain(frame.element, f"poses are relative to each other in a circle: {circle}",
-                                   "state one of them relative to the model")  # fmt: skip
-                return None
-            self._poses[key] = self._composed(frame, name, base, (*above, name))
-        return self._poses[key]
+        chain: dict[str, None] = {}
+        here: str | None = name
+        while here is not None and here != base and (here, base) not in self._poses:
+            here = self._relative(here, base, chain)
+        X = np.eye(4) if here == base else None if here is None else self._poses[here, base]
+        for below in reversed(chain):
+            X = self._poses[below, base] = None if X is None else self._composed(below, X)
+        return X
 
-    def _composed(self, frame: Frame, name: str, base: str, above: tuple[str, ...]) -> Array | None:
-        relative = self.full(frame.scope, frame.relative, frame.element, "the pose: its relative_to")
-        if relative is None:
+    def _relative(self, name: str, base: str, chain: dict[str, None]) -> str | None:
+        """The frame in which a frame is posed, which is added to the chain; None after noting why there is none."""
+        if name == WORLD:
+            wrong = "placement_frame is posed relative to the world, outside of its model"
+            self._xml.complain(self._frames[base].element, wrong, "name a frame that is posed relative to the model")
             return None
-        X = self._pose(relative, base, above)
-        if X is None:
+        frame = self._frames[name]
+        if name in chain:
+            names = list(chain)
+            circle = " → ".join(in_quotes(other) for other in (*names[names.index(name) :], name))
+            self._xml.complain(frame.element, f"poses are relative to each other in a circle: {circle}",
+                               "state one of them relative to the model")  # fmt: skip
             return None
+        chain[name] = None
+        return self.full(frame.scope, frame.relative, frame.element, "the pose: its relative_to")
+
+    def _composed(self, name: str, X: Array) -> Array | None:
+        """The pose of a frame of which what it is relative to has the pose X."""
+        frame = self._frames[name]
         out = X @ frame.X
         if frame.placed is not None:
-            inner = name.removesuffix(MODEL)
-            full = self.full(inner, frame.placed, frame.element, "placement_frame")
-            X_MP = None if full is None else self._pose(full, name, ())
+            full = self.full(name.removesuffix(MODEL), frame.placed, frame.element, "placement_frame")
+            X_MP = None if full is None else self._pose(full, name)
             return None if X_MP is None else np.asarray(out @ inverse(X_MP))
         return np.asarray(out)
