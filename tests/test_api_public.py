@@ -157,7 +157,7 @@ class TestSummary:
         np.testing.assert_allclose(np.linalg.norm(joint["axis"]), 1.0)
         assert found["mobility"] == {
             "instantaneous": 1, "finite": 1, "effective": 1, "idle": 0, "redundant": 0, "blocked_mobility": 1,
-            "contact_mobility": None,
+            "contact_mobility": None, "low_mobility": 1, "high_mobility": 1,
         }  # fmt: skip
 
     def test_general_joints_have_their_twists(self) -> None:

@@ -123,7 +123,7 @@ def test_the_rounded_end_of_a_slot_may_be_a_stop(name):
 
 
 @diagonal(
-    name=["bayonet corner", "square corner", "key corner", "block corner", "pad corner"],
+    name=["bayonet corner", "square corner", "key corner"],
     stated=["cylindrical", "revolute", "prismatic", "fixed"],
 )
 def test_nothing_may_be_stated_of_a_corner(name, stated):

@@ -61,7 +61,7 @@ class Stage:
 
 CONTACTS = Stage(
     "contacts",
-    code={"surfaces": ("surfaces", "foundation"), "contacts": ("contacts", "foundation")},
+    code={"surfaces": ("surfaces", "foundation"), "contacts": ("contacts", "surfaces", "foundation")},
     fills=("surfaces", "contacts"),
     marks=("meshes", "pairs"),
     view=views.for_contacts,

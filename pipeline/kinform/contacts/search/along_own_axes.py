@@ -12,7 +12,6 @@ from kinform.model.arrays import Array, freeze
 from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces
-from kinform.surfaces.copies import turned_surfaces
 
 
 def along_own_axes(
@@ -20,6 +19,8 @@ def along_own_axes(
 ) -> tuple[dict[PartName, Part], dict[str, MeshSurfaces]]:
     """The parts of these names, with their meshes turned into axes of their own, and the surfaces of these meshes by
     digest. Where the parts are in the world stays the same."""
+    from kinform.surfaces.copies import turned_surfaces
+
     parts = {part.name: part for part in assembly.parts}
     out: dict[PartName, Part] = {}
     turned: dict[str, tuple[Mesh, Array]] = {}

@@ -48,7 +48,8 @@ def choose_readings(
         if joint.readings and pair in wanted and answer.other is not None:
             out[pair] = _as_intended(wanted[pair], answer, joint, patches)
         elif pair in wanted and joint.status == "determined" and (closed := _closed(joint, patches)) is not None:
-            out[pair] = answer, closed if _is(closed, wanted[pair], patches) else joint
+            located = closed.axis is None or wanted[pair].axis is not None
+            out[pair] = answer, closed if located and _is(closed, wanted[pair], patches) else joint
         elif joint.readings and seated.intersection(pair) and joint.readings[0].cause == "stop":
             reason = f"{joint.reason}; a pin that several bodies hold about one line is seated"
             out[pair] = answer, replace(joint, status="determined", reason=reason)
@@ -58,8 +59,9 @@ def choose_readings(
 
 
 def _closed(joint: Joint, patches: Sequence[Patch]) -> Joint | None:
-    """The joint that contact leaves if what it lets go in one sense counts; None where that is no other lower pair."""
-    if len(joint.closed) <= len(joint.twists):
+    """The joint that contact leaves if the motion that it ends in one sense counts; None where that is no other lower
+    pair, or more than one motion: those are no end stop."""
+    if len(joint.closed) != len(joint.twists) + 1:
         return None
     frame = Frame.of(np.concatenate([patches[k].points for k in joint.patches]))
     form = name_space(span(scaled(joint.closed.T, frame)), frame)

@@ -34,6 +34,7 @@ from kinform.kinematics.joints.pair.lower_pairs import JointForm
 from kinform.kinematics.joints.pair.motion_cone import SLIDES, MotionCone, motion_cone
 from kinform.kinematics.joints.pair.one_sided import ALONG_AXIS, HALF_ROUND, OtherReading, leaves_several_ways
 from kinform.kinematics.joints.pair.preserved import preserved_by_each
+from kinform.kinematics.joints.pair.touches import TOUCHING
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.kinematics import JointStatus, ReadingCause
 from kinform.model.tolerances import Tolerances
@@ -156,7 +157,7 @@ def _at_stop(pair: _Pair, strict: Array, cone: MotionCone) -> Steps[Decision | O
     for n, motion in _new_turns(pair, strict):
         out = ~pair.preserved[:, n]
         journal = _journal(evidence.chosen(~out), motion)
-        if not (journal or reading is None):
+        if not (journal or reading is None) or _in_corner(evidence, out):
             continue
         basis, freed = yield from freedoms_beyond(evidence, pair.twists, pair.preserved, ~out, pair.tolerances, strict)
         if not freed.shape[1] or not _in_one_sense(cone, basis, freed):
@@ -171,6 +172,15 @@ def _at_stop(pair: _Pair, strict: Array, cone: MotionCone) -> Steps[Decision | O
         ended = tuple((int(k), motion, sense) for k in np.flatnonzero(out))
         return _with_left_out(rest, out, motion, strict, cone.exactly(freed), ended, "")
     return reading
+
+
+def _in_corner(evidence: Evidence, out: Flags) -> bool:
+    """Would a pin be taken off one wall that stays at another? Which of them it leaves is not known."""
+    held, left = (
+        {(item.patch.parts[k], item.patch.surfaces[k]) for item in of for k in (0, 1) if item.patch.radii[k] > 0.0}
+        for of in ([i for i in evidence.chosen(flags) if i.patch.kind in TOUCHING] for flags in (~out, out))
+    )
+    return not held.isdisjoint(left)
 
 
 def _in_one_sense(cone: MotionCone, basis: Array, freed: Array) -> bool:

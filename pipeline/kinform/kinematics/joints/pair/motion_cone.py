@@ -72,11 +72,14 @@ class MotionCone:
         return self.closed[:, self.rest.shape[1] :]
 
     def exactly(self, freed: Array) -> MotionCone:
-        """The cone with what its open contact alone holds, (6, n) orthonormal, in place of what it spans beside what is
-        at rest, where that is as much: the cone is known to slack only, and surfaces know their own motions."""
-        if freed.shape[1] != self.extra:
+        """The cone with its span within what its closed contact alone leaves beside what is at rest, (6, n)
+        orthonormal: it is known to slack only, and surfaces know their own motions. As it is where that is less."""
+        if not self.extra or freed.shape[1] < self.extra:
             return self
-        return replace(self, closed=np.hstack([self.rest, freed]))
+        vectors, values, _ = np.linalg.svd(freed.T @ self.beyond, full_matrices=False)
+        if values.min() < WITHIN:
+            return self
+        return replace(self, closed=np.hstack([self.rest, freed @ vectors]))
 
     @property
     def plainly_open(self) -> bool:
@@ -90,6 +93,9 @@ class MotionCone:
         return not self.rest.shape[1] and slides
 
 
+WITHIN = 0.9
+"""Cosine between a motion of the cone and what surfaces leave, from which on it is one of these: 26°, as little slack
+turns a motion that few rows see. Chosen, not measured."""
 SLIDES = 0.05
 """Turn of a unit twist up to which it is a slide: of what is known to slack only. Chosen, not measured."""
 

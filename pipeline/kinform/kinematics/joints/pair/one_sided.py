@@ -9,6 +9,7 @@ rest. Else it depends on where the faces are that are left:
 - A face inside of the guide's own cross-section, at the end of a guide that is long enough to slide in, may be the
   bottom of a bore that a piston has reached, or the step bearing of a shaft. So may a face beside the axis.
 - A face that opposes a turn in one sense is what the lever came to rest on.
+- A round that holds a pin on one side only may be the end of its slot.
 - A rim that stands in a seat beside a guide may be either: the head of a countersunk screw is tightened, a valve opens.
 
 Where it may be either, both readings are kept, and the joint is ambiguous until something else chooses. So it is where
@@ -35,6 +36,12 @@ from kinform.model.arrays import Array, Flags
 from kinform.model.kinematics import ReadingCause
 from kinform.model.tolerances import Tolerances
 
+ONE_WAY = 1.0 - 1e-4
+"""Cosine of normals of faces that look one way: 0.8°. Chosen, not measured."""
+LEAST_PART = 0.1
+"""Share of a candidate motion that is in what is asked about from which on it counts. Chosen, not measured."""
+ALIKE = math.cos(math.radians(15.0))
+"""Cosine between motions that are one but for slack: rounds have bins of normals of up to 15°."""
 ALONG_AXIS = 0.01
 """Normals and axes this near (sine) to an axis are along it. Chosen, not measured."""
 OPPOSING_SPEED = 0.05
@@ -88,18 +95,62 @@ def stop_reading(
 
     `twists` (6, n) are candidate motions, `preserved` (items, n) which patches slide on themselves under them.
     """
-    if cone.extra != 1 or cone.plainly_open or cone.opened.all() or not cone.opened.any():
+    if not cone.extra or cone.plainly_open or cone.opened.all():
         return None
+    if cone.extra > 1:
+        return (
+            None if strict.shape[1] else (yield from _end_of_some_guide(evidence, twists, preserved, tolerances, cone))
+        )
     keep = ~cone.opened
-    basis, freed = yield from freedoms_beyond(evidence, twists, preserved, keep, tolerances, strict)
-    if freed.shape[1] != 1:
+    _, freed = yield from freedoms_beyond(evidence, twists, preserved, keep, tolerances, strict)
+    basis = cone.exactly(freed).closed
+    if not freed.shape[1] or basis is cone.closed:
         return None
+    if freed.shape[1] > 1:
+        basis = np.column_stack([strict, _nearest(basis[:, -1], freed, twists[:, preserved[keep].all(axis=0)])])
     out = tuple(int(k) for k in np.flatnonzero(cone.opened))
     reading = OtherReading(evidence.form(basis), basis, out, "stop")
     turned = {"fixed": ("revolute",), "prismatic": ("cylindrical",)}
     if reading.form.type in turned.get(evidence.form(strict).type, ()):
         return reading
-    return reading if _ends_guide(reading.form, evidence.chosen(keep), evidence.chosen(cone.opened)) else None
+    faces = evidence.chosen(cone.opened)
+    if not strict.shape[1] and any(i.patch.kind in ("cylinder", "sphere") and not i.patch.one_sided for i in faces):
+        return reading
+    return reading if _ends_guide(reading.form, evidence.chosen(keep), faces) else None
+
+
+def _end_of_some_guide(
+    evidence: Evidence, twists: Array, preserved: Flags, tolerances: Tolerances, cone: MotionCone
+) -> Steps[OtherReading | None]:
+    """The slide of a pair without freedoms that faces which look one way end, where the rest of the contact is its
+    guide; of several the one that ends on the least area."""
+    nothing = np.zeros((6, 0))
+    left = [k for k in np.flatnonzero(cone.opened).tolist() if evidence.items[k].patch.kind == "plane"]
+    readings: list[tuple[float, OtherReading]] = []
+    while left:
+        normal = evidence.items[left[0]].normals[0]
+        out = tuple(k for k in left if float(evidence.items[k].normals[0] @ normal) > ONE_WAY)
+        left = [k for k in left if k not in out]
+        keep = np.ones(len(evidence.items), dtype=bool)
+        keep[list(out)] = False
+        basis, freed = yield from freedoms_beyond(evidence, twists, preserved, keep, tolerances, nothing)
+        form = evidence.form(basis)
+        if freed.shape[1] == 1 and _ends_guide(form, evidence.chosen(keep), evidence.chosen(~keep)):
+            readings.append((sum(evidence.items[k].area for k in out), OtherReading(form, basis, out, "stop")))
+    return min(readings, key=lambda one: one[0])[1] if readings else None
+
+
+def _nearest(motion: Array, freed: Array, candidates: Array) -> Array:
+    """(6,) unit: of the candidates (6, n), within the motions freed (6, k), the one that is this motion but for slack;
+    the motion itself where none is."""
+    within = freed.T @ candidates
+    size = np.linalg.norm(within, axis=0)
+    within = within[:, size > LEAST_PART] / size[size > LEAST_PART]
+    if not within.shape[1]:
+        return motion
+    alike = np.abs(within.T @ (freed.T @ motion))
+    best = int(alike.argmax())
+    return np.asarray(freed @ within[:, best]) if alike[best] > ALIKE else motion
 
 
 def leaves_several_ways(cone: MotionCone) -> bool:
