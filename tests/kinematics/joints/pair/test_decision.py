@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -89,8 +90,6 @@ def test_zeros_are_exact_and_the_rest_is_far_above_the_threshold(name):
 
 
 def moved(patch: Patch, rotation: Rotation, shift, scale: float) -> Patch:
-    from dataclasses import replace
-
     return replace(
         patch,
         points=scale * rotation.apply(patch.points) + shift,
@@ -136,19 +135,38 @@ def test_pose_scale_and_order_change_nothing(name, seed, scale, far):
 @pytest.mark.parametrize("share", [0.02, 0.1, 0.2])
 @pytest.mark.parametrize("overlap", [0.0, -2e-4])
 @pytest.mark.parametrize(
-    ("name", "expected", "centre", "normal"),
+    ("name", "expected", "rest", "centre", "normal", "sense"),
     [
-        ("shaft with collars", "revolute", (0.02, 0, 0), Y),
-        ("hexagon in hexagon", "prismatic", (0, 0, 0.01), Z),
-        ("ball in socket", "spherical", (0.02, 0, 0.01), Z),
+        ("shaft with collars", "revolute", 0, (0.02, 0, 0), Y, -1),
+        ("shaft with collars", "revolute", 0, (0.02, 0, 0), -Y, 1),
+        ("ball in socket", "spherical", 1, (0.02, 0, 0.01), Z, 0),
     ],
 )
-def test_a_small_stray_patch_blocks_but_does_not_hide_the_joint(name, expected, centre, normal, share, overlap):
+def test_a_stray_patch_beside_a_journal_ends_its_turn_in_one_sense(
+    name, expected, rest, centre, normal, sense, share, overlap
+):
+    """A ball still turns about the normal of the patch; beside that it has no one axis, and no one sense."""
     patches = CASES[name][0]()
-    area = share * sum(p.area for p in patches)
-    stray = plane(centre, normal, (0.003, 0.003), area=area, gap=overlap)
+    stray = plane(centre, normal, (0.003, 0.003), area=share * sum(p.area for p in patches), gap=overlap)
     found = decision([*patches, stray])
-    assert (found.form.type, found.status) == (expected, "blocked")
+    assert (found.form.type, found.status, found.left_out) == (expected, "determined", ())
+    assert [k for k, *_ in found.ended] == [len(patches)]
+    assert (found.cone.rest.shape[1], found.cone.closed.shape[1]) == (rest, found.basis.shape[1])
+    _, motion, ends = found.ended[0]
+    assert ends * (motion.axis[2] if sense else 1.0) == sense
+
+
+@pytest.mark.parametrize("share", [0.02, 0.1, 0.2])
+def test_a_face_at_the_end_of_a_long_guide_holds_it_or_is_its_end(share):
+    """Drawn into the other by more than a press it blocks what it touches."""
+    patches = hexagon()
+    end = plane((0, 0, 0.01), Z, (0.003, 0.003), area=share * sum(p.area for p in patches))
+    found = decision([*patches, end])
+    assert (found.form.type, found.status, found.other.form.type) == ("fixed", "ambiguous", "prismatic")
+    assert found.cone.withdraws
+    assert np.abs(found.cone.closed[:, 0]) == pytest.approx([0, 0, 0, 0, 0, 1], abs=1e-9)
+    found = decision([*patches, replace(end, gap=-2e-4)])
+    assert (found.form.type, found.status) == ("prismatic", "blocked")
     assert [k for k, _ in found.left_out] == [len(patches)]
 
 

@@ -84,13 +84,16 @@ def test_a_square_piston_that_nothing_but_its_bottom_holds_may_slide():
     assert "prismatic" in (found.form.type, found.other.form.type if found.other else "")
 
 
-def test_a_short_face_beside_a_finger_is_a_stop_and_a_long_one_a_fence():
+def test_a_slight_face_beside_a_finger_may_hold_nothing_and_a_longer_one_is_plainly_open():
+    """From 1 % of the area on: what rests against two faces at once may leave both, and keeps to both at rest."""
+
     def answer(width):
         side = plane((0.015 - width / 2, 0.003, 0.001), Y, (0.002, width))
         found = decision([plane(size=(0.006, 0.03)), side])
+        assert found.cone.plainly_open
         return found.form.type, found.status
 
-    changes_once(answer, 0.001, 0.03, ("prismatic", "ambiguous"), ("prismatic", "determined"))
+    changes_once(answer, 0.0005, 0.03, ("prismatic", "ambiguous"), ("prismatic", "determined"))
 
 
 def test_faces_on_both_sides_of_a_finger_guide_it_however_short():
@@ -99,43 +102,49 @@ def test_faces_on_both_sides_of_a_finger_guide_it_however_short():
     assert types(decision([flush, *sides])) == ("prismatic", "determined", None)
 
 
-def test_a_lever_on_its_stop_turns_away_from_it():
-    stop = plane((0.03, -0.003, 0), -Y, (0.002, 0.002))
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_lever_on_its_stop_turns_away_from_it(side):
+    stop = plane((0.03, -0.003 * side, 0), -side * Y, (0.002, 0.002))
     found = decision([cylinder(), ring((0, 0, 0.01)), ring((0, 0, -0.01), normal=-Z), stop])
-    assert (found.form.type, found.status) == ("revolute", "blocked")
+    assert types(found) == ("revolute", "determined", None)
+    [(k, motion, sense)] = found.ended
+    assert (k, sense * motion.axis[2]) == (3, side)
+    assert (found.cone.rest.shape[1], found.cone.closed.shape[1], found.cone.plainly_open) == (0, 1, False)
+    assert abs(found.cone.closed[2, 0]) == pytest.approx(np.linalg.norm(found.cone.closed[:3, 0]))
 
 
 LEVER_STOP = plane((0.03, -0.003, 0), -Y, (0.002, 0.002))
 
 
-def test_a_lever_on_its_stop_and_on_a_pad_beside_its_axis_may_leave_either():
+def test_a_lever_on_its_stop_and_on_a_pad_beside_its_axis_may_leave_the_pad():
     found = decision([cylinder(), plane((0.009, 0, 0.01), Z, (0.004, 0.004)), LEVER_STOP])
-    assert types(found) == ("revolute", "ambiguous", None)
+    assert types(found) == ("revolute", "ambiguous", "cylindrical")
+    assert [k for k, *_ in found.ended] == [2]
+    assert (found.cone.rest.shape[1], found.cone.closed.shape[1]) == (0, 2)
 
 
 def test_a_piston_at_the_bottom_of_its_bore_with_a_lever_on_its_stop_is_as_doubtful_as_without():
     found = decision([cylinder(), disc(), LEVER_STOP])
     assert types(found) == ("revolute", "ambiguous", "cylindrical")
-    assert [k for k, _ in found.left_out] == [2]
-    assert [k for k, _ in found.other.left_out] == [1, 2]
+    assert [k for k, *_ in found.ended] == [2]
+    assert [k for k, _ in found.other.left_out] == [1]
 
 
-def test_along_which_of_two_walls_a_block_slides_is_known_where_one_is_much_longer():
-    """Of walls in a corner, both 2 mm high, one is 10 mm long."""
-
-    def answer(length):
+def test_a_block_in_a_corner_rests_there_and_is_plainly_open_whichever_wall_is_longer():
+    """One of its motions opens all three faces; what it may do spans all motions."""
+    for length in (0.01, 0.016, 0.025):
         floor = plane(size=(0.01, length))
         walls = [plane((-length / 2, 0, 0.001), X, (0.01, 0.002)), plane((0, -0.005, 0.001), Y, (0.002, length))]
         found = decision([floor, *walls])
-        return found.form.type, found.status
-
-    changes_once(answer, 0.01, 0.025, ("prismatic", "ambiguous"), ("prismatic", "blocked"))
+        assert types(found) == ("fixed", "determined", None)
+        assert (found.cone.plainly_open, found.cone.rest.shape[1], found.cone.closed.shape[1]) == (True, 0, 6)
 
 
 def test_a_lever_that_a_large_stop_holds_is_not_fused():
     stop = plane((0.03, -0.003, 0), -Y, (0.06, 0.06))
     found = decision([cylinder(length=0.004), ring((0, 0, 0.002)), ring((0, 0, -0.002), normal=-Z), stop])
-    assert found.status in ("blocked", "ambiguous")
+    assert types(found) == ("revolute", "determined", None)
+    assert [k for k, *_ in found.ended] == [3]
 
 
 @pytest.mark.parametrize(

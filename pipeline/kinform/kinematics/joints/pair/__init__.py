@@ -39,13 +39,18 @@ The steps
    rows say whether anything else is free: below 1e-4 a direction is free, above 2e-3 it is held (`Tolerances.free`,
    `.held`), and in between the joint is `ambiguous`.
 4. `lower_pairs`: a basis of twists gets the name of the joint: type, axis, point and pitch, or `general`.
-5. `decision`: where the patches leave nothing, but all save a few would leave a motion, these few may be the mistake:
-   an overlap, an end stop, a scrap of a plane. Consensus leaves them out, and says so: the joint is `blocked`, and
-   they are its blockers. What holds a shaft, a ball or a locating face is never left out, nor what holds both ways.
-6. `certainty`: what makes the answer doubtful. It is `ambiguous` then, never silently one or the other. `uncertainty`
-   says how well the fits know the axis and its place; `scraps` which patches are too slight for the answer to hang on
-   them; `stops` which faces may end a motion at this pose and not guide it, and `hollows` which rounds; `slots` what
-   pins hold. Of the last four the other reading is kept (`Joint.readings`), and the stated function may choose
+5. `motion_cone`: contact pushes and does not pull. The motions at rest keep all contact; the cone of motions is all
+   that contact allows, and its span, `closed`, what opposing contact does not hold in both senses. The true motion lies
+   between the two. Where they are equal there is no doubt by one-sided contact.
+6. `decision`: which of the two the joint is. Contact that all opens by one motion is open, and the joint is what is at
+   rest (a block on its table); so it is where fixed bodies come apart along one line (a lid in its pocket), unless the
+   guide is long enough to slide in. A turn about a journal that goes more than half round, ended in one sense by
+   contact beside it, is the joint, drawn at its end stop (a door on its jamb). A small part that is drawn into the
+   other body by more than a press, and alone forbids a motion, is left out, and the joint is `blocked` by it.
+   `certainty` says what makes the answer doubtful: it is `ambiguous` then, never silently one or the other.
+   `uncertainty` says how well the fits know the axis and its place; `scraps` which patches are too slight for the
+   answer to hang on them; `one_sided` which faces may end a motion at this pose and not guide it; `slots` what pins
+   hold. Of the last three the other reading is kept (`Joint.readings`), and the stated function may choose
    (`bodies.readings`).
 7. `joint` has the result as a `Joint`; `question` is all of it as a function of what it depends on; `extremes` are
    the samples that the constraint matrix has rows for.
@@ -75,8 +80,9 @@ What all three preserve is the turn. The singular values, ascending:
 One value is below 1e-4, the next is above 2e-3: a revolute joint about z, `determined`. Without the collars the
 values are 0, 0, 0.41, 0.41, 0.71, 0.71: the turn and the slide, a cylindrical joint. With a plane of 4 mm² more
 beside the pin, whose normal opposes the turn one way only, no guess is preserved by all four patches, and the lowest
-singular value of their rows is 0.075: held. But the plane has 0.5 % of the area, and the three others leave the turn:
-revolute, `blocked` by that patch.
+singular value of their rows is 0.075: nothing is free at rest. But the cone of motions has the turn in the other sense:
+closed is the turn. The bore goes all round its axis, so that the joint is revolute, `determined`, and `at_stop` by that
+patch.
 
 Sources: Sinha, Paredis and Khosla, Kinematics support for design and simulation of mechatronic systems, 2000; Hunt,
 Kinematic geometry of mechanisms, 1978 (screws); Hervé 1978 and Gelfand and Guibas 2004 (which spaces are lower pairs).

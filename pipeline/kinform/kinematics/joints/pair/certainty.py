@@ -4,7 +4,7 @@ A doubtful answer is `ambiguous`, never silently one or the other. The doubts: a
 contact of no known kind; facets of no known surface, lines and points that alone hold something (where they touch next
 is not known); scraps of surfaces that alone do (`scraps`); axes that nearly agree, which a designer means as one;
 touches too small or too far apart to be meant; an axis that the fits hardly know (`uncertainty`); and faces that may be
-end stops (`stops`).
+end stops (`one_sided`).
 """
 
 from __future__ import annotations
