@@ -55,14 +55,14 @@ def test_the_gap_behind_the_decision_is_that_of_the_singular_values():
     assert found.rows == len(design(two_parts(), *hinge()).kinematics.matrix.patch)
 
 
-def test_a_blocked_joint_names_the_patch_without_which_it_is_determined():
+def test_a_joint_at_its_stop_names_the_patch_that_ends_it():
     stop = plane((0.02, 0, 0), Y, (0.002, 0.002), area=2e-5)
     made = design(two_parts(), *hinge(), stop)
     found = insight(made, "a~b")
     roles = {made.contacts.patches[item.index].area: item.role for item in found.patches}
-    assert roles[2e-5] == "blocks"
-    (freed,) = [item for item in found.alternatives if item.status == "determined" and item.type == "revolute"]
-    assert [made.contacts.patches[k].area for k in freed.without] == [2e-5]
+    assert roles[2e-5] == "ends"
+    (joint,) = made.kinematics.joints
+    assert [made.contacts.patches[one.patch].area for one in joint.at_stop] == [2e-5]
 
 
 def test_an_unknown_joint_is_an_error():

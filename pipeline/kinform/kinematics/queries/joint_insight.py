@@ -30,7 +30,7 @@ MOST_PATCH_SETS = 24
 """Sets of several patches that are tried, the smallest area first. Chosen, not measured."""
 
 
-PatchUse = Literal["carries", "blocks", "ignored"]
+PatchUse = Literal["carries", "blocks", "ends", "ignored"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,13 +139,16 @@ def _evidence(design: DesignView, joint: Joint, without: frozenset[int] = frozen
 def _roles(design: DesignView, joint: Joint, evidence: Evidence | None) -> tuple[PatchRole, ...]:
     assert design.kinematics is not None
     rows = np.bincount(design.kinematics.matrix.patch, minlength=1)
-    blocking = {blocker.patch for blocker in joint.blockers}
+    roles: dict[int, PatchUse] = dict.fromkeys(joint.patches, "carries")
+    roles |= dict.fromkeys((one.patch for one in joint.at_stop), "ends")
+    roles |= dict.fromkeys((blocker.patch for blocker in joint.blockers), "blocks")
     total = float(evidence.areas.sum()) if evidence is not None else 1.0
     shares = {item.index: item.area / total for item in evidence.items} if evidence is not None else {}
     out = []
     for k, patch, _ in patches_between(design, *joint.bodies):
-        role: PatchUse = "blocks" if k in blocking else "carries" if k in joint.patches else "ignored"
-        out.append(PatchRole(k, patch, role, shares.get(k, 0.0), int(rows[k]) if k < len(rows) else 0))
+        out.append(
+            PatchRole(k, patch, roles.get(k, "ignored"), shares.get(k, 0.0), int(rows[k]) if k < len(rows) else 0)
+        )
     return tuple(out)
 
 
