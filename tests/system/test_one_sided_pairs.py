@@ -11,7 +11,7 @@ from kinform import contacts, form, surfaces
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("seed", [1, 3, *(pytest.param(seed, marks=pytest.mark.sweep) for seed in (4, 6, 7))])
+@pytest.mark.parametrize("seed", [1, 3, *(pytest.param(seed, marks=pytest.mark.sweep) for seed in (4, 15, 16))])
 def test_true_motions_lie_between_at_rest_and_closed(kind, seed, tmp_path):
     made = one_sided(seed, kind)
     assembly = form.load(made.case.write(tmp_path))
