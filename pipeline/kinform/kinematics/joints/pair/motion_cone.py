@@ -110,9 +110,12 @@ def motion_cone(evidence: Evidence, rest: Array, bounds: Sequence[Ints]) -> Moti
     chosen = evidence.start[owner] + np.concatenate(bounds)
     across = np.linalg.svd(rest, full_matrices=True)[0][:, rest.shape[1] :] if rest.shape[1] else np.eye(6)
     seen = _rows(evidence, chosen, owner)
+    beside = across
     across = across @ _firm(seen, across)
     found, space = _reached(seen, across)
     closed = np.hstack([rest, across @ space])
+    if all(item.patch.unknown for item in evidence.items):  # what it holds is not known
+        closed = np.hstack([rest, beside])
     inside = across @ found.sum(axis=0) if len(found) else np.zeros(6)
     size = norm(inside)
     inside = inside / size if size > SOLVED else np.zeros(6)
@@ -144,8 +147,12 @@ class _Rows:
 
     def slack(self, motion: Array) -> Array:
         """(n,) by how much rows may be missed by about this motion (6,)."""
+        return self.noise(motion) + self.apart
+
+    def noise(self, motion: Array) -> Array:
+        """(n,) the part of it that surfaces give, not gaps: a wider gap holds no more."""
         speed = np.linalg.norm(motion[3:] + cross(motion[:3], self.arms), axis=1)
-        return np.asarray(self.angle * speed + self.position * norm(motion[:3]) + self.apart + self.least)
+        return np.asarray(self.angle * speed + self.position * norm(motion[:3]) + self.least)
 
 
 def _rows(evidence: Evidence, chosen: Ints, owner: Ints) -> _Rows:
@@ -175,7 +182,7 @@ def _firm(seen: _Rows, across: Array) -> Array:
         return np.zeros((0, 0))
     rows = seen.rows @ across
     _, vectors = np.linalg.eigh(rows.T @ rows)
-    firm = [bool((np.abs(rows @ way) * REACH > 2.0 * seen.slack(across @ way)).any()) for way in vectors.T]
+    firm = [bool((np.abs(rows @ way) * REACH > 2.0 * seen.noise(across @ way)).any()) for way in vectors.T]
     return np.asarray(vectors[:, firm])
 
 
