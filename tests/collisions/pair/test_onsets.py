@@ -3,11 +3,13 @@ and whether facets that cross show it, or points that come in."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import asin, atan2, hypot, radians
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from support.assemblies import intended
 from support.diagonal import diagonal, first
 from support.solids import assembly, box, part, random_pose, rod
 
@@ -17,20 +19,27 @@ from kinform.collisions.driving.candidates import STOP_ANGLE, STOP_LENGTH
 from kinform.collisions.pair.advancement import First
 from kinform.collisions.pair.mate_surfaces import Mates
 
+STATED = "prismatic"
 SCALES = [1e-5, 1e-3, 1.0]
 WITHIN = STOP_ANGLE
 
 
-def ends(solids, along, X=None, scale=1e-3, names=None):
+def stated_joint(kind, frame, mover, axis):
+    """The function states it where contact leaves two readings."""
+    return replace(intended("driven", "frame" if len(frame) > 1 else frame[0], mover, kind), axis=axis, point=None)
+
+
+def ends(solids, along, X=None, scale=1e-3, names=None, stated=None):
     """(lower, upper) of the joint of a base and what moves on it (mm), of the latter about or along a direction; rad or
     mm. `names`: others."""
     X, names = np.eye(4) if X is None else X, names or {}
     X = np.block([[X[:3, :3], X[:3, 3:] * scale / 1e-3], [np.zeros((1, 3)), np.ones((1, 1))]])
     frame = tuple(names.get(name, name) for name in solids if name != "mover")
     mover = names.get("mover", "mover")
+    joints = () if stated is None else (stated_joint(stated, frame, mover, X[:3, :3] @ along),)
     made = assembly(
         *(part(names.get(name, name), solid, X, scale) for name, solid in solids.items()),
-        ground=None, groups=(("frame", frame),) if len(frame) > 1 else (),
+        ground=None, joints=joints, groups=(("frame", frame),) if len(frame) > 1 else (),
     )  # fmt: skip
     known = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
     touching = contacts.find(made, known)
@@ -73,9 +82,9 @@ def everywhere(request):
     """Tests the upper end at two places, at either in one order of the parts and turned round in the other."""
     placed = None, random_pose(np.random.default_rng(3))
 
-    def stops(solids, along, expected, within, scale=1e-3):
+    def stops(solids, along, expected, within, scale=1e-3, stated=None):
         for X, names in zip(placed, request.param, strict=True):
-            assert ends(solids, along, X, scale, names)[1] == pytest.approx(expected, abs=within)
+            assert ends(solids, along, X, scale, names, stated)[1] == pytest.approx(expected, abs=within)
 
     return stops
 
@@ -112,7 +121,9 @@ def test_what_is_drawn_in_its_stop_by_less_than_parts_may_scrape_is_at_its_stop(
     bar = box(20, 30, 4 - into, 9, -1, 8)
     everywhere({"base": plate() + bar, "mover": lever()}, z, 0.0, WITHIN)
     wall = box(25 - into, 30, -11, 11, -1, 10)
-    everywhere({"base": rail() + wall, "mover": box(-10, 25, -10, 10, 0, 8)}, x, 0.0, STOP_LENGTH * 41.1)
+    everywhere(
+        {"base": rail() + wall, "mover": box(-10, 25, -10, 10, 0, 8)}, x, 0.0, STOP_LENGTH * 41.1, stated="prismatic"
+    )
 
 
 @pytest.mark.parametrize("away", [-0.5, 0.2, 0.5, 0.8])
