@@ -15,8 +15,8 @@ from kinform import form
 from kinform.errors import InputError
 
 SECONDS, MEGABYTES = 15.0, 500.0
-"""What the refusal of a file of at most 1 MB may take, of processor on a busy machine (on a quiet one 2 s; before it grew
-to minutes), and memory."""
+"""What the refusal of a file of at most 1 MB may take, of processor on a busy machine (on a quiet one 2 s; before
+it grew to minutes), and memory."""
 HEAD = 'schema = 1\n[assembly]\nname = "w"\nunits = "mm"\n'
 TETRAHEDRON = struct.pack("<12f", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1)
 SIDES = (0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3)
