@@ -47,3 +47,21 @@ def test_away_from_it_it_slides_and_what_it_does_in_one_sense_alone_is_not_held(
     beside = away + (2.0 if kind == "post" else -2.0)
     assert answered("planar", base, beside, complete=False) == "agrees"
     assert answered("cylindrical", base, away, complete=False) == "not held"
+
+
+@pytest.mark.parametrize(
+    ("kind", "answer"), [("revolute", "agrees"), ("fixed", "agrees"), ("prismatic", "contradicts")]
+)
+@pytest.mark.parametrize("names", [("frame", "door"), ("z", "door")])
+def test_a_door_on_its_jamb_is_what_is_stated_at_rest_and_away_from_it(kind, answer, names):
+    X = random_pose(np.random.default_rng(2), 0.1)
+    lugs = box(-8, 8, -8, 8, -16, -6) + box(-8, 8, -8, 8, 6, 16) + box(-8, 8, 8, 14, -16, 16)
+    frame = lugs + box(-2, 4, -40, -8, 6, 16) - rod(4.05, -17, 17, 48) + box(-2, 4, -40, -30, -8, 16)
+    door = rod(7, -5.95, 5.95, 48) + rod(4, -15, 15, 48) + box(-6, -2, -60, -5, -4, 4)
+    parts = [part(name, solid, X, 1e-3) for name, solid in zip(names, (frame, door), strict=True)]
+    joint = replace(intended("swing", *names, kind, X[:3, 2]), point=X[:3, 3])
+    made = assembly(*parts, ground=names[0], joints=(joint,))
+    found = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
+    touching = contacts.find(made, found)
+    (one,) = compare_joints(made, touching, kinematics.derive(made, found, touching), [joint])
+    assert answer_of(made, one).answer == answer

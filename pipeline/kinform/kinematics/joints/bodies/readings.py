@@ -24,7 +24,7 @@ from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Patch
 from kinform.model.function import IntendedJoint
-from kinform.model.kinematics import EndStop, Joint, JointType
+from kinform.model.kinematics import EndStop, Joint
 from kinform.model.names import BodyName, PartName
 
 Decided = Mapping[Pair, tuple[Answer, Joint]]
@@ -47,9 +47,8 @@ def choose_readings(
     for pair, (answer, joint) in decided.items():
         if joint.readings and pair in wanted and answer.other is not None:
             out[pair] = _as_intended(wanted[pair], answer, joint, patches)
-        elif pair in wanted and joint.status == "determined" and (closed := _closed(joint, patches)) is not None:
-            located = closed.axis is None or wanted[pair].axis is not None
-            out[pair] = answer, closed if located and _is(closed, wanted[pair], patches) else joint
+        elif pair in wanted and joint.status == "determined":
+            out[pair] = answer, _in_one_sense_or_both(wanted[pair], joint, patches)
         elif joint.readings and seated.intersection(pair) and joint.readings[0].cause == "stop":
             reason = f"{joint.reason}; a pin that several bodies hold about one line is seated"
             out[pair] = answer, replace(joint, status="determined", reason=reason)
@@ -58,37 +57,61 @@ def choose_readings(
     return out
 
 
+def _in_one_sense_or_both(intended: IntendedJoint, joint: Joint, patches: Sequence[Patch]) -> Joint:
+    """What the function states of a joint whose contact only pushes: with the motion that contact ends, or without."""
+    if joint.type == intended.type:
+        return joint
+    both = [one for one in (_at_rest(joint, patches), _closed(joint, patches)) if one is not None]
+    located = [one for one in both if one.axis is None or intended.axis is not None]
+    return next((one for one in located if _is(one, intended, patches)), joint)
+
+
+def _at_rest(joint: Joint, patches: Sequence[Patch]) -> Joint | None:
+    """The joint of a pair that is drawn at its stop if the stop counts; None where that is no lower pair."""
+    if not joint.at_stop:
+        return None
+    reason = f"{joint.reason}; {joint.type} away from its stop, and as stated while that holds"
+    return _with_space(replace(joint, patches=joint.touching, at_stop=()), joint.at_rest, reason, patches)
+
+
 def _closed(joint: Joint, patches: Sequence[Patch]) -> Joint | None:
     """The joint that contact leaves if the motion that it ends in one sense counts; None where that is no other lower
     pair, or more than one motion: those are no end stop."""
     if len(joint.closed) != len(joint.twists) + 1:
         return None
+    ending = tuple(k for k in joint.patches if not _slides_on_itself(patches[k], joint.closed))
+    kept = tuple(k for k in joint.patches if k not in ending)
+    if not kept:
+        return None
+    reason = f"{joint.reason}; {joint.type} at rest, and as stated where what goes in one sense counts"
+    ends = (*joint.at_stop, *(_end(patches[k], k) for k in ending))
+    return _with_space(replace(joint, patches=kept, at_stop=ends), joint.closed, reason, patches, joint)
+
+
+def _with_space(
+    joint: Joint, space: Array, reason: str, patches: Sequence[Patch], other: Joint | None = None
+) -> Joint | None:
+    """The joint with the freedoms (k, 6), as inferred; None where they are no lower pair. `other` is kept as the other
+    reading, or else the joint itself."""
     frame = Frame.of(np.concatenate([patches[k].points for k in joint.patches]))
-    form = name_space(span(scaled(joint.closed.T, frame)), frame)
+    form = name_space(span(scaled(space.T, frame)) if len(space) else np.zeros((6, 0)), frame)
     if form.type == "general":
         return None
     point = form.point
     if point is not None and form.axis is not None:
         point = foot(point, form.axis, frame.centre)
-    reason = f"{joint.reason}; {joint.type} at rest, and {form.type} where what goes in one sense counts, as stated"
-    ending = tuple(k for k in joint.patches if not _slides_on_itself(patches[k], joint.closed))
-    kept = tuple(k for k in joint.patches if k not in ending)
-    if not kept:
-        return None
     return replace(
         joint,
-        patches=kept,
-        at_stop=(*joint.at_stop, *(_end(patches[k], k, form.type) for k in ending)),
         type=form.type,
         axis=form.axis,
         point=point,
         pitch=form.pitch,
-        freedoms=len(joint.closed),
+        freedoms=len(space),
         twists=twists_of(form.type, form.axis, point, form.pitch),
         status="inferred",
         reason=reason,
         evidence=(*joint.evidence, "function"),
-        readings=(reading_of(replace(joint, blockers=()), "end"),),
+        readings=(reading_of(replace(other or joint, blockers=()), "end"),),
     )
 
 
@@ -99,9 +122,9 @@ def _slides_on_itself(patch: Patch, motions: Array) -> bool:
     return bool((across <= INTENDED_AXIS * np.linalg.norm(speeds, axis=2).max(axis=1)).all())
 
 
-def _end(patch: Patch, index: int, kind: JointType) -> EndStop:
+def _end(patch: Patch, index: int) -> EndStop:
     """What a patch ends of a joint that is stated."""
-    return EndStop(patch.parts, index, patch.area, patch.points.mean(axis=0), 0, f"the motion of the {kind} joint")
+    return EndStop(patch.parts, index, patch.area, patch.points.mean(axis=0), 0, "a stated motion in one sense")
 
 
 def _as_intended(
