@@ -60,7 +60,8 @@ class Comparison:
     size: float = 1.0
     """m: diagonal of the smaller body."""
     admitted: bool = False
-    """Contact of another type lets each motion of the intended joint go, in one sense at least."""
+    """What was found is another motion, and contact lets each motion of the intended joint go, in one sense at
+    least."""
     loose: bool = False
     """The joint is stated as fixed, which makes its sides one body, and contact would part them as `type` says."""
     afloat: str = ""
@@ -88,7 +89,7 @@ class Comparison:
         """Whether the joint is there and of the intended type."""
         if self.state == "one body":
             return self.intended.type == "fixed" and not self.loose
-        return self.state == "found" and self.type == self.intended.type
+        return self.state == "found" and self.type == self.intended.type and not self.admitted
 
     @property
     def angle(self) -> float | None:

@@ -104,10 +104,11 @@ def joint_from_decision(bodies: tuple[BodyName, BodyName], evidence: Evidence, d
         point_uncertainty=place,
     )
     if cone is not None:
+        at_rest = canonical_twists(cone.rest, frame)
         joint = replace(
             joint,
-            at_rest=canonical_twists(cone.rest, frame),
-            closed=canonical_twists(cone.closed, frame),
+            at_rest=at_rest,
+            closed=canonical_twists(cone.closed, frame) if cone.extra else at_rest,
             open=cone.plainly_open or cone.withdraws,
             at_stop=tuple(_end_stop(evidence.items[k], motion, sense, form) for k, motion, sense in decision.ended),
         )
