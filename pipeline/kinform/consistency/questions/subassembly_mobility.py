@@ -11,7 +11,7 @@ from kinform.frozen import dataclass
 from kinform.kinematics.mobility.finite_motion import finite_mobility
 from kinform.kinematics.mobility.idle import idle_turns
 from kinform.kinematics.mobility.named_freedoms import named_freedoms
-from kinform.kinematics.mobility.two_ends import mobility_ends
+from kinform.kinematics.mobility.two_ends import joint_ends, mobility_ends
 from kinform.mechanism.first_order import body_twists
 from kinform.mechanism.joint_graph import JointGraph
 from kinform.model.kinematics import Kinematics
@@ -67,7 +67,7 @@ def inner_mobility(design: Design, part_names: Sequence[str]) -> InnerMobility |
         if is_immobile(joint, twists[:, graph.node[second]] - twists[:, graph.node[first]]):
             still.append(joint.name)
     count = closure.mobility if finite.count is None else finite.count
-    ends = mobility_ends(alone, graph, (), count - idle, closure.mobility, size, None)
+    ends = mobility_ends(graph, joint_ends(alone, graph, ()), count - idle, closure.mobility, size, None)
     return InnerMobility(count, idle, tuple(still), ends)
 
 
