@@ -111,7 +111,9 @@ def _ties(assembly: Assembly, kinematics: Kinematics) -> list[Tie]:
     sides = {name for joint in assembly.function.joints for name in joint.between}
     body_of = {name: of_part[assembly.parts_of(name)[0]] for name in sides}
     offset = [0, *accumulate(joint.freedoms for joint in kinematics.joints)]
-    out = []
+    out: list[Tie] = []
+    if not offset[-1]:
+        return out
     for row in coupling_rows(assembly.function, kinematics.joints, body_of, offset):
         ends = np.flatnonzero(row)
         if len(ends) == 2:  # more are more freedoms, and followed nowhere

@@ -43,8 +43,8 @@ def without_backlash(joint: Joint, patches: Sequence[Patch], first: Sequence[Par
     of its bodies; else as it is."""
     if joint.type not in ("revolute", "cylindrical") or not joint.at_stop or joint.axis is None or joint.point is None:
         return joint
-    bodies = [_triangles(parts, joint.axis, joint.point) for parts in (first, second)]
-    turn = _free_turn(*bodies, 1) + _free_turn(*bodies, -1)
+    one, other = (_triangles(parts, joint.axis, joint.point) for parts in (first, second))
+    turn = _free_turn(one, other, 1) + _free_turn(one, other, -1)
     if turn > MOST_BACKLASH:
         return joint
     frame = Frame.of(np.concatenate([patches[k].points for k in joint.touching]))
