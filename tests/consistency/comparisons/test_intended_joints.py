@@ -11,8 +11,8 @@ from support.diagonal import diagonal
 from support.solids import box, extrusion, part, random_pose, rod
 
 from kinform import contacts, kinematics, surfaces
-from kinform.consistency.comparisons.answers import answer_of
-from kinform.consistency.comparisons.intended_joints import compare_joints
+from kinform.consistency.comparisons.answers import answers
+from kinform.design import Design
 
 PLATE = box(-50, 50, -50, 50, -5, 0)
 BASES = {
@@ -31,8 +31,8 @@ def answered(kind, base, away, *, complete, names=("base", "disc"), scale=1e-3):
         made = replace(made, function=replace(made.function, complete=("",)))
     found = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
     touching = contacts.find(made, found)
-    (one,) = compare_joints(made, touching, kinematics.derive(made, found, touching), [joint])
-    return answer_of(made, one).answer
+    (answer,) = answers(Design(made, found, touching, kinematics.derive(made, found, touching)))
+    return answer.answer
 
 
 @diagonal(2, kind=list(BASES), scale=[1e-4, 1e-3, 1.0], complete=[False, True])
@@ -63,8 +63,8 @@ def test_a_door_on_its_jamb_is_what_is_stated_at_rest_and_away_from_it(kind, ans
     made = assembly(*parts, ground=names[0], joints=(joint,))
     found = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
     touching = contacts.find(made, found)
-    (one,) = compare_joints(made, touching, kinematics.derive(made, found, touching), [joint])
-    assert answer_of(made, one).answer == answer
+    (given,) = answers(Design(made, found, touching, kinematics.derive(made, found, touching)))
+    assert given.answer == answer
 
 
 @pytest.mark.parametrize(
@@ -81,5 +81,5 @@ def test_a_bar_in_a_v_that_is_stated_to_lift_is_not_held(along, answer):
     made = assembly(*parts, ground="base", joints=(joint,))
     found = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
     touching = contacts.find(made, found)
-    (one,) = compare_joints(made, touching, kinematics.derive(made, found, touching), [joint])
-    assert answer_of(made, one).answer == answer
+    (given,) = answers(Design(made, found, touching, kinematics.derive(made, found, touching)))
+    assert given.answer == answer

@@ -109,6 +109,7 @@ def _compared(
         angle_slack=MISSED_SIGMAS * angle_slack,
         position_slack=MISSED_SIGMAS * position_slack,
         size=size,
+        angle_limit=assembly.tolerances.angle_limit(),
         position_limit=assembly.tolerances.offset_limit(size),
         admitted=admitted,
     )

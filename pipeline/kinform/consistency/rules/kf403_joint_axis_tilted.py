@@ -31,9 +31,9 @@ def check(context: Context) -> Outcome:
         if off is None:
             continue
         count += 1
-        if off > limit + c.angle_slack:
+        if c.tilted:
             findings.append(_finding(c, off, limit))
-        elif off > limit:
+        elif c.tilted is None:
             unknown.append(f"'{c.intended.name}' is {angle(off)} off, known to {angle(c.angle_slack)}")
     if unknown:
         return inconclusive("; ".join(unknown), findings)

@@ -32,9 +32,9 @@ def check(context: Context) -> Outcome:
         if off is None:
             continue
         count += 1
-        if off > c.position_limit + c.position_slack:
+        if c.displaced:
             findings.append(_finding(c, off, units))
-        elif off > c.position_limit:
+        elif c.displaced is None:
             unknown.append(
                 f"'{c.intended.name}' is {length(off, units)} off, known to {length(c.position_slack, units)}"
             )

@@ -1,7 +1,8 @@
 """Parts stop a joint, or its slider leaves its guide, before the end of the range that the function states.
 
-A finding for each side of a stated range that is longer than what the meshes leave, from their pose and with all
-joints outside of its loops at rest, by more than 0.02° or 0.1 % of the range. A side stated as free (`inf`) must not
+A finding for each side of a stated range that is longer than what the meshes leave, from their pose, by more than
+0.02° or 0.1 % of the range. Joints of the same loops, and joints that the function couples (mimic joints), move along;
+all others are at rest. A side stated as free (`inf`) must not
 be stopped. A slide or screw that contact determines has left its guide where the last of the surfaces along which it
 goes ends; of one that is taken as stated the guide is in no mesh.
 
