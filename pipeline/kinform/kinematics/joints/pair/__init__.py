@@ -55,9 +55,6 @@ The steps
 7. `joint` has the result as a `Joint`; `question` is all of it as a function of what it depends on; `extremes` are
    the samples that the constraint matrix has rows for.
 
-Many pairs are decided at once: `in_step` lets each go its own way through these steps, and stacks what they ask of
-linear algebra. Each is decided as it would be alone, to the last bit.
-
 A pin in a bore, with a collar at each end
 ------------------------------------------
 

@@ -22,7 +22,6 @@ from kinform.frozen import dataclass
 from kinform.kinematics.joints.pair.constants import VAGUE_AXIS
 from kinform.kinematics.joints.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.joints.pair.freedoms import freedoms, freedoms_beyond
-from kinform.kinematics.joints.pair.in_step import Steps
 from kinform.kinematics.joints.pair.lower_pairs import JointForm
 from kinform.kinematics.joints.pair.motion_cone import MotionCone
 from kinform.kinematics.joints.pair.one_sided import (
@@ -90,7 +89,7 @@ def certainty(
     values: Array,
     tolerances: Tolerances,
     cone: MotionCone,
-) -> Steps[Certainty]:
+) -> Certainty:
     """How sure the freedoms `basis` (6, k) are, with singular values (6,), found among `twists` (6, n) of which
     `preserved` (items, n) says what each patch preserves."""
     count = basis.shape[1]
@@ -122,20 +121,20 @@ def certainty(
     else:
         firm, vague = _known(evidence, count), _vagueness(evidence, count)
         sure = firm & (vague <= VAGUE_AXIS)
-        seat = yield from seat_reading(evidence, twists, preserved, basis, sure, tolerances)
+        seat = seat_reading(evidence, twists, preserved, basis, sure, tolerances)
         if seat is None:
-            pin = yield from pin_reading(evidence, twists, preserved, basis, sure, tolerances)
+            pin = pin_reading(evidence, twists, preserved, basis, sure, tolerances)
         if seat is None and pin is None:
-            doubt = yield from _loose_doubt(evidence, twists, count, firm, vague, tolerances)
+            doubt = _loose_doubt(evidence, twists, count, firm, vague, tolerances)
         if seat is None:
             doubt = doubt or stray_doubt(evidence)
-    doubt = doubt or (yield from _near_axes_doubt(evidence, twists, count, tolerances))
+    doubt = doubt or _near_axes_doubt(evidence, twists, count, tolerances)
     doubt = doubt or _thread_doubt(evidence, basis)
-    doubt = doubt or (yield from _torn_doubt(evidence, twists, preserved, count, tolerances))
+    doubt = doubt or _torn_doubt(evidence, twists, preserved, count, tolerances)
     doubt = doubt or uncertainty_doubt(evidence.items, form, evidence.frame.length)
     if doubt:
         return Certainty("ambiguous", doubt)
-    doubt = yield from _flat_of_ring_doubt(evidence, twists, count, tolerances)
+    doubt = _flat_of_ring_doubt(evidence, twists, count, tolerances)
     if doubt:
         return Certainty("ambiguous", doubt)
     prism = _prism_reading(evidence, basis)
@@ -146,8 +145,8 @@ def certainty(
     if held is not basis:
         bent = OtherReading(evidence.form(held), held, (), "bend")
         return Certainty("ambiguous", _bend_words(evidence, basis, held), bent)
-    other = seat or pin or (yield from reading(evidence, twists, preserved, basis, tolerances))
-    other = other or (yield from stop_reading(evidence, twists, preserved, basis, tolerances, cone))
+    other = seat or pin or reading(evidence, twists, preserved, basis, tolerances)
+    other = other or stop_reading(evidence, twists, preserved, basis, tolerances, cone)
     if other is not None:
         return doubtful(evidence, basis, other)
     weakest = f"; the weakest constraint has singular value {values[count]:.2g}" if count < 6 else ""
@@ -208,10 +207,10 @@ def momentary(evidence: Evidence, basis: Array) -> bool:
     return False
 
 
-def _count(evidence: Evidence, twists: Array, keep: Flags, tolerances: Tolerances) -> Steps[int]:
+def _count(evidence: Evidence, twists: Array, keep: Flags, tolerances: Tolerances) -> int:
     """How many freedoms the kept patches leave."""
     preserved = preserved_motions(evidence, twists)
-    basis, _ = yield from freedoms(evidence, twists, preserved, keep, tolerances)
+    basis, _ = freedoms(evidence, twists, preserved, keep, tolerances)
     return int(basis.shape[1])
 
 
@@ -230,14 +229,14 @@ def _vagueness(evidence: Evidence, count: int) -> Array:
 
 def _loose_doubt(
     evidence: Evidence, twists: Array, count: int, firm: Flags, vague: Array, tolerances: Tolerances
-) -> Steps[str]:
+) -> str:
     """What the patches of known surfaces (`firm`, whose directions are known to `vague` rad) do not hold, the others do
     not hold for sure; bodies become one only by surfaces that are known on both sides."""
     clear = vague <= VAGUE_AXIS
     sure = firm & clear
-    if sure.all() or (sure.any() and (yield from _count(evidence, twists, sure, tolerances)) <= count):
+    if sure.all() or (sure.any() and _count(evidence, twists, sure, tolerances) <= count):
         return ""
-    if firm.all() or (firm.any() and (yield from _count(evidence, twists, firm, tolerances)) <= count):
+    if firm.all() or (firm.any() and _count(evidence, twists, firm, tolerances) <= count):
         least = float(vague[firm & ~clear].min())
         return (
             f"{count} of 6 freedoms are left only because of surfaces whose direction is known no better than to "
@@ -249,7 +248,7 @@ def _loose_doubt(
 
 def _scrap_reading(
     evidence: Evidence, twists: Array, preserved: Flags, basis: Array, tolerances: Tolerances
-) -> Steps[OtherReading | None]:
+) -> OtherReading | None:
     """What the patches leave free without the scraps among them, where that is more than `basis` (6, k)."""
     slight = scraps(evidence, tolerances.alignment)
     if not slight.any():
@@ -259,7 +258,7 @@ def _scrap_reading(
     out = tuple(int(k) for k in np.flatnonzero(slight))
     if slight.all():
         return OtherReading(JointForm("general"), np.eye(6), out, role)
-    firm, freed = yield from freedoms_beyond(evidence, twists, preserved, ~slight, tolerances, basis)
+    firm, freed = freedoms_beyond(evidence, twists, preserved, ~slight, tolerances, basis)
     if freed.shape[1] == 0:
         return None
     flats = all(evidence.items[k].patch.kind == "plane" and not evidence.items[k].interferes for k in out)
@@ -275,7 +274,7 @@ def _scrap_reading(
 
 def _teeth_reading(
     evidence: Evidence, twists: Array, preserved: Flags, basis: Array, tolerances: Tolerances
-) -> Steps[OtherReading | None]:
+) -> OtherReading | None:
     """What faces leave free without the points and lines of contact beside them, where those hold all but one of it.
 
     Teeth and cams drive bodies that something else bears. Where the bodies bear on each other by faces, as planes do,
@@ -284,14 +283,14 @@ def _teeth_reading(
     flanks = np.array([item.patch.kind in TOUCHING for item in evidence.items])
     if basis.shape[1] > 1 or flanks.all() or not flanks.any():
         return None
-    firm, _ = yield from freedoms(evidence, twists, preserved, ~flanks, tolerances)
+    firm, _ = freedoms(evidence, twists, preserved, ~flanks, tolerances)
     if firm.shape[1] <= basis.shape[1]:
         return None
     out = tuple(int(k) for k in np.flatnonzero(flanks))
     return OtherReading(evidence.form(firm), firm, out, "flank")
 
 
-def _near_axes_doubt(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> Steps[str]:
+def _near_axes_doubt(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> str:
     """Are bodies fixed only by axes or centres that miss each other by a little?"""
     if count:
         return ""
@@ -301,7 +300,7 @@ def _near_axes_doubt(evidence: Evidence, twists: Array, count: int, tolerances: 
         angle=np.where(wide, np.maximum(evidence.angle, TILTED_AXES * tolerances.alignment), evidence.angle),
         position=evidence.position + np.where(wide, MISSED_AXES * evidence.contact, 0.0),
     )
-    left = yield from _count(widened, twists, np.ones(len(wide), dtype=bool), tolerances)
+    left = _count(widened, twists, np.ones(len(wide), dtype=bool), tolerances)
     if left == 0:
         return ""
     return f"axes that miss each other by little hold the bodies: as one axis they would leave {left} of 6 freedoms"
@@ -358,13 +357,13 @@ def _about(item: Item, axis: Array) -> bool:
     return sine(item.patch.axis, axis) < ALONG_AXIS
 
 
-def _torn_doubt(evidence: Evidence, twists: Array, preserved: Flags, count: int, tolerances: Tolerances) -> Steps[str]:
+def _torn_doubt(evidence: Evidence, twists: Array, preserved: Flags, count: int, tolerances: Tolerances) -> str:
     """Do flats that may be those of a coarse cylinder hold more than the rest does?"""
     flats = np.array([item.patch.kind == "plane" and item.patch.sides > 0 for item in evidence.items])
     if not flats.any():
         return ""
     if not flats.all():
-        basis, _ = yield from freedoms(evidence, twists, preserved, ~flats, tolerances)
+        basis, _ = freedoms(evidence, twists, preserved, ~flats, tolerances)
     left = 6 if flats.all() else basis.shape[1]
     if left <= count:
         return ""
@@ -372,7 +371,7 @@ def _torn_doubt(evidence: Evidence, twists: Array, preserved: Flags, count: int,
     return f"{sides} flats on flats hold it that may be those of a prism, or of a cylinder in a coarse mesh"
 
 
-def _flat_of_ring_doubt(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> Steps[str]:
+def _flat_of_ring_doubt(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> str:
     """Do planes hold more than the rest does that lie where the flats of a coarse cylinder beside them do?"""
     flats = np.zeros(len(evidence.items), dtype=bool)
     for ring in (item.patch for item in evidence.items if item.patch.sides and item.patch.kind == "cylinder"):
@@ -380,7 +379,7 @@ def _flat_of_ring_doubt(evidence: Evidence, twists: Array, count: int, tolerance
         for k, patch in enumerate(item.patch for item in evidence.items):
             if patch.kind == "plane" and abs(float(patch.axis @ ring.axis)) < ALONG_AXIS:
                 flats[k] |= bool(least <= abs(float((patch.point - ring.point) @ patch.axis)) <= radius + ring.chord)
-    if not flats.any() or flats.all() or (yield from _count(evidence, twists, ~flats, tolerances)) <= count:
+    if not flats.any() or flats.all() or _count(evidence, twists, ~flats, tolerances) <= count:
         return ""
     area = 1e6 * sum(item.area for item in evidence.chosen(flats))
     return f"{area:.3g} mm² of flats hold it that may be those of the cylinder beside them, in a coarse mesh"

@@ -21,15 +21,13 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.foundation.algebra.vectors import norm, sine, widest_gap
-from kinform.foundation.lockstep import run_in_lockstep
 from kinform.foundation.words import counted
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.pair.certainty import Certainty, certainty, doubtful, momentary
 from kinform.kinematics.joints.pair.evidence import COAXIAL, GUIDES, Evidence, Item
 from kinform.kinematics.joints.pair.extremes import extreme_samples
-from kinform.kinematics.joints.pair.freedoms import freedoms, freedoms_beyond
+from kinform.kinematics.joints.pair.freedoms import NEW_FREEDOM, freedoms, freedoms_beyond
 from kinform.kinematics.joints.pair.hypotheses import Motion, candidate_motions
-from kinform.kinematics.joints.pair.in_step import NEW_FREEDOM, Steps, remains
 from kinform.kinematics.joints.pair.lower_pairs import JointForm
 from kinform.kinematics.joints.pair.motion_cone import SLIDES, MotionCone, motion_cone
 from kinform.kinematics.joints.pair.one_sided import ALONG_AXIS, HALF_ROUND, OtherReading, leaves_several_ways
@@ -91,9 +89,7 @@ def decide_each(pairs: Sequence[Question]) -> list[Decision]:
     twists = [np.array([m.twist for m in of_pair]).reshape(-1, 6).T for of_pair in candidates]
     preserved = preserved_by_each([(evidence, of_pair) for (evidence, *_), of_pair in zip(pairs, twists, strict=True)])
     of_each = zip(pairs, candidates, twists, preserved, strict=True)
-    return run_in_lockstep(
-        [_decide(_Pair(*pair, motions, of_pair, flags)) for pair, motions, of_pair, flags in of_each], remains
-    )
+    return [_decide(_Pair(*pair, motions, of_pair, flags)) for pair, motions, of_pair, flags in of_each]
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,25 +111,25 @@ class _Pair:
         return replace(self, evidence=self.evidence.without(out), bounds=bounds, preserved=self.preserved[~out])
 
 
-def _decide(pair: _Pair) -> Steps[Decision]:
+def _decide(pair: _Pair) -> Decision:
     """The joint by what the patches say of candidate motions."""
     evidence, preserved = pair.evidence, pair.preserved
     everything = np.ones(len(evidence.items), dtype=bool)
-    strict, values = yield from freedoms(evidence, pair.twists, preserved, everything, pair.tolerances)
+    strict, values = freedoms(evidence, pair.twists, preserved, everything, pair.tolerances)
     cone = motion_cone(evidence, strict, pair.bounds)
     turned: OtherReading | None = None
     if cone.extra and not cone.opened.all():
-        _, freed = yield from freedoms_beyond(evidence, pair.twists, preserved, ~cone.opened, pair.tolerances, strict)
+        _, freed = freedoms_beyond(evidence, pair.twists, preserved, ~cone.opened, pair.tolerances, strict)
         cone = cone.exactly(freed)
     if cone.extra:
-        stopped = yield from _at_stop(pair, strict, cone)
+        stopped = _at_stop(pair, strict, cone)
         if isinstance(stopped, Decision):
             return stopped
         turned = stopped
-    blocked = yield from _blocked(pair, strict, cone)
+    blocked = _blocked(pair, strict, cone)
     if blocked is not None:
         return blocked
-    sure = yield from certainty(evidence, pair.twists, preserved, strict, values, pair.tolerances, cone)
+    sure = certainty(evidence, pair.twists, preserved, strict, values, pair.tolerances, cone)
     if turned is not None and sure.status == "determined" and not cone.plainly_open:
         sure = doubtful(evidence, strict, turned)
     elif sure.status == "determined" and leaves_several_ways(cone):
@@ -148,7 +144,7 @@ def _decide(pair: _Pair) -> Steps[Decision]:
     return Decision(form, strict, strict, sure.status, sure.reason, kept, (), values, other, cone=cone)
 
 
-def _at_stop(pair: _Pair, strict: Array, cone: MotionCone) -> Steps[Decision | OtherReading | None]:
+def _at_stop(pair: _Pair, strict: Array, cone: MotionCone) -> Decision | OtherReading | None:
     """The joint of a pair that is drawn where contact ends its rotation: that of the rest of the contact, where it
     leaves what is at rest and a turn about its journal; a reading where the journal does not go more than half round,
     None where there is no such turn."""
@@ -159,13 +155,13 @@ def _at_stop(pair: _Pair, strict: Array, cone: MotionCone) -> Steps[Decision | O
         journal = _journal(evidence.chosen(~out), motion)
         if not (journal or reading is None) or _in_corner(evidence, out):
             continue
-        basis, freed = yield from freedoms_beyond(evidence, pair.twists, pair.preserved, ~out, pair.tolerances, strict)
+        basis, freed = freedoms_beyond(evidence, pair.twists, pair.preserved, ~out, pair.tolerances, strict)
         if not freed.shape[1] or not _in_one_sense(cone, basis, freed):
             continue
         if not journal:
             reading = OtherReading(evidence.form(basis), basis, tuple(np.flatnonzero(out).tolist()), "stop")
             continue
-        rest = yield from _decide(pair.without(out))
+        rest = _decide(pair.without(out))
         if rest.basis.shape[1] != basis.shape[1] or rest.status == "blocked":
             continue
         sense = 0.0 if freed.shape[1] > 1 else -_sense(evidence.speeds_of(out, motion.twist))
@@ -225,7 +221,7 @@ def _sense(speeds: Array) -> float:
     return 1.0 if float(speeds.max()) > -float(speeds.min()) else -1.0
 
 
-def _blocked(pair: _Pair, strict: Array, cone: MotionCone) -> Steps[Decision | None]:
+def _blocked(pair: _Pair, strict: Array, cone: MotionCone) -> Decision | None:
     """The joint of a pair of which a small part is drawn into each other and forbids what the rest of the contact
     allows; None where none does. Of the candidates the one that leaves out the smallest share of the area, the first of
     equals; where contact already leaves a freedom, only a turn about a curved surface may be added."""
@@ -246,10 +242,10 @@ def _blocked(pair: _Pair, strict: Array, cone: MotionCone) -> Steps[Decision | N
         return None
     share, n = min(found)
     out = ~pair.preserved[:, n]
-    basis, _ = yield from freedoms(evidence, pair.twists, pair.preserved, ~out, pair.tolerances)
+    basis, _ = freedoms(evidence, pair.twists, pair.preserved, ~out, pair.tolerances)
     if basis.shape[1] <= strict.shape[1]:
         return None
-    rest = yield from _decide(pair.without(out))
+    rest = _decide(pair.without(out))
     words = f"{int(out.sum())} of {len(out)} patches ({100 * share:.1f} % of the area) left out: they block it"
     return _with_left_out(rest, out, pair.candidates[n], strict, cone, (), words)
 

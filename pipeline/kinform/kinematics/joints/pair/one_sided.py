@@ -29,7 +29,6 @@ from kinform.foundation.algebra.vectors import perpendicular, sine, widest_turn
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.joints.pair.freedoms import freedoms_beyond
-from kinform.kinematics.joints.pair.in_step import Steps
 from kinform.kinematics.joints.pair.lower_pairs import JointForm
 from kinform.kinematics.joints.pair.motion_cone import MotionCone
 from kinform.model.arrays import Array, Flags
@@ -89,7 +88,7 @@ class OtherReading:
 
 def stop_reading(
     evidence: Evidence, twists: Array, preserved: Flags, strict: Array, tolerances: Tolerances, cone: MotionCone
-) -> Steps[OtherReading | None]:
+) -> OtherReading | None:
     """The other reading of a pair whose freedoms are `strict` (6, k), where what it lets go in one sense may be meant;
     None where not.
 
@@ -98,11 +97,9 @@ def stop_reading(
     if not cone.extra or cone.plainly_open or cone.opened.all():
         return None
     if cone.extra > 1:
-        return (
-            None if strict.shape[1] else (yield from _end_of_some_guide(evidence, twists, preserved, tolerances, cone))
-        )
+        return None if strict.shape[1] else _end_of_some_guide(evidence, twists, preserved, tolerances, cone)
     keep = ~cone.opened
-    _, freed = yield from freedoms_beyond(evidence, twists, preserved, keep, tolerances, strict)
+    _, freed = freedoms_beyond(evidence, twists, preserved, keep, tolerances, strict)
     basis = cone.exactly(freed).closed
     if not freed.shape[1] or basis is cone.closed:
         return None
@@ -121,7 +118,7 @@ def stop_reading(
 
 def _end_of_some_guide(
     evidence: Evidence, twists: Array, preserved: Flags, tolerances: Tolerances, cone: MotionCone
-) -> Steps[OtherReading | None]:
+) -> OtherReading | None:
     """The slide of a pair without freedoms that faces which look one way end, where the rest of the contact is its
     guide; of several the one that ends on the least area."""
     nothing = np.zeros((6, 0))
@@ -133,7 +130,7 @@ def _end_of_some_guide(
         left = [k for k in left if k not in out]
         keep = np.ones(len(evidence.items), dtype=bool)
         keep[list(out)] = False
-        basis, freed = yield from freedoms_beyond(evidence, twists, preserved, keep, tolerances, nothing)
+        basis, freed = freedoms_beyond(evidence, twists, preserved, keep, tolerances, nothing)
         form = evidence.form(basis)
         if freed.shape[1] == 1 and _ends_guide(form, evidence.chosen(keep), evidence.chosen(~keep)):
             readings.append((sum(evidence.items[k].area for k in out), OtherReading(form, basis, out, "stop")))
@@ -160,13 +157,13 @@ def leaves_several_ways(cone: MotionCone) -> bool:
 
 def seat_reading(
     evidence: Evidence, twists: Array, preserved: Flags, strict: Array, sure: Flags, tolerances: Tolerances
-) -> Steps[OtherReading | None]:
+) -> OtherReading | None:
     """The other reading of a pair whose freedoms are `strict` (6, k), if surfaces that are known (`sure` (items,)) hold
     all of it but one motion, and the rest, such as a rim in its seat or facets of no known surface, ends that in one
     sense; None if not."""
     if sure.all() or not sure.any():
         return None
-    basis, freed = yield from freedoms_beyond(evidence, twists, preserved, sure, tolerances, strict)
+    basis, freed = freedoms_beyond(evidence, twists, preserved, sure, tolerances, strict)
     out = tuple(int(k) for k in np.flatnonzero(~sure))
     if freed.shape[1] != 1 or not one_sense(evidence, freed[:, 0], out):
         return None

@@ -20,7 +20,6 @@ from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.rounding import SINGLE, TINY
 from kinform.kinematics.joints.pair.evidence import LOOSE_ANGLE, Evidence
 from kinform.kinematics.joints.pair.freedoms import freedoms_beyond
-from kinform.kinematics.joints.pair.in_step import Steps
 from kinform.kinematics.joints.pair.one_sided import OPPOSING_SPEED, OtherReading
 from kinform.model.arrays import Array, Flags
 from kinform.model.tolerances import Tolerances
@@ -34,13 +33,13 @@ SLOT_OPPOSED = -0.999
 
 def pin_reading(
     evidence: Evidence, twists: Array, preserved: Flags, basis: Array, sure: Flags, tolerances: Tolerances
-) -> Steps[OtherReading | None]:
+) -> OtherReading | None:
     """What is free where pins do not hold, of a pair whose freedoms are `basis` (6, k), if all contact is of surfaces
     that are known (`sure` (items,)) and of pins in slots beside them; None if not."""
     pins = np.array([_on_plane(item.patch.flat and not item.patch.one_sided, item.angle) for item in evidence.items])
     if not pins.any() or pins.all() or not (pins | sure).all():
         return None
-    free, freed = yield from freedoms_beyond(evidence, twists, preserved, ~pins, tolerances, basis)
+    free, freed = freedoms_beyond(evidence, twists, preserved, ~pins, tolerances, basis)
     out = tuple(int(k) for k in np.flatnonzero(pins))
     if not freed.shape[1] or not _stay(evidence, basis, out) or not _hold(evidence, freed, out):
         return None
