@@ -30,7 +30,7 @@ from kinform.kinematics.joints.pair.hypotheses import Motion, candidate_motions
 from kinform.kinematics.joints.pair.lower_pairs import JointForm
 from kinform.kinematics.joints.pair.motion_cone import MotionCone, motion_cone
 from kinform.kinematics.joints.pair.one_sided import lets_turn, new_turns
-from kinform.kinematics.joints.pair.preserved import preserved_by_each
+from kinform.kinematics.joints.pair.preserved import preserved_motions
 from kinform.kinematics.joints.pair.suspects import AtRest, Pair, suspect
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.kinematics import JointStatus, ReadingCause
@@ -71,22 +71,14 @@ class Decision:
     """Items left out that end a motion at this pose, each with the motion and the sense in which it ends it."""
 
 
-Question = tuple[Evidence, Tolerances, Sequence[Ints]]
-"""The evidence of a pair, and of each of its items the samples that bound its patch."""
-
-
-def decide(evidence: Evidence, tolerances: Tolerances) -> Decision:
-    """The joint between the two bodies of the evidence."""
-    return decide_each([(evidence, tolerances, extreme_samples([item.patch for item in evidence.items]))])[0]
-
-
-def decide_each(pairs: Sequence[Question]) -> list[Decision]:
-    """The joints of several pairs of bodies, each by the evidence of its own contacts alone."""
-    candidates = [candidate_motions(evidence, tolerances.alignment) for evidence, tolerances, _ in pairs]
-    twists = [np.array([m.twist for m in of_pair]).reshape(-1, 6).T for of_pair in candidates]
-    preserved = preserved_by_each([(evidence, of_pair) for (evidence, *_), of_pair in zip(pairs, twists, strict=True)])
-    of_each = zip(pairs, candidates, twists, preserved, strict=True)
-    return [_decide(Pair(*pair, motions, of_pair, flags)) for pair, motions, of_pair, flags in of_each]
+def decide(evidence: Evidence, tolerances: Tolerances, bounds: Sequence[Ints] | None = None) -> Decision:
+    """The joint between the two bodies of the evidence; `bounds`: of each item the samples that bound its patch, where
+    these are known."""
+    if bounds is None:
+        bounds = extreme_samples([item.patch for item in evidence.items])
+    candidates = candidate_motions(evidence, tolerances.alignment)
+    twists = np.array([motion.twist for motion in candidates]).reshape(-1, 6).T
+    return _decide(Pair(evidence, tolerances, bounds, candidates, twists, preserved_motions(evidence, twists)))
 
 
 def _decide(pair: Pair) -> Decision:
