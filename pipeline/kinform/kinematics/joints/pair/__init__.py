@@ -49,8 +49,8 @@ The steps
    other body by more than a press, and alone forbids a motion, is left out, and the joint is `blocked` by it.
    `certainty` says what makes the answer doubtful: it is `ambiguous` then, never silently one or the other.
    Contact that may not hold what its rows say is listed by generators (`suspects`) in one table of precedence:
-   `uncertainty` and `strays` what the fits hardly know and what may not be meant to touch, `coarse_flats` and `threads`
-   what coarse meshes may hide, `scraps` what is too slight for the answer to hang on it, `slots` what pins hold,
+   `uncertainty` and `strays` what the fits hardly know and what may not be meant to touch, `coarse_flats` what coarse
+   meshes may hide, `scraps` what is too slight for the answer to hang on it, `slots` what pins hold,
    `one_sided` which faces may end a motion at this pose and not guide it. Of the last ones the other reading is kept
    (`Joint.readings`), and the stated function may choose (`bodies.readings`).
 7. `joint` has the result as a `Joint`; `question` is all of it as a function of what it depends on; `extremes` are

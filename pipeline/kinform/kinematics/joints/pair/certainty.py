@@ -31,7 +31,6 @@ from kinform.kinematics.joints.pair.scraps import flanks, is_scrap, slivers
 from kinform.kinematics.joints.pair.slots import is_slot, pins
 from kinform.kinematics.joints.pair.strays import bends, points_apart, strays, without_bends
 from kinform.kinematics.joints.pair.suspects import ROLES, AtRest, OtherReading, Suspect
-from kinform.kinematics.joints.pair.threads import leaning_facets
 from kinform.kinematics.joints.pair.uncertainty import (
     near_axes,
     scattered_facets,
@@ -90,7 +89,6 @@ PRECEDENCE = (
     Case(scattered_facets, unless=(SEAT, PIN)),
     Case(strays, unless=(SEAT,)),
     Case(near_axes),
-    Case(leaning_facets),
     Case(torn_flats),
     Case(vague_axes),
     Case(flats_of_rings),
