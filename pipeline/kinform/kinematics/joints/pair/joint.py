@@ -11,7 +11,8 @@ from kinform.kinematics.joints.pair.decision import Decision
 from kinform.kinematics.joints.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.joints.pair.hypotheses import Motion, motion_words
 from kinform.kinematics.joints.pair.lower_pairs import JointForm
-from kinform.kinematics.joints.pair.one_sided import BESIDE_AXIS, ROLES
+from kinform.kinematics.joints.pair.one_sided import BESIDE_AXIS
+from kinform.kinematics.joints.pair.suspects import ROLES
 from kinform.kinematics.joints.pair.uncertainty import disagreement, joint_uncertainty
 from kinform.kinematics.screws.canonical_basis import canonical_twists
 from kinform.kinematics.screws.wording import direction_words, motions_in_words
