@@ -9,11 +9,12 @@ from rich.text import Text
 from kinform.design import Design
 from kinform.foundation.rounding import SINGLE
 from kinform.foundation.words import angle, counted, length
+from kinform.function import resolve_joint
 from kinform.kinematics import Insight, insight
 from kinform.model.kinematics import Joint, Release
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths, singular, vector
-from kinform_cli.views.joints import blockers, sentence
+from kinform_cli.views.joints import blockers, in_designers_sense, sentence
 
 
 def render(design: Design, name: str) -> RenderableType:
@@ -25,6 +26,7 @@ def render(design: Design, name: str) -> RenderableType:
         f"{joint.status}: {joint.reason}",
         f"values and motions are those of {joint.bodies[1]} relative to {joint.bodies[0]}",
     ]
+    items += _as_stated(design, joint, lengths)
     if joint.point is not None:
         items.append(f"through ({lengths.point(joint.point)}) {lengths.unit}")
     items += [*_uncertainty(joint, lengths), *(f"may be read as {reading.words}" for reading in joint.readings)]
@@ -37,6 +39,21 @@ def render(design: Design, name: str) -> RenderableType:
         items += [f"  {_way(release, lengths)}" for release in joint.releases]
     items += _alternatives(evidence)
     return stacked(*items)
+
+
+def _as_stated(design: Design, joint: Joint, lengths: Lengths) -> list[str]:
+    """What each intended joint that it stands for is called, of which bodies and about which axis its values are."""
+    assert design.kinematics is not None
+    lines = []
+    for intended in design.assembly.function.joints:
+        found = resolve_joint(design.assembly, design.kinematics, intended.name)
+        if found.joint is joint:
+            axis, reach = in_designers_sense(design, intended.name, lengths)
+            about = "" if joint.axis is None else f", axis {axis}"
+            reach = f", range {reach}" if reach else ""
+            ends = f"{found.bodies[1]} relative to {found.bodies[0]}"
+            lines.append(f"{intended.name} in the function: {ends}{about}{reach}")
+    return lines
 
 
 def _uncertainty(joint: Joint, lengths: Lengths) -> list[str]:

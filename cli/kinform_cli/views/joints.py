@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rich.console import RenderableType
@@ -10,6 +10,7 @@ from rich.text import Text
 
 from kinform.design import Design
 from kinform.foundation.words import counted
+from kinform.function import joint_as_stated, range_as_stated, resolve_joint
 from kinform.function.body_titles import body_titles
 from kinform.model.collisions import JointRange
 from kinform.model.kinematics import Joint, Kinematics, Release
@@ -28,17 +29,11 @@ def render(design: Design, *, short: bool = False) -> RenderableType:
     kinematics, lengths = design.kinematics, Lengths.of(design.assembly)
     assert kinematics is not None
     title = f"{counted(len(kinematics.joints), 'joint')} between {counted(len(kinematics.bodies), 'body', 'bodies')}"
-    run = design.simulation
-    ranges = {item.joint: item for item in (run.ranges if run is not None else None) or ()}
+    ranges = _ranges(design)
     given = _answers(design) if design.assembly.function.joints else ()
-    meant: dict[str, list[str]] = {}
-    for one in given:
-        if one.joint is not None:
-            meant.setdefault(one.joint, []).append(one.name)
     headings = ("type", "axis", f"point {lengths.unit}", "free", "status")
     rows = Rows(
         "name",
-        *(["intended"] if meant else []),
         *headings,
         *(["range"] if ranges else []),
         "evidence",
@@ -50,7 +45,6 @@ def render(design: Design, *, short: bool = False) -> RenderableType:
     for joint in beginning(kinematics.joints, short):
         rows.add(
             joint.name,
-            *([", ".join(meant.get(joint.name, [])) or NONE] if meant else []),
             joint.type if joint.pitch is None else f"{joint.type} ({lengths.length(joint.pitch)} {lengths.small}/turn)",
             vector(joint.axis) if joint.axis2 is None else f"{vector(joint.axis)}; {vector(joint.axis2)}",
             lengths.point(joint.point),
@@ -60,7 +54,7 @@ def render(design: Design, *, short: bool = False) -> RenderableType:
             ", ".join(joint.evidence),
         )
     items: list[RenderableType] = [rows]
-    items += _intended(design, given, lengths)
+    items += _intended(design, given, bool(ranges), lengths)
     items += _leaving(kinematics, short)
     for joint in beginning([joint for joint in kinematics.joints if joint.status != "determined"], short):
         items += _doubt(joint, lengths)
@@ -78,20 +72,40 @@ def _answers(design: Design) -> Sequence[Answer]:
     return answers(design)
 
 
-def _intended(design: Design, given: Sequence[Answer], lengths: Lengths) -> list[RenderableType]:
-    """The answer to each intended joint."""
+def _intended(design: Design, given: Sequence[Answer], ranged: bool, lengths: Lengths) -> list[RenderableType]:
+    """The answer to each intended joint, and what was found in the designer's order and sense."""
     if not given:
         return []
     from kinform.consistency.comparisons.answers import answer_counts
 
     title = f"\nIntended joints: {answers_line(answer_counts(given))}"
-    rows = Rows("intended", "type", "answer", "because", title=title, names=["intended"], texts=["because"])
+    headings = ("intended", "type", "answer", "axis", *(["range"] if ranged else []), "joint", "because")
+    rows = Rows(*headings, title=title, names=["intended", "joint"], texts=["because"])
     for one in given:
         gap = "" if one.gap is None else f"gap {lengths.length(one.gap)} {lengths.small}"
-        rows.add(one.name, one.type, one.answer, one.free or one.blocked_by or gap)
+        seen = in_designers_sense(design, one.name, lengths) if one.joint is not None else (NONE, "")
+        because = one.free or one.blocked_by or gap
+        rows.add(one.name, one.type, one.answer, *seen[: 2 if ranged else 1], one.joint or NONE, because)
     sides = () if design.kinematics is None else design.kinematics.sides
     found = [f"  {one.joint}: '{one.parts[0]}' and '{one.parts[1]}': {one.evidence}" for one in sides]
     return [rows, Text("\nSides that contact told", style="bold"), *found] if found else [rows]
+
+
+def _ranges(design: Design) -> Mapping[str, JointRange]:
+    """By the names of derived joints."""
+    run = design.simulation
+    return {str(item.joint): item for item in (run.ranges if run is not None else None) or ()}
+
+
+def in_designers_sense(design: Design, name: str, lengths: Lengths) -> tuple[str, str]:
+    """The axis and the range of the joint that the designer calls so, in the designer's order and sense."""
+    assert design.kinematics is not None
+    found = resolve_joint(design.assembly, design.kinematics, name)
+    joint = joint_as_stated(found)
+    if joint is None:
+        return NONE, ""
+    item = _ranges(design).get(joint.name)
+    return vector(joint.axis), _range(None if item is None else range_as_stated(item, found), lengths)
 
 
 def _range(item: JointRange | None, lengths: Lengths) -> str:
