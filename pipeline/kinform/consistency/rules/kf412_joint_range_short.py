@@ -7,7 +7,8 @@ goes ends; of one that is taken as stated the guide is in no mesh.
 
 Why it matters: the device cannot do what it is for.
 
-What to do: cut away what is in the way, move the stop, lengthen the guide, or state the range that is needed.
+What to do: cut away what is in the way, move the stop, lengthen the guide, or state the range that is left, which the
+remedy has in the unit and sense of the file.
 
 Example: a gimbal that shall turn by 45° hits its housing at 39°.
 """
@@ -16,6 +17,7 @@ from __future__ import annotations
 
 import math
 
+from kinform.consistency.comparisons.as_written import range_as_written
 from kinform.consistency.comparisons.ranges import RangeComparison, range_comparisons, shown
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, skipped
@@ -70,10 +72,11 @@ def _finding(context: Context, item: RangeComparison, side: str, stated: float, 
     joint = item.intended
     end_value, intended = shown(value, joint, context.units), shown(stated, joint, context.units)
     by = f"{quoted(end.parts)} meet" if end.parts else end.reason
-    what, remedy = f"stops at {end_value}", "Cut away what is in the way, or state the range that is needed."
+    state = f"state the range that is {'free' if end.status == 'found' else 'guided'}{_range(context, item)}"
+    what, remedy = f"stops at {end_value}", f"Cut away what is in the way, or {state}."
     if end.status == "unbounded":
         what = f"goes only to {end_value}"
-        remedy = "Lengthen the guide, add an end stop, or state the range that is needed."
+        remedy = f"Lengthen the guide, add an end stop, or {state}."
     return RULE.finding(
         [joint.name, *end.parts],
         f"joint '{joint.name}' {what} on the {side} side ({by}), intended is {intended}",
@@ -83,6 +86,16 @@ def _finding(context: Context, item: RangeComparison, side: str, stated: float, 
         declared=joint,
         remedy=remedy,
     )
+
+
+def _range(context: Context, item: RangeComparison) -> str:
+    """ ": `range = [-40, 70]`": what the parts leave of the stated range, as the file has it."""
+    lower, upper = item.intended.range or (-math.inf, math.inf)
+    ends = [_reach(item.lower, lower), _reach(item.upper, upper)]
+    low, high = (stated if end is None else item.sign * end for end, stated in zip(ends, (lower, upper), strict=True))
+    kept = max(low, lower), min(high, upper)
+    written = range_as_written(context, item.intended, kept) if kept[0] < kept[1] else ""
+    return f": {written}" if written else ""
 
 
 RULE = Rule("KF412", "joint-range-short", "error", __doc__, check)
