@@ -100,4 +100,4 @@ def _meant(path: str, unnamed: Sequence[str]) -> str:
     return f": `{beside[close[0]]}` is there, and nothing names it" if close else ""
 
 
-RULE = Rule("KF131", "mesh-loose", "error", __doc__, check, needs=("descriptions",))
+RULE = Rule("KF131", "mesh-loose", "error", __doc__, check, needs=("descriptions",), also=("note",))

@@ -112,4 +112,12 @@ def _zeros(description: Description) -> Iterator[Finding]:
         )
 
 
-RULE = Rule("KF415", "limits-unusable", "error", __doc__, check, needs=("descriptions", "described limits"))
+RULE = Rule(
+    "KF415",
+    "limits-unusable",
+    "error",
+    __doc__,
+    check,
+    needs=("descriptions", "described limits"),
+    also=("warning", "note"),
+)
