@@ -10,10 +10,12 @@ import csv
 import io
 import itertools
 import re
+import shutil
 
 import numpy as np
 import pytest
 from rich.console import Console
+from support.places import FIXTURES
 from support.solids import box, rod, save
 
 from kinform import stages
@@ -183,6 +185,41 @@ def test_a_finding_opens_the_page_at_the_end_that_it_is_about(stated):
         beside = np.array([np.cos(angle), np.sin(angle)])
         assert abs(focus.place[:2] @ [-beside[1], beside[0]]) == pytest.approx(0.01, abs=1e-4)
     assert sorted(poses) == pytest.approx(ends_of(sign), abs=0.05)
+
+
+@pytest.mark.parametrize(("kind", "swapped"), [("crank", True), ("rail", False)])
+def test_a_slide_is_shown_where_its_linkage_turns_back_or_its_guide_ends(tmp_path, kind, swapped):
+    """The slider of a crank, which the crank drives, and a carriage of 40 mm on a rail of 200 mm, that go 39.0085 mm
+    and 120 mm towards -x; the slider's other end is at 10.9915 mm."""
+    if kind == "crank":
+        for file in (FIXTURES / "mechanisms" / "slider_crank").iterdir():
+            shutil.copy(file, tmp_path)
+        path = tmp_path / "slider_crank.toml"
+        text, ends, slider = path.read_text().partition("[[function.drive]]")[0], (-39.0085, 10.9915), "slider_unit"
+        axis, sides = "axis = [1, 0, 0]", '["frame", "slider_unit"]'
+    else:
+        save(box(-100, 100, -30, 30, -20, 0) + box(-100, 100, 20, 30, 0, 20) + box(-100, 100, -30, -20, 0, 20),
+             tmp_path / "rail.stl")  # fmt: skip
+        save(box(-20, 20, -20, 20, 0, 20), tmp_path / "carriage.stl")
+        path, ends, slider = tmp_path / "rail.toml", (-120.0, 120.0), "carriage"
+        axis, sides = "axis = [1, 0, 0]", '["rail", "carriage"]'
+        text = 'schema = 1\n[assembly]\nname = "rail"\nunits = "mm"\nground = "rail"\n'
+        text += "".join(f'[[part]]\nname = "{name}"\nmesh = "{name}.stl"\n' for name in ("rail", "carriage"))
+        text += f'[[function.joint]]\nname = "guide"\nbetween = {sides}\ntype = "prismatic"\n{axis}\n'
+    sign = 1
+    if swapped:
+        sign, (one, other) = -1, sides[1:-1].split(", ")
+        text = text.replace(sides, f"[{other}, {one}]")
+    path.write_text(text.replace(axis, f"{axis}\nrange = [-200, 200]"))
+    design = stages.joints(stages.contacts(stages.import_(path)))
+    design = stages.check(stages.simulate(stages.mass(design), ranges=True))
+    scene, shown = Scene(design), []
+    for k, finding in enumerate(design.report.findings):
+        if finding.code == "KF412":
+            focus = scene.focuses[k]
+            shown.append(1e3 * scene.movements[focus.movement].at(focus.time)[slider][0, 3])
+            assert float(finding.found.removesuffix(" mm")) == pytest.approx(sign * shown[-1], abs=0.05)
+    assert sorted(shown) == pytest.approx(ends, abs=0.05)
 
 
 @pytest.mark.parametrize(("low", "high", "end"), [(-30, 90, UP), (-60, 60, DOWN)])

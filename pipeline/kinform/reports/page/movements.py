@@ -17,7 +17,7 @@ from kinform.foundation import words
 from kinform.foundation.algebra.spatial import quaternions, to_matrix
 from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
-from kinform.function import DesignersJoint, designers_joints, stated_ranges
+from kinform.function import DesignersJoint, designers_joints, resolve_joint, stated_ranges
 from kinform.model.arrays import Array
 from kinform.model.collisions import Collision, RangeEnd
 from kinform.model.kinematics import Joint
@@ -108,9 +108,18 @@ def movements_of(design: Design, size: float) -> list[Movement]:
     out = [] if run is None or len(run.time) < 2 else [_run(design, run, known)]
     if design.kinematics is not None:
         spans = _Spans(design)
-        for showing in freedom_motions(design.kinematics, size, spans.known):
+        for showing in freedom_motions(design.kinematics, size, spans.known, spans.short):
             out.append(_as_designed(_freedom(design, showing, spans), spans.named.get(showing.driver or "")))
     return out
+
+
+def _short(design: Design) -> list[str]:
+    """Joints, by kinform's names, whose range falls short (KF412): the page shows their ends."""
+    found = () if design.report is None else design.report.findings
+    names = dict.fromkeys(one.subject[0] for one in found if one.code == "KF412")
+    assert design.kinematics is not None
+    joints = (resolve_joint(design.assembly, design.kinematics, name).joint for name in names)
+    return [str(joint.name) for joint in joints if joint is not None]
 
 
 def _run(design: Design, run: Simulation, known: set[str]) -> Movement:
@@ -181,6 +190,7 @@ class _Spans:
     def __init__(self, design: Design):
         self.design = design
         kinematics = design.kinematics
+        self.short = [] if kinematics is None else _short(design)
         self.named = {} if kinematics is None else designers_joints(design.assembly, kinematics)
         run = design.simulation
         found = () if run is None else run.ranges or ()
@@ -197,17 +207,18 @@ class _Spans:
             if joint.freedoms == 1 and joint.name in self.ranges:
                 ends = self.ranges[joint.name].lower, self.ranges[joint.name].upper
                 low, high = (self._stop(end) for end in ends)
+                if joint.name in self.short:  # where a slide has left its guide
+                    low, high = ends[0].leaves if low is None else low, ends[1].leaves if high is None else high
                 wanted = asked.get(joint.name, (0.0, 0.0))
-                out[joint.name] = Span(
-                    None if low is None else min(low, wanted[0]), None if high is None else max(high, wanted[1])
-                )
+                # beyond where parts meet there is something to see, beyond where a linkage turns back there is nothing
+                low = min(low, wanted[0]) if low is not None and ends[0].parts else low
+                high = max(high, wanted[1]) if high is not None and ends[1].parts else high
+                out[joint.name] = Span(low, high)
         return out
 
     @staticmethod
     def _stop(end: RangeEnd) -> float | None:
-        """Where parts meet, or a slide has left its guide."""
-        value = end.leaves if end.status == "unbounded" else end.value
-        return value if end.status != "unknown" and value is not None and np.isfinite(value) else None
+        return end.value if end.status == "found" and end.value is not None and np.isfinite(end.value) else None
 
     def marks(self, showing: Showing) -> list[Mark]:
         """Where the driver of a freedom is stopped."""
