@@ -61,9 +61,10 @@ def _at_end(design: Design, movements: Sequence[Movement], finding: Finding) -> 
     item = next((item for item in (run.ranges if run else None) or () if joint and item.joint == joint.name), None)
     if item is None or joint is None or found.intended is None:
         return None
+    told = (finding.found or "").partition(" (")[0]  # what else is to be known of that end stands in brackets
     for end in (item.lower, item.upper):
         value = _value(end)
-        if value is None or shown(found.sign * value, found.intended, design.assembly.units) != finding.found:
+        if value is None or shown(found.sign * value, found.intended, design.assembly.units) != told:
             continue
         freedoms = [k for k, movement in enumerate(movements) if movement.kind == "freedom"]
         driven = [k for k in freedoms if movements[k].joint == joint.name] or freedoms
