@@ -9,12 +9,11 @@ from rich.text import Text
 from kinform.design import Design
 from kinform.foundation.rounding import SINGLE
 from kinform.foundation.words import angle, counted, length
-from kinform.function import resolve_joint
 from kinform.kinematics import Insight, insight
 from kinform.model.kinematics import Joint, Release
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths, singular, vector
-from kinform_cli.views.joints import blockers, in_designers_sense, sentence
+from kinform_cli.views.joints import blockers, named, sentence
 
 
 def render(design: Design, name: str) -> RenderableType:
@@ -43,17 +42,8 @@ def render(design: Design, name: str) -> RenderableType:
 
 def _as_stated(design: Design, joint: Joint, lengths: Lengths) -> list[str]:
     """What each intended joint that it stands for is called, of which bodies and about which axis its values are."""
-    assert design.kinematics is not None
-    lines = []
-    for intended in design.assembly.function.joints:
-        found = resolve_joint(design.assembly, design.kinematics, intended.name)
-        if found.joint is joint:
-            axis, reach = in_designers_sense(design, intended.name, lengths)
-            about = "" if joint.axis is None else f", axis {axis}"
-            reach = f", range {reach}" if reach else ""
-            ends = f"{found.bodies[1]} relative to {found.bodies[0]}"
-            lines.append(f"{intended.name} in the function: {ends}{about}{reach}")
-    return lines
+    names = [intended.name for intended in design.assembly.function.joints]
+    return [f"{one.name} in the function: {one.words}" for one in named(design, joint, names, lengths)]
 
 
 def _uncertainty(joint: Joint, lengths: Lengths) -> list[str]:
