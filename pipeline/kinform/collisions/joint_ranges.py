@@ -18,10 +18,12 @@ from kinform.collisions.driving.alone import drive_alone
 from kinform.collisions.driving.loop_motion import Tie
 from kinform.collisions.driving.loops import drive_loops, is_followed
 from kinform.collisions.parts.shapes import Shapes
+from kinform.foundation.algebra.displacements import displacement
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.processes import map_in_processes
 from kinform.foundation.progress import Progress
 from kinform.foundation.words import counted
+from kinform.kinematics.mobility.guides import joint_twist
 from kinform.kinematics.mobility.stated_couplings import coupling_rows
 from kinform.mechanism.joint_graph import JointGraph
 from kinform.model.assembly import Assembly
@@ -64,7 +66,9 @@ def ranges(
 
     def of_some(some: Sequence[int]) -> dict[int, JointRange]:
         if some[0] not in looped:
-            return {some[0]: drive_alone(shapes, joints[some[0]], *_sides(kinematics, graph.edges, some[0], shapes))}
+            still, moving, grounded = _sides(kinematics, graph.edges, some[0], shapes)
+            found = drive_alone(shapes, joints[some[0]], still, moving)
+            return {some[0]: _second_at_rest(found, joints[some[0]]) if grounded else found}
         block = looped[some[0]]
         of_block = drive_loops(shapes, kinematics, graph, block, [tie for tie in ties if tie[0] in block])
         return {n: unknown(joints[n], of_block) if isinstance(of_block, str) else of_block[n] for n in some}
@@ -166,8 +170,9 @@ def _refused(joint: Joint, kinematics: Kinematics, shapes: Shapes) -> str:
 
 def _sides(
     kinematics: Kinematics, edges: Sequence[tuple[int, int]], k: int, shapes: Shapes
-) -> tuple[list[str], list[str]]:
-    """Parts that rest and parts that move when joint k is driven alone: those that hang on its second body."""
+) -> tuple[list[str], list[str], bool]:
+    """Parts that rest and parts that move when joint k is driven alone: those that hang on its second body; and whether
+    the ground is one of these."""
     sets = UnionFind(len(kinematics.bodies))
     for n, (a, b) in enumerate(edges):
         if n != k:
@@ -177,4 +182,17 @@ def _sides(
     moving: list[str] = []
     for n, body in enumerate(kinematics.bodies):
         (moving if sets.find(n) == far else still).extend(sorted(shapes.body_parts[body.name]))
-    return sorted(still), sorted(moving)
+    grounded = any(body.ground and sets.find(n) == far for n, body in enumerate(kinematics.bodies))
+    return sorted(still), sorted(moving), grounded
+
+
+def _second_at_rest(item: JointRange, joint: Joint) -> JointRange:
+    """The range with places as they are where the second body rests, and the first moves."""
+
+    def moved(end: RangeEnd) -> RangeEnd:
+        if end.value is None or end.place is None:
+            return end
+        place = displacement(-end.value * joint_twist(joint)) @ np.append(end.place, 1.0)
+        return replace(end, place=place[:3])
+
+    return replace(item, lower=moved(item.lower), upper=moved(item.upper))

@@ -113,4 +113,4 @@ def _remedy(c: Comparison) -> str:
     return "See the evidence with `kinform show F.h5 joints`; correct the mating surfaces, or the intended type."
 
 
-RULE = Rule("KF402", "joint-wrong-type", "error", __doc__, check, needs=("comparisons",))
+RULE = Rule("KF402", "joint-wrong-type", "error", __doc__, check, needs=("comparisons",), also=("note",))

@@ -11,6 +11,7 @@ Example: an M6 lead screw with a pitch of 1 mm where 1.25 mm is intended.
 
 from __future__ import annotations
 
+from kinform.consistency.comparisons.as_written import pitch_as_written
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, skipped
 from kinform.consistency.rule import Rule
@@ -34,7 +35,8 @@ def check(context: Context) -> Outcome:
                     intended=intended,
                     place=c.point,
                     declared=c.intended,
-                    remedy="Correct the thread, or `pitch` of the intended joint (positive: right-handed).",
+                    remedy="Correct the thread, or the pitch of the intended joint (positive: right-handed)"
+                    f"{pitch_as_written(context, c.intended, c.pitch)}.",
                 )
             )
     return decided(findings) if count else skipped("no screw joint to compare")
