@@ -25,7 +25,7 @@ import math
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import perpendicular, sine, widest_turn
+from kinform.foundation.algebra.vectors import cross, perpendicular, sine, widest_turn
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.joints.pair.freedoms import freedoms_beyond
@@ -48,6 +48,10 @@ OPPOSING_SPEED = 0.05
 """Share of a patch's greatest normal speed that is opposition, and no rounding beside it. Chosen, not measured."""
 SLIDES_FROM = 0.5
 """Length of a guide over its width from which on it slides and does not jam. Chosen, not measured."""
+RAM_FROM = 2.0
+"""The same, from which on a shaft that ends at the bottom of its bore may slide although a collar ends there, too.
+Pivots are one to two diameters long, as horns on their servos are; guides that slide are twice as long as wide at
+least."""
 ONE_SECTION = 0.05
 """Relative difference of radii that are one cross-section. Chosen, not measured."""
 INSIDE_GUIDE = 1.05
@@ -97,12 +101,14 @@ def stop_reading(
     """
     if not cone.extra or cone.plainly_open or cone.opened.all():
         return None
-    if cone.extra > 1:
-        return (
-            None if strict.shape[1] else (yield from _end_of_some_guide(evidence, twists, preserved, tolerances, cone))
-        )
+    if cone.extra > 1 and not strict.shape[1]:
+        return (yield from _end_of_some_guide(evidence, twists, preserved, tolerances, cone))
     keep = ~cone.opened
-    _, freed = yield from freedoms_beyond(evidence, twists, preserved, keep, tolerances, strict)
+    basis, freed = yield from freedoms_beyond(evidence, twists, preserved, keep, tolerances, strict)
+    if cone.extra > 1:
+        forms = evidence.form(strict), evidence.form(basis)
+        short = forms[1].type == "planar" and _pivots(*forms, evidence.chosen(keep), evidence.chosen(cone.opened))
+        return OtherReading(forms[1], basis, tuple(np.flatnonzero(cone.opened).tolist()), "stop") if short else None
     basis = cone.exactly(freed).closed
     if not freed.shape[1] or basis is cone.closed:
         return None
@@ -181,12 +187,21 @@ def one_sense(evidence: Evidence, motion: Array, out: tuple[int, ...]) -> bool:
     return not (most > large and least < -large)
 
 
+def _pivots(slide: JointForm, cheeks: JointForm, guides: list[Item], faces: list[Item]) -> bool:
+    """Are the faces, which alone keep a slide between two cheeks from turning, too short to guide it over the reach of
+    the cheeks? So does a finger rest that is drawn where a face ends its turn between the cheeks of a fork."""
+    if slide.axis is None or cheeks.axis is None:
+        return False
+    reach = _extent(np.concatenate([i.points for i in guides]), cross(cheeks.axis, slide.axis))
+    return _extent(np.concatenate([i.points for i in faces]), slide.axis) < SLIDES_FROM * reach
+
+
 @dataclass(frozen=True, eq=False)
 class _End:
     """Faces at the end of a guide that is long enough to slide in."""
 
     inside: bool
-    """Of its cross-section."""
+    """Of its cross-section; of a long guide one of them: a ram that is drawn in ends at its bottom and its collar."""
     beside: bool
     """Beside its axis."""
 
@@ -214,11 +229,13 @@ def _end_of_guide(form: JointForm, guides: list[Item], faces: list[Item]) -> _En
     ]
     if all(length < SLIDES_FROM * 2.0 * half for length, half in lengths):
         return None
-    ends = (np.concatenate([i.points for i in faces]) - centre) @ across
-    away = _distances(ends)
-    face_reach = float(away.max())
-    inside = face_reach <= INSIDE_GUIDE * max(half for _, half in lengths)
-    far = ends[away > ROUND_FROM * face_reach]
+    ends = [(item.points - centre) @ across for item in faces]
+    away = [_distances(end) for end in ends]
+    every, apart = np.concatenate(ends), np.concatenate(away)
+    far = every[apart > ROUND_FROM * apart.max()]
+    half, long = max(half for _, half in lengths), any(length >= RAM_FROM * 2.0 * half for length, half in lengths)
+    bottom = long and any(one.max() <= INSIDE_GUIDE * half and one.mean() < half for one in away)
+    inside = bottom or float(apart.max()) <= INSIDE_GUIDE * half
     return _End(inside, widest_turn(np.arctan2(far[:, 1], far[:, 0])) > BESIDE_AXIS)
 
 
