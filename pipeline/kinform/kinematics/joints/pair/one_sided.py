@@ -99,16 +99,16 @@ def stop_reading(
 
     `twists` (6, n) are candidate motions, `preserved` (items, n) which patches slide on themselves under them.
     """
+    if cone.extra > 1 and strict.shape[1] == 1:
+        return (yield from _short_face(evidence, twists, preserved, strict, tolerances, cone))
     if not cone.extra or cone.plainly_open or cone.opened.all():
         return None
-    if cone.extra > 1 and not strict.shape[1]:
-        return (yield from _end_of_some_guide(evidence, twists, preserved, tolerances, cone))
-    keep = ~cone.opened
-    basis, freed = yield from freedoms_beyond(evidence, twists, preserved, keep, tolerances, strict)
     if cone.extra > 1:
-        forms = evidence.form(strict), evidence.form(basis)
-        short = forms[1].type == "planar" and _pivots(*forms, evidence.chosen(keep), evidence.chosen(cone.opened))
-        return OtherReading(forms[1], basis, tuple(np.flatnonzero(cone.opened).tolist()), "stop") if short else None
+        return (
+            None if strict.shape[1] else (yield from _end_of_some_guide(evidence, twists, preserved, tolerances, cone))
+        )
+    keep = ~cone.opened
+    _, freed = yield from freedoms_beyond(evidence, twists, preserved, keep, tolerances, strict)
     basis = cone.exactly(freed).closed
     if not freed.shape[1] or basis is cone.closed:
         return None
@@ -187,13 +187,27 @@ def one_sense(evidence: Evidence, motion: Array, out: tuple[int, ...]) -> bool:
     return not (most > large and least < -large)
 
 
-def _pivots(slide: JointForm, cheeks: JointForm, guides: list[Item], faces: list[Item]) -> bool:
-    """Are the faces, which alone keep a slide between two cheeks from turning, too short to guide it over the reach of
-    the cheeks? So does a finger rest that is drawn where a face ends its turn between the cheeks of a fork."""
-    if slide.axis is None or cheeks.axis is None:
-        return False
-    reach = _extent(np.concatenate([i.points for i in guides]), cross(cheeks.axis, slide.axis))
-    return _extent(np.concatenate([i.points for i in faces]), slide.axis) < SLIDES_FROM * reach
+def _short_face(
+    evidence: Evidence, twists: Array, preserved: Flags, strict: Array, tolerances: Tolerances, cone: MotionCone
+) -> Steps[OtherReading | None]:
+    """The planar motion of a slide along cheeks, or along one flush face, where faces that push one way keep it from
+    turning there and are too short to guide it over the reach of the cheeks: they may end its turn, as a stop ends that
+    of a finger or a knee; None where they guide it."""
+    slide = evidence.form(strict)
+    if slide.type != "prismatic" or slide.axis is None or any(item.patch.kind != "plane" for item in evidence.items):
+        return None
+    for cheek in sorted(evidence.items, key=lambda item: -item.patch.area):
+        normal = cheek.patch.axis
+        keep = np.array([abs(float(item.patch.axis @ normal)) > ONE_WAY for item in evidence.items])
+        if keep.all() or not cone.opened[~keep].all():
+            continue
+        reach = _extent(np.concatenate([i.points for i in evidence.chosen(keep)]), cross(normal, slide.axis))
+        if _extent(np.concatenate([i.points for i in evidence.chosen(~keep)]), slide.axis) >= SLIDES_FROM * reach:
+            continue
+        basis, freed = yield from freedoms_beyond(evidence, twists, preserved, keep, tolerances, strict)
+        if freed.shape[1] == 2 and evidence.form(basis).type == "planar":
+            return OtherReading(evidence.form(basis), basis, tuple(np.flatnonzero(~keep).tolist()), "stop")
+    return None
 
 
 @dataclass(frozen=True, eq=False)
