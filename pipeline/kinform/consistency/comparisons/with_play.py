@@ -1,4 +1,5 @@
-"""Intended joints where contact is missing, or leaves too much, and a part with play may carry them all the same."""
+"""Intended joints where contact is missing, or leaves too much, and a part with play may carry them all the same, or
+contact of a kind that is not known."""
 
 from __future__ import annotations
 
@@ -8,6 +9,7 @@ from kinform.consistency.comparisons.comparison import Comparison, leaves_more
 from kinform.consistency.comparisons.known import Known
 from kinform.consistency.questions.captive_parts import CaptivePart, may_carry, may_hold
 from kinform.foundation.algebra.screws import Frame, scaled, span
+from kinform.foundation.words import quoted
 from kinform.kinematics.joints.bodies.stated_joints import joint_twists
 from kinform.model.arrays import Array
 
@@ -17,9 +19,19 @@ def with_play(c: Comparison, known: Known) -> Comparison:
     denied, but undecided; of a joint that is taken as stated, `afloat` says so."""
     missing = c.state == "absent" or (c.state == "taken" and not c.touch)
     one = _afloat(c, known) if missing or c.left_free or leaves_more(c) else None
-    if one is None:
-        return c
-    return replace(c, state="taken" if c.state == "taken" else "undecided", reason=one.words(), afloat=one.words())
+    words = _touching(c, known) if missing and one is None else ""
+    if one is not None:
+        words = one.words()
+    return replace(c, state="taken" if c.state == "taken" else "undecided", reason=words, afloat=words) if words else c
+
+
+def _touching(c: Comparison, known: Known) -> str:
+    """In words, how two bodies that are in no contact that is known touch all the same; "" where they do not."""
+    sides = [set(body.parts) for body in c.bodies]
+    for patch in () if known.contacts is None else known.contacts.patches:
+        if patch.unknown and any(patch.parts[0] in a and patch.parts[1] in b for a, b in (sides, sides[::-1])):
+            return f"{quoted(patch.parts)} touch, in a way that is no contact that kinform knows"
+    return ""
 
 
 def _afloat(c: Comparison, known: Known) -> CaptivePart | None:

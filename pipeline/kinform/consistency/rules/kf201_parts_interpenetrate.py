@@ -3,8 +3,8 @@
 An error between parts that move relative to each other, a warning between parts of one body (threads, pressed or
 screwed parts are often drawn so), a note where it is no deeper than the contact tolerance of the pair and the form
 error of the facets, and where `[[assume]] ignore = true` covers the pair. In a robot description, of which the meshes
-are for looking at, a warning; a note between parts of one link, and between links that a joint joins where the
-overlap is at most 2 % of the smaller one.
+are for looking at, a warning; a note between parts of one link, and between links that a joint joins, or
+what is fixed to them, where the overlap is at most 2 % of the smaller one.
 
 Copies of a part in one place are an error wherever they are, inside a group or a sub-assembly too, unless their mass is
 stated: it counts twice. Other overlaps inside a group are meant.
@@ -103,9 +103,9 @@ def _relation(context: Context, overlap: Interference) -> tuple[str, str]:
     if slight:
         return "; that is within the contact tolerance and the form error of the facets", "note"
     links = _links(context, parts)
-    joined = {frozenset(joint.between) for d in assembly.descriptions for joint in d.joints}
-    if links and frozenset(links) in joined and overlap.depth <= AT_JOINT * _size(context, links):
-        return f"; a joint joins the links {quoted(links)}", "note"
+    joint = _joint(context, links, parts)
+    if joint and overlap.depth <= AT_JOINT * _size(context, links):
+        return f"; {joint} {quoted(links)}", "note"
     return f" (links {quoted(links)})" if links else "", "error"
 
 
@@ -118,6 +118,18 @@ def _form(context: Context, parts: tuple[PartName, PartName]) -> float:
         return 0.0
     tolerance = context.assembly.tolerances.contact_of(meshes[0].size, meshes[1].size)
     return tolerance + max((patch.chord for patch in patches), default=0.0)
+
+
+def _joint(context: Context, links: tuple[str, ...], parts: tuple[PartName, PartName]) -> str:
+    """In words, that a joint of a description joins the links of two parts, or what is fixed to them; "" where none
+    does."""
+    joints = [joint.between for d in context.assembly.descriptions for joint in d.joints]
+    if links and frozenset(links) in map(frozenset, joints):
+        return "a joint joins the links"
+    if not links or context.design.kinematics is None:
+        return ""
+    bodies = {frozenset(context.body(name) for name in joint.between) for joint in context.function.joints}
+    return "a joint joins the bodies of the links" if frozenset(map(context.body, parts)) in bodies else ""
 
 
 def _links(context: Context, parts: tuple[str, str]) -> tuple[str, ...]:

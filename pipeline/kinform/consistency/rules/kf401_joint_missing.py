@@ -2,7 +2,7 @@
 
 Contact through loose parts between them (a pin, a bearing) counts, if the function does not name them. Where such a
 part has play between the two, less than the contact tolerance to either side, it is not known whether it carries the
-joint, and the rule is inconclusive.
+joint, and the rule is inconclusive. So it is where the bodies touch in a way that is no contact that is known (KF209).
 
 Why it matters: nothing carries the joint; the bodies move independently.
 

@@ -1,8 +1,9 @@
 """The axis of a joint points in another direction than intended.
 
 A finding when the angle exceeds `tolerances.axis_angle` (default `tolerances.alignment`, 0.2°) by more than two
-standard uncertainties of the found axis; inconclusive when the uncertainty decides. The sense of the axis does not
-count. Only joints of the right type are compared.
+standard uncertainties of the found axis; inconclusive when the uncertainty decides. Where a pin lies askew in the
+clearance of its bore the axis is known no better than the two agree. The sense of the axis does not count. Only joints
+of the right type are compared.
 
 Why it matters: over 100 mm, 0.5° is 0.9 mm; optical and bearing axes are rarely allowed as much.
 

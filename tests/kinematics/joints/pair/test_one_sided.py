@@ -71,6 +71,47 @@ def test_a_short_pivot_would_jam_and_a_long_one_may_be_a_piston():
     changes_once(answer, 0.003, 0.02, ("revolute", "determined"), ("revolute", "ambiguous"))
 
 
+@pytest.mark.parametrize("scale", [1e-2, 1.0, 1e2])
+def test_a_ram_that_is_drawn_in_ends_at_its_collar_and_its_bottom_and_a_short_boss_is_a_pivot(scale):
+    turn = Rotation.from_rotvec([0.3, -0.7, 0.4])
+
+    def answer(length):
+        ends = [disc((0, 0, -length / 2)), ring((0, 0, length / 2), -Z)]
+        patches = [
+            moved(one, turn, scale, np.array([0.1, 0.0, -0.2]) * scale) for one in (cylinder(length=length), *ends)
+        ]
+        return types(decision(patches, 5e-4 * scale))
+
+    changes_once(answer, 0.01, 0.05, ("revolute", "determined", None), ("revolute", "ambiguous", "cylindrical"))
+
+
+@pytest.mark.parametrize("scale", [1e-2, 1.0, 1e2])
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_finger_between_cheeks_is_guided_by_a_long_floor_and_a_short_face_may_end_its_turn(scale, turned):
+    turn = Rotation.from_rotvec([0.3, -0.7, 0.4] if turned else [0.0, 0.0, 0.0])
+
+    def answer(length):
+        cheeks = [plane(0.005 * n, n, (0.0072, 0.0086)) for n in (X, -X)]
+        floor = plane((0, 0.001, -0.0036), -Z, (length, 0.01))
+        patches = [moved(one, turn, scale, np.array([0.1, 0.0, -0.2]) * scale) for one in (*cheeks, floor)]
+        return types(decision(patches, 5e-4 * scale))
+
+    changes_once(answer, 0.0006, 0.02, ("prismatic", "ambiguous", "planar"), ("prismatic", "determined", None))
+
+
+@pytest.mark.parametrize("scale", [1e-2, 1.0, 1e2])
+def test_a_knee_flush_on_its_hip_is_guided_by_a_long_fence_and_a_short_one_may_end_its_turn(scale):
+    turn = Rotation.from_rotvec([0.3, -0.7, 0.4])
+
+    def answer(length):
+        patches = [plane((0, 0, 0), Z, (0.05, 0.05)), plane((0, -0.03, 0.01), -Y, (0.02, length))]
+        found = decision([moved(one, turn, scale, np.array([0.1, 0.0, -0.2]) * scale) for one in patches], 5e-4 * scale)
+        assert found.cone.plainly_open
+        return types(found)
+
+    changes_once(answer, 0.006, 0.06, ("prismatic", "ambiguous", "planar"), ("prismatic", "determined", None))
+
+
 def test_a_stepped_shaft_leaves_its_steps_when_it_slides_and_is_no_piston():
     steps = [cylinder(0.008, 0.006, point=(0, 0, 0.03)), cylinder(0.007, 0.003)]
     assert types(decision([*steps, disc((0, 0, -0.0015), outer=0.006)])) == ("revolute", "determined", None)

@@ -21,9 +21,11 @@ from kinform.kinematics.joints.pair.one_sided import (
     at_end_of_guide,
     ends,
     ends_one_motion,
+    leaves_plane,
     lets_turn,
     seats,
     several_ways,
+    short_faces,
     turns_ended,
 )
 from kinform.kinematics.joints.pair.preserved import preserved_motions
@@ -98,6 +100,7 @@ PRECEDENCE = (
     PIN,
     Case(flanks, _whatever),
     Case(slivers, is_scrap),
+    Case(short_faces, leaves_plane),
     Case(ends, at_end_of_guide),
     Case(turns_ended, lets_turn),
     Case(several_ways),

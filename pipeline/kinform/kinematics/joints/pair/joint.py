@@ -13,7 +13,7 @@ from kinform.kinematics.joints.pair.hypotheses import Motion, motion_words
 from kinform.kinematics.joints.pair.lower_pairs import JointForm
 from kinform.kinematics.joints.pair.one_sided import BESIDE_AXIS
 from kinform.kinematics.joints.pair.suspects import ROLES
-from kinform.kinematics.joints.pair.uncertainty import disagreement, joint_uncertainty
+from kinform.kinematics.joints.pair.uncertainty import disagreement, displacement, joint_uncertainty
 from kinform.kinematics.screws.canonical_basis import canonical_twists
 from kinform.kinematics.screws.wording import direction_words, motions_in_words
 from kinform.mechanism.constants import SIGMAS
@@ -102,7 +102,7 @@ def joint_from_decision(bodies: tuple[BodyName, BodyName], evidence: Evidence, d
         singular_values=decision.singular_values,
         motion=motions_in_words(decision.basis, frame),
         axis_uncertainty=max(direction, disagreement(kept, form)),
-        point_uncertainty=place,
+        point_uncertainty=max(place, displacement(kept, form)),
     )
     if cone is not None:
         at_rest = canonical_twists(cone.rest, frame)

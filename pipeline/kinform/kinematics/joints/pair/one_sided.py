@@ -26,7 +26,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import norm, perpendicular, sine, widest_gap, widest_turn
+from kinform.foundation.algebra.vectors import cross, norm, perpendicular, sine, widest_gap, widest_turn
 from kinform.foundation.words import counted
 from kinform.kinematics.joints.pair.constants import ALONG_AXIS, OPPOSING_SPEED
 from kinform.kinematics.joints.pair.evidence import COAXIAL, Evidence, Item
@@ -46,6 +46,10 @@ ALIKE = math.cos(math.radians(15.0))
 """Cosine between motions that are one but for slack: rounds have bins of normals of up to 15°."""
 SLIDES_FROM = 0.5
 """Length of a guide over its width from which on it slides and does not jam. Chosen, not measured."""
+RAM_FROM = 2.0
+"""The same, from which on a shaft that ends at the bottom of its bore may slide although a collar ends there, too.
+Pivots are one to two diameters long, as horns on their servos are; guides that slide are twice as long as wide at
+least."""
 ONE_SECTION = 0.05
 """Relative difference of radii that are one cross-section. Chosen, not measured."""
 INSIDE_GUIDE = 1.05
@@ -132,6 +136,28 @@ def _nearest(motion: Array, freed: Array, candidates: Array) -> Array:
     return np.asarray(freed @ within[:, best]) if alike[best] > ALIKE else motion
 
 
+def short_faces(pair: AtRest) -> Iterator[Suspect]:
+    """Faces that push one way and keep what slides along cheeks, or along one flush face, from turning there, and are
+    too short to guide it over the reach of the cheeks: they may end its turn, as a stop ends that of a finger."""
+    items, axis = pair.evidence.items, pair.form.axis
+    planes = all(item.patch.kind == "plane" for item in items)
+    if pair.form.type != "prismatic" or axis is None or pair.cone.extra < 2 or not planes:
+        return
+    for cheek in sorted(items, key=lambda item: -item.patch.area):
+        normal = cheek.patch.axis
+        keep = np.array([abs(float(item.patch.axis @ normal)) > ONE_WAY for item in items])
+        if keep.all() or not pair.cone.opened[~keep].all():
+            continue
+        wide, long = (np.concatenate([i.points for i in pair.evidence.chosen(of)]) for of in (keep, ~keep))
+        if _extent(long, axis) < SLIDES_FROM * _extent(wide, cross(normal, axis)):
+            yield suspect(~keep, "stop")
+
+
+def leaves_plane(pair: AtRest, of: Suspect, free: Array, freed: Array) -> Array | None:
+    """What is free, of bodies that move in a plane without the suspects."""
+    return free if freed.shape[1] == 2 and pair.evidence.form(free).type == "planar" else None
+
+
 def turns_ended(pair: AtRest) -> Iterator[Suspect]:
     """What ends a turn about a surface that goes no more than half round, best supported first."""
     if pair.cone.extra and not pair.cone.plainly_open:
@@ -210,11 +236,13 @@ def _ends_guide(form: JointForm, guides: list[Item], faces: list[Item]) -> bool:
     ]
     if all(length < SLIDES_FROM * 2.0 * half for length, half in lengths):
         return False
-    ends = (np.concatenate([i.points for i in faces]) - centre) @ across
-    away = _distances(ends)
-    face_reach = float(away.max())
-    inside = face_reach <= INSIDE_GUIDE * max(half for _, half in lengths)
-    far = ends[away > ROUND_FROM * face_reach]
+    ends = [(item.points - centre) @ across for item in faces]
+    away = [_distances(end) for end in ends]
+    every, apart = np.concatenate(ends), np.concatenate(away)
+    far = every[apart > ROUND_FROM * apart.max()]
+    half, long = max(half for _, half in lengths), any(length >= RAM_FROM * 2.0 * half for length, half in lengths)
+    bottom = long and any(one.max() <= INSIDE_GUIDE * half and one.mean() < half for one in away)
+    inside = bottom or float(apart.max()) <= INSIDE_GUIDE * half
     return inside or widest_turn(np.arctan2(far[:, 1], far[:, 0])) > BESIDE_AXIS
 
 

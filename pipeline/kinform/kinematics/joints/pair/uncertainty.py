@@ -51,13 +51,23 @@ def disagreement(items: Sequence[Item], form: JointForm) -> float:
     """rad: how far a joint's axis is from the patch that says its direction best, its own uncertainty included.
 
     Where patches disagree beyond what each is known to, as on coarse meshes, the axis is known no better than that.
+    Nor is it where a pin is askew in the clearance of its bore: the axis is that of the pin, of the bore, or between.
     """
     out = []
     for item in items:
         angle = _angle(item, form)
         if angle is not None and form.axis is not None:
             cosine = abs(float(item.patch.axis @ form.axis))
-            out.append(max(angle, min(sine(item.patch.axis, form.axis), cosine)))
+            out.append(max(angle, 0.5 * item.patch.misalignment, min(sine(item.patch.axis, form.axis), cosine)))
+    return min(out, default=0.0)
+
+
+def displacement(items: Sequence[Item], form: JointForm) -> float:
+    """m: how far the axis or centre of a joint is from those of the two surfaces, of the patch where they agree best,
+    its own uncertainty included: the same of a pin that is off the middle of its bore."""
+    if form.type not in PLACED:
+        return 0.0
+    out = [max(shift, 0.5 * i.patch.offset) for i in items if (shift := _shift(i, form)) is not None]
     return min(out, default=0.0)
 
 
