@@ -37,6 +37,8 @@ class Ratio:
     value: float
     allowed: float
     through: tuple[str, ...]
+    links: tuple[tuple[float, float], ...] = ()
+    """Of each coupling on the way, and the signs: what the first side turns by while the second turns by the other."""
 
 
 def derived_ratio(
@@ -55,11 +57,14 @@ def derived_ratio(
     if chain is None:
         return "no contact of teeth, cam or screw is found that ties these joints"
     ratio, relative = float(ends[0].sign * ends[1].sign), 0.0
+    links = [(ratio, 1.0)]
     for coupling, forward in chain:
         if coupling.status != "determined":
             return f"the coupling through '{coupling.through}' is {coupling.status}"
         if coupling.kind == "cam":
             return f"'{coupling.through}' is a cam: its ratio is another in every pose"
+        value = coupling.ratio if coupling.meshing is None else coupling.meshing.ratio
+        links.append((value, 1.0) if forward else (1.0, value))
         if coupling.meshing is not None:
             ratio *= coupling.meshing.ratio if forward else 1.0 / coupling.meshing.ratio
             relative += ROUNDED_RATIO
@@ -72,7 +77,8 @@ def derived_ratio(
         )
     if relative > UNCERTAIN_RATIO * len(chain):
         return f"the {shown_ratio(assembly, stated, ratio)} is uncertain by {100 * relative:.2g} %"
-    return Ratio(ratio, abs(ratio) * relative, tuple(str(coupling.through) for coupling, _ in chain))
+    through = tuple(str(coupling.through) for coupling, _ in chain)
+    return Ratio(ratio, abs(ratio) * relative, through, tuple(links))
 
 
 def shown_ratio(assembly: Assembly, stated: Stated, ratio: float) -> str:
@@ -101,6 +107,8 @@ class Difference:
     meant: float
     through: tuple[str, ...]
     """Joints carried by points and lines alone, which tie them."""
+    terms: tuple[float, ...] = ()
+    """Of the sum that should be zero, in the motion where it is farthest from it."""
 
 
 def derived_sum(
@@ -140,7 +148,7 @@ def derived_sum(
         return f"the contact '{doubtful.name}' is {doubtful.status}; as it stands, the motion at this pose {at}{off}"
     if UNCOUNTED_TEETH < shares[worst] <= UNCERTAIN_RATIO:
         return f"the motion at this pose is off by {100 * shares[worst]:.2g} %, which normals of teeth may be"
-    return Difference(float(shares[worst]), found, meant, tuple(tied))
+    return Difference(float(shares[worst]), found, meant, tuple(tied), tuple(map(float, rates[worst])))
 
 
 def _on_the_way(kinematics: Kinematics, names: list[str], joint: Joint) -> bool:

@@ -24,7 +24,7 @@ from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, quoted
 from kinform.model.assembly import Source
 from kinform.model.descriptions import Description, LooseMesh
-from kinform.model.findings import Finding
+from kinform.model.findings import Finding, stated
 
 
 def check(context: Context) -> Outcome:
@@ -86,6 +86,7 @@ def _missing(uses: Sequence[LooseMesh]) -> Finding:
         intended="a mesh",
         declared=Source(mesh.file, mesh.line),
         remedy="Correct the file name, or add the file.",
+        witness=stated(Source(mesh.file, mesh.line), mesh.path.rpartition("/")[2], missing=mesh.path),
     )
 
 

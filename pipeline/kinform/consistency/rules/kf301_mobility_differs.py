@@ -25,6 +25,7 @@ from kinform.consistency.comparisons.near import nearly_moves, out_of_place
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive
 from kinform.consistency.questions.immobile_joints import immobile_joints
+from kinform.consistency.questions.proofs import freedoms
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, quoted
 from kinform.kinematics import disconnected_bodies, disconnected_in_words
@@ -76,6 +77,15 @@ def check(context: Context) -> Outcome:
         "by how much."
         if near
         else usual,
+        witness=freedoms(
+            kinematics.bodies,
+            kinematics.joints,
+            mobility.effective,
+            mobility.idle,
+            mobility.instantaneous - mobility.effective - mobility.idle,
+            mobility.ends,
+            intended,
+        ),
     )
     return decided([finding])
 

@@ -19,7 +19,7 @@ from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive, skipped
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import angle, counted, direction
-from kinform.model.findings import Finding
+from kinform.model.findings import Finding, computed
 
 
 def check(context: Context) -> Outcome:
@@ -51,6 +51,7 @@ def _finding(c: Comparison, off: float, limit: float) -> Finding:
         place=c.point if c.point is not None else c.intended.point,
         declared=c.intended,
         remedy="Correct the mating surfaces, or `axis` of the intended joint.",
+        witness=computed("angle of directions", off, limit + c.angle_slack, **c.directions),
     )
 
 

@@ -16,13 +16,14 @@ from __future__ import annotations
 
 import math
 
-from kinform.consistency.comparisons.ranges import RangeComparison, range_comparisons, shown
+from kinform.consistency.comparisons.ranges import RangeComparison, joint_as_intended, range_comparisons, shown
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, skipped
+from kinform.consistency.questions.proofs import beyond_guide, beyond_stop
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import quoted
 from kinform.model.collisions import RangeEnd
-from kinform.model.findings import Finding
+from kinform.model.findings import Finding, Witness
 
 SHORT_TURN = math.radians(0.02)
 """rad by which a turn may fall short: a stop on facets is not where it is on the surface. Chosen, not measured."""
@@ -82,7 +83,19 @@ def _finding(context: Context, item: RangeComparison, side: str, stated: float, 
         place=end.place if end.place is not None else joint.point,
         declared=joint,
         remedy=remedy,
+        witness=_witness(context, item, stated, end),
     )
+
+
+def _witness(context: Context, item: RangeComparison, stated: float, end: RangeEnd) -> Witness | None:
+    """Parts in each other beyond the stop, or a slider that has left its guide before it."""
+    comparison = next((c for c in context.comparisons if c.intended is item.intended), None)
+    match = None if comparison is None else joint_as_intended(comparison)
+    if match is None:
+        return None
+    if end.status == "unbounded":
+        return beyond_guide(context, match[0], item.sign * stated)
+    return None if end.value is None else beyond_stop(context, match[0], end.parts, end.value, item.sign * stated)
 
 
 RULE = Rule("KF412", "joint-range-short", "error", __doc__, check)
