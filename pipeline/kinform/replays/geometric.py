@@ -94,6 +94,10 @@ class Sides:
 
 def replay(witness: Witness, sides: Sides) -> Outcome:
     """Whether parts are where the witness says; raises NotReplayed."""
+    stated = [witness.gap, witness.volume, *(witness.twist or ()), *(witness.step or ()), *(witness.moved or ())]
+    stated += witness.depth or ()
+    if not all(math.isfinite(x) for x in stated if x is not None):
+        raise NotReplayed("its numbers are not finite")
     if witness.parts_back is not None and witness.parts_ahead is not None:
         return _blocked(witness, sides)
     if witness.first is None or witness.second is None:

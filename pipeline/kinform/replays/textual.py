@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 
 from kinform.form.constants import TEXT_BYTES
@@ -36,6 +37,8 @@ def replay(witness: Witness, files: Files) -> Outcome:
     text = _element(lines, witness.source_line - 1)
     for stated in witness.states or ():
         if not _stands(stated, text):
+            if why := _may_be_elsewhere(lines, text):
+                raise NotReplayed(f"{where}: {why}")
             return refuted(f"{where} does not state {one_line(stated)}")
     for key in witness.lacks or ():
         if re.search(rf"(?<![\w-]){re.escape(key)}(?![\w-])", text):
@@ -64,11 +67,18 @@ def _element(lines: list[str], start: int) -> str:
 
 
 def _stands(stated: str, text: str) -> bool:
-    """Whether a text, or a number of its value, stands there."""
-    if stated in text:
-        return True
+    """Whether a name, or a number of its value, in radians or degrees where it is an angle, stands there."""
     try:
         value = float(stated)
     except ValueError:
-        return False
-    return any(abs(float(token) - value) <= VALUE_OFF * abs(value) for token in _NUMBER.findall(text))
+        return re.search(rf"(?<![\w.-]){re.escape(stated)}(?![\w.-])", text) is not None
+    tokens = [float(token) for token in _NUMBER.findall(text)]
+    values = (value, math.degrees(value))
+    return any(abs(token - one) <= VALUE_OFF * abs(one) for token in tokens for one in values)
+
+
+def _may_be_elsewhere(lines: list[str], text: str) -> str:
+    """Why what is not there may be stated elsewhere; "" where it may not."""
+    if "${" in text or "$(" in text:
+        return "an expression of xacro stands there"
+    return "MJCF may state it in its defaults" if any("<mujoco" in line for line in lines) else ""
