@@ -35,7 +35,9 @@ DEPTH_OFF = 0.25
 GAP_OFF = 0.01
 """Share by which they may differ on a gap, which is exact of the meshes in both."""
 VOLUME_OFF = 0.02
-"""Share by which they may differ on a volume: finders leave out pieces that facets explain."""
+"""Share by which a stated volume may exceed what parts share, ..."""
+LEFT_OUT = 0.2
+"""... and by which it may fall short: finders leave out pieces that facets explain."""
 WAY_STEPS = 16
 """Places of a free way at which overlaps are looked for."""
 
@@ -136,7 +138,7 @@ def _overlap(witness: Witness, sides: Sides, X: Array | None) -> Outcome:
     names = _names((*witness.first, *witness.second))
     if not _near(depth, -witness.gap, DEPTH_OFF):
         return refuted(f"{names} are {_mm(depth)} deep in each other, not {_mm(-witness.gap)}")
-    if witness.volume is not None and not _near(volume, witness.volume, VOLUME_OFF):
+    if witness.volume is not None and not (1.0 - LEFT_OUT) * volume <= witness.volume <= (1.0 + VOLUME_OFF) * volume:
         return refuted(f"{names} share {volume:.3g} m³, not {witness.volume:.3g}")
     return held(f"{names} are {_mm(depth)} deep in each other")
 

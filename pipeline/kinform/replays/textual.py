@@ -71,7 +71,7 @@ def _stands(stated: str, text: str) -> bool:
     try:
         value = float(stated)
     except ValueError:
-        return re.search(rf"(?<![\w.-]){re.escape(stated)}(?![\w.-])", text) is not None
+        return re.search(rf"(?<![\w-]){re.escape(stated)}(?![\w-])", text) is not None
     tokens = [float(token) for token in _NUMBER.findall(text)]
     values = (value, math.degrees(value))
     return any(abs(token - one) <= VALUE_OFF * abs(one) for token in tokens for one in values)
