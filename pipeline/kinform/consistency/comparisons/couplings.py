@@ -11,6 +11,7 @@ import numpy as np
 
 from kinform.foundation.constants import COVERAGE
 from kinform.foundation.graphs.graph import UnionFind
+from kinform.foundation.rounding import SOLVED
 from kinform.foundation.words import rate
 from kinform.frozen import dataclass
 from kinform.function import resolve_joint
@@ -63,8 +64,8 @@ def derived_ratio(
             return f"the coupling through '{coupling.through}' is {coupling.status}"
         if coupling.kind == "cam":
             return f"'{coupling.through}' is a cam: its ratio is another in every pose"
-        value = coupling.ratio if coupling.meshing is None else coupling.meshing.ratio
-        links.append((value, 1.0) if forward else (1.0, value))
+        up, down = _turns(coupling)
+        links.append((up, down) if forward else (down, up))
         if coupling.meshing is not None:
             ratio *= coupling.meshing.ratio if forward else 1.0 / coupling.meshing.ratio
             relative += ROUNDED_RATIO
@@ -79,6 +80,16 @@ def derived_ratio(
         return f"the {shown_ratio(assembly, stated, ratio)} is uncertain by {100 * relative:.2g} %"
     through = tuple(str(coupling.through) for coupling, _ in chain)
     return Ratio(ratio, abs(ratio) * relative, through, tuple(links))
+
+
+def _turns(coupling: Coupling) -> tuple[float, float]:
+    """Values of both joints as one is in step with the other: teeth, where their numbers alone are the ratio."""
+    if coupling.meshing is None:
+        return coupling.ratio, 1.0
+    ratio, (first, second) = coupling.meshing.ratio, coupling.meshing.teeth
+    if first and abs(math.copysign(second / first, ratio) - ratio) <= SOLVED * abs(ratio):
+        return math.copysign(second, ratio), float(first)
+    return ratio, 1.0
 
 
 def shown_ratio(assembly: Assembly, stated: Stated, ratio: float) -> str:

@@ -23,8 +23,8 @@ from kinform.foundation.words import counted, length, number, place, quoted
 from kinform.model.collisions import Collision
 from kinform.model.findings import Witness
 
-TIMES_TRIED = 40
-"""Output times after a collision at which the overlap is looked for."""
+TIMES_TRIED = (0, 1, 2, 4, 8, 16, 32)
+"""Output times after a collision, counted from it, at which the overlap is looked for."""
 
 
 def check(context: Context) -> Outcome:
@@ -62,7 +62,8 @@ def _witness(context: Context, item: Collision) -> Witness | None:
     bodies = [kinematics.body_of(name).name for name in item.parts]
     if not all(name in run.body_names for name in bodies):
         return None
-    after = np.flatnonzero(run.time >= item.time)[:TIMES_TRIED]
+    later = np.flatnonzero(run.time >= item.time)
+    after = later[[k for k in TIMES_TRIED if k < len(later)]]
     first, second = (
         poses(run.p_WB[after, b], run.q_WB[after, b]) for b in (run.body_names.index(name) for name in bodies)
     )
