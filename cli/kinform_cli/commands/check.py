@@ -85,6 +85,8 @@ def check(
     """
     how = printed(format, verbose)
     if witness:
+        if any(others := (output, baseline, write_baseline, lock)):
+            raise typer.BadParameter(f"goes without {next(filter(None, others))}", param_hint="--witness")
         raise typer.Exit(_replayed(source, how, manifest_folder))
     files.check_findings(how.files, [source, *filter(None, (output, write_baseline))])
     if output is not None:

@@ -18,7 +18,9 @@ def render(replayed: Sequence[Replayed], assembly: str) -> str:
     """A line a finding, then how many hold."""
     lines = [_line(item) for item in replayed]
     counts = Counter(item.outcome.state for item in replayed)
-    told = ", ".join(f"{counts[state]} {_PLURAL[state]}" for state in STATES if counts[state])
+    told = ", ".join(
+        f"{counts[state]} {_ONE[state] if counts[state] == 1 else _MANY[state]}" for state in STATES if counts[state]
+    )
     lines.append(f"{one_line(assembly)}: {counted(len(replayed), 'witness', 'witnesses')}{f': {told}' if told else ''}")
     return "\n".join(lines) + "\n"
 
@@ -53,4 +55,5 @@ def _line(item: Replayed) -> str:
     return f"{head}: {one_line(outcome.reason)}"
 
 
-_PLURAL = {"holds": "hold", "does not hold": "do not hold", "not replayed": "could not be replayed"}
+_ONE = {"holds": "holds", "does not hold": "does not hold", "not replayed": "could not be replayed"}
+_MANY = {"holds": "hold", "does not hold": "do not hold", "not replayed": "could not be replayed"}

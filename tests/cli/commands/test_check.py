@@ -101,3 +101,8 @@ def test_witnesses_are_replayed_and_one_that_does_not_hold_fails(
 
 def test_witnesses_are_text_or_json(overlapping: Path) -> None:
     assert main(["check", str(overlapping), "--witness", "-f", "sarif"]) == 2
+
+
+def test_witnesses_are_replayed_alone(overlapping: Path, tmp_path: Path) -> None:
+    assert main(["check", str(overlapping), "--witness", "--write-baseline", str(tmp_path / "b.json")]) == 2
+    assert not (tmp_path / "b.json").exists()
