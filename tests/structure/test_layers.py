@@ -20,9 +20,9 @@ LAYERS = (
     ("form.tables", "form.constants"), ("requirements",),
     ("form", "formats", "formats.*.reading"), ("surfaces",), ("contacts",), ("mechanism",),
     ("kinematics",), ("mass",), ("function",), ("behaviour",), ("collisions",), ("simulation",), ("design",),
-    ("statics",), ("consistency",), ("reuse",), ("results",), ("exports", "formats.*.writing"), ("reports",),
-    ("changes",), ("catalog",), ("ahead",), ("stages",), ("api",), ("method",), ("batch",), ("study",), ("kinform",),
-    ("kinform_cli",),
+    ("statics",), ("replays",), ("consistency",), ("reuse",), ("results",), ("exports", "formats.*.writing"),
+    ("reports",), ("changes",), ("catalog",), ("ahead",), ("stages",), ("api",), ("method",), ("batch",), ("study",),
+    ("kinform",), ("kinform_cli",),
 )  # fmt: skip
 """Packages from the lowest layer up: a module imports from its own layer and lower ones, never from a higher one."""
 

@@ -19,6 +19,7 @@ from kinform_cli.options import (
     FindingsFormat,
     LookedAt,
     ManifestFolder,
+    Printed,
     PrintedFindings,
     Severity,
     Verbose,
@@ -42,6 +43,7 @@ EXAMPLES = examples(
     "kinform check e.h5 --format json > findings.json",
     "kinform check e.h5 -f sarif --manifest-folder designs > findings.sarif",
     "kinform check e.h5 --lock behaviour.lock.json",
+    "kinform check e.h5 --witness      # replay the proofs of its findings",
     "kinform check e.h5 -o e.h5        # keep the findings in the file",
     "kinform check e.h5 --write-baseline b.json",
     "kinform check e.h5 --baseline b.json     # only what is new counts",
@@ -66,6 +68,10 @@ def check(
     strict: Annotated[
         bool, typer.Option("--strict", help="Exit with 2 where your kinform did not write the results file.")
     ] = False,
+    witness: Annotated[
+        bool,
+        typer.Option("--witness", help="Replay the witness of every finding by another method, in place of checking."),
+    ] = False,
 ) -> None:
     """Check form, behaviour and function against each other.
 
@@ -73,9 +79,15 @@ def check(
     1: findings at or above --fail-on.
     2: not verified: a rule could not decide, none ran, or the input is bad.
 
+    With --witness: 0 where no witness fails, 1 where one does not hold.
+
     A results file that your kinform did not write is checked, and the verdict says so.
     """
     how = printed(format, verbose)
+    if witness:
+        if any(others := (output, baseline, write_baseline, lock)):
+            raise typer.BadParameter(f"goes without {next(filter(None, others))}", param_hint="--witness")
+        raise typer.Exit(_replayed(source, how, manifest_folder))
     files.check_findings(how.files, [source, *filter(None, (output, write_baseline))])
     if output is not None:
         files.check_folder(output.parent, inputs=[source])
@@ -107,6 +119,29 @@ def check(
     if code and how.format is FindingsFormat.brief:
         say_next(source if output is None else output)
     raise typer.Exit(code)
+
+
+def _replayed(source: Path, how: Printed, manifest_folder: Path | None) -> int:
+    """Replay the witnesses of a results file, or of what a check finds now; returns the exit code."""
+    from kinform import replays, stages
+    from kinform.foundation.boundary import Boundary
+    from kinform.reports import witnesses
+
+    if how.files or how.format not in (FindingsFormat.brief, FindingsFormat.full, FindingsFormat.json):
+        raise typer.BadParameter("replays are printed as text or as json", param_hint="--format")
+    design = looked_at(source)
+    if design.report is None:
+        with files.needing(source), Working("check"):
+            design = stages.check(design)
+    files.warn_of_origin(design, source)
+    assert design.report is not None
+    folder = source.parent if manifest_folder is None else manifest_folder
+    boundary = Boundary(source, packages=() if manifest_folder is None else (manifest_folder,))
+    with Working("replay"):
+        replayed = replays.replay_all(design.report, design, folder, boundary)
+    as_text = witnesses.as_json if how.format is FindingsFormat.json else witnesses.render
+    console.emit(as_text(replayed, design.assembly.name))
+    return replays.exit_code(replayed)
 
 
 def _without_baseline(report: CheckReport, baseline: Path) -> CheckReport:

@@ -22,7 +22,8 @@ from kinform.errors import InputError, Problem
 from kinform.foundation.escapes import json_text
 from kinform.foundation.texts import parse_json
 from kinform.frozen import dataclass
-from kinform.model.findings import CheckReport, Finding
+from kinform.model.assembly import Source
+from kinform.model.findings import CheckReport, Finding, stated
 
 if TYPE_CHECKING:
     from kinform.consistency import Outcome
@@ -129,10 +130,12 @@ def _new(what: str, lock: Lock) -> Finding:
 
 
 def _finding(change: Change, lock: Lock) -> Finding:
+    place = Source(lock.file, lock.lines.get(change.subject[0]))
     return Finding(
         CODE, NAME, "error", change.subject, f"{change.message}, against {lock.file}", change.after, change.before,
         place=change.place, file=lock.file, line=lock.lines.get(change.subject[0]),
         remedy="Repair the design; or accept the change: kinform lock F.h5 -o FILE, and review the file.",
+        witness=stated(place, _dumped(change.subject[0])),
     )  # fmt: skip
 
 

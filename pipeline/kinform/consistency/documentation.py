@@ -29,6 +29,9 @@ passes, fails, is inconclusive (something that it is about could not be decided)
 not apply). Findings are errors, warnings or notes. Exit code of the gate: 1 with findings at or above
 `--fail-on` (default error); else 2 when nothing was checked or a rule is inconclusive; else 0.
 
+Every error that a rule finds by itself carries a witness: numbers or texts that `kinform check F.h5 --witness`
+repeats by another method than the rule's (`docs/results.md`).
+
 A stable rule keeps its code, its name and what it finds until the next major version. A rule in preview may
 change with any version.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -14,6 +14,7 @@ from kinform.function.joint_names import stated_as
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
+from kinform.model.findings import Witness
 from kinform.model.function import PASSIVE, Function
 from kinform.model.kinematics import Body, Joint, Kinematics
 from kinform.model.simulation import Simulation
@@ -43,6 +44,10 @@ class CarriedBody:
 
     body: str
     chain: Chain
+
+    def screws(self) -> Mapping[str, Array] | None:
+        """The screws from the root to the body, with their bounds."""
+        return self.chain.screws(self.body)
 
     def cover(self, carried: Array, targets: Array, *, directions: bool, near: float) -> Coverage:
         """How near a point (3,) m, or a direction, of the body comes to targets (k, 3)."""
@@ -199,6 +204,12 @@ class DesignEvidence:
         shapes = self.context.shapes
         return way_out(shapes if after is None else displaced(shapes, parts, after), parts, direction)
 
+    def in_each_other(self, parts: Sequence[str], displacements: Iterable[Array]) -> Witness | None:
+        """The first pose in which two parts are in each other."""
+        from kinform.consistency.questions.proofs import in_each_other
+
+        return in_each_other(self.context, parts, displacements)
+
     def face_normals(self, parts: Sequence[str]) -> Array:
         """(k, 3) unit normals, up to sign, of the largest flat faces of parts."""
         from kinform.collisions.ways_out import face_normals
@@ -210,6 +221,12 @@ class DesignEvidence:
         from kinform.function.static_load import mechanism_at_rest
 
         return mechanism_at_rest(self.assembly, self.kinematics, self.context.mass)
+
+    def carried(self, joint: Joint, output: int) -> Mapping[str, Array] | None:
+        """What a joint alone carries about an output time."""
+        from kinform.consistency.questions.carried import carried
+
+        return carried(self.context, joint, output)
 
     def driving(self, joint: Joint, pose: Mapping[str, float]) -> Driving | str:
         """What the joint's drive must give, with friction."""

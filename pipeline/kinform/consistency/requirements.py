@@ -56,6 +56,7 @@ def requirement_rule(code: str, name: str, kind: str, documentation: str | None)
                 place=answer.place,
                 declared=requirement,
                 remedy=answer.remedy,
+                witness=answer.witness,
             )
             for requirement, answer in answers.items()
             if answer.state == "violated"

@@ -30,4 +30,12 @@ def amount_of(assembly: Assembly, report: MassReport, parts: Sequence[str]) -> A
         d = part.centre_of_mass - centre
         inertia += part.inertia + m * (d @ d * np.eye(3) - np.outer(d, d))
     bound = math.fsum(m * p.mass_bound for m, p in zip(masses, chosen, strict=True)) / whole
-    return Amount(whole, centre, inertia, bound)
+    by_name = {str(part.name): part for part in assembly.parts}
+    shapes = (by_name.get(p.name) for p in chosen)
+    numbers = {
+        "densities": np.array([s.density or 0.0 if s is not None and s.override is None else 0.0 for s in shapes]),
+        "masses": np.array(masses),
+        "centres": np.array([p.centre_of_mass for p in chosen]),
+        "inertias": np.array([p.inertia for p in chosen]),
+    }
+    return Amount(whole, centre, inertia, bound, tuple(p.name for p in chosen), numbers)

@@ -15,6 +15,7 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.subspaces import null_space
+from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.graph import blocks
 from kinform.foundation.rounding import SINGLE, SOLVED
 from kinform.frozen import dataclass
@@ -107,6 +108,26 @@ class Chain:
             if np.abs((tip * loose) @ self.system.screws).max() > SOLVED
         ]
         return tuple(dict.fromkeys(name for names in moved for name in names))
+
+    def screws(self, body: str) -> dict[str, Array] | None:
+        """Unit screws (n, 6) (ω; v at the world's origin) from the root to a body, in the order in which they act, and
+        the least and the greatest value (rad or m) of each; None where loops close."""
+        if self.looped:
+            return None
+        system, tip = self.system, self.index(body)
+        twists, units, order = system.screws, np.where(system.turns, 1.0, self.frame.length), list[int]()
+        for nodes, parents, members, backward in reversed(system.depths):
+            for node, parent, member, back in zip(nodes, parents, members, backward, strict=True):
+                if node == tip:
+                    of_joint = np.flatnonzero(system.joint == member).tolist()
+                    order[:0] = of_joint[::-1] if back else of_joint
+                    tip = int(parent)
+        sense = system.reach[self.index(body)][order]
+        world = twists[order] * sense[:, None]
+        v = world[:, 3:] * np.where(system.turns[order], self.frame.length, 1.0)[:, None]
+        v = v - cross(world[:, :3], np.broadcast_to(self.frame.centre, v.shape))
+        low, high = np.sort([sense * self.lower[order], sense * self.upper[order]], axis=0) * units[order]
+        return {"screws": np.concatenate([world[:, :3], v], axis=1), "lower": low, "upper": high}
 
     def index(self, body: str) -> int:
         """Number of a body in the system."""

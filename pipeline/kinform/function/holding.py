@@ -49,19 +49,14 @@ def configuration_at(chain: Chain, values: Mapping[str, float]) -> Array | str:
     return pose
 
 
-def holding_effort(
-    chain: Chain, q: Array, joint: str, drives: Sequence[str], springs: Mapping[str, float], force: Force
-) -> float | str:
-    """Effort (N·m or N) of the joint that holds the pose q (n,); a sentence where it is not determined.
-
-    `drives`: joints with drives; `springs`: effort that springs give on joints in this pose.
-    """
+def held_motion(chain: Chain, q: Array, joint: str, drives: Sequence[str]) -> tuple[Array, Array, int] | str:
+    """Rates (n,) of all coordinates as that of a joint is 1 in the pose q (n,), the rows (m, n) of what holds the rest,
+    and the joint's column; or why it does not move. `drives`: joints with drives."""
     columns = [k for k, c in enumerate(chain.coordinates) if c.joint == joint]
     if len(columns) != 1:
         return f"joint '{joint}' is not in the mechanism"
     own = columns[0]
-    state = chain.system.equations(q[None])
-    rows = [state.jacobian[0]]
+    rows = [chain.system.equations(q[None]).jacobian[0]]
     single = [k for k, c in enumerate(chain.coordinates) if sum(c.joint == o.joint for o in chain.coordinates) == 1]
     alone = {chain.coordinates[k].joint for k in single} & _open_ended(chain)
     held = [k for k in single if k != own and chain.coordinates[k].joint in (set(drives) | alone)]
@@ -73,6 +68,29 @@ def holding_effort(
     motion = np.linalg.lstsq(matrix, aim, rcond=SOLVED)[0]
     if float(np.abs(matrix @ motion - aim).max()) > SINGLE:
         return f"joint '{joint}' cannot move while the other drives stand still: it shares the load with them"
+    return motion, matrix, own
+
+
+def body_motions(chain: Chain, q: Array, rates: Array) -> Array:
+    """(N, 6) twists (ω; v at the world's origin) of the bodies of a chain."""
+    columns = chain.system.equations(q[None]).columns[0]
+    out = (chain.system.reach * rates) @ columns
+    out[:, 3:] = out[:, 3:] * chain.frame.length - cross(out[:, :3], np.broadcast_to(chain.frame.centre, (len(out), 3)))
+    return np.asarray(out)
+
+
+def holding_effort(
+    chain: Chain, q: Array, joint: str, drives: Sequence[str], springs: Mapping[str, float], force: Force
+) -> float | str:
+    """Effort (N·m or N) of the joint that holds the pose q (n,); a sentence where it is not determined.
+
+    `drives`: joints with drives; `springs`: effort that springs give on joints in this pose.
+    """
+    held = held_motion(chain, q, joint, drives)
+    if isinstance(held, str):
+        return held
+    motion, matrix, own = held
+    state = chain.system.equations(q[None])
     power = _powers(chain, q, state.columns[0], springs, force)
     work = _work(power, motion)
     if isinstance(work, str):

@@ -10,7 +10,7 @@ from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.rounding import SINGLE
 from kinform.frozen import dataclass
 from kinform.function.configurations import Chain, mechanism_of
-from kinform.function.holding import Force, configuration_at, holding_effort
+from kinform.function.holding import Force, body_motions, configuration_at, held_motion, holding_effort
 from kinform.function.joint_names import resolve_joint, stated_as, stated_ranges
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
@@ -34,6 +34,11 @@ class MechanismAtRest:
     mass: MassReport
     chain: Chain
 
+    @property
+    def gravity(self) -> Array:
+        """(3,) m/s²."""
+        return np.asarray((self.assembly.simulation or SimulationRequest()).gravity, dtype=np.float64)
+
     def effort(self, joint: Joint, pose: Mapping[str, float]) -> float | str:
         """N·m or N that holds the joint while other joints have the values (rad or m) of the pose, by the designer's
         names; or why it is not determined."""
@@ -52,6 +57,47 @@ class MechanismAtRest:
         values: dict[str, float] = {c.joint: float(x) / c.unit for c, x in coordinates}
         drives, springs = self._acting(values)
         return holding_effort(self.chain, q, joint.name, drives, springs, self._force())
+
+    def work(self, joint: Joint, pose: Mapping[str, float]) -> Mapping[str, Array] | None:
+        """What the effort of the joint can be recomputed from by virtual work: masses with their centres in the pose
+        and the motion (n, 6) of each as the joint moves by one; the forces of loads likewise, and what springs give."""
+        wanted = self._values(pose)
+        q = wanted if isinstance(wanted, str) else configuration_at(self.chain, wanted)
+        if isinstance(q, str):
+            return None
+        coordinates = zip(self.chain.coordinates, q, strict=True)
+        drives, springs = self._acting({c.joint: float(x) / c.unit for c, x in coordinates})
+        held = held_motion(self.chain, q, joint.name, drives)
+        if isinstance(held, str):
+            return None
+        rates = held[0] * self.chain.coordinates[held[2]].unit
+        twists, poses = (
+            body_motions(self.chain, q, rates),
+            self.chain.linkage.world(self.chain.system.bodies(q[None])[0]),
+        )
+        properties = {p.name: p for p in self.mass.bodies}
+        moving = [(properties[name], X, twist) for name, X, twist in zip(self.chain.bodies, poses, twists, strict=True)
+                  if np.abs(twist).max() > 0.0]  # fmt: skip
+        if any(weight.mass is None for weight, _, _ in moving):
+            return None
+        force = self._force()
+        # a wrench about the origin is a force there, and a torque
+        wrenches = [(force(weight.name, X), weight, X) for weight, X, _ in moving]
+        loads = []
+        for found, weight, X in wrenches:
+            assert found is not None
+            gravity = (weight.mass or 0.0) * self.gravity
+            centre = X[:3, :3] @ weight.centre_of_mass + X[:3, 3]
+            loads.append((*(found[0] - gravity), *(found[1] - cross(centre, gravity))))
+        pulled = zip(rates, self.chain.coordinates, strict=True)
+        return {
+            "gravity": self.gravity,
+            "masses": np.array([weight.mass for weight, _, _ in moving]),
+            "centres": np.array([X[:3, :3] @ weight.centre_of_mass + X[:3, 3] for weight, X, _ in moving]),
+            "motions": np.array([twist for *_, twist in moving]),
+            "loads": np.array(loads),
+            "springs": np.array(sum(springs.get(c.joint, 0.0) * rate / c.unit for rate, c in pulled)),
+        }
 
     def _values(self, pose: Mapping[str, float]) -> dict[str, float] | str:
         """Values by derived joints, in kinform's sense, or what is wrong with the pose."""
@@ -87,7 +133,6 @@ class MechanismAtRest:
     def _force(self) -> Force:
         """Gravity and loads on a body that is displaced by X."""
         assembly, kinematics = self.assembly, self.kinematics
-        gravity = np.asarray((assembly.simulation or SimulationRequest()).gravity, dtype=np.float64)
         properties = {p.name: p for p in self.mass.bodies}
         loads = [(kinematics.body_of(assembly.parts_of(load.part)[0]).name, load) for load in assembly.function.loads]
 
@@ -96,7 +141,7 @@ class MechanismAtRest:
             if weight.mass is None:
                 return None
             R, p = X[:3, :3], X[:3, 3]
-            total = weight.mass * gravity
+            total = weight.mass * self.gravity
             moment = cross(R @ weight.centre_of_mass + p, total)
             for name, load in loads:
                 if name != body:

@@ -27,6 +27,8 @@ BUDGET = 4000
 """Poses that are measured before giving up: seconds at a millisecond each. Chosen, not measured."""
 FIRST = 1e-3
 """Share of the shortest step to which the first pose that falls short is found: ten halvings."""
+BEYOND_MOST = 12
+"""Poses beyond the first that falls short that are handed on: overlaps grow there."""
 FLOOR = 1e-4
 """Shortest step, of the size of the smaller group: 0.01 mm of a part of 100 mm, what is machined."""
 
@@ -58,7 +60,9 @@ def along(groups: Apart, first: Array, second: Array, required: float) -> Swept:
             worst, where = near, sum(located(at))
         if _short(near, required):
             at, near = _first(nearest, required, before, at, near, FIRST * floor)
-            return Swept(near, sum(located(at)), (), True, floor, count)
+            k, share = located(at)
+            after = tuple(relative[k + 1 : k + 1 + BEYOND_MOST])
+            return Swept(near, k + share, (), True, floor, count, pose(k, min(share, 1.0)), after)
         if at >= way[-1]:
             return Swept(worst, where, (), True, floor, count)
         before, at = at, min(at + max(near.distance - required, floor), way[-1])
@@ -76,9 +80,12 @@ def over(groups: Apart, chain: Chain, first: str, second: str, low: Array, high:
     worst, values = Nearest(np.inf, ("", ""), np.zeros(3)), middle
     number = count = 0
 
-    def nearest(q: Array, reach: float) -> Nearest:
+    def relative(q: Array) -> Array:
         poses = chain.linkage.world(chain.system.bodies(q[None])[0])
-        return groups.at(np.linalg.inv(poses[a]) @ poses[b], enough=required + reach)
+        return np.asarray(np.linalg.inv(poses[a]) @ poses[b])
+
+    def nearest(q: Array, reach: float) -> Nearest:
+        return groups.at(relative(q), enough=required + reach)
 
     while cells:
         if count >= BUDGET:
@@ -93,7 +100,9 @@ def over(groups: Apart, chain: Chain, first: str, second: str, low: Array, high:
             # towards the pose of the meshes, as far as the ranges hold it
             start = np.clip(np.zeros(len(low)), low, high)
             q, near = _on_the_way(nearest, required, start, middle, lever, floor, near)
-            return Swept(near, 0.0, _joint_values(chain, q), True, floor, count)
+            more = (np.clip(q + share * (q - start), low, high) for share in np.geomspace(1e-3, 1.0, BEYOND_MOST))
+            after = (*map(relative, more), relative(middle))
+            return Swept(near, 0.0, _joint_values(chain, q), True, floor, count, relative(q), after)
         if near.distance - required >= reach or reach <= floor:
             continue
         k = int(np.argmax(lever * half))

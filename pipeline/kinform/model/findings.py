@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, get_args
+import math
+from collections.abc import Iterable
+from dataclasses import field
+from typing import Annotated, Any, Literal, Protocol, get_args
+
+import numpy as np
 
 from kinform.frozen import dataclass
 from kinform.model.quantities import columns
@@ -18,35 +23,133 @@ Origin = Literal["recorded", "unknown", "refused"]
 read from; it did not, and they count; it did not, and nothing is verified by them."""
 
 
+class Place(Protocol):
+    """Somewhere in a file."""
+
+    @property
+    def file(self) -> str | None: ...
+    @property
+    def line(self) -> int | None: ...
+
+
 _TWIST = ("twist_wx", "twist_wy", "twist_wz", "twist_vx", "twist_vy", "twist_vz")
 _BACK, _AHEAD = (tuple(f"{sense}_{axis}" for axis in "xyz") for sense in ("back", "ahead"))
+_MOVED = tuple(f"moved_{name.removeprefix('twist_')}" for name in _TWIST)
 WitnessKind = Literal["geometric", "textual", "computed"]
-"""geometric: parts interpenetrate at a pose. textual: what a file states. computed: inputs, equation and residual."""
+"""geometric: where parts are. textual: what a file states. computed: inputs, equation and residual."""
+Equation = Literal[
+    "angle of directions", "balanced pushes", "centre off a point", "closing of loops", "coordinate step",
+    "density of the hull", "distance of lines", "distance of points", "edge uses", "effort of motion",
+    "end of a guide", "facet faces inwards", "fit of surfaces", "freedoms of a graph", "freedoms of twists",
+    "hull of a mass", "imbalance about a line", "impossible inertia", "inertia about a line", "inertia beyond reach",
+    "lead of a twist", "loss by friction", "mass of shapes", "motion that opens", "path and motion",
+    "rate of positions", "ratio of rates", "ratio of sizes", "reach of a chain", "record of a run",
+    "share of a curve", "sum of rates", "time of a run", "volume of a file", "work of weights",
+]  # fmt: skip
+"""What a computed witness may be recomputed by, each in one way that is not the finder's (`kinform.replays`)."""
 
 
 @dataclass(frozen=True)
 class Witness:
-    """The proof of a finding. World frame, SI and radians.
+    """The proof of a finding: what another method can repeat without the one that found it. World frame, SI, radians.
 
-    geometric: a motion of one body relative to another is blocked. Steps back and ahead along the twist, from the pose
-    of the meshes, drive the named parts into each other. textual: another place in the files contradicts the finding's.
+    Fields that a class does not need are None. geometric: two sides, sets of parts, at a pose: `gap` apart, or deep in
+    each other; or a motion of the second side that both senses of a step, or nothing on its way, show to be blocked, or
+    free. textual: what a file states in a line, or lacks. computed: a residual beyond its limit.
     """
 
     kind: WitnessKind
     twist: Annotated[tuple[float, float, float, float, float, float], "1", columns(*_TWIST)] | None = None
     """(ω; v at the origin) of the second body relative to the first: of a unit turn, or of a unit slide."""
     step: Annotated[tuple[float, float], "rad or m", columns("step_back", "step_ahead")] | None = None
+    """Of a free motion: where it begins and ends."""
     depth: Annotated[tuple[float, float], "m", columns("depth_back", "depth_ahead")] | None = None
     """How deep the parts are in each other at the end of each step."""
     place_back: Annotated[tuple[float, float, float], "m", columns(*_BACK)] | None = None
     """Where, at the pose at the end of the step."""
     place_ahead: Annotated[tuple[float, float, float], "m", columns(*_AHEAD)] | None = None
     parts_back: Annotated[tuple[str, str], columns("back_part_a", "back_part_b")] | None = None
-    """Sorted."""
+    """The part that rests, and the one that moves."""
     parts_ahead: Annotated[tuple[str, str], columns("ahead_part_a", "ahead_part_b")] | None = None
     source_file: str | None = None
-    """Of a textual one: the other place."""
+    """Of a textual one."""
     source_line: int | None = None
+    first: tuple[str, ...] | None = None
+    """Parts that rest; of a computed one: those whose meshes it is about."""
+    second: tuple[str, ...] | None = None
+    """Parts that move."""
+    moved: Annotated[tuple[float, float, float, float, float, float], "rad, m", columns(*_MOVED)] | None = None
+    """Twist of the displacement that takes the second side from its place as modelled; None: it is there."""
+    gap: Annotated[float, "m"] | None = None
+    """Least distance of the sides; negative: how deep they are in each other."""
+    volume: Annotated[float, "m³"] | None = None
+    """That the sides share."""
+    states: tuple[str, ...] | None = None
+    """Texts that stand in the element, table or line that begins at the line, in this order."""
+    lacks: tuple[str, ...] | None = None
+    """Keys that do not stand there."""
+    missing: str | None = None
+    """A file that is not there."""
+    equation: str | None = None
+    """One of `Equation`."""
+    inputs: dict[str, tuple[float, ...]] | None = field(default=None, hash=False)
+    residual: Annotated[float, ""] | None = None
+    """In the unit of the equation."""
+    limit: Annotated[float, ""] | None = None
+    """What the residual exceeds."""
+
+
+def between(
+    first: Iterable[str], second: Iterable[str], gap: float, *, moved: Iterable[float] | None = None,
+    volume: float | None = None,
+) -> Witness | None:  # fmt: skip
+    """That two sides are a gap apart (m; negative: deep in each other); None unless that is known."""
+    if not math.isfinite(gap):
+        return None
+    a, b, c, d, e, f = (0.0,) * 6 if moved is None else (float(x) + 0.0 for x in moved)
+    shared = volume if volume is not None and math.isfinite(volume) else None
+    return Witness(
+        "geometric", first=tuple(map(str, first)), second=tuple(map(str, second)), gap=float(gap), volume=shared,
+        moved=None if moved is None else (a, b, c, d, e, f),
+    )  # fmt: skip
+
+
+def free_way(
+    first: Iterable[str], second: Iterable[str], direction: Iterable[float], travel: float,
+    after: Iterable[float] | None = None,
+) -> Witness | None:  # fmt: skip
+    """That the second side, first slid by `after`, goes along a unit direction so far (m) and meets nothing."""
+    x, y, z = (float(value) + 0.0 for value in direction)
+    a, b, c = (0.0,) * 3 if after is None else (float(value) + 0.0 for value in after)
+    if not all(map(math.isfinite, (x, y, z, a, b, c, travel))):
+        return None
+    return Witness(
+        "geometric", twist=(0.0, 0.0, 0.0, x, y, z), step=(0.0, float(travel)), first=tuple(map(str, first)),
+        second=tuple(map(str, second)), moved=None if after is None else (0.0, 0.0, 0.0, a, b, c), volume=0.0,
+    )  # fmt: skip
+
+
+def stated(declared: Place, *states: str, lacks: Iterable[str] = (), missing: str | None = None) -> Witness | None:
+    """That a file states texts at a line, lacks keys there, or names a file that is not there; None without a line."""
+    if declared.file is None or declared.line is None:
+        return None
+    return Witness(
+        "textual", source_file=declared.file, source_line=declared.line, states=states or None,
+        lacks=tuple(lacks) or None, missing=missing,
+    )  # fmt: skip
+
+
+def computed(
+    equation: Equation, residual: float, limit: float, *, parts: Iterable[str] = (), **inputs: Any
+) -> Witness | None:
+    """That a residual exceeds its limit; None where a number of it is not finite."""
+    numbers = {name: tuple(map(float, np.ravel(value))) for name, value in inputs.items()}
+    if not all(map(math.isfinite, [residual, limit, *(x for values in numbers.values() for x in values)])):
+        return None
+    return Witness(
+        "computed", first=tuple(map(str, parts)) or None, equation=equation, inputs=numbers, residual=float(residual),
+        limit=float(limit),
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)

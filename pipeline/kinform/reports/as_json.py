@@ -9,7 +9,7 @@ from typing import Any
 
 from kinform.design import Design
 from kinform.foundation.escapes import json_text
-from kinform.model.findings import SEVERITIES, CheckReport
+from kinform.model.findings import SEVERITIES, CheckReport, Finding
 from kinform.reports.phrases import verdict_word
 
 SCHEMA = "kinform/findings/1"
@@ -19,6 +19,14 @@ def render(report: CheckReport, design: Design, fail_on: str = "error", run: Map
     """The document as text; with the account of a `run`, where it was one."""
     whole = document(report, design, fail_on) | ({} if run is None else {"run": dict(run)})
     return json_text(json.dumps(whole, indent=1, ensure_ascii=False)) + "\n"
+
+
+def _finding(finding: Finding) -> dict[str, Any]:
+    """All of its fields; of its witness those that its class has."""
+    fields = dataclasses.asdict(finding)
+    if finding.witness is not None:
+        fields["witness"] = {key: value for key, value in fields["witness"].items() if value is not None}
+    return fields
 
 
 def of_design(design: Design) -> dict[str, Any]:
@@ -37,10 +45,8 @@ def document(report: CheckReport, design: Design, fail_on: str = "error") -> dic
         "verdict": verdict_word(report, fail_on),
         **({} if report.origin == "recorded" else {"origin": "unknown"}),
         "counts": counts | {o: sum(r.outcome == o for r in report.rules) for o in outcomes},
-        "findings": [dataclasses.asdict(f) for f in report.findings],
-        "ignored": [
-            dataclasses.asdict(item.finding) | {"ignored_by": item.by, "reason": item.reason} for item in report.ignored
-        ],
+        "findings": [_finding(f) for f in report.findings],
+        "ignored": [_finding(item.finding) | {"ignored_by": item.by, "reason": item.reason} for item in report.ignored],
         "unselected": list(report.unselected),
         "rules": [dataclasses.asdict(r) for r in report.rules],
     }

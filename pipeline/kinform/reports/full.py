@@ -9,6 +9,7 @@ from kinform.foundation.escapes import one_line
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
 from kinform.reports.constants import WIDTH
 from kinform.reports.phrases import accepted, place, rule_counts, severity_counts, skipped, verdict_told, where
+from kinform.reports.proofs import proof
 
 
 def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
@@ -47,6 +48,7 @@ def _finding(finding: Finding, units: str) -> str:
         "intended": finding.intended,
         "place": place(finding, units),
         "at": where(finding) or None,
+        "proof": proof(finding, units),
     }
     for key, value in facts.items():
         if value is not None:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import Literal
 
 from kinform.frozen import dataclass
+from kinform.model.findings import Witness
 
 State = Literal["met", "violated", "undecided"]
 
@@ -30,6 +31,8 @@ class Answer:
     """m, world."""
     remedy: str | None = None
     margin: Margin | None = None
+    witness: Witness | None = None
+    """Of what is violated."""
 
 
 def met(message: str, *, found: str | None = None, intended: str | None = None, margin: Margin | None = None) -> Answer:
@@ -39,10 +42,11 @@ def met(message: str, *, found: str | None = None, intended: str | None = None, 
 
 def violated(
     message: str, *, found: str, intended: str, remedy: str, place: Iterable[float] | None = None,
-    margin: Margin | None = None,
+    margin: Margin | None = None, witness: Witness | None = None,
 ) -> Answer:  # fmt: skip
     """The requirement does not hold."""
-    return Answer("violated", message, found, intended, None if place is None else triple(place), remedy, margin)
+    at = None if place is None else triple(place)
+    return Answer("violated", message, found, intended, at, remedy, margin, witness)
 
 
 def undecided(message: str, remedy: str, *, found: str | None = None, intended: str | None = None) -> Answer:

@@ -2,16 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from kinform.foundation.words import quoted, telling
 from kinform.frozen import dataclass
+from kinform.model.findings import Equation, Witness, computed
 from kinform.requirements.answer import Answer, Margin, met, undecided, violated
 from kinform.requirements.evidence import Amount, Evidence
 
 WEIGH = "Give every part of it a density, a material or a mass, and a closed mesh."
+
+
+Proof = Callable[[float, float, Mapping[str, float]], Witness | None]
+"""(how far a value is beyond its bounds, its error, the bounds by name) → the witness."""
+
+
+def proof_of_amount(equation: Equation, whole: Amount, **more: Any) -> Proof:
+    """The witness of an amount, by this equation."""
+    return lambda off, error, bounds: computed(
+        equation, off, error, parts=whole.parts, **whole.numbers, **more, **bounds
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +45,8 @@ class Compared:
     """What its error comes from."""
     cure: str = "Export a finer mesh."
     """What makes its error smaller."""
+    proof: Proof | None = None
+    """What makes a witness of how far the value is beyond its bounds."""
 
 
 def beside_bounds(compared: Compared, value: float, error: float, low: float | None, high: float | None) -> Answer:
@@ -46,6 +61,9 @@ def beside_bounds(compared: Compared, value: float, error: float, low: float | N
         return violated(
             f"{text}, required is {wanted}", found=shown(value), intended=wanted,
             remedy=compared.remedy, place=compared.place, margin=margin,
+            witness=None if compared.proof is None else compared.proof(max(low - value, value - high), error, {
+                name: bound for name, bound in (("least", low), ("most", high)) if np.isfinite(bound)
+            }),
         )  # fmt: skip
     if value - error < low or value + error > high:
         return undecided(

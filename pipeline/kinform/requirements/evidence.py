@@ -6,7 +6,8 @@ them: from the results of stages, `function` and `statics`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import field
 from typing import Literal, Protocol
 
 import numpy as np
@@ -16,6 +17,7 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
+from kinform.model.findings import Witness
 from kinform.model.function import Function, IntendedJoint
 from kinform.model.kinematics import Body, Joint, Kinematics
 from kinform.model.simulation import Simulation
@@ -36,6 +38,11 @@ class Amount:
     """(3, 3) kg·m² about the centre."""
     bound: float
     """Relative bound of the mass's error."""
+    parts: tuple[str, ...] = ()
+    """What it is the sum of: parts, and groups with a stated mass."""
+    numbers: Mapping[str, Array] = field(default_factory=dict)
+    """Of each of them what a witness is computed from: density (kg/m³; 0 where the mass is stated), mass, centre and
+    inertia in the world."""
 
     def about(self, axis: Array, point: Array | None) -> float:
         """Moment of inertia (kg·m²) about the unit axis through the point (m), or through the centre."""
@@ -49,17 +56,25 @@ class Amount:
         return float(np.linalg.norm(cross(axis, self.centre - point)))
 
 
+FitKind = Literal["radial", "both sides", "gap"]
+
+
 @dataclass(frozen=True, eq=False)
 class FitClearance:
     """One fit: of round surfaces (radial), between planes (both sides), or of planes on one side (gap)."""
 
-    kind: Literal["radial", "both sides", "gap"]
+    kind: FitKind
     value: float
     """m; negative is press."""
     error: float
     """m: of the fitted surfaces, and of their chords where facets alone speak."""
     place: Array
     """(3,) m."""
+    parts: tuple[str, ...] = ()
+    """Of each pair of surfaces the two parts."""
+    numbers: Mapping[str, Array] = field(default_factory=dict)
+    """What a witness is computed from: of round surfaces axis (zero of balls), point and radii (2,); of planes axes
+    (k, 3) and the heights (k, 2) of both sides along them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,6 +130,10 @@ class Swept:
     floor: float
     """m: between measured poses the distance may be so much less than required."""
     poses: int
+    relative: Array | None = None
+    """(4, 4) displacement of the second group relative to the first at a pose that falls short."""
+    beyond: tuple[Array, ...] = ()
+    """The same of poses that the motion comes to after it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,6 +201,10 @@ class Carrier(Protocol):
     @property
     def chain(self) -> Chain: ...
 
+    def screws(self) -> Mapping[str, Array] | None:
+        """Unit screws (n, 6) (ω; v at the world's origin) from the root to the body, in the order in which they act,
+        with the least and the greatest value of each (rad or m); None where loops close."""
+
     def cover(self, carried: Array, targets: Array, *, directions: bool, near: float) -> Coverage:
         """How near a point (3,) m, or a direction, of the body at the pose of the meshes comes to targets (k, 3)."""
 
@@ -217,6 +240,10 @@ class Mechanism(Protocol):
     def effort(self, joint: Joint, pose: Mapping[str, float]) -> float | str:
         """N·m or N that holds the joint without friction while other joints have the values (rad or m) of the pose,
         by the designer's names; or why it is not determined."""
+
+    def work(self, joint: Joint, pose: Mapping[str, float]) -> Mapping[str, Array] | None:
+        """Weights, loads and springs with the motion of each as the joint moves by one in that pose; None where that is
+        not known."""
 
 
 class Driving(Protocol):
@@ -308,11 +335,18 @@ class Evidence(Protocol):
         """How far parts go together along a unit direction (3,) while all others rest; `after`: displacement (3,) m by
         which they have left their contacts before. Needs contacts and kinematics."""
 
+    def in_each_other(self, parts: Sequence[str], displacements: Iterable[Array]) -> Witness | None:
+        """The first pose in which two parts are in each other, the second displaced (4, 4) relative to the first."""
+
     def face_normals(self, parts: Sequence[str]) -> Array:
         """(k, 3) unit normals, up to sign, of the largest flat faces of parts. Needs contacts and kinematics."""
 
     def mechanism(self) -> Mechanism | str:
         """Everything that joints connect with the ground, or why it has no poses. Needs kinematics and masses."""
+
+    def carried(self, joint: Joint, output: int) -> Mapping[str, Array] | None:
+        """What a joint alone carries about an output time: times, masses, inertias, places and turns of the bodies that
+        hang on it, gravity, and its axis; None where loops, loads, springs or friction act too. Needs a simulation."""
 
     def driving(self, joint: Joint, pose: Mapping[str, float]) -> Driving | str:
         """What the joint's drive must give, with friction, where joints have the values (rad or m) of the pose by the

@@ -6,6 +6,7 @@ the peak between them is; jumps and kinks have no such peak. What is shorter tha
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
@@ -13,6 +14,7 @@ import numpy as np
 from kinform.foundation.rounding import SOLVED
 from kinform.foundation.words import number, telling
 from kinform.model.arrays import Array
+from kinform.model.findings import Witness
 from kinform.model.kinematics import Joint
 from kinform.model.simulation import Simulation
 from kinform.requirements.answer import Answer, Margin, met, undecided, violated
@@ -29,6 +31,10 @@ DYNAMIC = 'Ask for `level = "dynamic"`, with the mass of every moving part known
 FINER = "Ask for a shorter `step` of the output."
 SINGLE = ("revolute", "prismatic", "screw")
 """Types of joints with one coordinate."""
+
+
+PeakProof = Callable[[int, float], Witness | None]
+"""(output, value there) → the witness."""
 
 
 class OfJoint(Protocol):
@@ -67,8 +73,17 @@ def run_of_joint(
     return joint, simulation, int(simulation.joint_offset[simulation.joint_names.index(joint.name)])
 
 
-def peak_beside_limit(compared: Compared, simulation: Simulation, values: Array, limit: float) -> Answer:
-    """The greatest of the values (T,), which are not negative, beside the limit; unknown values are nan."""
+def window(simulation: Simulation, output: int) -> slice:
+    """Up to five output times about one."""
+    start = max(0, min(output - 2, len(simulation.time) - 5))
+    return slice(start, start + 5)
+
+
+def peak_beside_limit(
+    compared: Compared, simulation: Simulation, values: Array, limit: float, proof: PeakProof | None = None
+) -> Answer:
+    """The greatest of the values (T,), which are not negative, beside the limit; unknown values are nan. `proof` makes
+    the witness of the value at an output."""
     known = np.isfinite(values)
     intended = f"at most {telling(compared.shown)(limit)}"
     if known.any():
@@ -88,6 +103,7 @@ def peak_beside_limit(compared: Compared, simulation: Simulation, values: Array,
             return violated(
                 f"{text}, required is {intended}", found=shown(float(values[k])), intended=intended,
                 place=compared.place, remedy=compared.remedy, margin=margin,
+                witness=None if proof is None else proof(k, float(values[k])),
             )  # fmt: skip
     if not known.all():
         return undecided(

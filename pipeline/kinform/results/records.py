@@ -19,7 +19,7 @@ import numpy as np
 
 from kinform.frozen import dataclass
 from kinform.model.quantities import Columns
-from kinform.results.table import Column, flag, inline, integer, numbers, real, text, texts, values
+from kinform.results.table import Column, arrays, flag, inline, integer, numbers, real, text, texts, values
 
 
 @dataclass(frozen=True)
@@ -133,9 +133,10 @@ def _column(name: str, said: Hint) -> Column:
     if said.type is int:
         return integer(name, optional=said.optional)
     if typing.get_origin(said.type) is dict:
-        return values(name)
+        of_numbers = typing.get_origin(said.arguments[1]) is tuple
+        return (arrays if of_numbers else values)(name, optional=said.optional)
     if said.item is not None and said.item.type in (str, int):
-        return texts(name, said.item.type)
+        return texts(name, said.item.type, optional=said.optional)
     if said.type is float and said.unit is not None:
         return real(name, said.unit, optional=said.optional)
     if said.number is np.float64 and said.unit is not None and said.columns is not None:

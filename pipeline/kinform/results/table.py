@@ -143,12 +143,16 @@ def flag(field: str, *, optional: bool = False) -> Column:
     return _scalar(field, np.bool_, "1", lambda v: [bool(x) for x in v], lambda s: s.tolist())
 
 
-def texts(field: str, kind: type = str) -> Column:
-    """A tuple of texts, or of integers, as a JSON list."""
+def texts(field: str, kind: type = str, *, optional: bool = False) -> Column:
+    """A tuple of texts, or of integers, as a JSON list; with `optional`, or None."""
     return _scalar(
         field, TEXT, "",
-        lambda v: _each(lambda x: _write_json(list(x)), [tuple(x) for x in v]),
-        lambda s: _each(lambda x: tuple(_json(x, list, kind)), s),
+        lambda v: _each(
+            lambda x: stored_text(None) if x is None else _write_json(list(x)),
+            [x if x is None else tuple(x) for x in v],
+        ),
+        lambda s: _each(lambda x: None if x is None and optional else tuple(_json(x, list, kind)), s),
+        optional,
     )  # fmt: skip
 
 
@@ -162,9 +166,30 @@ def _json(stored: str | None, kind: type[list[Any]] | type[dict[Any, Any]], of: 
     return value
 
 
-def values(field: str) -> Column:
-    """A dict of free-form values, as JSON."""
-    return _scalar(field, TEXT, "", lambda v: [_write_json(x) for x in v], lambda s: [_json(x, dict) for x in s])
+def values(field: str, *, optional: bool = False) -> Column:
+    """A dict of free-form values, as JSON; with `optional`, or None."""
+    return _scalar(
+        field, TEXT, "",
+        lambda v: [stored_text(None) if x is None else _write_json(x) for x in v],
+        lambda s: [None if x is None and optional else _json(x, dict) for x in s],
+        optional,
+    )  # fmt: skip
+
+
+def arrays(field: str, *, optional: bool = False) -> Column:
+    """A dict of tuples of numbers, as JSON; with `optional`, or None."""
+    whole = values(field, optional=optional)
+
+    def join(stored: Sequence[Any]) -> list[Any]:
+        return [None if x is None else {key: _numbers(row) for key, row in x.items()} for x in whole.join(stored)]
+
+    return Column(field, whole.labels, whole.dtypes, whole.units, whole.split, join, optional)
+
+
+def _numbers(row: Any) -> tuple[float, ...]:
+    if not isinstance(row, list) or not all(type(x) is float or (type(x) is int and abs(x) < 2**63) for x in row):
+        raise ValueError("a list of numbers is expected")
+    return tuple(map(float, row))
 
 
 def inline(

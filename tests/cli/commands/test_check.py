@@ -1,8 +1,9 @@
-"""`kinform check --baseline` and `--write-baseline`, and `[check]` through the command."""
+"""`kinform check --baseline`, `--write-baseline` and `--witness`, and `[check]` through the command."""
 
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -79,3 +80,29 @@ def test_settings_of_the_manifest_hold_in_run(tmp_path: Path, capsys: pytest.Cap
     assert "a spring is missing yet" in rule["reason"]
     manifest.write_text(text + '\n[check]\nselect = ["KF405"]\n')
     assert main(["run", str(manifest)]) == 2
+
+
+def test_witnesses_are_replayed_and_one_that_does_not_hold_fails(
+    overlapping: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["check", str(overlapping), "--witness", "-f", "json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    (one,) = (item for item in document["witnesses"] if item["severity"] == "error")
+    assert (one["code"], one["kind"], one["outcome"]) == ("KF201", "geometric", "holds")
+    assert document["counts"]["does not hold"] == 0
+    design = results.read(overlapping)
+    wrong = [f for f in design.report.findings if f.code == "KF201"]
+    findings = tuple(replace(f, witness=replace(f.witness, gap=2.0 * f.witness.gap)) for f in wrong)
+    forged = tmp_path / "forged.h5"
+    results.write(replace(design, report=replace(design.report, findings=findings)), forged)
+    assert main(["check", str(forged), "--witness"]) == 1
+    assert "does not hold: KF201" in capsys.readouterr().out
+
+
+def test_witnesses_are_text_or_json(overlapping: Path) -> None:
+    assert main(["check", str(overlapping), "--witness", "-f", "sarif"]) == 2
+
+
+def test_witnesses_are_replayed_alone(overlapping: Path, tmp_path: Path) -> None:
+    assert main(["check", str(overlapping), "--witness", "--write-baseline", str(tmp_path / "b.json")]) == 2
+    assert not (tmp_path / "b.json").exists()

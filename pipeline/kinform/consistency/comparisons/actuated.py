@@ -10,6 +10,7 @@ from kinform.consistency.outcome import Outcome, settled
 from kinform.consistency.rule import Declared, Rule
 from kinform.foundation.words import counted, quoted
 from kinform.function import FREEDOMS, acted_freedom, resolve_joint
+from kinform.model.findings import Witness, computed, stated
 
 
 def _single_freedom(context: Context, name: str, freedom: str) -> tuple[str, str]:
@@ -60,9 +61,18 @@ def without_freedom(
                     intended="one freedom of the joint",
                     declared=item,
                     remedy=remedy,
+                    witness=_witness(context, item),
                 )
             )
     return settled(findings, "; ".join(dict.fromkeys(unknown)))
+
+
+def _witness(context: Context, item: Acting) -> Witness | None:
+    """How many freedoms the joint has; of one that is not there, that the manifest names it."""
+    joint = resolve_joint(context.assembly, context.kinematics, item.joint).joint
+    if joint is None or len(joint.twists) == 1:
+        return stated(item, item.joint)
+    return computed("freedoms of twists", abs(len(joint.twists) - 1), 0.0, twists=joint.twists)
 
 
 def _afloat(context: Context, name: str) -> str:

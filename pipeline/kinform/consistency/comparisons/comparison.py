@@ -105,6 +105,15 @@ class Comparison:
         return min(straight, crossed)
 
     @property
+    def directions(self) -> dict[str, Array]:
+        """The found and the meant direction of `angle`; none where there is no angle."""
+        pairs = [(self.axis, self.intended.axis), (self.axis2, self.intended.axis2)]
+        pairs += [(self.axis2, self.intended.axis), (self.axis, self.intended.axis2)]
+        off = self.angle
+        known = ({"found": found, "meant": meant} for found, meant in pairs if found is not None and meant is not None)
+        return next((pair for pair in known if off is not None and _between(pair["found"], pair["meant"]) == off), {})
+
+    @property
     def offset(self) -> float | None:
         """Distance of the found axis from the intended one, where the joint is; of centres for
         spherical and universal joints."""

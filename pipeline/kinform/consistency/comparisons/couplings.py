@@ -11,6 +11,7 @@ import numpy as np
 
 from kinform.foundation.constants import COVERAGE
 from kinform.foundation.graphs.graph import UnionFind
+from kinform.foundation.rounding import SOLVED
 from kinform.foundation.words import rate
 from kinform.frozen import dataclass
 from kinform.function import resolve_joint
@@ -37,6 +38,8 @@ class Ratio:
     value: float
     allowed: float
     through: tuple[str, ...]
+    links: tuple[tuple[float, float], ...] = ()
+    """Of each coupling on the way, and the signs: what the first side turns by while the second turns by the other."""
 
 
 def derived_ratio(
@@ -55,11 +58,14 @@ def derived_ratio(
     if chain is None:
         return "no contact of teeth, cam or screw is found that ties these joints"
     ratio, relative = float(ends[0].sign * ends[1].sign), 0.0
+    links = [(ratio, 1.0)]
     for coupling, forward in chain:
         if coupling.status != "determined":
             return f"the coupling through '{coupling.through}' is {coupling.status}"
         if coupling.kind == "cam":
             return f"'{coupling.through}' is a cam: its ratio is another in every pose"
+        up, down = _turns(coupling)
+        links.append((up, down) if forward else (down, up))
         if coupling.meshing is not None:
             ratio *= coupling.meshing.ratio if forward else 1.0 / coupling.meshing.ratio
             relative += ROUNDED_RATIO
@@ -72,7 +78,18 @@ def derived_ratio(
         )
     if relative > UNCERTAIN_RATIO * len(chain):
         return f"the {shown_ratio(assembly, stated, ratio)} is uncertain by {100 * relative:.2g} %"
-    return Ratio(ratio, abs(ratio) * relative, tuple(str(coupling.through) for coupling, _ in chain))
+    through = tuple(str(coupling.through) for coupling, _ in chain)
+    return Ratio(ratio, abs(ratio) * relative, through, tuple(links))
+
+
+def _turns(coupling: Coupling) -> tuple[float, float]:
+    """Values of both joints as one is in step with the other: teeth, where their numbers alone are the ratio."""
+    if coupling.meshing is None:
+        return coupling.ratio, 1.0
+    ratio, (first, second) = coupling.meshing.ratio, coupling.meshing.teeth
+    if first and abs(math.copysign(second / first, ratio) - ratio) <= SOLVED * abs(ratio):
+        return math.copysign(second, ratio), float(first)
+    return ratio, 1.0
 
 
 def shown_ratio(assembly: Assembly, stated: Stated, ratio: float) -> str:
@@ -101,6 +118,8 @@ class Difference:
     meant: float
     through: tuple[str, ...]
     """Joints carried by points and lines alone, which tie them."""
+    terms: tuple[float, ...] = ()
+    """Of the sum that should be zero, in the motion where it is farthest from it."""
 
 
 def derived_sum(
@@ -140,7 +159,7 @@ def derived_sum(
         return f"the contact '{doubtful.name}' is {doubtful.status}; as it stands, the motion at this pose {at}{off}"
     if UNCOUNTED_TEETH < shares[worst] <= UNCERTAIN_RATIO:
         return f"the motion at this pose is off by {100 * shares[worst]:.2g} %, which normals of teeth may be"
-    return Difference(float(shares[worst]), found, meant, tuple(tied))
+    return Difference(float(shares[worst]), found, meant, tuple(tied), tuple(map(float, rates[worst])))
 
 
 def _on_the_way(kinematics: Kinematics, names: list[str], joint: Joint) -> bool:

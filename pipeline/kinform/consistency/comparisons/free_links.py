@@ -12,6 +12,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from kinform.consistency.context import Context
+from kinform.consistency.questions.proofs import pushing
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.words import counted, direction
@@ -19,6 +20,7 @@ from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.descriptions import DescribedLink, Description
+from kinform.model.findings import Witness
 from kinform.model.names import PartName
 
 OPENS = 1e-3
@@ -36,6 +38,14 @@ class HeldLink:
     patches: tuple[Patch, ...]
     words: str
     """What contact makes of it."""
+
+    free: frozenset[PartName]
+    """Parts of the side that is left free."""
+
+    @property
+    def witness(self) -> Witness | None:
+        """Pushes of its contact that balance each other."""
+        return pushing(self.patches, self.free)
 
     @property
     def place(self) -> Array:
@@ -59,10 +69,11 @@ def held_links(context: Context) -> Iterator[HeldLink]:
                     touching.setdefault((ends[0], ends[1]), []).append(patch)
         for (_, free), patches in sorted(touching.items()):
             sides = [part for part in patches[0].parts if trees[part] == free]
-            if not _opens(patches, frozenset(part for part, tree in trees.items() if tree == free)):
+            loose = frozenset(part for part, tree in trees.items() if tree == free)
+            if not _opens(patches, loose):
                 one, other = sides[0], next(part for part in patches[0].parts if part not in sides)
                 words = _words(context, one, other)
-                yield HeldLink(description, links[one], links[other], tuple(patches), words)
+                yield HeldLink(description, links[one], links[other], tuple(patches), words, loose)
 
 
 def _trees(context: Context, links: dict[PartName, DescribedLink]) -> dict[PartName, int]:

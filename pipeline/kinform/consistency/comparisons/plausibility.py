@@ -18,12 +18,12 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from kinform.consistency.comparisons.links import weighed
+from kinform.consistency.comparisons.links import Weighed, weighed
 from kinform.foundation.words import length, mass, number, quoted, volume
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Part, Source
-from kinform.model.findings import Severity
+from kinform.model.findings import Severity, Witness, computed
 
 LARGE = 20.0
 """Diagonal (m) above which the units are doubted: few machines are larger, and one of 20 mm in metres is. Chosen, not
@@ -62,6 +62,8 @@ class Doubt:
     message: str
     found: str
     source: Source
+    witness: Witness | None = None
+    """Of an error."""
 
 
 def doubts(assembly: Assembly) -> tuple[Doubt, ...]:
@@ -99,7 +101,20 @@ def _scaled(assembly: Assembly) -> Iterator[Doubt]:
                 f"{number(density, 2)} kg/m³; 1000 times {other} it would be {number(density * factor, 2)} kg/m³"
             )
             first = max(body.parts, key=lambda part: 0.0 if part.mesh is None else part.mesh.diagonal)
-            yield Doubt("error", (body.name, str(first.name)), message, f"{text} across", first.source)
+            yield Doubt(
+                "error", (body.name, str(first.name)), message, f"{text} across", first.source,
+                _by_density(body, body.hull.volume),
+            )  # fmt: skip
+
+
+def _by_density(body: Weighed, hull: float) -> Witness | None:
+    """That no scale but another by a thousand makes its hull as dense as parts are."""
+    names = [part.name for part in body.parts if part.mesh is not None]
+    if body.mass > HULL_DENSITY * hull:
+        densest = HULL_DENSITY * WRONG_SCALE / SCALE_SPREAD
+        return computed("density of the hull", body.mass / hull, densest, parts=names, mass=body.mass)
+    lightest = HULL_DENSITY / WRONG_SCALE * SCALE_SPREAD
+    return computed("hull of a mass", hull / body.mass, 1.0 / lightest, parts=names, mass=body.mass)
 
 
 def extent(assembly: Assembly) -> float | None:
@@ -151,7 +166,8 @@ def _mixed(assembly: Assembly) -> Doubt | None:
     few = [part for _, part in (sized[: apart[0] + 1] if 2 * apart[0] < len(sized) - 1 else sized[apart[0] + 1 :])]
     texts = [f"{quoted([part.name])} is {length(size, assembly.units)} across" for size, part in (small, large)]
     message = f"parts are in different units: {texts[0]}, {texts[1]}, and none is between"
-    return Doubt("error", tuple(sorted(p.name for p in few)), message, texts[0], few[0].source)
+    witness = computed("ratio of sizes", large[0] / small[0], OUTLIER, parts=[small[1].name, large[1].name])
+    return Doubt("error", tuple(sorted(p.name for p in few)), message, texts[0], few[0].source, witness)
 
 
 def _outliers(assembly: Assembly) -> Iterator[Doubt]:

@@ -120,8 +120,8 @@ class StepWitness:
             depth=(one.depth, other.depth),
             place_back=_three(one.place),
             place_ahead=_three(other.place),
-            parts_back=one.parts,
-            parts_ahead=other.parts,
+            parts_back=one.pair,
+            parts_ahead=other.pair,
         )
 
     def words(self, units: str) -> str:
@@ -201,8 +201,9 @@ class FiniteSteps:
         return any(patch.kind == "helicoid" for patch in self.patches.get(pair, ()))
 
     def tolerance(self, pair: Pair) -> float:
-        """m: contact tolerance of two parts in contact."""
-        return self.contacts.tolerance[PartName(pair[0]), PartName(pair[1])]
+        """m: contact tolerance of two parts; of those that are apart as modelled, the least that there is."""
+        known = self.contacts.tolerance.get((PartName(pair[0]), PartName(pair[1])))
+        return known if known is not None else min(self.contacts.tolerance.values(), default=0.0)
 
     @cached_property
     def patches(self) -> Mapping[Pair, list[Patch]]:

@@ -29,6 +29,10 @@ class InnerMobility:
     """Of them, turns of single bodies that nobody sees."""
     still: tuple[str, ...]
     """Stated joints among these parts that none of the freedoms moves."""
+    instantaneous: int
+    """All, at first order."""
+    graph: JointGraph
+    """Of their bodies."""
     ends: tuple[int, int] = (0, 0)
     """The least and the most that `effective` may be, by joints drawn at a stop or in doubt (`mobility.two_ends`)."""
 
@@ -49,7 +53,7 @@ def inner_mobility(design: Design, part_names: Sequence[str]) -> InnerMobility |
     assert kinematics is not None
     graph = _graph_within(kinematics, part_names)
     if graph is None:
-        return InnerMobility(0, 0, ())
+        return InnerMobility(0, 0, (), 0, JointGraph((), ()))
     size = kinematics.matrix.length
     closure = graph.close(size)
     finite = finite_mobility(graph.edges, graph.joints, len(graph.bodies), closure.mobility, size)
@@ -74,7 +78,8 @@ def inner_mobility(design: Design, part_names: Sequence[str]) -> InnerMobility |
             still.append(joint.name)
     count = closure.mobility if finite.count is None else finite.count
     ends = mobility_ends(graph, joint_ends(alone, graph, ()), count - idle, closure.mobility, size, None)
-    return InnerMobility(count, idle, tuple(still), ends, len(passive_turns(graph.bodies, graph.joints, spinning)))
+    passive = len(passive_turns(graph.bodies, graph.joints, spinning))
+    return InnerMobility(count, idle, tuple(still), closure.mobility, graph, ends, passive)
 
 
 def _graph_within(kinematics: Kinematics, part_names: Sequence[str]) -> JointGraph | None:

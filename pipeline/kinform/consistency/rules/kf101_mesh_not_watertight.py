@@ -12,6 +12,7 @@ Example: a bracket exported with one face hidden has 24 edges with a facet on on
 from __future__ import annotations
 
 from kinform.consistency.context import Context
+from kinform.consistency.questions.mesh_faults import misused_edge
 from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import counted, listed
 
@@ -37,6 +38,7 @@ def check(context: Context) -> Findings:
             declared=next(part.source for part in use.parts if part.solid),
             remedy="Close the mesh and export it again, or state `solid = false` for a part that is "
             "meant to be incomplete.",
+            witness=misused_edge(use.mesh, use.subject[0]),
         )
 
 

@@ -11,6 +11,7 @@ Example: a plate of which one face was flipped by hand.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
+from kinform.consistency.questions.mesh_faults import misused_edge
 from kinform.consistency.rule import Findings, Rule
 
 
@@ -25,6 +26,7 @@ def check(context: Context) -> Findings:
                 intended="every edge run through once in each direction",
                 declared=use.parts[0].source,
                 remedy="Unify the normals of the mesh and export it again.",
+                witness=misused_edge(use.mesh, use.subject[0], directed=True),
             )
 
 

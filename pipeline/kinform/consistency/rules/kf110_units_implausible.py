@@ -32,6 +32,7 @@ def check(context: Context) -> Findings:
             remedy="Correct the `scale` of the mesh: millimetres taken for metres are the usual cause."
             if context.assembly.descriptions
             else "Correct `units`: millimetres declared as metres are the usual cause.",
+            witness=doubt.witness,
         )
 
 

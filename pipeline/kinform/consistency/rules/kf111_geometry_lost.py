@@ -17,9 +17,12 @@ Example: a hinge of 50 mm in a plant model, exported as binary STL in plant coor
 
 from __future__ import annotations
 
-from kinform.consistency.context import Context
+import numpy as np
+
+from kinform.consistency.context import Context, MeshUse
 from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import length
+from kinform.model.findings import computed
 
 
 def check(context: Context) -> Findings:
@@ -43,7 +46,22 @@ def check(context: Context) -> Findings:
             place=use.parts[0].X_WP[:3, 3],
             declared=use.parts[0].source,
             remedy=remedy,
+            witness=computed(
+                "coordinate step",
+                coarsest / mesh.diagonal,
+                context.assembly.tolerances.resolved,
+                parts=use.subject[:1],
+                step=coarsest,
+                largest=_largest(use, coarsest),
+            ),
         )
+
+
+def _largest(use: MeshUse, coarsest: float) -> float:
+    """m: the largest coordinate of the mesh in its file, or of its place, whichever has the coarser step."""
+    if use.mesh.resolution >= coarsest:
+        return float(np.abs(use.mesh.vertices + use.mesh.origin).max(initial=0.0))
+    return float(max(np.abs(part.X_WP[:3, 3]).max() for part in use.parts))
 
 
 RULE = Rule("KF111", "geometry-lost", "error", __doc__, check, needs=("meshes",))

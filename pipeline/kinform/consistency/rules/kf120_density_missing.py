@@ -15,12 +15,14 @@ Example: an arm with `level = "dynamic"` whose gripper has no material.
 
 from __future__ import annotations
 
+from kinform.consistency.comparisons.links import described_links
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, skipped
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import quoted
 from kinform.function import needing_forces
-from kinform.model.assembly import Part
+from kinform.model.assembly import Part, Source
+from kinform.model.findings import Witness, stated
 
 
 def check(context: Context) -> Outcome:
@@ -45,6 +47,7 @@ def check(context: Context) -> Outcome:
             remedy="Give the part a `material` or `density`."
             if part.mesh is not None and part.solid
             else "State `mass`, `centre_of_mass` and `inertia` of the part.",
+            witness=_witness(context, part),
         )
         for part in context.assembly.parts
         if _lack(part) and part.name not in ground and part.name not in context.assembly.weighed
@@ -71,6 +74,16 @@ def _lack(part: Part) -> str:
     if not part.solid:
         return "surfaces only, without stated mass"
     return "" if part.density is not None else "no material and no density"
+
+
+def _witness(context: Context, part: Part) -> Witness | None:
+    """That the table of the part in its manifest, or its link in a description, says nothing of its mass."""
+    for link in described_links(context.assembly):
+        if part.name in link.parts:
+            return stated(Source(link.file, link.line), link.name.rpartition("/")[2], lacks=("inertial",))
+    if not part.source.file.endswith(".toml"):
+        return None
+    return stated(part.source, part.name.rpartition("/")[2], lacks=("density", "material", "mass"))
 
 
 RULE = Rule("KF120", "density-missing", "error", __doc__, check, also=("note",))

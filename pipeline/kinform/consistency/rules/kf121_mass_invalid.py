@@ -22,11 +22,12 @@ from kinform.consistency.comparisons.links import described_links
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive, skipped
 from kinform.consistency.rule import Rule
-from kinform.foundation.rounding import SOLVED
+from kinform.foundation.rounding import SOLVED, TINY
 from kinform.foundation.words import mass, number, quoted
 from kinform.mass.principal import impossible
+from kinform.model.arrays import Array
 from kinform.model.assembly import Part, Source
-from kinform.model.findings import Finding
+from kinform.model.findings import Finding, Witness, computed, stated
 from kinform.model.mass import MassProperties
 
 
@@ -47,6 +48,7 @@ def check(context: Context) -> Outcome:
     for name, text in report.problems:
         if name not in wrong and not _explained(context.assembly.part(name)):
             wrong[name] = text
+    by_name = {properties.name: properties for properties in weighed}
     of_parts = (
         RULE.finding(
             [part.name],
@@ -58,6 +60,7 @@ def check(context: Context) -> Outcome:
             remedy="Check the stated mass and inertia (kg, kg·m² about the centre of mass)."
             if part.override is not None
             else "Check the mesh for facets that cross each other, and the density.",
+            witness=_of_part(part, by_name.get(part.name)),
         )
         for part in (context.assembly.part(name) for name in sorted(wrong))
     )
@@ -78,6 +81,7 @@ def _groups(context: Context) -> Iterator[Finding]:
             names = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
             six = (f"{name} {number(v, 6)}" for name, v in zip(names, link.stated.inertia, strict=True) if v)
             written = f" ({', '.join(six)})"
+        witness = _impossible_inertia(stated.mass, stated.inertia)
         declared = group.source if link is None or link.stated is None else Source(link.file, link.stated.line)
         yield RULE.finding(
             [group.name],
@@ -88,6 +92,7 @@ def _groups(context: Context) -> Iterator[Finding]:
             declared=declared,
             remedy="Correct the inertia (kg·m² about the centre of mass); signs of ixy, ixz, iyz are those of the "
             "matrix. `kinform export --to urdf --fix inertia` writes that of the geometry.",
+            witness=witness,
         )
 
 
@@ -103,7 +108,28 @@ def _negative(context: Context) -> Iterator[Finding]:
                 place=link.position,
                 declared=Source(link.file, link.stated.line),
                 remedy="Correct the mass.",
+                witness=stated(Source(link.file, link.stated.line), repr(link.stated.value)),
             )
+
+
+def _of_part(part: Part, properties: MassProperties | None) -> Witness | None:
+    """By what is stated of a part, else by what was computed."""
+    if part.override is not None:
+        return _impossible_inertia(part.override.mass, part.override.inertia)
+    if properties is None or properties.mass is None:
+        return None
+    return _impossible_inertia(properties.mass, np.diag(properties.principal_moments))
+
+
+def _impossible_inertia(mass_value: float, inertia: Array) -> Witness | None:
+    if not mass_value > 0.0:
+        return computed("impossible inertia", -mass_value, -TINY, mass=mass_value)
+    if not np.isfinite(inertia).all():
+        return None
+    low, middle, high = np.linalg.eigvalsh(0.5 * (inertia + inertia.T))
+    size = max(abs(low), abs(high))
+    off = max(high - low - middle, -low) / size if size > 0.0 else 0.0
+    return computed("impossible inertia", off, 0.0, mass=mass_value, inertia=inertia)
 
 
 def _impossible(properties: MassProperties) -> str:

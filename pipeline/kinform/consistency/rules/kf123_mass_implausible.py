@@ -28,6 +28,7 @@ from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, mass, number, volume
+from kinform.model.findings import Witness, computed
 
 DENSEST = 23000.0
 """kg/m³: osmium has 22 600. Nothing has more mass over the volume of its convex hull, in which all of it is."""
@@ -71,7 +72,9 @@ def _of_mass(context: Context, body: Weighed) -> Ranked | None:
             f"{body.what} states {mass(body.mass)}, and its geometry fits into {volume(body.hull.volume, units)}: "
             f"that would take more than {number(density, 3)} kg/m³, denser than any material"
         )
-        return _finding("error", body, text, density)
+        names = [part.name for part in body.parts if part.mesh is not None]
+        witness = computed("density of the hull", density, DENSEST, parts=names, mass=body.mass)
+        return _finding("error", body, text, density, witness)
     if solid is None:
         return None
     density = body.mass / solid.volume
@@ -88,7 +91,7 @@ def _of_mass(context: Context, body: Weighed) -> Ranked | None:
     return _finding("warning", body, text, density)
 
 
-def _finding(severity: str, body: Weighed, text: str, density: float) -> Ranked:
+def _finding(severity: str, body: Weighed, text: str, density: float, witness: Witness | None = None) -> Ranked:
     finding = RULE.at(severity).finding(
         [body.name], text,
         found=f"{number(density, 3)} kg/m³",
@@ -96,6 +99,7 @@ def _finding(severity: str, body: Weighed, text: str, density: float) -> Ranked:
         place=body.centre,
         declared=body.source,
         remedy="Correct the mass (kg), or the scale of the mesh; or draw what is heavy.",
+        witness=witness,
     )  # fmt: skip
     return Ranked("heavy" if density > HEAVY else "light", max(density / HEAVY, LIGHT / density), finding)
 
@@ -105,10 +109,15 @@ def _of_inertia(body: Weighed) -> Ranked | None:
     reach = float(np.linalg.norm(body.hull.corners - body.centre, axis=1).max())
     half_trace = 0.5 * float(np.trace(body.inertia))
     most = body.mass * reach * reach
-    even = _even(body)
+    even, witness = _even(body), None
     ratio = half_trace / even if even > 0.0 else 1.0
     if half_trace > INERTIA_LARGE * most:
         severity = "error" if ratio > INERTIA_FAR else "warning"
+        witness = computed(
+            "inertia beyond reach", half_trace / most if most > 0.0 else math.inf, INERTIA_LARGE,
+            parts=[part.name for part in body.parts if part.mesh is not None], mass=body.mass, centre=body.centre,
+            trace=2.0 * half_trace,
+        )  # fmt: skip
         why = "of the mass spread evenly, and more than if all of it were at the farthest point of its geometry"
     elif half_trace <= 0.0 or not 1.0 / INERTIA_FAR < ratio < INERTIA_FAR:
         severity, why = "warning", "of the same mass spread evenly over its geometry"
@@ -131,6 +140,7 @@ def _of_inertia(body: Weighed) -> Ranked | None:
         declared=body.source,
         remedy=f"Correct the inertia (kg·m²){_unit(ratio)}; `kinform export --to urdf --fix inertia` writes "
         "that of the geometry.",
+        witness=witness,
     )  # fmt: skip
     return Ranked("inertia", max(ratio, 1.0 / ratio) if ratio > 0.0 else math.inf, finding)
 

@@ -23,7 +23,7 @@ from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, length, number
 from kinform.model.assembly import Source
 from kinform.model.descriptions import Coverage, DescribedLink
-from kinform.model.findings import Finding
+from kinform.model.findings import Finding, Witness, computed
 
 BARE_SHARE = 0.15
 """Share of the visual's area that may lie outside of the collision geometry: rounded covers by boxes stay below.
@@ -61,7 +61,10 @@ def _of_link(context: Context, link: DescribedLink, coverage: Coverage) -> list[
             f"geometry {length(across[0], units)}: one of them is in millimetres, taken for metres"
         )
         found = f"{number(factor, 3)} times"
-        finding = _finding("error", link, text, found, "about the same size", "Correct the `scale` of the mesh.")
+        finding = _finding("error", link, text, found, "about the same size", "Correct the `scale` of the mesh.",
+            computed("ratio of sizes", factor, 1000.0 / THOUSAND_SPREAD, parts=link.parts, rotation=link.rotation,
+                     size=coverage.collision_size),
+        )  # fmt: skip
         return [Ranked("scale", factor, finding)]
     findings = []
     if coverage.uncovered_share > BARE_SHARE and coverage.uncovered > BARE_DEPTH * size:
@@ -85,9 +88,18 @@ def _of_link(context: Context, link: DescribedLink, coverage: Coverage) -> list[
     return findings
 
 
-def _finding(severity: str, link: DescribedLink, text: str, found: str, intended: str, remedy: str) -> Finding:
+def _finding(
+    severity: str, link: DescribedLink, text: str, found: str, intended: str, remedy: str,
+    witness: Witness | None = None,
+) -> Finding:  # fmt: skip
     return RULE.at(severity).finding(
-        [link.name], text, found=found, intended=intended, declared=Source(link.file, link.line), remedy=remedy
+        [link.name],
+        text,
+        found=found,
+        intended=intended,
+        declared=Source(link.file, link.line),
+        remedy=remedy,
+        witness=witness,
     )
 
 

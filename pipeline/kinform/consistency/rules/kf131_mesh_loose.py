@@ -27,7 +27,7 @@ from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, quoted
 from kinform.model.assembly import Source
 from kinform.model.descriptions import Description, LooseMesh
-from kinform.model.findings import Finding
+from kinform.model.findings import Finding, stated
 
 
 def check(context: Context) -> Outcome:
@@ -89,6 +89,7 @@ def _missing(uses: Sequence[LooseMesh], unnamed: Sequence[str]) -> Finding:
         intended="a mesh",
         declared=Source(mesh.file, mesh.line),
         remedy=f"Correct the file name{_meant(mesh.path, unnamed)}, or add the file.",
+        witness=stated(Source(mesh.file, mesh.line), mesh.path.rpartition("/")[2], missing=mesh.path),
     )
 
 

@@ -22,14 +22,19 @@ Example: a gimbal ring whose lug reaches 1.5 mm into the housing wall.
 
 from __future__ import annotations
 
+import math
+
+import numpy as np
+
 from kinform.consistency.context import Context
 from kinform.consistency.questions.copies_in_place import copies_in_place
 from kinform.consistency.rule import Findings, Rule
 from kinform.contacts.presses import PRESS_SHARE, beyond_press, press_limit
+from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.words import length, quoted, volume
 from kinform.model.assembly import Part
 from kinform.model.contacts import Interference
-from kinform.model.findings import Finding
+from kinform.model.findings import Finding, between
 from kinform.model.names import PartName
 
 AT_JOINT = 0.02
@@ -43,10 +48,11 @@ def check(context: Context) -> Findings:
     overlaps.sort(key=lambda overlap: (-overlap.depth, overlap.parts))
     copies = {(first.name, second.name): second for first, second in copies_in_place(context.assembly)}
     others = [_finding(context, overlap) for overlap in overlaps if overlap.parts not in copies]
-    return [_copies(parts, part) for parts, part in copies.items()] + others
+    return [_copies(context, parts, part) for parts, part in copies.items()] + others
 
 
-def _copies(parts: tuple[PartName, PartName], copy: Part) -> Finding:
+def _copies(context: Context, parts: tuple[PartName, PartName], copy: Part) -> Finding:
+    thick, volume = _thickness(copy)
     return RULE.finding(
         parts,
         f"{quoted(parts)} are two copies of one shape in one place: its mass counts twice",
@@ -55,7 +61,18 @@ def _copies(parts: tuple[PartName, PartName], copy: Part) -> Finding:
         place=copy.X_WP[:3, 3],
         declared=copy.source,
         remedy="Remove one of them, or move it to its place.",
+        witness=between(parts[:1], parts[1:], -thick, volume=volume),
     )
+
+
+def _thickness(part: Part) -> tuple[float, float]:
+    """2 V/A (m) and the volume V (m³) of a part; nan without a closed mesh."""
+    if part.mesh is None or not part.mesh.health.watertight:
+        return math.nan, math.nan
+    a, b, c = part.mesh.vertices[part.mesh.faces].swapaxes(0, 1)
+    area = 0.5 * float(np.linalg.norm(cross(b - a, c - a), axis=1).sum())
+    volume = abs(part.mesh.health.volume)
+    return 2.0 * volume / area, volume
 
 
 def _finding(context: Context, overlap: Interference) -> Finding:
@@ -71,6 +88,7 @@ def _finding(context: Context, overlap: Interference) -> Finding:
         place=overlap.place,
         declared=context.assembly.part(overlap.parts[0]).source,
         remedy="Move or reshape one of the parts; if the overlap is meant, join them in a [[group]].",
+        witness=between(overlap.parts[:1], overlap.parts[1:], -overlap.depth, volume=overlap.volume),
     )
 
 

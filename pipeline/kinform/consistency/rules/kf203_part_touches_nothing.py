@@ -23,13 +23,14 @@ import numpy as np
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled
 from kinform.consistency.questions.captive_parts import CaptivePart
+from kinform.consistency.questions.gaps import gap_between
 from kinform.consistency.rule import Rule
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.words import quoted
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
-from kinform.model.findings import Finding
+from kinform.model.findings import Finding, stated
 
 
 def check(context: Context) -> Outcome:
@@ -91,6 +92,8 @@ def _finding(context: Context, cluster: tuple[str, ...], *, touch: bool) -> Find
         place=part.X_WP[:3, 3] if part.mesh is None else _middle(context.assembly, cluster[0]),
         declared=part.source,
         remedy="Check the pose, add the part that is missing between, or join it by [[group]] or [[assume]].",
+        witness=gap_between(context.assembly, cluster, {str(p.name) for p in context.assembly.parts} - {*cluster})
+        or stated(part.source, cluster[0].rpartition("/")[2]),
     )
 
 

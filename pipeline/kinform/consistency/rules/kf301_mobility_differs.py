@@ -28,6 +28,7 @@ from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive
 from kinform.consistency.questions.immobile_joints import immobile_joints
 from kinform.consistency.questions.passive_turns import passive_turns
+from kinform.consistency.questions.proofs import freedoms
 from kinform.consistency.questions.rough_turns import rough_turns
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, quoted
@@ -90,6 +91,15 @@ def check(context: Context) -> Outcome:
         "by how much."
         if near
         else usual,
+        witness=freedoms(
+            kinematics.bodies,
+            kinematics.joints,
+            mobility.effective,
+            mobility.idle,
+            mobility.instantaneous - mobility.effective - mobility.idle,
+            mobility.ends,
+            intended,
+        ),
     )
     return decided([finding])
 

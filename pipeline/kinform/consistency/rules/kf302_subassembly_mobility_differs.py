@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled
+from kinform.consistency.questions.proofs import freedoms
 from kinform.consistency.questions.subassembly_mobility import inner_mobility
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, quoted
@@ -51,6 +52,15 @@ def check(context: Context) -> Outcome:
                     intended=str(sub.mobility),
                     declared=sub.source,
                     remedy="Check the sub-assembly on its own; correct its joints, or its `mobility`.",
+                    witness=freedoms(
+                        found.graph.bodies,
+                        found.graph.joints,
+                        found.effective,
+                        found.idle,
+                        found.instantaneous - found.count,
+                        found.ends,
+                        sub.mobility,
+                    ),
                 )
             )
     doubts = "joints inside are ambiguous, contact only pushes, parts have play, or a rank is on the edge"

@@ -17,6 +17,7 @@ from __future__ import annotations
 from kinform.consistency.comparisons.comparison import Comparison
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled
+from kinform.consistency.questions.gaps import gap_between
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, length, quoted
 
@@ -34,6 +35,7 @@ def check(context: Context) -> Outcome:
                 place=c.intended.point,
                 declared=c.intended,
                 remedy="Check poses and clearances, add the part that carries the joint, or correct `between`.",
+                witness=gap_between(context.assembly, *(body.parts for body in c.bodies)),
             )
             for c in context.comparisons
             if c.state == "absent" or _taken(c)

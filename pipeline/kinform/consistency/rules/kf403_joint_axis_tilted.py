@@ -21,7 +21,7 @@ from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive, skipped
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import angle, counted, direction
-from kinform.model.findings import Finding
+from kinform.model.findings import Finding, computed
 
 
 def check(context: Context) -> Outcome:
@@ -54,6 +54,7 @@ def _finding(context: Context, c: Comparison, off: float, limit: float) -> Findi
         place=c.point if c.point is not None else c.intended.point,
         declared=c.intended,
         remedy=f"Correct the mating surfaces, or state the axis that they have: {written}.",
+        witness=computed("angle of directions", off, limit + c.angle_slack, **c.directions),
     )
 
 

@@ -21,7 +21,7 @@ from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive, skipped
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, length, place
-from kinform.model.findings import Finding
+from kinform.model.findings import Finding, computed
 
 
 def check(context: Context) -> Outcome:
@@ -51,6 +51,14 @@ def _finding(context: Context, c: Comparison, off: float) -> Finding:
         nearest = c.point + c.axis * float(c.axis @ (c.intended.point - c.point))
     written = point_as_written(context, c.intended, nearest) or "`point` of the intended joint"
     what = "centre" if c.type in ("spherical", "universal") else "axis"
+    limit = c.position_limit + c.position_slack
+    if what == "centre" or c.axis is None or c.intended.axis is None:
+        witness = computed("distance of points", off, limit, found=c.point, meant=c.intended.point)
+    else:
+        witness = computed(
+            "distance of lines", off, limit, found_axis=c.axis, found_point=c.point, meant_axis=c.intended.axis,
+            meant_point=c.intended.point,
+        )  # fmt: skip
     return RULE.finding(
         [c.intended.name],
         f"the {what} of joint '{c.intended.name}' is {length(off, units)} beside the intended one "
@@ -60,6 +68,7 @@ def _finding(context: Context, c: Comparison, off: float) -> Finding:
         place=c.point,
         declared=c.intended,
         remedy=f"Correct the pose or the mating surfaces, or state where the {what} is: {written}.",
+        witness=witness,
     )
 
 

@@ -12,10 +12,13 @@ Example: an M6 lead screw with a pitch of 1 mm where 1.25 mm is intended.
 from __future__ import annotations
 
 from kinform.consistency.comparisons.as_written import pitch_as_written
+from kinform.consistency.comparisons.comparison import Comparison
+from kinform.consistency.comparisons.couplings import ROUNDED_RATIO
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, skipped
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import length
+from kinform.model.findings import Witness, computed
 
 
 def check(context: Context) -> Outcome:
@@ -37,9 +40,18 @@ def check(context: Context) -> Outcome:
                     declared=c.intended,
                     remedy="Correct the thread, or the pitch of the intended joint (positive: right-handed)"
                     f"{pitch_as_written(context, c.intended, c.pitch)}.",
+                    witness=_witness(c, c.intended.pitch),
                 )
             )
     return decided(findings) if count else skipped("no screw joint to compare")
+
+
+def _witness(c: Comparison, wanted: float) -> Witness | None:
+    if c.twists is None or len(c.twists) != 1 or c.pitch is None:
+        return None
+    return computed(
+        "lead of a twist", abs(c.pitch - wanted), ROUNDED_RATIO * abs(wanted), twist=c.twists[0], meant=wanted
+    )
 
 
 RULE = Rule("KF405", "joint-pitch-differs", "error", __doc__, check, needs=("comparisons",))

@@ -17,10 +17,12 @@ from __future__ import annotations
 
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled
+from kinform.consistency.questions.gaps import gap_between
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import area, direction, quoted
-from kinform.model.findings import Finding
+from kinform.model.findings import Finding, Witness, stated
 from kinform.model.kinematics import IgnoredContact, Joint
+from kinform.model.names import BodyName
 
 
 def check(context: Context) -> Outcome:
@@ -41,7 +43,21 @@ def _finding(context: Context, joint: Joint) -> Finding:
         intended="no joint",
         declared=context.assembly.source,
         remedy="Separate the two bodies, or add the joint to [function].",
+        witness=_witness(context, joint.bodies),
     )
+
+
+def _witness(context: Context, bodies: tuple[BodyName, BodyName]) -> Witness | None:
+    """How near the two bodies are; of bodies without meshes, that the manifest assumes the joint."""
+    sides = [context.kinematics.named_bodies[name].parts for name in bodies]
+    near = gap_between(context.assembly, *sides)
+    if near is not None:
+        return near
+    for assumption in context.assembly.assumptions:
+        ends = [set(context.assembly.parts_of(name)) for name in assumption.between]
+        if all(any(end & set(side) for end in ends) for side in sides):
+            return stated(assumption.source, *assumption.between)
+    return None
 
 
 def _beside(context: Context, aside: IgnoredContact) -> Finding:
@@ -53,6 +69,7 @@ def _beside(context: Context, aside: IgnoredContact) -> Finding:
         intended="no joint",
         declared=context.assembly.source,
         remedy="Separate the two bodies, or add the joint to [function].",
+        witness=_witness(context, aside.bodies),
     )
 
 

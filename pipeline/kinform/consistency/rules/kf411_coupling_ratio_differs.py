@@ -28,7 +28,7 @@ from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, skipped
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import quoted
-from kinform.model.findings import Finding
+from kinform.model.findings import Finding, computed
 from kinform.model.function import Coupling
 
 
@@ -58,6 +58,13 @@ def check(context: Context) -> Outcome:
                     declared=coupling,
                     remedy="Correct the teeth or the pitch, or the ratio, the value of the first for one of the second"
                     f"{ratio_as_written(context, coupling, derived.value) or '; mind the sign'}.",
+                    witness=computed(
+                        "ratio of rates",
+                        abs(derived.value - coupling.ratio),
+                        derived.allowed,
+                        links=derived.links,
+                        meant=coupling.ratio,
+                    ),
                 )
             )
     return decided(findings) if count else skipped("no coupling can be compared")
@@ -75,6 +82,7 @@ def _of_sum(context: Context, coupling: Coupling, sums: Difference) -> Finding:
         intended=wanted,
         declared=coupling,
         remedy="Correct the teeth, or `ratio`: value of the first for one of each other; mind the signs.",
+        witness=computed("sum of rates", sums.share, UNCERTAIN_RATIO, terms=sums.terms),
     )
 
 

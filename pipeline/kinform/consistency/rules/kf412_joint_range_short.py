@@ -24,13 +24,14 @@ import math
 import numpy as np
 
 from kinform.consistency.comparisons.as_written import range_as_written
-from kinform.consistency.comparisons.ranges import RangeComparison, range_comparisons, shown
+from kinform.consistency.comparisons.ranges import RangeComparison, joint_as_intended, range_comparisons, shown
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, skipped
+from kinform.consistency.questions.proofs import beyond_guide, beyond_stop
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import quoted
 from kinform.model.collisions import RangeEnd
-from kinform.model.findings import Finding, Severity
+from kinform.model.findings import Finding, Severity, Witness
 
 SHORT_TURN = math.radians(0.02)
 """rad by which a turn may fall short: a stop on facets is not where it is on the surface. Chosen, not measured."""
@@ -119,6 +120,7 @@ def _finding(
         place=end.place if end.place is not None else joint.point,
         declared=joint,
         remedy=remedy,
+        witness=_witness(context, item, stated, end),
     )
 
 
@@ -130,6 +132,17 @@ def _range(context: Context, item: RangeComparison) -> str:
     kept = max(low, lower), min(high, upper)
     written = range_as_written(context, item.intended, kept) if kept[0] < kept[1] else ""
     return f": {written}" if written else ""
+
+
+def _witness(context: Context, item: RangeComparison, stated: float, end: RangeEnd) -> Witness | None:
+    """Parts in each other beyond the stop, or a slider that has left its guide before it."""
+    comparison = next((c for c in context.comparisons if c.intended is item.intended), None)
+    match = None if comparison is None else joint_as_intended(comparison)
+    if match is None:
+        return None
+    if end.status == "unbounded":
+        return beyond_guide(context, match[0], item.sign * stated)
+    return None if end.value is None else beyond_stop(context, match[0], end.parts, end.value, item.sign * stated)
 
 
 RULE = Rule("KF412", "joint-range-short", "error", __doc__, check, also=("warning",))

@@ -21,20 +21,23 @@ from __future__ import annotations
 from kinform.consistency.comparisons.comparison import Comparison, leaves_more
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled
+from kinform.consistency.questions.proofs import opening
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, direction, quoted
-from kinform.model.findings import Finding
-from kinform.model.kinematics import FREEDOMS
+from kinform.kinematics.joints.bodies.stated_joints import joint_twists
+from kinform.kinematics.joints.pair.joint import twists_of
+from kinform.model.findings import Finding, Witness
+from kinform.model.kinematics import FREEDOMS, Reading
 
 
 def check(context: Context) -> Outcome:
     """Intended joints that contact leaves free without holding them."""
     loose = [c for c in context.comparisons if leaves_more(c) or (c.left_free and not c.afloat) or c.loose]
     doubts = [f"'{c.intended.name}': {c.afloat}" for c in context.comparisons if c.afloat and c.touch]
-    return settled([_finding(c) for c in loose], "; ".join(doubts))
+    return settled([_finding(context, c) for c in loose], "; ".join(doubts))
 
 
-def _finding(c: Comparison) -> Finding:
+def _finding(context: Context, c: Comparison) -> Finding:
     intended = c.intended
     reading = c.joint.readings[0] if c.state == "taken" and c.joint is not None else None
     found = reading.type if reading is not None else c.type
@@ -54,7 +57,33 @@ def _finding(c: Comparison) -> Finding:
         place=c.point if c.point is not None else intended.point,
         declared=intended,
         remedy=_remedy(intended.type, found, taken=c.state == "taken" or c.loose),
+        witness=_witness(context, c, reading),
     )
+
+
+def _witness(context: Context, c: Comparison, reading: Reading | None) -> Witness | None:
+    """A motion that contact leaves free beside the intended one."""
+    if context.lacks("contacts") is not None:
+        return None
+    found = c.twists
+    if reading is not None:
+        known = reading.type == "fixed" or (reading.axis is not None and reading.point is not None)
+        found = twists_of(reading.type, reading.axis, reading.point, reading.pitch) if known else found
+    meant = joint_twists(c.intended)
+    if found is None or meant is None:
+        return None
+    first, second = _sides(context, c)
+    loose = [context.kinematics.named_bodies[name].parts for name in c.through]
+    return opening(context, first, second, found, meant, loose)
+
+
+def _sides(context: Context, c: Comparison) -> tuple[frozenset[str], frozenset[str]]:
+    """Parts of both sides; of one body, those that the joint names."""
+    if c.bodies[0].name == c.bodies[1].name:
+        first, second = (frozenset(map(str, context.assembly.parts_of(name))) for name in c.intended.between)
+        return first, second
+    first, second = (frozenset(map(str, body.parts)) for body in c.bodies)
+    return first, second
 
 
 def _remedy(wanted: str, found: str, *, taken: bool) -> str:

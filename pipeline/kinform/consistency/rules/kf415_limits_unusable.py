@@ -25,7 +25,7 @@ from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, number, quoted
 from kinform.model.assembly import Source
 from kinform.model.descriptions import DescribedJoint, Description
-from kinform.model.findings import Finding
+from kinform.model.findings import Finding, Witness, stated
 
 DEGREES = 8.0 * math.pi, 360.0
 """Limits of a joint that turns (rad) which are probably degrees, or stand for none: from four turns on, which hardly a
@@ -87,8 +87,17 @@ def _finding(kind: str, joint: DescribedJoint, text: str, found: str, remedy: st
         place=joint.point,
         declared=Source(joint.file, joint.line),
         remedy=remedy,
+        witness=_witness(joint),
     )  # fmt: skip
     return Ranked("none" if joint.limits is None else kind, abs(joint.span), finding)
+
+
+def _witness(joint: DescribedJoint) -> Witness | None:
+    """What its file states."""
+    place = Source(joint.file, joint.line)
+    if joint.limits is None:
+        return stated(place, joint.name.rpartition("/")[2], lacks=("limit",))
+    return stated(place, joint.name.rpartition("/")[2], *map(repr, joint.limits))
 
 
 def _zeros(description: Description) -> Iterator[Finding]:

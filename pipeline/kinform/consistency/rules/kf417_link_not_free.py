@@ -39,6 +39,7 @@ def _finding(held: HeldLink) -> Finding:
         place=held.place,
         declared=Source(held.link.file, held.link.line),
         remedy="State the joint that is there, or give the two a gap.",
+        witness=held.witness,
     )
 
 

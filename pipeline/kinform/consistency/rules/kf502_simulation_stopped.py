@@ -14,6 +14,7 @@ from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import number
+from kinform.model.findings import computed
 
 
 def check(context: Context) -> Outcome:
@@ -33,6 +34,9 @@ def check(context: Context) -> Outcome:
         intended=duration,
         declared=request if request is not None and request.file is not None else context.assembly.source,
         remedy="Shorten the motion, or correct the joints that are named.",
+        witness=None
+        if request is None
+        else computed("time of a run", request.duration - reached, 0.0, duration=request.duration),
     )
     return decided([finding])
 

@@ -18,6 +18,7 @@ from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive, skipped
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import number
+from kinform.model.findings import computed
 
 LOOP_RESIDUAL = 1e-6
 """Residual relative to the size of the assembly (m), and absolute (rad): a micrometre in a
@@ -44,6 +45,7 @@ def check(context: Context) -> Outcome:
         intended=f"at most {number(limit, 3)}",
         declared=context.assembly.source,
         remedy="Shorten the output step, and report the case: the trajectory cannot be trusted.",
+        witness=computed("closing of loops", float(residual[worst]), limit, output=worst),
     )
     return decided([finding])
 

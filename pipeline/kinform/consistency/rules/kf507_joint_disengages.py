@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, skipped
+from kinform.consistency.questions.proofs import beyond_guide
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import angle, length, number
 from kinform.model.findings import Finding
@@ -42,6 +43,7 @@ def _finding(context: Context, slip: Slip) -> Finding:
         intended=f"up to {said(slip.limit)}",
         place=slip.joint.point,
         remedy="Lengthen the guide, shorten the stroke, or add an end stop.",
+        witness=beyond_guide(context, slip.joint, slip.value),
     )
 
 

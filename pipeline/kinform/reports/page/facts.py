@@ -19,6 +19,7 @@ from kinform.model.kinematics import Joint
 from kinform.reports.page.phrases import assumption, joint_sentence, patch_words
 from kinform.reports.page.subjects import as_stated, wanted_names
 from kinform.reports.phrases import rule_counts, severity_counts, verdict_told, verdict_word, where
+from kinform.reports.proofs import proof
 
 MOST_LISTED_PATCHES = 14
 """Patches that a joint lists; the rest are counted. Chosen, not measured."""
@@ -110,7 +111,7 @@ def findings(design: Design) -> list[FindingFacts]:
         place = None if finding.place is None else words.place(finding.place, units)
         values = (
             ("found", finding.found), ("intended", finding.intended), ("place", place),
-            ("declared at", where(finding) or None),
+            ("declared at", where(finding) or None), ("proof", proof(finding, units)),
         )  # fmt: skip
         out.append(
             FindingFacts(

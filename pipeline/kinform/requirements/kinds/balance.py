@@ -11,6 +11,7 @@ from kinform.form.tables import Positive, Reference, Vector
 from kinform.foundation.words import length, mass, number, quoted, telling
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
+from kinform.model.findings import computed
 from kinform.requirements.answer import Answer, Margin, met, undecided, violated
 from kinform.requirements.bounds import amount
 from kinform.requirements.evidence import Evidence
@@ -74,6 +75,10 @@ def judge(evidence: Evidence, wanted: BalanceRecord) -> Answer:
     return violated(
         f"{text}, required is {limit}", found=shown(imbalance), intended=limit, place=whole.centre,
         remedy="Move material across the axis, or add a counterweight.", margin=margin,
+        witness=computed(
+            "imbalance about a line", imbalance, wanted.limit, parts=whole.parts, axis=line[0], point=line[1],
+            **whole.numbers,
+        ),
     )  # fmt: skip
 
 

@@ -11,6 +11,7 @@ from kinform.form.tables import Positive, Reference, Vector
 from kinform.foundation.words import length, place, telling
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
+from kinform.model.findings import computed
 from kinform.requirements.answer import Answer, Margin, met, violated
 from kinform.requirements.bounds import amount, whose
 from kinform.requirements.evidence import Evidence
@@ -53,6 +54,9 @@ def judge(evidence: Evidence, wanted: CentreOfMassRecord) -> Answer:
     return violated(
         f"{text}, required is within {within}", found=centre, intended=f"within {within} of {aim}",
         place=whole.centre, remedy="Move material, or correct the point.", margin=margin,
+        witness=computed(
+            "centre off a point", distance, wanted.tolerance, parts=whole.parts, point=wanted.point, **whole.numbers
+        ),
     )  # fmt: skip
 
 

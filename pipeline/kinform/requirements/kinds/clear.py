@@ -11,10 +11,11 @@ import numpy as np
 from pydantic import Field
 
 from kinform.form.tables import NonNegative, Reference
-from kinform.foundation.algebra.displacements import poses
+from kinform.foundation.algebra.displacements import poses, twist_of
 from kinform.foundation.words import counted, length, number, quoted, telling
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
+from kinform.model.findings import Witness, between
 from kinform.model.kinematics import Body, Joint, Kinematics
 from kinform.model.simulation import Simulation
 from kinform.requirements.answer import Answer, met, undecided, violated, worst_of
@@ -156,6 +157,7 @@ def _answer(evidence: Evidence, groups: PairOfGroups, swept: Swept, required: fl
             f"{what}{where}", found="collision" if near.distance <= 0.0 else shown,
             intended=f"at least {in_words(required)}" if required > 0.0 else "no collision",
             place=near.place, remedy=REMEDY,
+            witness=_witness(evidence, groups, swept),
         )  # fmt: skip
     perhaps = {overlap.parts for overlap in evidence.contacts.possible_overlaps}
     unknown = sorted(perhaps & {*groups.parts})
@@ -168,6 +170,16 @@ def _answer(evidence: Evidence, groups: PairOfGroups, swept: Swept, required: fl
         )  # fmt: skip
     text = f"{names} stay clear, certain within {length(swept.floor, units)} by {counted(swept.poses, 'measured pose')}"
     return met(f"{text}; not counted: surfaces by which {_mating(groups)} mate" if groups.mating else text)
+
+
+def _witness(evidence: Evidence, groups: PairOfGroups, swept: Swept) -> Witness | None:
+    """How far the two parts are apart at the pose that falls short; of parts that mate, that they are in each other."""
+    near = swept.worst
+    if swept.relative is None or not near.parts[0]:
+        return None
+    if (min(near.parts), max(near.parts)) in groups.mating:
+        return evidence.in_each_other(near.parts, swept.beyond)
+    return between(near.parts[:1], near.parts[1:], near.distance, moved=twist_of(swept.relative))
 
 
 def _mating(groups: PairOfGroups) -> str:

@@ -9,9 +9,10 @@ from pydantic import Field
 from kinform.form.tables import Finite, Reference
 from kinform.foundation.words import counted
 from kinform.frozen import dataclass
+from kinform.model.findings import Witness, computed
 from kinform.requirements.answer import Answer, Margin, met, undecided, violated
 from kinform.requirements.driving import driven_in, worst
-from kinform.requirements.evidence import Evidence
+from kinform.requirements.evidence import Driving, Evidence
 from kinform.requirements.joints import Poses
 from kinform.requirements.kind import Kind, Record
 from kinform.requirements.quantity import JOINT, JOINT_VALUES
@@ -62,10 +63,16 @@ def judge(evidence: Evidence, wanted: EfficiencyRecord) -> Answer:
     if least < wanted.minimum:
         return violated(
             f"{text}, required is {limit}", found=value, intended=limit, place=joint.point, remedy=REMEDY,
-            margin=margin,
+            margin=margin, witness=_witness(driving, least, wanted.minimum),
         )  # fmt: skip
     text = f"{text}, the least of {counted(len(found), 'pose')}"
     return met(text, found=value, intended=limit, margin=margin)
+
+
+def _witness(driving: Driving, least: float, minimum: float) -> Witness | None:
+    """What the drive gives as it moves the joint against the load, beside the load; 0 where nothing does."""
+    needed = 0.0 if least == 0.0 else driving.without / least
+    return computed("loss by friction", minimum - least, 0.0, without=driving.without, needed=needed, minimum=minimum)
 
 
 KIND = Kind("efficiency", 50, Efficiency, EfficiencyRecord, judge, needs={"kinematics": "Run the stages before."})

@@ -11,9 +11,10 @@ from pydantic import Field
 from kinform.form.tables import Finite, Pair
 from kinform.foundation.words import counted, length, quoted
 from kinform.frozen import dataclass
+from kinform.model.findings import computed
 from kinform.requirements.answer import Answer, least, met, undecided, worst_of
-from kinform.requirements.bounds import Compared, beside_bounds, shared_parts
-from kinform.requirements.evidence import Evidence
+from kinform.requirements.bounds import Compared, Proof, beside_bounds, shared_parts
+from kinform.requirements.evidence import Evidence, FitClearance
 from kinform.requirements.kind import Fault, Kind, Record
 from kinform.requirements.quantity import LENGTH, PLACE
 from kinform.requirements.table import RequirementTable, bound_faults, side_faults
@@ -65,10 +66,18 @@ def judge(evidence: Evidence, wanted: FitRecord) -> Answer:
     answers = []
     for fit in fits:
         name = f"the {TITLES[fit.kind]} of {quoted(between)}"
-        compared = Compared(name, shown, REMEDY, "m", fit.place, cause="by the fit of the surfaces")
+        compared = Compared(name, shown, REMEDY, "m", fit.place, cause="by the fit of the surfaces", proof=_proof(fit))
         answers.append(beside_bounds(compared, fit.value, fit.error, wanted.minimum, wanted.maximum))
     whole = worst_of(answers) or met(f"{counted(len(fits), 'fit')} within bounds; {answers[0].message}")
     return whole if whole.state == "undecided" else replace(whole, margin=least(answer.margin for answer in answers))
+
+
+def _proof(fit: FitClearance) -> Proof | None:
+    if not fit.numbers:
+        return None
+    return lambda off, error, bounds: computed(
+        "fit of surfaces", off, error, parts=fit.parts, gap=fit.value, **fit.numbers, **bounds
+    )
 
 
 KIND = Kind("fit", 160, Fit, FitRecord, judge, faults=faults, needs={"contacts": "Give both parts meshes."})

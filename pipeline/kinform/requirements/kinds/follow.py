@@ -13,11 +13,13 @@ from kinform.foundation.rounding import SOLVED
 from kinform.foundation.words import angle, length, number, telling
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
+from kinform.model.findings import Witness, computed
+from kinform.model.simulation import Simulation
 from kinform.requirements.answer import Answer, Margin, met, undecided, violated
 from kinform.requirements.evidence import Deviation, Evidence
 from kinform.requirements.kind import Kind, Record
 from kinform.requirements.quantity import ANGLE, LENGTH, PLACE, POINT, Quantity
-from kinform.requirements.runs import simulated
+from kinform.requirements.runs import simulated, window
 from kinform.requirements.table import RequirementTable
 
 REMEDY = "Correct the drives or the geometry, or the path."
@@ -65,6 +67,8 @@ def judge(evidence: Evidence, wanted: FollowRecord) -> Answer:
     early = path[:, 0] <= end * (1.0 + SOLVED)
     greatest = evidence.deviation(body, wanted.point, path[early]) if np.count_nonzero(early) > 1 else None
     violation = None if greatest is None else _violation(evidence.units, wanted, greatest)
+    if violation is not None and greatest is not None:
+        violation = replace(violation, witness=_witness(simulation, body, wanted, greatest))
     whole = greatest is not None and early.all() and path[0, 0] >= 0.0 and wanted.angle_tolerance is None
     margin = Margin(wanted.tolerance - greatest.distance, "m") if greatest is not None and whole else None
     if violation is not None:
@@ -79,6 +83,21 @@ def judge(evidence: Evidence, wanted: FollowRecord) -> Answer:
         doubt = f"{text}, give or take {length(greatest.error, evidence.units)} between output times"
         return undecided(doubt, "Simulate with a shorter step.")
     return met(f"{text}, at t = {number(greatest.time)} s", margin=margin)
+
+
+def _witness(simulation: Simulation, body: str, wanted: FollowRecord, greatest: Deviation) -> Witness | None:
+    """The motion of the body about that time, and the path."""
+    off = greatest.distance - greatest.error > wanted.tolerance
+    when = greatest.time if off else greatest.angle_time
+    near = window(simulation, int(np.abs(simulation.time - when).argmin()))
+    b, rows = simulation.body_names.index(body), wanted.rows
+    k = int(np.clip(np.searchsorted(rows[:, 0], when, side="right") - 1, 0, len(rows) - 2))
+    return computed(
+        "path and motion", greatest.distance if off else greatest.angle or 0.0,
+        wanted.tolerance if off else wanted.angle_tolerance or 0.0, turned=float(not off), at=when,
+        times=simulation.time[near], places=simulation.p_WB[near, b], turns=simulation.q_WB[near, b],
+        point=wanted.point, rows=rows[k : k + 2],
+    )  # fmt: skip
 
 
 def _violation(units: str, wanted: FollowRecord, greatest: Deviation) -> Answer | None:

@@ -9,6 +9,7 @@ from pydantic import Field
 from kinform.form.tables import Finite, Positive, Reference
 from kinform.foundation.words import counted, telling
 from kinform.frozen import dataclass
+from kinform.model.findings import Witness, computed
 from kinform.model.kinematics import Joint
 from kinform.requirements.answer import Answer, Margin, met, undecided, violated
 from kinform.requirements.driving import driven_in, worst
@@ -56,14 +57,17 @@ def judge(evidence: Evidence, wanted: HoldRecord) -> Answer:
         return undecided(mechanism, "See KF401 and KF901.")
     most, where = -1.0, ""
     poses = wanted.poses or [{}]
+    worst_pose = poses[0]
     for pose in poses:
         held = mechanism.effort(joint, pose)
         if isinstance(held, str):
             why = held.replace(f"'{joint.name}'", f"'{wanted.joint}'")
             return undecided(f"at {pose_words(evidence, pose)}: {why}", STATE)
         if abs(held) > most:
-            most, where = abs(held), pose_words(evidence, pose)
-    return _beside_limit(wanted, joint, most, where, len(poses))
+            most, where, worst_pose = abs(held), pose_words(evidence, pose), pose
+    work = mechanism.work(joint, worst_pose) if most > wanted.limit else None
+    witness = None if work is None else computed("work of weights", most, wanted.limit, **work)
+    return _beside_limit(wanted, joint, most, where, len(poses), witness=witness)
 
 
 def _with_friction(evidence: Evidence, wanted: HoldRecord) -> Answer:
@@ -72,12 +76,17 @@ def _with_friction(evidence: Evidence, wanted: HoldRecord) -> Answer:
     if isinstance(found, Answer):
         return found
     where, driving, joint = worst(found, lambda one: one.least)
-    return _beside_limit(wanted, joint, driving.least, where, len(found), abs(driving.without))
+    without = abs(driving.without)
+    witness = computed(
+        "loss by friction", driving.least, wanted.limit, without=without, friction=without - driving.least
+    )
+    return _beside_limit(wanted, joint, driving.least, where, len(found), without, witness)
 
 
 def _beside_limit(
-    wanted: HoldRecord, joint: Joint, most: float, where: str, poses: int, without: float | None = None
-) -> Answer:
+    wanted: HoldRecord, joint: Joint, most: float, where: str, poses: int, without: float | None = None,
+    witness: Witness | None = None,
+) -> Answer:  # fmt: skip
     """The greatest effort, found in the pose `where`, beside the limit; `without`: that without friction."""
     shown = telling(lambda value, digits: effort(value, joint, digits), most, wanted.limit)
     friction = "" if without is None else f", with friction at rest ({shown(without)} without friction)"
@@ -87,7 +96,7 @@ def _beside_limit(
     if most > wanted.limit:
         return violated(
             f"{text}, required is {limit}", found=shown(most), intended=limit, place=joint.point, remedy=REMEDY,
-            margin=margin,
+            margin=margin, witness=witness,
         )  # fmt: skip
     text = f"{text}, the most of {counted(poses, 'pose')}"
     return met(text, found=shown(most), intended=limit, margin=margin)

@@ -11,7 +11,7 @@ from kinform.foundation.words import direction, number
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
 from kinform.requirements.answer import Answer
-from kinform.requirements.bounds import Compared, amount, beside_bounds, whose
+from kinform.requirements.bounds import Compared, amount, beside_bounds, proof_of_amount, whose
 from kinform.requirements.evidence import Evidence
 from kinform.requirements.kind import Kind, Record
 from kinform.requirements.quantity import DIRECTION, PLACE, POINT, Quantity
@@ -52,7 +52,9 @@ def judge(evidence: Evidence, wanted: InertiaRecord) -> Answer:
     value = whole.about(wanted.axis, wanted.point)
     through = "the centre of mass" if wanted.point is None else "the point"
     name = f"the moment of inertia of {whose(wanted.of)} about {direction(wanted.axis)} through {through}"
-    compared = Compared(name, _shown, REMEDY, "kg·m²", whole.centre)
+    line = {"axis": wanted.axis} | ({} if wanted.point is None else {"point": wanted.point})
+    proof = proof_of_amount("inertia about a line", whole, **line)
+    compared = Compared(name, _shown, REMEDY, "kg·m²", whole.centre, proof=proof)
     # Relative error of the inertia for that of the mass: at equal proportions mass grows with the third power of the
     # size and inertia with the fifth.
     return beside_bounds(compared, value, (5.0 / 3.0) * whole.bound * value, wanted.minimum, wanted.maximum)

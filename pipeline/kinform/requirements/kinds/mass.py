@@ -10,7 +10,7 @@ from kinform.form.tables import NonNegative, Reference
 from kinform.foundation import words
 from kinform.frozen import dataclass
 from kinform.requirements.answer import Answer
-from kinform.requirements.bounds import Compared, amount, beside_bounds, whose
+from kinform.requirements.bounds import Compared, amount, beside_bounds, proof_of_amount, whose
 from kinform.requirements.evidence import Evidence
 from kinform.requirements.kind import Kind, Record
 from kinform.requirements.quantity import PLACE, Quantity
@@ -43,7 +43,14 @@ def judge(evidence: Evidence, wanted: MassRecord) -> Answer:
     whole = amount(evidence, wanted.of)
     if isinstance(whole, Answer):
         return whole
-    compared = Compared(f"the mass of {whose(wanted.of)}", words.mass, REMEDY, "kg", whole.centre)
+    compared = Compared(
+        f"the mass of {whose(wanted.of)}",
+        words.mass,
+        REMEDY,
+        "kg",
+        whole.centre,
+        proof=proof_of_amount("mass of shapes", whole),
+    )
     return beside_bounds(compared, whole.mass, whole.bound * whole.mass, wanted.minimum, wanted.maximum)
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -17,6 +18,7 @@ from kinform.form.tables import NonNegative, Reference, Table, Vector
 from kinform.foundation.words import angle, counted, direction, length, place, quoted
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
+from kinform.model.findings import Witness, computed
 from kinform.requirements.answer import Answer, met, undecided, violated
 from kinform.requirements.evidence import Carrier, Chain, Coverage, Evidence
 from kinform.requirements.kind import Fault, Kind, Record, record_values
@@ -33,6 +35,8 @@ what the default of places is."""
 SAMPLED_FREEDOMS = 2
 """Freedoms of closed loops up to which sampling is dense enough for a "no": the walk through 600 configurations leaves
 a step of 24 by 24 in two freedoms, and of 8 a freedom in three."""
+ENDLESS = 1e6
+"""rad or m that stands for no bound in a witness, which holds finite numbers."""
 OTHERWISE = "Check it by other means, or require `follow` of a simulated motion."
 REMEDY = "Widen a range, lengthen a link, or move the base."
 
@@ -145,7 +149,11 @@ def judge(evidence: Evidence, wanted: ReachRecord) -> Answer:
             OTHERWISE,
         )
     if len(missed):
-        return _not_reached(evidence.units, targets, coverage, missed, near)
+        answer = _not_reached(evidence.units, targets, coverage, missed, near)
+        worst = int(missed[np.argmax(coverage.distance[missed])])
+        return replace(
+            answer, witness=_witness(carrier, carried, targets.values[worst], pointing, coverage, worst, near)
+        )
     text = f"all {counted(len(targets.values), 'place')} of the region reached{_bound(evidence.units, targets)}"
     unknown = [evidence.stated_as(name)[0] for name in chain.undetermined(carrier.body)]
     if unknown:
@@ -189,6 +197,20 @@ def _bound(units: str, targets: Targets) -> str:
         return ""
     size = angle(targets.gap) if targets.directions else length(targets.gap, units)
     return f"; between them holes of up to {size} in radius can be missed"
+
+
+def _witness(
+    carrier: Carrier, carried: Array, aim: Array, pointing: bool, coverage: Coverage, worst: int, near: float
+) -> Witness | None:
+    """The chain, and how near it comes to the target that it misses most."""
+    screws = carrier.screws()
+    if screws is None:
+        return None
+    bounds = {name: np.clip(screws[name], -ENDLESS, ENDLESS) for name in ("lower", "upper")}
+    return computed(
+        "reach of a chain", coverage.distance[worst], near, carried=carried, aim=aim, pointing=float(pointing),
+        screws=screws["screws"], **bounds,
+    )  # fmt: skip
 
 
 def _not_reached(units: str, targets: Targets, coverage: Coverage, missed: NDArray[np.intp], near: float) -> Answer:

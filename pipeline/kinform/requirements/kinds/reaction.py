@@ -11,12 +11,14 @@ from pydantic import Field
 from kinform.form.tables import Positive, Reference
 from kinform.foundation.words import number
 from kinform.frozen import dataclass
+from kinform.model.findings import Witness, computed
+from kinform.model.kinematics import Joint
 from kinform.requirements.answer import Answer, met, undecided, worst_of
 from kinform.requirements.bounds import Compared
 from kinform.requirements.evidence import Evidence
 from kinform.requirements.kind import Fault, Kind, Record
 from kinform.requirements.quantity import JOINT, Quantity
-from kinform.requirements.runs import peak_beside_limit, simulated
+from kinform.requirements.runs import PeakProof, peak_beside_limit, simulated
 from kinform.requirements.table import RequirementTable
 
 REMEDY = "Lighten or slow what moves, support it better, or take a larger bearing."
@@ -75,9 +77,23 @@ def judge(evidence: Evidence, wanted: ReactionRecord) -> Answer:
             )
         compared = Compared(f"the {key} in joint '{name}'", _shown_in(unit), REMEDY, unit, joint.point)
         sizes = np.linalg.norm(simulation.F_A[:, index, part], axis=1)
-        answers.append(peak_beside_limit(compared, simulation, sizes, limit))
+        answers.append(
+            peak_beside_limit(compared, simulation, sizes, limit, _proof(evidence, joint, limit, key, index))
+        )
     margin = answers[0].margin if len(answers) == 1 else None
     return worst_of(answers) or met("; ".join(answer.message for answer in answers), margin=margin)
+
+
+def _proof(evidence: Evidence, joint: Joint, limit: float, key: str, index: int) -> PeakProof:
+    quantity = {"force": 1.0, "torque": 2.0}[key]
+
+    def proof(k: int, value: float) -> Witness | None:
+        carried = evidence.carried(joint, k)
+        if carried is None:
+            return computed("record of a run", value, limit, output=k, column=index, quantity=quantity)
+        return computed("effort of motion", value, limit, quantity=quantity, **carried)
+
+    return proof
 
 
 def _shown_in(unit: str) -> Callable[[float, int], str]:

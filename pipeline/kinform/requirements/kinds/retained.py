@@ -25,6 +25,7 @@ from kinform.foundation.rounding import SINGLE, TINY
 from kinform.foundation.words import direction, length, quoted
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
+from kinform.model.findings import Witness, free_way
 from kinform.model.kinematics import Body, Joint, Kinematics, Separation
 from kinform.requirements.answer import Answer, met, undecided, violated
 from kinform.requirements.evidence import Evidence, WayOut
@@ -197,7 +198,32 @@ def _leaves(evidence: Evidence, name: str, group: _Group, course: _Course, aside
         f"'{name}' can {does} along {direction(course.direction)}{then}{together}; nothing stops it",
         found=direction(course.direction), intended="held, but for the listed directions",
         place=group.place, remedy=REMEDY,
+        witness=_witness(evidence, course.parts, course, aside),
     )  # fmt: skip
+
+
+def _witness(evidence: Evidence, parts: AbstractSet[str], course: _Course, aside: Array | None) -> Witness | None:
+    """The way out of the parts, as far as they are clear of all others."""
+    meshed = [part for part in evidence.assembly.parts if part.mesh is not None and len(part.mesh.faces)]
+    boxes = {str(part.name): part.mesh.placed_box(part.X_WP) for part in meshed if part.mesh is not None}
+    rest = [name for name in boxes if name not in parts]
+    moving = [name for name in boxes if name in parts]
+    if not rest or not moving:
+        return None
+    way, after = (course.direction, np.zeros(3)) if aside is None else (aside, _half_way(course))
+    low, high = (np.array([box[end] for box in map(boxes.get, rest) if box]) for end in (0, 1))
+    own_low, own_high = (np.array([box[end] for box in map(boxes.get, moving) if box]) + after for end in (0, 1))
+    clear = np.where(way > 0.0, high.max(axis=0) - own_low.min(axis=0), own_high.max(axis=0) - low.min(axis=0))
+    travel = float(np.min(np.maximum(clear, 0.0)[way != 0.0] / np.abs(way[way != 0.0])))
+    margin = 0.01 * float(np.linalg.norm(own_high.max(axis=0) - own_low.min(axis=0)))
+    return free_way(rest, moving, way, travel + margin, None if aside is None else after)
+
+
+def _half_way(course: _Course) -> Array:
+    """(3,) m: a displacement along a course, between where its parts have left what guides them and where they are
+    stopped."""
+    start = course.end.left if course.end.left < course.end.travel else 0.0
+    return np.asarray(0.5 * (start + course.end.travel) * course.direction)
 
 
 def _not_followed(name: str, course: _Course) -> Answer:
@@ -220,9 +246,7 @@ def _slides_along(group: _Group, way: Array) -> bool:
 
 def _aside(evidence: Evidence, course: _Course) -> Array | None:
     """A direction across a course in which it is free before it is stopped; None where none was found."""
-    end = course.end
-    start = end.left if end.left < end.travel else 0.0
-    after = 0.5 * (start + end.travel) * course.direction
+    after = _half_way(course)
     for way in _across(evidence, sorted(course.parts), course.direction):
         if evidence.way_out(sorted(course.parts), way, after).status == "free":
             return way

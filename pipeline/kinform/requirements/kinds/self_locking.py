@@ -9,6 +9,7 @@ from pydantic import Field
 from kinform.form.tables import Finite, Reference
 from kinform.foundation.words import counted, telling
 from kinform.frozen import dataclass
+from kinform.model.findings import computed
 from kinform.requirements.answer import Answer, met, undecided, violated
 from kinform.requirements.driving import driven_in, worst
 from kinform.requirements.evidence import Evidence
@@ -57,6 +58,10 @@ def judge(evidence: Evidence, wanted: SelfLockingRecord) -> Answer:
         f"joint '{name}' does not stay under its load at {shown}: it takes {words(driving.least)} to hold it "
         f"({words(abs(driving.without))} without friction)",
         found=words(driving.least), intended="stays without a drive", place=joint.point, remedy=REMEDY,
+        witness=computed(
+            "loss by friction", driving.least, 0.0, without=abs(driving.without),
+            friction=abs(driving.without) - driving.least,
+        ),
     )  # fmt: skip
 
 

@@ -9,13 +9,14 @@ from pydantic import Field
 
 from kinform.form.tables import Positive, Reference
 from kinform.frozen import dataclass
+from kinform.model.findings import Witness, computed
 from kinform.requirements.answer import Answer
 from kinform.requirements.bounds import Compared
 from kinform.requirements.evidence import Evidence
 from kinform.requirements.joints import shown_value, unit_of_value
 from kinform.requirements.kind import Kind, Record
 from kinform.requirements.quantity import JOINT, Quantity
-from kinform.requirements.runs import peak_beside_limit, run_of_joint
+from kinform.requirements.runs import peak_beside_limit, run_of_joint, window
 from kinform.requirements.table import RequirementTable
 
 
@@ -46,9 +47,14 @@ def judge(evidence: Evidence, wanted: SpeedRecord) -> Answer:
     def shown(value: float, digits: int) -> str:
         return f"{shown_value(value, joint, evidence.units, digits)}/s"
 
+    def proof(k: int, value: float) -> Witness | None:
+        near = window(simulation, k)
+        times, values = simulation.time[near], simulation.joint_position[near, column]
+        return computed("rate of positions", value, wanted.limit, times=times, values=values, at=simulation.time[k])
+
     unit = f"{unit_of_value(joint)}/s"
     compared = Compared(f"the speed of joint '{wanted.joint}'", shown, "Slow the drive.", unit, joint.point)
-    return peak_beside_limit(compared, simulation, np.abs(simulation.joint_velocity[:, column]), wanted.limit)
+    return peak_beside_limit(compared, simulation, np.abs(simulation.joint_velocity[:, column]), wanted.limit, proof)
 
 
 KIND = Kind("speed", 80, Speed, SpeedRecord, judge, needs={"kinematics": "Run the stages before."})

@@ -9,6 +9,7 @@ from pydantic import Field
 
 from kinform.form.tables import Positive, Reference
 from kinform.frozen import dataclass
+from kinform.model.findings import Witness, computed
 from kinform.requirements.answer import Answer, undecided
 from kinform.requirements.bounds import Compared
 from kinform.requirements.evidence import Evidence
@@ -50,8 +51,14 @@ def judge(evidence: Evidence, wanted: TorqueRecord) -> Answer:
     def shown(value: float, digits: int) -> str:
         return effort(value, joint, digits)
 
+    def proof(k: int, value: float) -> Witness | None:
+        carried = evidence.carried(joint, k)
+        if carried is None:
+            return computed("record of a run", value, wanted.limit, output=k, column=column, quantity=0.0)
+        return computed("effort of motion", value, wanted.limit, quantity=0.0, **carried)
+
     compared = Compared(f"the effort of joint '{wanted.joint}'", shown, REMEDY, unit_of_effort(joint), joint.point)
-    return peak_beside_limit(compared, simulation, np.abs(simulation.joint_effort[:, column]), wanted.limit)
+    return peak_beside_limit(compared, simulation, np.abs(simulation.joint_effort[:, column]), wanted.limit, proof)
 
 
 KIND = Kind("torque", 70, Torque, TorqueRecord, judge, needs={"kinematics": "Run the stages before."})

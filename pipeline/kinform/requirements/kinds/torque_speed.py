@@ -13,6 +13,7 @@ from kinform.form.tables import ROWS_MOST, NonNegative, Reference
 from kinform.foundation.words import number
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array
+from kinform.model.findings import computed
 from kinform.requirements.answer import Answer, undecided
 from kinform.requirements.bounds import Compared
 from kinform.requirements.evidence import Evidence
@@ -94,7 +95,9 @@ def judge(evidence: Evidence, wanted: TorqueSpeedRecord) -> Answer:
         remedy = f"There it gives {effort(abs(float(given[worst])), joint, 4)} at {fast}/s. {REMEDY}"
     name = f"what the drive of joint '{wanted.joint}' gives, beside the curve of its motor,"
     compared = Compared(name, _percent, remedy, "1", joint.point)
-    return peak_beside_limit(compared, simulation, used, 1.0)
+    return peak_beside_limit(compared, simulation, used, 1.0, lambda k, value: computed(
+        "share of a curve", value, 1.0, speeds=wanted.speeds, efforts=wanted.efforts, speed=speed[k], effort=given[k],
+    ))  # fmt: skip
 
 
 def _percent(value: float, digits: int) -> str:
