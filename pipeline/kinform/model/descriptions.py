@@ -89,6 +89,10 @@ class DescribedJoint:
     effort: Annotated[float, "N·m or N"] | None
     """As stated, also zero."""
     speed: Annotated[float, "rad/s or m/s"] | None
+    degrees: bool = False
+    """Whether the file has the limits in degrees."""
+    offset: Annotated[float, "rad or m"] = 0.0
+    """Value of the joint where the one that it mimics is at zero."""
 
     @property
     def span(self) -> JointValue:
