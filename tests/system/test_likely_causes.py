@@ -8,6 +8,8 @@ import re
 
 import numpy as np
 import pytest
+from manifold3d import Manifold
+from tests.support.solids import save
 
 from kinform import form, run
 from kinform.consistency import RULES
@@ -253,3 +255,169 @@ def test_a_door_between_two_walls_is_not_asked_about_its_axis(tmp_path):
     text = door(1, (0, 1.5)).replace("</link>", box((0.3, 0.02, 0.2), (0.2, -0.05, 0.0)) + "</link>", 1)
     (finding,) = ran(written(tmp_path, text), "KF412")
     assert "axis" not in finding.message
+
+
+# loops that a tree leaves open
+
+
+def bar(length, pins=(), holes=()):
+    """A link of 6 mm along x with pins below it and holes, at places along it."""
+    plate = Manifold.cube((length + 20.0, 16.0, 6.0)).translate((-10.0, -8.0, 0.0))
+    for x in holes:
+        plate -= Manifold.cylinder(8.0, 3.0, circular_segments=48).translate((x, 0.0, -1.0))
+    for x in pins:
+        plate += Manifold.cylinder(6.0, 3.0, circular_segments=48).translate((x, 0.0, -6.0))
+    return plate
+
+
+def parallelogram(folder, crank, base, angle, closed=True):
+    """A four-bar without its fourth joint; or an open chain, whose coupler has no bore for the rocker's pin."""
+    ground, lever = bar(base, holes=(0.0, base)), bar(crank, pins=(0.0,), holes=(crank,))
+    coupler = bar(base, pins=(0.0, base) if closed else (0.0,))
+    for name, solid in {"g": ground, "cr": lever, "ro": lever, "co": coupler}.items():
+        save(solid, folder / f"{name}.stl")
+    names = {"ground": "g", "crank": "cr", "rocker": "ro", "coupler": "co"}
+    scaled = 'scale="0.001 0.001 0.001"'
+    links = "".join(
+        f'<link name="{name}"><visual><geometry><mesh filename="{file}.stl" {scaled}/></geometry></visual></link>\n'
+        for name, file in names.items()
+    )
+
+    def turn(name, parent, child, x, z, by):
+        at = f'<origin xyz="{x / 1000.0} 0 {z / 1000.0}" rpy="0 0 {by}"/>'
+        ends = f'<parent link="{parent}"/><child link="{child}"/>'
+        return f'<joint name="{name}" type="continuous">{ends}{at}<axis xyz="0 0 1"/></joint>\n'
+
+    joints = turn("a", "ground", "crank", 0.0, 6.0, angle) + turn("b", "crank", "coupler", crank, 6.0, -angle)
+    joints += turn("d", "ground", "rocker", base, 6.0, angle)
+    return written(folder, f'<robot name="linkage">\n{links}{joints}</robot>\n')
+
+
+@pytest.mark.parametrize(("crank", "base", "angle"), [(40.0, 100.0, 1.0), (25.0, 60.0, -0.7)])
+def test_the_joint_that_closes_a_loop_is_named_with_both_counts(tmp_path, crank, base, angle):
+    (finding,) = ran(parallelogram(tmp_path, crank, base, angle), "KF419", "KF406")
+    assert (finding.code, finding.severity, set(finding.subject)) == ("KF419", "warning", {"coupler", "rocker"})
+    assert "3 freedoms" in finding.found and finding.found.split(",")[1].startswith(" 1 with the revolute")
+    at = np.array([base + crank * math.cos(angle), crank * math.sin(angle)]) / 1000.0
+    assert finding.place[:2] == pytest.approx(at, abs=1e-5)
+    local = re.search(r"at (\S+) (\S+) (\S+) m", finding.remedy)
+    assert [float(v) for v in local.groups()[:2]] == pytest.approx([crank / 1000.0, 0.0], abs=1e-5)
+
+
+def test_an_open_chain_has_no_open_loop(tmp_path):
+    assert ran(parallelogram(tmp_path, 40.0, 100.0, 1.0, closed=False), "KF419") == []
+
+
+# collision geometry at the start
+
+
+def folded(fold, tall=0.06, joint_kind="revolute"):
+    """An arm of three links whose third lies over the first, by an elbow that is turned by `fold`."""
+    seen = box((0.01, 0.01, 0.01))
+    base = seen + box((0.08, 0.08, tall), (0.0, 0.0, 0.5 * tall), "collision")
+    middle = seen + box((0.02, 0.02, 0.01), (0.05, 0.0, 0.0), "collision")
+    tip = seen + box((0.08, 0.02, 0.012), (0.05, 0.0, 0.0), "collision")
+    links = "".join(f'<link name="{n}">{b}</link>\n' for n, b in (("base", base), ("mid", middle), ("tip", tip)))
+    elbow = joint("elbow", joint_kind, "mid", "tip", (0.1, 0.0, 0.01), limits=(-1, 1))
+    elbow = elbow.replace('"/><axis', f'" rpy="0 0 {fold}"/><axis')
+    shoulder = joint("a", "revolute", "base", "mid", (0, 0, 0.04), limits=(-1, 1))
+    return f'<robot name="arm">\n{links}{shoulder}{elbow}</robot>'
+
+
+def test_collision_geometry_that_overlaps_at_the_start_is_named_with_its_depth(tmp_path):
+    (finding,) = found(written(tmp_path, folded(math.pi)), "KF133")
+    assert (finding.severity, finding.subject, finding.line) == ("warning", ("base", "tip"), 4)
+    # the forearm goes from 0.044 m up, the base to 0.06 m
+    assert finding.found.startswith("16 mm")
+
+
+@pytest.mark.parametrize(("fold", "tall", "kind"), [(0.0, 0.06, "revolute"), (math.pi, 0.04, "revolute")])
+def test_collision_geometry_that_is_apart_or_of_neighbours_gives_nothing(tmp_path, fold, tall, kind):
+    assert found(written(tmp_path, folded(fold, tall, kind)), "KF133") == []
+
+
+def test_links_that_are_one_body_or_excluded_are_left_out(tmp_path):
+    # the tip fixed to its neighbour is a neighbour of the base
+    assert found(written(tmp_path, folded(math.pi, joint_kind="fixed")), "KF133") == []
+    seen = '<geom type="sphere" size=".001" contype="0" conaffinity="0"/>'
+    bodies = (
+        f'<body name="a">{seen}<geom type="box" size=".1 .1 .1"/>'
+        f'<body name="b" pos="0 0 .3"><joint range="-60 60"/>{seen}'
+        f'<geom type="box" size=".05 .05 .05"/><body name="c" pos="0 0 -.3"><joint range="-60 60"/>{seen}'
+        '<geom type="box" size=".05 .05 .05"/></body></body></body>'
+    )
+    for more, count in (("", 1), ('<contact><exclude body2="c" body1="a"/></contact>', 0)):
+        text = f"<mujoco><worldbody>{bodies}</worldbody>{more}</mujoco>"
+        assert len(found(written(tmp_path, text, "a.xml"), "KF133")) == count
+
+
+# bores without a pin
+
+
+def knuckles(folder, radius, lengths, pose=None, pin=None, stated="", gap=0.0, name="hinge.toml"):
+    """Two leaves with knuckles along y in turn, the first and third of leaf_a, and a pin where its radius is given."""
+    leaves, start = {"leaf_a": Manifold(), "leaf_b": Manifold()}, 0.0
+    for k, long in enumerate(lengths):
+        barrel = Manifold.cylinder(long, 2.2 * radius, circular_segments=64)
+        side = 1.0 if k % 2 == 0 else -1.0
+        plate = Manifold.cube((6.0 * radius, radius, long)).translate(
+            (0.0 if side > 0.0 else -6.0 * radius, radius, 0.0)
+        )
+        bore = Manifold.cylinder(long + 2.0, radius, circular_segments=64).translate((0.0, 0.0, -1.0))
+        leaves[("leaf_a", "leaf_b")[k % 2]] += ((barrel + plate) - bore).translate((0.0, 0.0, start))
+        start += long + gap
+    parts = dict(leaves)
+    if pin is not None:
+        parts["pin"] = Manifold.cylinder(start, pin, circular_segments=64)
+    turned = np.eye(4)[:3] if pose is None else pose[:3]
+    text = 'schema = 1\n[assembly]\nname = "hinge"\nunits = "mm"\nground = "leaf_a"\n'
+    for part, solid in parts.items():
+        save(solid.transform(turned), folder / f"{part}.stl")
+        text += f'[[part]]\nname = "{part}"\nmesh = "{part}.stl"\ndensity = 1000.0\n'
+    return written(folder, text + stated, name)
+
+
+def posed(seed):
+    rng = np.random.default_rng(seed)
+    q, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    X = np.eye(4)
+    X[:3, :3] = q * np.sign(np.linalg.det(q))
+    X[:3, 3] = rng.uniform(-50.0, 50.0, 3)
+    return X
+
+
+@pytest.mark.parametrize(
+    ("seed", "radius", "lengths"), [(0, 2.5, (20, 20, 20)), (1, 4.0, (10, 30, 12)), (2, 1.0, (6,) * 5)]
+)
+def test_a_hinge_without_its_pin_lacks_it(tmp_path, seed, radius, lengths):
+    (finding,) = ran(knuckles(tmp_path, radius, lengths, posed(seed)), "KF211")
+    assert (finding.severity, finding.subject) == ("warning", ("leaf_a", "leaf_b"))
+    assert finding.found == f"{len(lengths)} aligned bores of {2 * radius:g} mm, no pin"
+
+
+@pytest.mark.parametrize("pin", [2.5, 2.2])
+def test_a_hinge_with_its_pin_lacks_none(tmp_path, pin):
+    assert ran(knuckles(tmp_path, 2.5, (20, 20, 20), posed(3), pin=pin), "KF211") == []
+
+
+@pytest.mark.parametrize(("gap", "code"), [(0.0, "KF414"), (2.0, "KF401")])
+def test_a_stated_joint_without_its_pin_names_the_bores(tmp_path, gap, code):
+    stated = (
+        '[[function.joint]]\nname = "turn"\nbetween = ["leaf_a", "leaf_b"]\ntype = "revolute"\naxis = [0, 0, 1]\n'
+        "point = [0, 0, 0]\n"
+    )
+    (finding,) = ran(knuckles(tmp_path, 2.5, (20, 20, 20), gap=gap, stated=stated), "KF211", "KF401", "KF414")
+    assert finding.code == code and "3 aligned bores of 5 mm, no pin" in finding.message
+    assert finding.remedy.startswith("Add a pin of 5 mm")
+
+
+def test_holes_of_one_body_or_of_one_part_are_left_alone(tmp_path):
+    group = '[[group]]\nname = "g"\nparts = ["leaf_a", "leaf_b"]\n'
+    assert ran(knuckles(tmp_path, 2.5, (20, 20, 20), stated=group), "KF211") == []
+    apart = knuckles(tmp_path, 2.5, (20, 20, 20), gap=40.0)
+    assert ran(apart, "KF211") == []
+
+
+def test_two_plates_with_holes_that_line_up_are_a_note(tmp_path):
+    (finding,) = ran(knuckles(tmp_path, 2.5, (6, 6)), "KF211")
+    assert finding.severity == "note" and "2 aligned bores of 5 mm" in finding.found
