@@ -203,6 +203,12 @@ def test_an_inertia_that_a_solid_cannot_have_is_named_with_its_cause_and_the_rig
     assert pasted[:3] == pytest.approx(np.diag(tensor), rel=1e-4)
 
 
+def test_an_inertia_of_zero_about_one_axis_is_named(tmp_path):
+    thin = inertial(1.0, (0, 0, 0), np.diag([0.0, 0.01, 0.01]))
+    (finding,) = found(written(tmp_path, arm(thin + box((0.1, 0.3, 0.3)))), "KF123")
+    assert finding.subject == ("middle",)
+
+
 # degrees and radians
 
 
@@ -395,7 +401,7 @@ def test_a_hinge_without_its_pin_lacks_it(tmp_path, seed, radius, lengths):
     assert finding.found == f"{len(lengths)} aligned bores of {2 * radius:g} mm, no pin"
 
 
-@pytest.mark.parametrize("pin", [2.5, 2.2])
+@pytest.mark.parametrize("pin", [2.5, 2.2, 2.7])
 def test_a_hinge_with_its_pin_lacks_none(tmp_path, pin):
     assert ran(knuckles(tmp_path, 2.5, (20, 20, 20), posed(3), pin=pin), "KF211") == []
 
@@ -408,7 +414,7 @@ def test_a_stated_joint_without_its_pin_names_the_bores(tmp_path, gap, code):
     )
     (finding,) = ran(knuckles(tmp_path, 2.5, (20, 20, 20), gap=gap, stated=stated), "KF211", "KF401", "KF414")
     assert finding.code == code and "3 aligned bores of 5 mm, no pin" in finding.message
-    assert finding.remedy.startswith("Add a pin of 5 mm")
+    assert finding.remedy.startswith("Add a pin: 5 mm")
 
 
 def test_holes_of_one_body_or_of_one_part_are_left_alone(tmp_path):
@@ -416,6 +422,18 @@ def test_holes_of_one_body_or_of_one_part_are_left_alone(tmp_path):
     assert ran(knuckles(tmp_path, 2.5, (20, 20, 20), stated=group), "KF211") == []
     apart = knuckles(tmp_path, 2.5, (20, 20, 20), gap=40.0)
     assert ran(apart, "KF211") == []
+
+
+def test_a_stack_of_plates_with_holes_on_several_lines_is_a_note(tmp_path):
+    plate = Manifold.cube((60.0, 40.0, 5.0))
+    for x, y in ((10.0, 10.0), (50.0, 30.0)):
+        plate -= Manifold.cylinder(9.0, 2.0, circular_segments=48).translate((x, y, -1.0))
+    text = 'schema = 1\n[assembly]\nname = "stack"\nunits = "mm"\n'
+    for k in range(3):
+        save(plate.translate((0.0, 0.0, 5.0 * k)), tmp_path / f"p{k}.stl")
+        text += f'[[part]]\nname = "p{k}"\nmesh = "p{k}.stl"\ndensity = 1000.0\n'
+    (finding,) = ran(written(tmp_path, text, "stack.toml"), "KF211")
+    assert finding.severity == "note" and finding.found == "2 times 3 aligned bores of 4 mm, nothing in them"
 
 
 def test_two_plates_with_holes_that_line_up_are_a_note(tmp_path):

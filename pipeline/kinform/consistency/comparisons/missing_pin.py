@@ -14,10 +14,16 @@ def bores_in_words(row: Row, units: str, times: int = 1) -> str:
     return bores if times == 1 else f"{times} times {bores}"
 
 
+def lack(row: Row) -> str:
+    """What it lacks: a pin where bodies take turns along it, else a pin, a bearing or a screw."""
+    return "no pin" if row.alternates else "nothing in them"
+
+
 def pin_in_words(row: Row, units: str) -> str:
-    """The pin to add, as an instruction."""
+    """What to add, as an instruction."""
     size, long = (length(value, units) for value in (2.0 * row.radius, row.length))
-    return f"Add a pin of {size} and {long} from {place(row.start, units)} along {axis(row.axis)}."
+    what = "a pin" if row.alternates else "what goes through the bores"
+    return f"Add {what}: {size} in diameter, {long} long, from {place(row.start, units)} along {axis(row.axis)}."
 
 
 def missing_pin(context: Context, comparison: Comparison) -> tuple[str, str] | None:
@@ -29,4 +35,4 @@ def missing_pin(context: Context, comparison: Comparison) -> tuple[str, str] | N
     if not rows:
         return None
     row = max(rows, key=lambda row: (len(row.parts), row.length))
-    return f"likely cause: {bores_in_words(row, context.units)}, no pin", pin_in_words(row, context.units)
+    return f"likely cause: {bores_in_words(row, context.units)}, {lack(row)}", pin_in_words(row, context.units)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 
 import numpy as np
 from scipy.spatial import KDTree
@@ -45,14 +46,24 @@ class Row:
 
     parts: tuple[str, ...]
     """Of each bore, from the first to the last along the axis."""
-    bodies: tuple[str, ...]
-    """Distinct, sorted."""
+    owners: tuple[str, ...]
+    """The bodies of these parts."""
     axis: Array
     start: Array
     """(3,) m: where the first bore begins, on the axis."""
     length: float
     radius: float
     """m, of the narrowest bore."""
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """Distinct, sorted."""
+        return tuple(sorted(set(self.owners)))
+
+    @property
+    def alternates(self) -> bool:
+        """Whether it goes from body to body and on or back, as knuckles of a hinge do, or a fork and its tongue."""
+        return sum(one != other for one, other in pairwise(self.owners)) > 1
 
     def on(self, axis: Array | None, point: Array | None) -> bool:
         """Whether it lies on this line, as far as that is stated."""
@@ -73,8 +84,8 @@ def empty_rows(design: Design) -> tuple[Row, ...]:
     found = []
     for row in _rows(bores):
         for some in _near(bores, row):
-            bodies = sorted({body[parts[k].name] for k in owner[some]})
-            if len(bodies) < 2:
+            owners = tuple(body[parts[k].name] for k in owner[some])
+            if len(set(owners)) < 2:
                 continue
             axis = bores.axes[some[0]]
             ends = (bores.points[some] - bores.points[some[0]]) @ axis
@@ -82,7 +93,7 @@ def empty_rows(design: Design) -> tuple[Row, ...]:
             radius, start = float(bores.radii[some].min()), bores.points[some[0]] + low * axis
             if not any(_meets(part, axis, start, high - low, PIN * radius) for part in parts):
                 names = tuple(str(parts[k].name) for k in owner[some])
-                found.append(Row(names, tuple(bodies), axis, start, high - low, radius))
+                found.append(Row(names, owners, axis, start, high - low, radius))
     return tuple(sorted(found, key=lambda row: (row.bodies, row.parts, tuple(np.round(row.start, 9)))))
 
 
@@ -145,8 +156,8 @@ def _near(bores: Cylinders, row: Ints) -> Iterator[Ints]:
 
 
 def _meets(part: Part, axis: Array, start: Array, length: float, radius: float) -> bool:
-    """Whether a part comes into a round of this radius along the axis: by a vertex, or a facet that some line of it
-    passes through."""
+    """Whether a part comes into a round of this radius along the axis: by an edge, by a facet that a line of the round
+    passes through, or as it fills all of it."""
     assert part.mesh is not None
     low, high = part.mesh.placed_box(part.X_WP)
     ends = np.array([start, start + length * axis])
@@ -154,28 +165,52 @@ def _meets(part: Part, axis: Array, start: Array, length: float, radius: float) 
         return False
     frame = np.stack([*perpendicular(axis), axis])
     points = (part.mesh.vertices @ part.X_WP[:3, :3].T + part.X_WP[:3, 3] - start) @ frame.T
-    inside = (points[:, 2] > SINGLE * length) & (points[:, 2] < (1.0 - SINGLE) * length)
-    if (inside & (np.hypot(points[:, 0], points[:, 1]) < radius)).any():
-        return True
     corners = points[part.mesh.faces]
     flat = corners[..., :2]
-    beside = (flat.min(axis=1) < radius).all(axis=1) & (flat.max(axis=1) > -radius).all(axis=1)
-    between = (corners[..., 2].min(axis=1) < length) & (corners[..., 2].max(axis=1) > 0.0)
-    corners = corners[beside & between]
-    angles = 0.25 * math.pi * np.arange(8)
+    corners = corners[(flat.min(axis=1) < radius).all(axis=1) & (flat.max(axis=1) > -radius).all(axis=1)]
+    if _edges_meet(corners, length, radius):
+        return True
+    angles = 0.25 * math.pi * np.arange(8) + 0.3
     lines = np.concatenate([np.zeros((1, 2)), 0.9 * radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)])
-    return any(_passes(corners, line, length) for line in lines)
+    return any(_passes(corners, line, length) for line in lines) or _within(corners, lines[1], length)
 
 
-def _passes(corners: Array, line: Array, length: float) -> bool:
-    """Whether a line along z at this place (2,) passes through one of the facets (n, 3, 3) between 0 and the length."""
+def _edges_meet(corners: Array, length: float, radius: float) -> bool:
+    """Whether an edge of facets (m, 3, 3) comes into the round of this radius about z, from 0 to the length."""
+    start, step = corners.reshape(-1, 3), (np.roll(corners, -1, axis=1) - corners).reshape(-1, 3)
+    low, high = SINGLE * length, (1.0 - SINGLE) * length
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ends = np.sort((np.array([[low], [high]]) - start[:, 2]) / step[:, 2], axis=0)
+        nearest = -(start[:, :2] * step[:, :2]).sum(axis=1) / (step[:, :2] ** 2).sum(axis=1)
+    level = step[:, 2] == 0.0
+    within = (start[:, 2] > low) & (start[:, 2] < high)
+    first = np.where(level, np.where(within, 0.0, 2.0), np.maximum(ends[0], 0.0))
+    last = np.where(level, np.where(within, 1.0, -1.0), np.minimum(ends[1], 1.0))
+    at = np.clip(np.nan_to_num(nearest), first, np.maximum(first, last))
+    away = np.linalg.norm(start[:, :2] + at[:, None] * step[:, :2], axis=1)
+    return bool(((first <= last) & (away < radius)).any())
+
+
+def _hits(corners: Array, line: Array) -> tuple[Array, Array]:
+    """Heights (n,) at which a line along z at this place (2,) passes through facets (m, 3, 3), and their senses."""
     a, b, c = (corners[:, k, :2] - line for k in range(3))
     # barycentric weights of the place, times twice the facet's area seen along z
     weights = np.stack([_area(b, c), _area(c, a), _area(a, b)], axis=1)
     total = weights.sum(axis=1)
     hit = (np.abs(total) > 0.0) & ((weights >= 0.0).all(axis=1) | (weights <= 0.0).all(axis=1))
-    heights = (weights[hit] * corners[hit][..., 2]).sum(axis=1) / total[hit]
+    return (weights[hit] * corners[hit][..., 2]).sum(axis=1) / total[hit], np.sign(total[hit])
+
+
+def _passes(corners: Array, line: Array, length: float) -> bool:
+    """Whether the line meets a facet between 0 and the length."""
+    heights, _ = _hits(corners, line)
     return bool(((heights > SINGLE * length) & (heights < (1.0 - SINGLE) * length)).any())
+
+
+def _within(corners: Array, line: Array, length: float) -> bool:
+    """Whether the middle of the line is inside: a pin that fills all of the row, and is wider, passes its rim."""
+    heights, senses = _hits(corners, line)
+    return bool(abs(float(senses[heights < 0.5 * length].sum())) > 0.5)
 
 
 def _area(one: Array, other: Array) -> Array:

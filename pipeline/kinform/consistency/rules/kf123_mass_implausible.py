@@ -167,9 +167,9 @@ def _of_solid(context: Context, body: Weighed) -> Ranked | None:
         return None
     ratio = float(ratios[worst])
     stated, usual = number(float(ratio * moments[worst]), 3), number(float(moments[worst]), 3)
-    off = f"{number(1.0 / ratio, 2)} times too small" if ratio < 1.0 else f"{number(ratio, 2)} times too large"
+    off = f", {number(max(ratio, 1.0 / ratio), 2)} times too {'small' if ratio < 1.0 else 'large'}" if ratio else ""
     text = (
-        f"{body.what} of {mass(body.mass)} states a principal moment of inertia of {stated} kg·m², {off}: its closed "
+        f"{body.what} of {mass(body.mass)} states a principal moment of inertia of {stated} kg·m²{off}: its closed "
         f"geometry with the same centre of mass has {usual} kg·m² at that mass"
     )
     cause = of_frame or _summed(body, density, ratios)
@@ -209,7 +209,7 @@ def _summed(body: Weighed, density: float, ratios: Array) -> str:
     missing = 0.5 * float(np.trace(whole - body.inertia)) * np.eye(3) - (whole - body.inertia)
     (least, middle, most), lines = np.linalg.eigh(missing)
     about = (float(lines[:, 2] @ tensor @ lines[:, 2]) for tensor in (body.inertia, whole))
-    kept = abs(1.0 - next(about) / next(about)) <= EXPLAINED
+    kept = abs(next(about) / next(about) - 1.0) <= EXPLAINED
     along_one = kept and most > 0.0 and max(abs(least), abs(middle)) <= EXPLAINED * most
     if not (of_parts or along_one):
         return ""

@@ -2,8 +2,8 @@
 
 Looked for where the visual geometry is judged; with `--geometry collision` it is KF201. Links that fixed joints join
 are one body; bodies that one joint joins are left out, as simulators do, and pairs that `<exclude>` of MJCF names.
-Primitives and closed meshes are cut as they are, others as their convex hulls. Overlaps of less than 2 % of the smaller
-piece are not counted.
+Primitives and closed meshes are cut as they are; others as their convex hulls, which is a note. Overlaps of less than
+2 % of the smaller piece are not counted.
 
 Why it matters: with self-collision on, a simulator pushes the links apart at the first step, and a planner finds no
 way that starts there.
@@ -35,7 +35,7 @@ def _ranked(context: Context, description: Description, overlap: StartOverlap) -
     first, second = overlap.links
     deep = f"{length(overlap.depth, context.units)} deep"
     file = next((link.file for link in description.links if link.name == second), description.file)
-    finding = RULE.finding(
+    finding = RULE.at("note" if overlap.hulls else "warning").finding(
         overlap.links,
         f"the collision geometry of '{first}' (line {overlap.lines[0]}) and '{second}' overlaps at the start: {deep}, "
         f"{volume(overlap.volume, context.units)}{', as convex hulls' if overlap.hulls else ''}",

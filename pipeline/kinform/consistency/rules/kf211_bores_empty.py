@@ -3,9 +3,9 @@
 Bores in a row that a pin could go through, of about one size and near each other, which no part comes into. They count
 where the bodies may move relative to each other otherwise than a pin there would let them: so screw holes of a hinge
 that has its pin, hollow shafts, and holes of parts that are one body are not reported. A warning of three bores and
-more that change from body to body and back, as the knuckles of a hinge or a fork and its tongue do; else a note: holes
-may be for screws that are in no mesh, or for nothing. Where a stated joint hangs on them KF401 or KF414 names them, and
-where the function states all joints nothing else does.
+more on one line that change from body to body and back, as the knuckles of a hinge or a fork and its tongue do; else a
+note: holes may be for screws that are in no mesh, or for nothing. Where a stated joint hangs on them KF401 or KF414
+names them, and where the function states all joints nothing else does.
 
 Why it matters: without the pin or the screws the parts fall apart, and joints and mobility are those of loose parts.
 
@@ -19,15 +19,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from kinform.consistency.comparisons.gathering import Ranked, gathered
-from kinform.consistency.comparisons.missing_pin import bores_in_words, pin_in_words
+from kinform.consistency.comparisons.missing_pin import bores_in_words, lack, pin_in_words
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, skipped
 from kinform.consistency.questions.empty_bores import Row, holds_something
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import quoted
-
-ALTERNATING = 3
-"""Bores of a row from which on a pin is missing: with two, screws or nothing are as likely."""
 
 _CONTACT = {"planar": "contact of flat faces"}
 
@@ -38,25 +35,21 @@ def check(context: Context) -> Outcome:
         return skipped("the function states all joints: it decides what holds")
     compared = () if context.lacks("comparisons") else context.comparisons
     stated = [{body.name for body in comparison.bodies} for comparison in compared]
-    of_bodies: dict[tuple[bool, tuple[str, ...]], list[Row]] = {}
+    of_bodies: dict[tuple[str, ...], list[Row]] = {}
     for row in context.empty_rows:
         names = {str(name) for name in row.bodies}
-        if not any(pair <= names for pair in stated) and holds_something(row, context.kinematics):
-            of_bodies.setdefault((_alternates(context, row), row.bodies), []).append(row)
-    ranked = (_ranked(context, rows, missing=missing) for (missing, _), rows in of_bodies.items())
+        if not any(len(pair) == 2 and pair <= names for pair in stated) and holds_something(row, context.kinematics):
+            of_bodies.setdefault(row.bodies, []).append(row)
+    ranked = (_ranked(context, rows) for rows in of_bodies.values())
     return decided(gathered(ranked, "row"))
 
 
-def _alternates(context: Context, row: Row) -> bool:
-    bodies = [context.kinematics.body_of(part).name for part in row.parts]
-    runs = [name for k, name in enumerate(bodies) if k == 0 or name != bodies[k - 1]]
-    return len(runs) >= ALTERNATING
-
-
-def _ranked(context: Context, rows: Sequence[Row], *, missing: bool) -> Ranked:
-    first = rows[0]
+def _ranked(context: Context, rows: Sequence[Row]) -> Ranked:
+    first = max(rows, key=lambda row: len(row.parts))
+    # on two lines they are for screws or dowels
+    missing = first.alternates and all(row.on(first.axis, first.start) for row in rows)
+    lacks = lack(first) if missing else "nothing in them"
     what = bores_in_words(first, context.units, len(rows))
-    lacks = "no pin" if missing else "no pin or screw"
     joint = next((j for j in context.kinematics.joints if set(j.bodies) <= set(first.bodies)), None)
     holds = "nothing holds" if joint is None else f"only {_CONTACT.get(joint.type, 'contact')} holds"
     parts = sorted(set(first.parts))
