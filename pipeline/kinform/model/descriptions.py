@@ -122,7 +122,8 @@ class StartOverlap:
     links: Annotated[tuple[str, str], columns("link_a", "link_b")]
     """Sorted."""
     depth: Metres
-    """Of their pieces that are deepest in each other, as convex hulls."""
+    """Of their pieces that are deepest in each other: of convex ones how far they must move to part, of others no more
+    than the overlap is thick."""
     volume: Annotated[float, "m³"]
     place: Place
     """(3,) m: in the overlap."""

@@ -17,6 +17,7 @@ from manifold3d import Error, Manifold, Mesh64
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.meshes.hulls import Hull, hull_of
 from kinform.foundation.processes import threads_ran
+from kinform.foundation.rounding import SINGLE
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
 from kinform.model.descriptions import DescribedJoint, StartOverlap
@@ -79,11 +80,14 @@ def start_overlaps(
             continue
         common = one[0] ^ other[0]
         volume = float(common.volume())
-        # as thick as DEEP over an area of that size
-        if volume <= (DEEP * size) ** 3:
+        if volume <= 0.0:
             continue
-        mesh = common.to_mesh64()
-        place = np.asarray(mesh.vert_properties)[:, :3].mean(axis=0)
+        if not (_convex(*one[:2]) and _convex(*other[:2])):
+            depth = min(depth, _thickness(common))
+        # as thick as DEEP over an area of that size
+        if depth <= DEEP * size or volume <= (DEEP * size) ** 3:
+            continue
+        place = np.asarray(common.to_mesh64().vert_properties)[:, :3].mean(axis=0)
         lines = (every[i][1].line, every[j][1].line)
         found[first, second] = StartOverlap((first, second), depth, volume, place, lines, not (one[2] and other[2]))
     yield from (found[pair] for pair in sorted(found))
@@ -138,6 +142,18 @@ def _solid(piece: CollisionPiece) -> tuple[Manifold, Hull, bool] | None:
         if exact.status() == Error.NoError and exact.volume() > 0.0:
             return exact, hull, True
     return Manifold.hull_points(np.ascontiguousarray(hull.corners)), hull, False
+
+
+def _convex(solid: Manifold, hull: Hull) -> bool:
+    # facets of coordinates in single precision miss a plane by so much
+    return bool(solid.volume() >= (1.0 - SINGLE) * hull.volume)
+
+
+def _thickness(common: Manifold) -> float:
+    """m: least width of the largest piece of an overlap, as its hull: teeth in mesh overlap widely, and by nothing."""
+    largest = max(common.decompose(), key=lambda piece: float(piece.volume()))
+    hull = hull_of(np.asarray(largest.to_mesh64().vert_properties)[:, :3])
+    return 0.0 if hull is None else float(np.ptp(hull.corners @ hull.planes[:, :3].T, axis=0).min())
 
 
 def _depth(one: Hull, other: Hull) -> float:
