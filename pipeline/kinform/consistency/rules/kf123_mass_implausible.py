@@ -175,7 +175,7 @@ def _of_solid(context: Context, body: Weighed) -> Ranked | None:
     cause = of_frame or _summed(body, density, ratios)
     finding = RULE.finding(
         [body.name], text + (f"; likely cause: {cause}" if cause else ""),
-        found=f"{stated} kg·m²",
+        found=f"{stated} kg·m²{off}",
         intended=f"about {usual} kg·m²",
         place=body.centre,
         declared=body.source,
