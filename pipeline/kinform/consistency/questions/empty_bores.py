@@ -133,13 +133,15 @@ def _rows(bores: Cylinders) -> Iterator[Ints]:
     arms = bores.points - middle
     feet = arms - np.einsum("ij,ij->i", arms, bores.axes)[:, None] * bores.axes
     sets = UnionFind(len(bores.radii))
-    for i, j in KDTree(feet).query_pairs(ONE_LINE * float(bores.radii.max()), output_type="ndarray"):
-        small, large = sorted((float(bores.radii[i]), float(bores.radii[j])))
-        gap = bores.points[j] - bores.points[i]
-        aside = float(np.linalg.norm(gap - float(gap @ bores.axes[i]) * bores.axes[i]))
-        parallel = abs(float(bores.axes[i] @ bores.axes[j])) >= PARALLEL
-        if parallel and aside <= ONE_LINE * small and large <= ONE_SIZE * small:
-            sets.union(int(i), int(j))
+    near = KDTree(feet).query_ball_point(feet, ONE_LINE * bores.radii)
+    one, other = np.repeat(np.arange(len(near)), [len(some) for some in near]), np.concatenate(near).astype(np.int64)
+    gap, axes = bores.points[other] - bores.points[one], bores.axes[one]
+    aside = np.linalg.norm(gap - np.einsum("ij,ij->i", gap, axes)[:, None] * axes, axis=1)
+    small, large = np.sort([bores.radii[one], bores.radii[other]], axis=0)
+    alike = (aside <= ONE_LINE * small) & (large <= ONE_SIZE * small)
+    alike &= np.abs(np.einsum("ij,ij->i", axes, bores.axes[other])) >= PARALLEL
+    for i, j in zip(one[alike].tolist(), other[alike].tolist(), strict=True):
+        sets.union(i, j)
     members: dict[int, list[int]] = {}
     for k in range(len(bores.radii)):
         members.setdefault(sets.find(k), []).append(k)
