@@ -48,9 +48,7 @@ GRID: dict[str, tuple[float, ...]] = {
     "SLIDES_FROM": (0.0, 0.25, 0.5, 0.8, 3.0),
     "INSIDE_GUIDE": (0.9, 1.0, 1.05, 1.2, 1.5),
     "BESIDE_AXIS": tuple(math.radians(v) for v in (90.0, 150.0, 200.0, 270.0, 360.0)),
-    "SHORT_FLANK": (0.0, 0.25, 0.5, 0.75, 1.0),
     "MOST_LEFT_OUT": (0.1, 0.18, 0.25, 0.35, 0.5),
-    "MOST_STOPPED": (0.25, 0.45, 0.6, 0.75, 0.9),
     "STRAY_AREA": (0.0, 2e-4, 5e-4, 1e-3, 3e-3),
     "STRAY_AREA_APART": (0.0, 1e-2, 2e-2, 4e-2, 1e-1),
 }

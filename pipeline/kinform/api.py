@@ -198,6 +198,16 @@ class Results:
         """Trajectories, joint values and efforts, energy over time."""
         return _computed(self.design.simulation, "simulation", "simulate")
 
+    @property
+    def motion(self) -> Simulation:
+        """The simulation with the names that the function gives to joints, values and ranges in the designer's order
+        and sense; joints without such a name are as in `simulation`."""
+        from kinform.function import as_intended, designers_joints
+
+        run = self.simulation
+        kinematics = _computed(self.design.kinematics, "joints", "joints")
+        return as_intended(run, designers_joints(self.design.assembly, kinematics))
+
     def plots(self) -> Plots:
         """Joint values with their limits, efforts, reactions and energy over the simulated time, to be shown in the
         cell of a notebook; they need no other package."""

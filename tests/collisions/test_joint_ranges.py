@@ -359,3 +359,19 @@ def test_what_spins_between_parts_that_do_not_move_spins_freely(derive_design):
     found = {item.joint: item for item in design.simulation.ranges}
     spinning = [f"base~dowel_{k}" for k in (1, 2)] + [f"bolt_{k}~flange" for k in (1, 2, 3, 4)]
     assert [found[name].status for name in spinning] == ["unbounded"] * 6
+
+
+@diagonal(overlap=[0.0, 0.05], backwards=[False, True])
+def test_the_range_of_a_door_that_is_drawn_shut_begins_there(overlap, backwards):
+    """Also where the leaf is drawn a little into its jamb: the end, and `at_stop`, are to the same side."""
+    lugs = box(-8, 8, -8, 8, -16, -6) + box(-8, 8, -8, 8, 6, 16) + box(-8, 8, 8, 14, -16, 16)
+    frame = lugs + box(-2, 4, -40, -8, 6, 16) - rod(4.05, -17, 17, 48) + box(-2 - overlap, 4, -40, -30, -8, 16)
+    leaf = rod(7, -5.95, 5.95, 48) + rod(4, -15, 15, 48) + box(-6, -2, -60, -5, -4, 4)
+    names = ("z", "leaf") if backwards else ("frame", "leaf")
+    (item,), derived = found(random_pose(np.random.default_rng(2), 0.1), **dict(zip(names, (frame, leaf), strict=True)))
+    (joint,) = derived.joints
+    (sense,) = {stop.sense for stop in joint.at_stop}
+    here, away = (item.upper, item.lower) if sense > 0 else (item.lower, item.upper)
+    assert (here.status, away.status) == ("found", "found")
+    assert abs(here.value) < radians(0.02)
+    assert -sense * away.value > radians(90)

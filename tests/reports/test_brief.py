@@ -14,7 +14,7 @@ from support.places import FIXTURES
 from kinform.foundation.words import shortened
 from kinform.model.findings import CheckReport, Finding, RuleOutcome
 from kinform.model.function import IntendedJoint
-from kinform.reports import render
+from kinform.reports import as_json, concise, full, github, render
 
 LONG = "waveshare_mounting_plate_of_the_second_arm_v2"
 
@@ -55,13 +55,22 @@ def heads(lines):
 
 def test_the_verdict_comes_first_and_the_worst_last():
     told = report(
-        finding("KF201", "error"), finding("KF202", "warning"), finding("KF303", "note"), undecided=1, skipped=3
+        finding("KF201", "error"), finding("KF202", "warning"), finding("KF304", "note"), undecided=1, skipped=3
     )
     lines = brief(told)
     assert lines[0].startswith(f"{DESIGN.assembly.name}: ")
     assert numbers(lines[1])[:3] == [1, 1, 1]  # errors, warnings, notes
     assert heads(lines) == ["note", "warning", "not decided", "error"]
     assert [numbers(line) for line in lines if line.startswith("skipped:")] == [[3]]
+
+
+@pytest.mark.parametrize(("severity", "told"), [("note", False), ("warning", True)])
+def test_redundancy_that_every_planar_loop_has_is_said_by_verbose_and_json_alone(severity, told):
+    made = report(finding("KF303", severity, "loop"))
+    for short in (brief(made), concise.render(made, DESIGN).splitlines(), github.render(made, DESIGN).splitlines()):
+        assert any("KF303" in line for line in short) == told
+    assert "KF303" in full.render(made, DESIGN)
+    assert "KF303" in as_json.render(made, DESIGN)
 
 
 def test_many_findings_of_one_rule_do_not_hide_another_and_the_rest_is_counted():

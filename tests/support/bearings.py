@@ -18,6 +18,8 @@ from kinform import contacts, kinematics, surfaces
 from kinform.consistency.comparisons.answers import Answer, answer_of
 from kinform.consistency.comparisons.comparison import FROM_GEOMETRY
 from kinform.consistency.comparisons.intended_joints import compare_joints
+from kinform.consistency.context import Context
+from kinform.design import Design
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Kinematics
 from support.assemblies import assembly, intended
@@ -285,4 +287,5 @@ def answers_of(bearing: Bearing, rng: np.random.Generator, scale: float = 1e-3, 
     derived = kinematics.derive(made, found, touching)
     kinds = [kind for kind in FROM_GEOMETRY if kind != bearing.truth]
     right, *others = compare_joints(made, touching, derived, [stated(kind) for kind in (bearing.truth, *kinds)])
-    return Answers(answer_of(made, right), tuple(answer_of(made, one) for one in others), derived, right.reason)
+    context = Context(Design(made, found, touching, derived))
+    return Answers(answer_of(context, right), tuple(answer_of(context, one) for one in others), derived, right.reason)

@@ -21,6 +21,7 @@ from kinform import form, stages
 from kinform.design import Design
 from kinform.foundation.units import metres_per
 from kinform.model.assembly import Part
+from kinform.model.findings import CheckReport
 from kinform.model.kinematics import Joint
 from support.toml_text import toml
 
@@ -144,7 +145,7 @@ def joints_of(design: Design, originals: Mapping[str, str]) -> dict[frozenset[fr
 
 
 def answers(design: Design, originals: Mapping[str, str]) -> Table:
-    """What copies have in common: bodies, joints with type and status, kinds of patches, codes of findings."""
+    """What copies have in common: bodies, joints with type and status, patches, severities of findings."""
     assert design.contacts is not None
     joints = joints_of(design, originals)
     patches = Counter((tuple(sorted(originals[part] for part in p.parts)), p.kind) for p in design.contacts.patches)
@@ -153,8 +154,16 @@ def answers(design: Design, originals: Mapping[str, str]) -> Table:
         "bodies": frozenset(bodies_of(design, originals).values()),
         "joints": {between: (joint.type, joint.status) for between, joint in joints.items()},
         "patches": dict(patches),
-        "findings": None if report is None else Counter(finding.code for finding in report.findings),
+        "findings": None if report is None else severities_of(report),
     }
+
+
+def severities_of(report: CheckReport) -> dict[str, list[str]]:
+    """By code, the severities of its findings, sorted."""
+    found: dict[str, list[str]] = {}
+    for finding in report.findings:
+        found.setdefault(finding.code, []).append(finding.severity)
+    return {code: sorted(severities) for code, severities in found.items()}
 
 
 def axis_errors(original: Design, copy: Design, copied: Copy, change: Change) -> dict[str, tuple[float, float]]:

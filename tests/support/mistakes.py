@@ -53,7 +53,7 @@ def perhaps_overlapping(design):
 
 
 def _overlap(mated):
-    return Interference(("block", "shaft"), 1e-9, 1e-4, np.zeros(3), mated, "manifold")
+    return Interference(("block", "shaft"), 1e-9, 5e-3, np.zeros(3), mated, "manifold")
 
 
 def tilted(axis, degrees):

@@ -18,8 +18,8 @@ from support.solids import assembly, derived, part, random_pose
 from support.touching import touching as touching_of
 
 from kinform import kinematics
-from kinform.consistency.comparisons.answers import answer_of
-from kinform.consistency.comparisons.intended_joints import compare_joints
+from kinform.consistency.comparisons.answers import answers
+from kinform.design import Design
 from kinform.model.function import IntendedJoint
 
 SIZE = 20.0
@@ -139,9 +139,8 @@ def answer_to(made: Grooved, stated: str, pitch=None):
     wanted = IntendedJoint("j", ("a", "b"), stated, axis, None, place, pitch, None, HERE.file, None)
     whole = assembly(part("a", made.first, X), part("b", made.second, X), joints=[wanted])
     known, touching = touching_of(whole)
-    return answer_of(
-        whole, *compare_joints(whole, touching, kinematics.derive(whole, known, touching), [wanted])
-    ).answer
+    (answer,) = answers(Design(whole, known, touching, kinematics.derive(whole, known, touching)))
+    return answer.answer
 
 
 @pytest.mark.parametrize("stated", first_of(2, ["screw", "cylindrical", "revolute", "prismatic", "fixed"]))

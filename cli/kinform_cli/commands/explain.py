@@ -39,7 +39,7 @@ def explain(
 
     rows = Rows("code", "rule", "severity")
     for rule in consistency.RULES:
-        rows.add(rule.code, rule.name, rule.severity)
+        rows.add(rule.code, rule.name, rule.severities)
     words: dict[str, list[str]] = {}
     for word, (about, _) in GLOSSARY.items():
         words.setdefault(about, []).append(word)

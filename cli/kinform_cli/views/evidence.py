@@ -13,7 +13,7 @@ from kinform.kinematics import Insight, insight
 from kinform.model.kinematics import Joint, Release
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths, singular, vector
-from kinform_cli.views.joints import blockers, sentence
+from kinform_cli.views.joints import blockers, named, sentence
 
 
 def render(design: Design, name: str) -> RenderableType:
@@ -25,6 +25,7 @@ def render(design: Design, name: str) -> RenderableType:
         f"{joint.status}: {joint.reason}",
         f"values and motions are those of {joint.bodies[1]} relative to {joint.bodies[0]}",
     ]
+    items += _as_stated(design, joint, lengths)
     if joint.point is not None:
         items.append(f"through ({lengths.point(joint.point)}) {lengths.unit}")
     items += [*_uncertainty(joint, lengths), *(f"may be read as {reading.words}" for reading in joint.readings)]
@@ -37,6 +38,12 @@ def render(design: Design, name: str) -> RenderableType:
         items += [f"  {_way(release, lengths)}" for release in joint.releases]
     items += _alternatives(evidence)
     return stacked(*items)
+
+
+def _as_stated(design: Design, joint: Joint, lengths: Lengths) -> list[str]:
+    """What each intended joint that it stands for is called, of which bodies and about which axis its values are."""
+    names = [intended.name for intended in design.assembly.function.joints]
+    return [f"{one.name} in the function: {one.words}" for one in named(design, joint, names, lengths)]
 
 
 def _uncertainty(joint: Joint, lengths: Lengths) -> list[str]:

@@ -10,6 +10,8 @@ from rich.text import Text
 
 from kinform.design import Design
 from kinform.foundation.words import counted
+from kinform.frozen import dataclass
+from kinform.function import Resolution, joint_as_stated, range_as_stated, resolve_joint
 from kinform.function.body_titles import body_titles
 from kinform.model.collisions import JointRange
 from kinform.model.kinematics import Joint, Kinematics, Release
@@ -28,11 +30,10 @@ def render(design: Design, *, short: bool = False) -> RenderableType:
     kinematics, lengths = design.kinematics, Lengths.of(design.assembly)
     assert kinematics is not None
     title = f"{counted(len(kinematics.joints), 'joint')} between {counted(len(kinematics.bodies), 'body', 'bodies')}"
-    run = design.simulation
-    ranges = {item.joint: item for item in (run.ranges if run is not None else None) or ()}
+    ranged = design.simulation is not None and bool(design.simulation.ranges)
     given = _answers(design) if design.assembly.function.joints else ()
     meant: dict[str, list[str]] = {}
-    for one in given:
+    for one in sorted(given, key=lambda one: one.name.count("/")):
         if one.joint is not None:
             meant.setdefault(one.joint, []).append(one.name)
     headings = ("type", "axis", f"point {lengths.unit}", "free", "status")
@@ -40,26 +41,32 @@ def render(design: Design, *, short: bool = False) -> RenderableType:
         "name",
         *(["intended"] if meant else []),
         *headings,
-        *(["range"] if ranges else []),
+        *(["range"] if ranged else []),
         "evidence",
         title=title,
         right=["free"],
         names=["name"],
         texts=["evidence"],
     )
+    others: list[str] = []
     for joint in beginning(kinematics.joints, short):
+        names = meant.get(joint.name, [])
+        seen = [*named(design, joint, names, lengths), Seen.of(design, Resolution.own(joint), lengths)]
+        shown = seen[0]
         rows.add(
             joint.name,
-            *([", ".join(meant.get(joint.name, [])) or NONE] if meant else []),
+            *([", ".join(names) or NONE] if meant else []),
             joint.type if joint.pitch is None else f"{joint.type} ({lengths.length(joint.pitch)} {lengths.small}/turn)",
-            vector(joint.axis) if joint.axis2 is None else f"{vector(joint.axis)}; {vector(joint.axis2)}",
+            shown.axis,
             lengths.point(joint.point),
             str(joint.freedoms),
             joint.status,
-            *([_range(ranges.get(joint.name), lengths)] if ranges else []),
+            *([shown.range] if ranged else []),
             ", ".join(joint.evidence),
         )
+        others += [f"  {one.name}: {one.words}" for one in seen if one.sense != shown.sense]
     items: list[RenderableType] = [rows]
+    items += [Text("\nThe same joints by their other names", style="bold"), *others] if others else []
     items += _intended(design, given, lengths)
     items += _leaving(kinematics, short)
     for joint in beginning([joint for joint in kinematics.joints if joint.status != "determined"], short):
@@ -92,6 +99,46 @@ def _intended(design: Design, given: Sequence[Answer], lengths: Lengths) -> list
     sides = () if design.kinematics is None else design.kinematics.sides
     found = [f"  {one.joint}: '{one.parts[0]}' and '{one.parts[1]}': {one.evidence}" for one in sides]
     return [rows, Text("\nSides that contact told", style="bold"), *found] if found else [rows]
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A joint in the order and sense of one of its names: the bodies, the axis, and how far it goes."""
+
+    name: str
+    bodies: tuple[str, str]
+    axis: str
+    range: str
+
+    @staticmethod
+    def of(design: Design, found: Resolution, lengths: Lengths) -> Seen:
+        """By the name that stands for it."""
+        joint = joint_as_stated(found)
+        assert joint is not None
+        run = design.simulation
+        item = next((item for item in (run.ranges if run else None) or () if item.joint == joint.name), None)
+        axis = vector(joint.axis) if joint.axis2 is None else f"{vector(joint.axis)}; {vector(joint.axis2)}"
+        return Seen(
+            found.name, joint.bodies, axis, _range(None if item is None else range_as_stated(item, found), lengths)
+        )
+
+    @property
+    def sense(self) -> tuple[tuple[str, str], str, str]:
+        """All of it but the name."""
+        return self.bodies, self.axis, self.range
+
+    @property
+    def words(self) -> str:
+        """ "lever relative to frame, axis z, range -40° to 70°"."""
+        axis, reach = f", axis {self.axis}", f", range {self.range}" if self.range else ""
+        return f"{self.bodies[1]} relative to {self.bodies[0]}{axis}{reach}"
+
+
+def named(design: Design, joint: Joint, names: Sequence[str], lengths: Lengths) -> list[Seen]:
+    """The joint by those of the names of the function that stand for it."""
+    assert design.kinematics is not None
+    found = [resolve_joint(design.assembly, design.kinematics, name) for name in names]
+    return [Seen.of(design, one, lengths) for one in found if one.joint is joint]
 
 
 def _range(item: JointRange | None, lengths: Lengths) -> str:

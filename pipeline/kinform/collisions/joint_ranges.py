@@ -1,26 +1,35 @@
 """The range of every joint of one freedom until something stops it, from the pose of the meshes.
 
 A joint outside of loops is driven alone, everything else at rest. The joints of a block of loops that has one freedom
-are driven together. Of other joints the range is not known, and it is said why.
+are driven together, and so are joints whose values the function couples (mimic joints, gears), with the loops they are
+in. Of other joints the range is not known, and it is said why.
 """
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from itertools import accumulate
+
+import numpy as np
 
 from kinform.collisions.driving.alone import drive_alone
+from kinform.collisions.driving.loop_motion import Tie
 from kinform.collisions.driving.loops import drive_loops, is_followed
 from kinform.collisions.parts.shapes import Shapes
+from kinform.foundation.algebra.displacements import displacement
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.processes import map_in_processes
 from kinform.foundation.progress import Progress
 from kinform.foundation.words import counted
+from kinform.kinematics.mobility.guides import joint_twist
+from kinform.kinematics.mobility.stated_couplings import coupling_rows
 from kinform.mechanism.joint_graph import JointGraph
 from kinform.model.assembly import Assembly
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.contacts import Contacts
-from kinform.model.kinematics import Joint, Kinematics
+from kinform.model.kinematics import Joint, Kinematics, body_of_part
 from kinform.model.surfaces import MeshSurfaces
 
 SHARED_FACETS = 200_000
@@ -50,14 +59,18 @@ def ranges(
     facets, and `meanwhile` is called while they do."""
     shapes = shapes_of(assembly, surfaces, contacts, kinematics)
     joints, graph = kinematics.joints, JointGraph(kinematics.bodies, kinematics.joints)
-    looped = {k: block for block in graph.loops for k in block}
+    ties = _ties(assembly, kinematics)
+    looped = {k: block for block in _together(graph, ties) for k in block}
     driven = [k for k, joint in enumerate(joints) if joint.type != "fixed"]
     out = {k: unknown(joints[k], reason) for k in driven if (reason := _refused(joints[k], kinematics, shapes))}
 
     def of_some(some: Sequence[int]) -> dict[int, JointRange]:
         if some[0] not in looped:
-            return {some[0]: drive_alone(shapes, joints[some[0]], *_sides(kinematics, graph.edges, some[0], shapes))}
-        of_block = drive_loops(shapes, kinematics, graph, looped[some[0]])
+            still, moving, grounded = _sides(kinematics, graph.edges, some[0], shapes)
+            found = drive_alone(shapes, joints[some[0]], still, moving)
+            return {some[0]: _second_at_rest(found, joints[some[0]]) if grounded else found}
+        block = looped[some[0]]
+        of_block = drive_loops(shapes, kinematics, graph, block, [tie for tie in ties if tie[0] in block])
         return {n: unknown(joints[n], of_block) if isinstance(of_block, str) else of_block[n] for n in some}
 
     # those of a block of loops together, where its first is
@@ -81,17 +94,48 @@ def too_large(assembly: Assembly, kinematics: Kinematics) -> str:
     numbers of joints, parts and facets alone, and on which loops move in one way."""
     parts = [part for part in assembly.parts if part.mesh is not None]
     facets = sum(len(part.mesh.faces) for part in parts if part.mesh is not None)
-    graph = JointGraph(kinematics.bodies, kinematics.joints)
-    together = graph.loops
+    graph, ties = JointGraph(kinematics.bodies, kinematics.joints), _ties(assembly, kinematics)
+    together = _together(graph, ties)
     driven = {k for k, joint in enumerate(kinematics.joints) if joint.type in ONE_FREEDOM}
     if UNASKED_LOOPS * len(driven) * len(parts) > UNASKED_PAIRS:
         # joints of loops that have more than one freedom are not followed, and take no time
-        driven -= {k for block in together if not is_followed(kinematics, graph, block) for k in block}
+        for block in together:
+            if not is_followed(kinematics, graph, block, [tie for tie in ties if tie[0] in block]):
+                driven -= set(block)
     looped = {k for block in together for k in block}
     weight = sum(UNASKED_LOOPS if k in looped else 1 for k in driven)
     if weight * len(parts) <= UNASKED_PAIRS and len(driven) * facets <= UNASKED_FACETS:
         return ""
     return f"{counted(len(driven), 'joint')}, {counted(len(parts), 'part')} and {facets:,} facets take long"
+
+
+def _ties(assembly: Assembly, kinematics: Kinematics) -> list[Tie]:
+    """Pairs of joints whose values the function couples."""
+    of_part = body_of_part(kinematics.bodies)
+    sides = {name for joint in assembly.function.joints for name in joint.between}
+    body_of = {name: of_part[assembly.parts_of(name)[0]] for name in sides}
+    offset = [0, *accumulate(joint.freedoms for joint in kinematics.joints)]
+    out: list[Tie] = []
+    if not offset[-1]:
+        return out
+    for row in coupling_rows(assembly.function, kinematics.joints, body_of, offset):
+        ends = np.flatnonzero(row)
+        if len(ends) == 2:  # more are more freedoms, and followed nowhere
+            a, b = (bisect_right(offset, end) - 1 for end in ends.tolist())
+            out.append((a, b, -float(row[ends[1]] / row[ends[0]])))
+    return out
+
+
+def _together(graph: JointGraph, ties: Sequence[Tie]) -> list[list[int]]:
+    """Joints that move together: those of blocks of loops, and of all that ties connect."""
+    sets = UnionFind(len(graph.joints))
+    for some in (*graph.loops, *((a, b) for a, b, _ in ties)):
+        for k in some[1:]:
+            sets.union(some[0], k)
+    out: dict[int, list[int]] = {}
+    for k in sorted({k for some in (*graph.loops, *((a, b) for a, b, _ in ties)) for k in some}):
+        out.setdefault(sets.find(k), []).append(k)
+    return list(out.values())
 
 
 def shapes_of(
@@ -126,8 +170,9 @@ def _refused(joint: Joint, kinematics: Kinematics, shapes: Shapes) -> str:
 
 def _sides(
     kinematics: Kinematics, edges: Sequence[tuple[int, int]], k: int, shapes: Shapes
-) -> tuple[list[str], list[str]]:
-    """Parts that rest and parts that move when joint k is driven alone: those that hang on its second body."""
+) -> tuple[list[str], list[str], bool]:
+    """Parts that rest and parts that move when joint k is driven alone: those that hang on its second body; and whether
+    the ground is one of these."""
     sets = UnionFind(len(kinematics.bodies))
     for n, (a, b) in enumerate(edges):
         if n != k:
@@ -137,4 +182,17 @@ def _sides(
     moving: list[str] = []
     for n, body in enumerate(kinematics.bodies):
         (moving if sets.find(n) == far else still).extend(sorted(shapes.body_parts[body.name]))
-    return sorted(still), sorted(moving)
+    grounded = any(body.ground and sets.find(n) == far for n, body in enumerate(kinematics.bodies))
+    return sorted(still), sorted(moving), grounded
+
+
+def _second_at_rest(item: JointRange, joint: Joint) -> JointRange:
+    """The range with places as they are where the second body rests, and the first moves."""
+
+    def moved(end: RangeEnd) -> RangeEnd:
+        if end.value is None or end.place is None:
+            return end
+        place = displacement(-end.value * joint_twist(joint)) @ np.append(end.place, 1.0)
+        return replace(end, place=place[:3])
+
+    return replace(item, lower=moved(item.lower), upper=moved(item.upper))

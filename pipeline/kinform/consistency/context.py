@@ -16,6 +16,7 @@ import numpy as np
 from kinform.behaviour import imposed_couplings
 from kinform.consistency.comparisons.comparison import Comparison
 from kinform.consistency.comparisons.couplings import coupled_through
+from kinform.consistency.comparisons.forbidden import Forbidden, forbidden
 from kinform.consistency.comparisons.intended_joints import compare_joints
 from kinform.consistency.comparisons.known import bodies_of
 from kinform.consistency.comparisons.links import Weighed, weighed
@@ -289,6 +290,12 @@ class Context:
         if self.lacks("contacts") is not None:
             return None
         return BlockedJoints(self.assembly, self.design.surfaces, self.contacts)
+
+    def forbidden(self, compared: Comparison) -> Forbidden | None:
+        """What proves that contact forbids an intended joint, or why that is open; None where contact gives the joint,
+        or more, or is not decided itself. Needs kinematics, though what it follows from may mean nothing."""
+        assert self.design.kinematics is not None
+        return forbidden(self.assembly, self.design.kinematics, self.blocked_joints, compared)
 
     def with_play(self, parts: Iterable[str] | None = None) -> CaptivePart | None:
         """The first part with play between two bodies, of some parts or of all, that it does not both touch: what these

@@ -67,7 +67,7 @@ def rules_markdown() -> str:
     """The text of `docs/rules.md`."""
     lines = [INTRODUCTION, "| code | name | severity | what is wrong |", "|---|---|---|---|"]
     for rule in RULES:
-        lines.append(f"| [{rule.code}](#{_anchor(rule)}) | {rule.name} | {rule.severity} | {_summary(rule)} |")
+        lines.append(f"| [{rule.code}](#{_anchor(rule)}) | {rule.name} | {rule.severities} | {_summary(rule)} |")
     lines += ["", "## Profiles", "", inspect.cleandoc(profiles.__doc__ or ""), ""]
     lines += ["| rule | design | description |", "|---|---|---|"]
     for rule in RULES:
@@ -80,14 +80,14 @@ def rules_markdown() -> str:
         for rule in RULES:
             if rule.code.startswith(prefix):
                 text = re.sub(r"^([A-Z][a-z ]+): ", r"**\1.** ", _text(rule), flags=re.MULTILINE)
-                standing = f"Severity: {rule.severity}. Stability: {rule.stability}."
+                standing = f"Severity: {rule.severities}. Stability: {rule.stability}."
                 lines.append(f"\n### {rule.code} {rule.name}\n\n{standing}\n\n{text}")
     return "\n".join(lines) + "\n"
 
 
 def _standing(rule: Rule) -> str:
     """Severity, and that a rule is in preview."""
-    return rule.severity if rule.stability == "stable" else f"{rule.severity}, {rule.stability}"
+    return rule.severities if rule.stability == "stable" else f"{rule.severities}, {rule.stability}"
 
 
 def _text(rule: Rule) -> str:

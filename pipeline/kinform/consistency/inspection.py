@@ -43,7 +43,7 @@ def check(design: Design) -> CheckReport:
         findings=tuple(sorted((f for run in applied.values() for f in run.findings), key=_order)),
         rules=tuple(rules),
         ignored=tuple(sorted((i for run in applied.values() for i in run.ignored), key=lambda i: _order(i.finding))),
-        answers=() if context.lacks("comparisons") else answer_counts(answers(context.design)),
+        answers=() if context.lacks("comparisons") else answer_counts(answers(context.design, context)),
     )
 
 

@@ -1,9 +1,9 @@
 """Severities by profile: what is an error of a design is not always one of a robot description.
 
 The meshes of descriptions are for looking at: they are open, they overlap at bearings, pins and screws are in none of
-them. So what only says that a mesh is for looking at, or that nothing holds a joint, is a note; what two statements of
-a description contradict stays what it is. `[check] profile` chooses; descriptions are `description` without it.
-`[check.severity]` has the last word.
+them. So what only says that a mesh is for looking at, or that nothing holds a joint, is a note; what two statements
+of a description contradict stays what it is. KF412 tells for itself which of the two it is. `[check] profile`
+chooses; descriptions are `description` without it. `[check.severity]` has the last word.
 """
 
 from __future__ import annotations
@@ -28,13 +28,11 @@ DESCRIPTION: Mapping[str, Severity] = {
     "KF205": "note",
     "KF206": "note",
     "KF209": "note",
-    "KF210": "note",
     "KF303": "note",
     "KF401": "note",
     "KF406": "note",
     "KF407": "note",
     "KF408": "note",
-    "KF412": "warning",
     "KF414": "note",
     "KF416": "note",
     "KF901": "note",

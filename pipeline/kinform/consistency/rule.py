@@ -10,7 +10,7 @@ from typing import Literal, Protocol
 from kinform.consistency.context import Context, Need
 from kinform.consistency.outcome import Outcome, decided
 from kinform.frozen import dataclass
-from kinform.model.findings import Finding, Severity, Witness, severity_of
+from kinform.model.findings import SEVERITIES, Finding, Severity, Witness, severity_of
 from kinform.requirements.answer import triple
 
 Findings = Iterable[Finding]
@@ -46,6 +46,14 @@ class Rule:
     """Codes of rules that leave it to this one to say what they could not decide: where one of them is selected, so
     is this."""
     stability: Stability = "stable"
+    also: tuple[Severity, ...] = ()
+    """Other severities that its findings have, by their consequence."""
+
+    @property
+    def severities(self) -> str:
+        """All of them in words, the worst first: "error, warning or note"."""
+        every = sorted({self.severity, *self.also}, key=SEVERITIES.index, reverse=True)
+        return " or ".join(filter(None, (", ".join(every[:-1]), every[-1])))
 
     def outcome(self, context: Context) -> Outcome:
         """What the rule says of a design: why something that it needs is not there, else what its check says."""

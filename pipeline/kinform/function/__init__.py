@@ -9,7 +9,13 @@ from kinform.foundation.lazy_imports import lazy_attributes
 if TYPE_CHECKING:
     from kinform.function.acted_freedoms import FREEDOMS, ActedFreedom, acted_freedom
     from kinform.function.acting_forces import acting_by_force, needing_forces
-    from kinform.function.designers_view import DesignersJoint, as_intended, designers_joints
+    from kinform.function.designers_view import (
+        DesignersJoint,
+        as_intended,
+        designers_joints,
+        joint_as_stated,
+        range_as_stated,
+    )
     from kinform.function.joint_names import Resolution, no_stop_within, resolve_joint, stated_ranges
 
 __all__ = [
@@ -22,13 +28,15 @@ __all__ = [
     "acting_by_force",
     "as_intended",
     "designers_joints",
+    "joint_as_stated",
     "needing_forces",
     "no_stop_within",
+    "range_as_stated",
     "resolve_joint",
     "stated_ranges",
 ]
 
-CODE_VERSION: int = 6
+CODE_VERSION: int = 7
 """Bumped when results of this package change for the same input."""
 
 __getattr__ = lazy_attributes(
@@ -42,6 +50,8 @@ __getattr__ = lazy_attributes(
         "DesignersJoint": "designers_view",
         "as_intended": "designers_view",
         "designers_joints": "designers_view",
+        "joint_as_stated": "designers_view",
+        "range_as_stated": "designers_view",
         "Resolution": "joint_names",
         "no_stop_within": "joint_names",
         "resolve_joint": "joint_names",

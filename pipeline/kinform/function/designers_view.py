@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.frozen import dataclass
-from kinform.function.joint_names import resolve_joint
+from kinform.function.joint_names import Resolution, resolve_joint
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.collisions import JointRange, RangeEnd
-from kinform.model.kinematics import Kinematics
+from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.simulation import Simulation
 
 ALONG_AN_AXIS = ("revolute", "prismatic", "cylindrical", "screw")
@@ -29,21 +29,46 @@ class DesignersJoint:
 
 
 def designers_joints(assembly: Assembly, kinematics: Kinematics) -> dict[str, DesignersJoint]:
-    """By the names of derived joints, of those that just one intended joint stands for.
+    """By the names of derived joints, of those that just one intended joint stands for: of several the one that is
+    stated in the outermost assembly.
 
-    A joint without an axis of its own, whose bodies the designer lists the other way round, is left out: its values
-    are no one's but kinform's. So is a name that another joint has.
+    A joint of several freedoms without an axis in common, whose bodies or axis the designer states the other way round,
+    is left out: its values are no one's but kinform's. So is a name that another joint has.
     """
     found = [resolve_joint(assembly, kinematics, intended.name) for intended in assembly.function.joints]
-    count = Counter(one.joint.name for one in found if one.joint is not None)
+    count = Counter((one.joint.name, _depth(one.name)) for one in found if one.joint is not None)
     derived = {joint.name for joint in kinematics.joints}
-    out = {}
-    for one in found:
-        if one.joint is None or count[one.joint.name] > 1 or (one.name in derived and one.name != one.joint.name):
+    out: dict[str, DesignersJoint] = {}
+    seen: set[str] = set()
+    for one in sorted(found, key=lambda one: _depth(one.name)):
+        if one.joint is None or one.joint.name in seen:
             continue
-        if one.sign > 0 or one.joint.type in ALONG_AN_AXIS:
+        seen.add(one.joint.name)
+        if count[one.joint.name, _depth(one.name)] > 1 or (one.name in derived and one.name != one.joint.name):
+            continue
+        if one.joint.type in ALONG_AN_AXIS or (one.sign > 0 and one.bodies == one.joint.bodies):
             out[str(one.joint.name)] = DesignersJoint(one.name, one.sign)
     return out
+
+
+def _depth(name: str) -> int:
+    """Of the assembly that states a joint: 0 of the outermost."""
+    return name.count("/")
+
+
+def joint_as_stated(found: Resolution) -> Joint | None:
+    """The joint that a name stands for, with the bodies in the designer's order, the axis and the range in the
+    designer's sense; None where there is none. One of several freedoms without an axis in common is as it was."""
+    joint = found.joint
+    if joint is None or joint.type not in ALONG_AN_AXIS:
+        return joint
+    along = found.sign if found.bodies == joint.bodies else -found.sign
+    ends = (joint.range_lower, joint.range_upper)
+    if found.sign < 0:
+        ends = (_minus(joint.range_upper), _minus(joint.range_lower))
+    first, second = joint.bodies if found.bodies == joint.bodies else joint.bodies[::-1]
+    axis = None if joint.axis is None else along * joint.axis + 0.0
+    return replace(joint, bodies=(first, second), axis=axis, range_lower=ends[0], range_upper=ends[1])
 
 
 def as_intended(run: Simulation, known: Mapping[str, DesignersJoint]) -> Simulation:
@@ -70,7 +95,9 @@ def as_intended(run: Simulation, known: Mapping[str, DesignersJoint]) -> Simulat
         friction_joints=tuple(named.get(name, name) for name in run.friction_joints),
         friction_effort=_frictions(run, known),
         gear_names=tuple(named.get(name, name) for name in run.gear_names),
-        ranges=None if run.ranges is None else tuple(_range(item, known) for item in run.ranges),
+        ranges=None
+        if run.ranges is None
+        else tuple(range_as_stated(item, known[item.joint]) if item.joint in known else item for item in run.ranges),
     )
 
 
@@ -82,14 +109,15 @@ def _frictions(run: Simulation, known: Mapping[str, DesignersJoint]) -> Array:
     return np.asarray(run.friction_effort * signs + 0.0)
 
 
-def _range(item: JointRange, known: Mapping[str, DesignersJoint]) -> JointRange:
-    one = known.get(item.joint)
-    if one is None:
-        return item
+def range_as_stated(item: JointRange, one: DesignersJoint | Resolution) -> JointRange:
+    """The range of a derived joint in the designer's name and sense."""
     ends = (item.lower, item.upper) if one.sign > 0 else (_mirrored(item.upper), _mirrored(item.lower))
     return replace(item, joint=type(item.joint)(one.name), lower=ends[0], upper=ends[1])
 
 
 def _mirrored(end: RangeEnd) -> RangeEnd:
-    value, leaves = (None if x is None else 0.0 - x for x in (end.value, end.leaves))
-    return replace(end, value=value, leaves=leaves)
+    return replace(end, value=_minus(end.value), leaves=_minus(end.leaves))
+
+
+def _minus(value: float | None) -> float | None:
+    return None if value is None else 0.0 - value

@@ -38,6 +38,11 @@ class Resolution:
     """Designer's value = sign · kinform's joint value."""
     reason: str = ""
 
+    @staticmethod
+    def own(joint: Joint) -> Resolution:
+        """Of the name that kinform gives a joint."""
+        return Resolution(str(joint.name), None, joint.bodies, joint, 1)
+
 
 def resolve_joint(assembly: Assembly, kinematics: Kinematics, name: str) -> Resolution:
     """The joint that `name` stands for; never raises, a miss says its reason.
@@ -49,7 +54,7 @@ def resolve_joint(assembly: Assembly, kinematics: Kinematics, name: str) -> Reso
         return _resolve_intended(assembly, kinematics, intended)
     joint = kinematics.named_joints.get(name)
     if joint is not None:
-        return Resolution(name, None, joint.bodies, joint, 1)
+        return Resolution.own(joint)
     known = ", ".join([j.name for j in assembly.function.joints] + [j.name for j in kinematics.joints])
     return Resolution(name, None, ("", ""), None, 1, f'there is no joint "{name}"; known: {known or "none"}')
 

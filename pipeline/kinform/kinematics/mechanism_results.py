@@ -15,7 +15,7 @@ from kinform.kinematics.mobility.idle import idle_turns
 from kinform.kinematics.mobility.joint_redundancy import redundancy_within
 from kinform.kinematics.mobility.loop_redundancy import redundancies_of_loops
 from kinform.kinematics.mobility.named_freedoms import named_freedoms
-from kinform.kinematics.mobility.two_ends import mobility_ends
+from kinform.kinematics.mobility.two_ends import certified_at_ends, joint_ends, mobility_ends
 from kinform.kinematics.separation.constraint_matrix import constraint_matrix
 from kinform.kinematics.separation.contact_rows import ContactRows, pair_cones
 from kinform.kinematics.separation.releases import with_releases
@@ -96,7 +96,8 @@ def _mobility(mechanism: DecidedMechanism, opened: frozenset[JointName]) -> tupl
     constant = {coupling.through for coupling in couplings if coupling.meshing is not None}
     finite = finite_mobility(graph.edges, joints, nodes, count, size, couplings)
     effective = (count if finite.count is None else finite.count) - len(idle)
-    low, high = mobility_ends(assembly, graph, opened, effective, count, size, doubts)
+    ends = joint_ends(assembly, graph, opened)
+    low, high = mobility_ends(graph, ends, effective, count, size, doubts)
     within = [redundancy_within(joint, patches, assembly.tolerances) for joint in joints]
     mobility = Mobility(
         instantaneous=count,
@@ -112,7 +113,7 @@ def _mobility(mechanism: DecidedMechanism, opened: frozenset[JointName]) -> tupl
         infinitesimal=finite.infinitesimal,
         singular=finite.singular,
         on_edge=finite.on_edge,
-        certificates=finite.certificates,
+        certificates=certified_at_ends(graph, ends, finite.certificates, size, couplings),
         named=named,
         redundancies=(*filter(None, within), *redundancies_of_loops(joints, closure, size)),
         low=low,

@@ -23,7 +23,7 @@ class RangeEnd:
     parts: tuple[PartName, ...] = ()
     """The two parts that meet there; none where the linkage itself turns back."""
     place: Place | None = None
-    """(3,) m: where they meet, at the pose in which they do."""
+    """(3,) m: where they meet, at the pose in which they do, with the ground at rest."""
     reason: str = ""
     """Why it is not known, or what else is to be known of this side."""
     leaves: JointValue | None = None

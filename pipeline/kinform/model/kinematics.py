@@ -307,6 +307,8 @@ class FiniteCertificate:
     """Joints that move in the freedoms that are only infinitesimal."""
     statement: str = ""
     """In words, where there is anything to say: a shaky structure, a bifurcation, or why it is not known."""
+    at_ends: bool = True
+    """Whether it is shaky or singular at both ends of the mobility, too; else by contact that only pushes."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,7 +18,7 @@ from kinform.foundation.words import counted, shortened, shortened_ends
 from kinform.frozen import dataclass
 from kinform.function.body_titles import body_titles
 from kinform.model.findings import CheckReport, Finding
-from kinform.reports.constants import WIDTH
+from kinform.reports.constants import QUIET_NOTES, WIDTH
 from kinform.reports.phrases import answers_line, rule_counts, severity_counts, verdict_told
 
 MOST_BRIEF = 10
@@ -263,7 +263,9 @@ def _cut(text: str, room: int) -> str:
 def _notes(report: CheckReport, width: int) -> list[str]:
     """A line for each rule that has notes: how many, and about what; what the verdict stands on is told in full."""
     undecided = {rule.code for rule in report.rules if rule.outcome == "inconclusive"}
-    notes = sorted((f for f in report.findings if f.severity == "note"), key=lambda f: f.code)
+    notes = sorted(
+        (f for f in report.findings if f.severity == "note" and f.code not in QUIET_NOTES), key=lambda f: f.code
+    )
     lines = []
     for (code, rule), group in groupby(notes, lambda f: (f.code, f.rule)):
         if code in TOLD_NOTES:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from kinform.design import Design
 from kinform.foundation.escapes import one_line
 from kinform.model.findings import CheckReport
+from kinform.reports.constants import QUIET_NOTES
 from kinform.reports.phrases import rule_counts, severity_counts, verdict_line, where
 
 
@@ -15,6 +16,7 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
         f"{one_line(where(f)) or file}: {f.severity} {f.code} "
         f"{', '.join(one_line(s) for s in f.subject)}: {one_line(f.message)}"
         for f in report.findings
+        if f.severity != "note" or f.code not in QUIET_NOTES
     ]
     lines += [
         f"{file}: inconclusive {r.code} {r.rule}: {one_line(r.reason)}"

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 WIDTH = 80
 """Columns of text at a terminal: what every terminal shows."""
+QUIET_NOTES = ("KF303",)
+"""Rules whose notes short reports leave out, and `-v` and JSON have: every planar loop has redundant constraints."""
 OVERLAP_COLOUR = "#f0283a"
 """Of solids that occupy the same space."""
 EYE_TURN, EYE_RISE = -0.95, 0.42

@@ -9,6 +9,7 @@ from kinform.design import Design
 from kinform.foundation import escapes
 from kinform.foundation.escapes import one_line
 from kinform.model.findings import CheckReport, Finding, RuleOutcome
+from kinform.reports.constants import QUIET_NOTES
 from kinform.reports.phrases import details, rule_counts, severity_counts, verdict_line
 
 _COMMANDS = {"error": "error", "warning": "warning", "note": "notice"}
@@ -17,7 +18,8 @@ _COMMANDS = {"error": "error", "warning": "warning", "note": "notice"}
 def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     """Annotations of findings, then of rules that could not decide, then a line with the verdict for the log."""
     manifest = design.assembly.source.file
-    lines = [_finding(finding, manifest, design.assembly.units) for finding in report.findings]
+    told = [f for f in report.findings if f.severity != "note" or f.code not in QUIET_NOTES]
+    lines = [_finding(finding, manifest, design.assembly.units) for finding in told]
     lines += [_undecided(rule, manifest) for rule in report.rules if rule.outcome == "inconclusive"]
     counts = f"{severity_counts(report)}; {rule_counts(report)}"
     lines.append(escapes.lines(f"{verdict_line(report, fail_on)}; {counts}; {one_line(design.assembly.name)}"))

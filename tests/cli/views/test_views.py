@@ -85,8 +85,8 @@ def test_the_tree_shows_subassemblies_parts_and_groups(on_a_terminal):
 
 def test_series_have_extremes_and_a_line(on_a_terminal):
     rows = [line for line in on_a_terminal("simulation") if BLOCKS[-1] in line]
-    assert [row.split()[0] for row in rows[:3]] == ["base~gimbal", "gimbal~payload", "base~gimbal"]
-    yaw = re.search(r"base~gimbal +-30° +1.5 +30° +0.5 +(\S+)$", rows[0])[1]
+    assert [row.split()[0] for row in rows[:3]] == ["yaw", "pitch", "yaw"]
+    yaw = re.search(r"yaw +-30° +1.5 +30° +0.5 +(\S+)$", rows[0])[1]
     assert len(yaw) == 20
     # a sine of one period: up, down, and back
     assert yaw.index(BLOCKS[-1]) < 10 < yaw.index(BLOCKS[0])
@@ -94,7 +94,7 @@ def test_series_have_extremes_and_a_line(on_a_terminal):
 
 def test_what_the_bearings_carry_is_a_series(on_a_terminal):
     lines = on_a_terminal("simulation")
-    for joint in ("base~gimbal", "gimbal~payload"):
+    for joint in ("yaw", "pitch"):
         assert any(line.startswith(f"{joint} |F| N ") for line in lines)
         assert any(line.startswith(f"{joint} |τ| N·m ") for line in lines)
 
@@ -138,7 +138,7 @@ def test_a_part_is_marked_as_ground_only_where_one_is_stated(derive_design):
 def test_a_narrow_terminal_gets_blocks_and_no_cut_names(on_a_terminal):
     lines = on_a_terminal("simulation", columns=50)
     assert max(map(len, lines)) <= 50
-    assert any(line.startswith("gimbal~payload mN·m") for line in lines)
+    assert any(line.startswith("pitch mN·m") for line in lines)
 
 
 class TestSparks:

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from support.assemblies import assembly, intended
 from support.diagonal import diagonal
-from support.solids import box, part, random_pose, rod
+from support.solids import box, extrusion, part, random_pose, rod
 
 from kinform import contacts, kinematics, surfaces
-from kinform.consistency.comparisons.answers import answer_of
-from kinform.consistency.comparisons.intended_joints import compare_joints
+from kinform.consistency.comparisons.answers import answers
+from kinform.design import Design
 
 PLATE = box(-50, 50, -50, 50, -5, 0)
 BASES = {
@@ -31,8 +31,8 @@ def answered(kind, base, away, *, complete, names=("base", "disc"), scale=1e-3):
         made = replace(made, function=replace(made.function, complete=("",)))
     found = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
     touching = contacts.find(made, found)
-    (one,) = compare_joints(made, touching, kinematics.derive(made, found, touching), [joint])
-    return answer_of(made, one).answer
+    (answer,) = answers(Design(made, found, touching, kinematics.derive(made, found, touching)))
+    return answer.answer
 
 
 @diagonal(2, kind=list(BASES), scale=[1e-4, 1e-3, 1.0], complete=[False, True])
@@ -63,5 +63,23 @@ def test_a_door_on_its_jamb_is_what_is_stated_at_rest_and_away_from_it(kind, ans
     made = assembly(*parts, ground=names[0], joints=(joint,))
     found = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
     touching = contacts.find(made, found)
-    (one,) = compare_joints(made, touching, kinematics.derive(made, found, touching), [joint])
-    assert answer_of(made, one).answer == answer
+    (given,) = answers(Design(made, found, touching, kinematics.derive(made, found, touching)))
+    assert given.answer == answer
+
+
+@pytest.mark.parametrize(
+    ("along", "answer"),
+    [((0, 0, 1), "agrees"), ((0, 1, 0), "not held"), ((1, 0, 0), "contradicts"), ((0, 0.1, 1), "contradicts")],
+)
+def test_a_bar_in_a_v_that_is_stated_to_lift_is_not_held(along, answer):
+    X = random_pose(np.random.default_rng(3), 0.1)
+    base = extrusion([(-30, -20), (30, -20), (30, 20), (20, 20), (0, 0), (-20, 20), (-30, 20)], -40, 40)
+    bar = extrusion([(0, 0), (18, 18), (18, 30), (-18, 30), (-18, 18)], -30, 30)
+    parts = [part(name, solid, X, 1e-3) for name, solid in (("base", base), ("bar", bar))]
+    direction = np.array(along) / np.linalg.norm(along)
+    joint = intended("slide", "base", "bar", "prismatic", X[:3, :3] @ direction)
+    made = assembly(*parts, ground="base", joints=(joint,))
+    found = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
+    touching = contacts.find(made, found)
+    (given,) = answers(Design(made, found, touching, kinematics.derive(made, found, touching)))
+    assert given.answer == answer

@@ -15,6 +15,7 @@ from support.touching import touching as touching_of
 from kinform import consistency, kinematics
 from kinform.consistency.comparisons.answers import answer_of
 from kinform.consistency.comparisons.intended_joints import compare_joints
+from kinform.consistency.context import Context
 from kinform.design import Design
 from kinform.model.function import Function, IntendedJoint
 
@@ -42,7 +43,7 @@ def derived(groove, type_, X=None, scale=1e-3):
     made = replace(made, function=Function(joints=(joint,), complete=("",)))
     found, touching = touching_of(made)
     K = kinematics.derive(made, found, touching)
-    answer = answer_of(made, *compare_joints(made, touching, K, [joint])).answer
+    answer = answer_of(Context(Design(made, found, touching, K)), *compare_joints(made, touching, K, [joint])).answer
     codes = {f.code for f in consistency.check(Design(made, found, touching, K)).findings}
     return K, answer, codes & {"KF401", "KF402", "KF414"}
 

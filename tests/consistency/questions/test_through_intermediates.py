@@ -16,6 +16,8 @@ from support.touching import touching as touching_of
 from kinform import kinematics
 from kinform.consistency.comparisons.answers import answer_of
 from kinform.consistency.comparisons.intended_joints import compare_joints
+from kinform.consistency.context import Context
+from kinform.design import Design
 from kinform.model.function import Function, IntendedJoint
 
 BASE = block(60, 60, 20) - rod(14, -20, 20, 48)
@@ -39,7 +41,7 @@ def answered(type_, solids, X=None, scale=1e-3):
     found, touching = touching_of(made)
     K = kinematics.derive(made, found, touching)
     (comparison,) = compare_joints(made, touching, K, [joint])
-    return K, comparison, answer_of(made, comparison).answer
+    return K, comparison, answer_of(Context(Design(made, found, touching, K)), comparison).answer
 
 
 POSES = [(None, 1e-3), (0, 1e-3), (1, 1.0)]

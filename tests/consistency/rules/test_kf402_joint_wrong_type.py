@@ -107,8 +107,19 @@ SLIDER = box(0.05, 19.95, 10, 60, 0, 25)
         ((CHANNEL, SLIDER), "prismatic", "0 1 0", []),
         ((CORNER, BLOCK), "prismatic", "1 0 0", []),
         ((CORNER, BLOCK), "prismatic", "1 1 0", []),
+        ((CORNER, BLOCK), "prismatic", "1 -1 0", ["error"]),
+        ((CORNER, BLOCK), "prismatic", "1 0.5 -0.2", ["error"]),
+        ((CORNER, BLOCK), "revolute", "0 0 1", ["error"]),
     ],
-    ids=["turned into both walls", "along them", "out of a corner", "out of it askew"],
+    ids=[
+        "turned into both walls",
+        "along them",
+        "out of a corner",
+        "out of it askew",
+        "into either wall of a corner",
+        "into a wall or the floor",
+        "turned into walls",
+    ],
 )
 def test_a_motion_into_walls_both_ways_is_an_error_and_one_away_from_them_is_none(
     tmp_path, solids, kind, axis, severities

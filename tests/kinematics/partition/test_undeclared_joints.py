@@ -11,8 +11,7 @@ from support.solids import box, part, random_pose, rod
 from support.touching import touching as touching_of
 
 from kinform import kinematics
-from kinform.consistency.comparisons.answers import answer_of
-from kinform.consistency.comparisons.intended_joints import compare_joints
+from kinform.consistency.comparisons.answers import answers
 from kinform.design import Design
 from kinform.model.function import Function, IntendedJoint
 
@@ -40,8 +39,8 @@ def derived(joints, X, scale, groups=(), backwards=False):
 
 
 def answer(whole, touching, K, name):
-    wanted = next(one for one in whole.function.joints if one.name == name)
-    return answer_of(whole, *compare_joints(whole, touching, K, [wanted]))
+    given = answers(Design(assembly=whole, contacts=touching, kinematics=K))
+    return next(one for one in given if one.name == name)
 
 
 SPIN = ("spin", ("base", "wheel"), "revolute", AXLE)

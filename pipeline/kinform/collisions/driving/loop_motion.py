@@ -1,4 +1,4 @@
-"""The one motion of a block of joints that loops tie together, followed from the pose of the meshes.
+"""The one motion of a block of joints that loops or stated ratios tie together, followed from the pose of the meshes.
 
 It is continued by arc length in joint coordinates: a step along the null vector of the loop closure, and from there
 the loops are closed again (`mechanism.closing`), so that rockers turn back at their dead points (Allgower and Georg,
@@ -46,6 +46,7 @@ SMOOTH = SOLVED
 
 RETURNED = "returned"
 """How a motion ends that is back where it began."""
+TOO_LONG = "the motion is too long to be followed to its end"
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,10 +77,20 @@ class Driven:
         return out, rank == len(free) - 1 and bool(rank == 0 or values[rank - 1] > SINGULAR)
 
 
-def driven_block(graph: JointGraph, block: Sequence[int], idle: Sequence[Freedom], size: float) -> Driven:
-    """The joints of one block, of which `idle` freedoms rest; `size` of the assembly (m)."""
-    of_block = linkage(graph, block, size)
-    held = np.zeros(len(of_block.coordinates), dtype=np.bool_)
+Tie = tuple[int, int, float]
+"""Two joints of one freedom, by their numbers, and what the first moves by when the second moves by one."""
+
+
+def driven_block(
+    graph: JointGraph, block: Sequence[int], idle: Sequence[Freedom], size: float, ties: Sequence[Tie] = ()
+) -> Driven:
+    """The joints of one block, of which `idle` freedoms rest; `size` of the assembly (m). With `ties` these may be
+    several blocks: joints between them rest."""
+    number = {k: n for n, k in enumerate(block)}
+    resting = _between(graph, block) if ties else []
+    of_block = linkage(graph, [*block, *resting], size, ties=[(number[a], number[b], ratio) for a, b, ratio in ties])
+    still = {graph.joints[k].name for k in resting}
+    held = np.array([coordinate.joint in still for coordinate in of_block.coordinates], dtype=np.bool_)
     for freedom in idle:
         rates = np.zeros(len(held))
         for name, place, rate in freedom.drives:
@@ -92,6 +103,16 @@ def driven_block(graph: JointGraph, block: Sequence[int], idle: Sequence[Freedom
             # order.
             held[np.flatnonzero(rates > 0.99 * rates.max())[0]] = True
     return Driven(of_block, held)
+
+
+def _between(graph: JointGraph, block: Sequence[int]) -> list[int]:
+    """The other joints on the ways from the bodies of some joints to ground."""
+    out, tree = set(), graph.tree
+    for body in (body for k in block for body in graph.edges[k]):
+        while tree.parent[body] >= 0:
+            out.add(tree.edge[body])
+            body = tree.parent[body]
+    return sorted(out.difference(block))
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,12 +139,13 @@ def follow(driven: Driven, sign: float) -> Path:
     along, step = sign * tangent[0], STEP
     path, s = [q], [0.0]
     turns = driven.linkage.turns
+    loops = len(driven.linkage.system.loops) > 0  # without, ratios keep what turns about several axes, too
 
     def ended(why: str) -> Path:
         return Path(np.array(path), np.array(s), why, len(path) > 2 and even is not None)
 
     while len(path) <= PATH_STEPS:
-        if even is not None and len(path) > EVEN_TRIED:
+        if loops and even is not None and len(path) > EVEN_TRIED:
             rest = np.arange(1.0, EVEN_STEPS)[:, None] * step * along
             if driven.opened(q + rest[-1]) < ACCEPTED:
                 path.extend(q + rest)
@@ -141,12 +163,12 @@ def follow(driven: Driven, sign: float) -> Path:
         q = following
         path.append(q)
         s.append(s[-1] + step / STEP)
-        step = STEP if even is None else min(2.0 * step, LONG_STEP)
+        step = STEP if even is None or not loops else min(2.0 * step, LONG_STEP)
         along = tangent[0] if float(tangent[0] @ along) >= 0.0 else -tangent[0]
         # Steps after which the motion may be back where it began.
         if len(path) > 8 and float(np.linalg.norm(_around(q, turns))) < step and _meets_start(driven, q, along):
             return ended(RETURNED)
-    return ended("the motion is too long to be followed to its end")
+    return ended(TOO_LONG)
 
 
 def _around(q: Array, turns: Flags) -> Array:

@@ -1,4 +1,4 @@
-"""The ranges of joints that loops tie together, where all that is left is one motion: it is followed both ways.
+"""The ranges of joints that loops or stated ratios tie together to one motion, which is followed both ways.
 
 Bodies that only spin on themselves, as loose pins do, are held; how far they spin by themselves is another question.
 The motion (`loop_motion`) ends where parts meet, where the linkage comes back to its pose, where a second motion
@@ -15,7 +15,7 @@ import numpy as np
 
 from kinform.collisions.driving.alone import drive_alone
 from kinform.collisions.driving.apart_for_good import that_can_meet
-from kinform.collisions.driving.loop_motion import RETURNED, Between, Driven, Path, driven_block, follow
+from kinform.collisions.driving.loop_motion import RETURNED, TOO_LONG, Between, Driven, Path, Tie, driven_block, follow
 from kinform.collisions.driving.overlaps import Overlap, Pair, overlap_words
 from kinform.collisions.pair.advancement import First, Near, first_crossing
 from kinform.collisions.pair.posed_pairs import Moving, Nodes, moving_pairs
@@ -38,14 +38,15 @@ LOOP_STOP = 1e-3
 
 
 LEAVES = "leaves its guide"
+FREE = "nothing stops it"
 STILL = "the loops do not move"
 
 
 def drive_loops(
-    shapes: Shapes, kinematics: Kinematics, graph: JointGraph, block: Sequence[int]
+    shapes: Shapes, kinematics: Kinematics, graph: JointGraph, block: Sequence[int], ties: Sequence[Tie] = ()
 ) -> dict[int, JointRange] | str:
-    """The ranges of the joints of one block; or why they are not known."""
-    driven, idle = _driven(kinematics, graph, block, shapes.size), _idle(kinematics, block)
+    """The ranges of the joints of one block, or of all that `ties` make move together; or why they are not known."""
+    driven, idle = _driven(kinematics, graph, block, shapes.size, ties), _idle(kinematics, block)
     if driven == STILL and idle:
         return _spinning_alone(shapes, kinematics, block, idle)
     if isinstance(driven, str):
@@ -66,19 +67,22 @@ def drive_loops(
     return out
 
 
-def is_followed(kinematics: Kinematics, graph: JointGraph, block: Sequence[int]) -> bool:
+def is_followed(kinematics: Kinematics, graph: JointGraph, block: Sequence[int], ties: Sequence[Tie] = ()) -> bool:
     """Whether the motion of the joints of one block is followed, which takes long."""
-    return not isinstance(_driven(kinematics, graph, block, 1.0), str)
+    return not isinstance(_driven(kinematics, graph, block, 1.0, ties), str)
 
 
-def _driven(kinematics: Kinematics, graph: JointGraph, block: Sequence[int], size: float) -> Driven | str:
+def _driven(
+    kinematics: Kinematics, graph: JointGraph, block: Sequence[int], size: float, ties: Sequence[Tie]
+) -> Driven | str:
     """The joints of one block with their one motion; or why they have none that is followed."""
     doubtful = [
         k for k in block if kinematics.joints[k].type == "general" or kinematics.joints[k].status == "ambiguous"
     ]
     if doubtful:
-        return f"its loops run through {kinematics.joints[doubtful[0]].name}, whose motion is not known"
-    driven = driven_block(graph, block, _idle(kinematics, block), size)
+        how = "it moves with" if ties else "its loops run through"
+        return f"{how} {kinematics.joints[doubtful[0]].name}, whose motion is not known"
+    driven = driven_block(graph, block, _idle(kinematics, block), size, ties)
     system = driven.linkage.system
     first = driven.tangent(system.equations(system.start).jacobian[0])
     if first is None:
@@ -169,10 +173,21 @@ def _travelled(shapes: Shapes, kinematics: Kinematics, driven: Driven, path: Pat
         elif first.at is not None and first.place is not None and not item.rolls:
             end, why, parts = first.at, "", test.part_names
             place = _placed(nodes, item.first, first)
+    if why == TOO_LONG and end == path.s[-1] and not left_out and _apart_for_good(nodes, driven, shapes.size):
+        why = FREE
     kept = s < end
     q, s = np.concatenate([path.q[kept], at(end)[None]]), np.append(s[kept], end)
     overlap = overlap_words(overlaps, shapes.assembly.units) if overlaps else rolls
     return _Travelled(q, s, why, parts, place, tuple(sorted(left_out)), overlap)
+
+
+def _apart_for_good(nodes: Nodes, driven: Driven, size: float) -> bool:
+    """Whether all bodies have only slid, each relative to each by more than the `size` (m) of the whole, or not."""
+    if driven.linkage.turns[~driven.held].any():
+        return False
+    places = nodes.displacements[-1, :, :3, 3]
+    apart = np.linalg.norm(places[:, None] - places, axis=2)
+    return bool(((apart > size) | (apart < SOLVED * size)).all())
 
 
 def _relative(nodes: Nodes, item: Moving) -> Array:
@@ -230,6 +245,8 @@ def _range(joint: Joint, driven: Driven, column: int, ends: Sequence[_Travelled]
             sides.append(RangeEnd("found", float(value), end.parts, end.place))
         elif at_end and end.why.endswith(LEAVES):
             sides.append(RangeEnd("unbounded", reason=end.why, leaves=float(value)))
+        elif at_end and end.why == FREE:
+            sides.append(RangeEnd("unbounded"))
         elif at_end and end.why != RETURNED:
             sides.append(RangeEnd("unknown", reason=end.why))
         elif left_out:

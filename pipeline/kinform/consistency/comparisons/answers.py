@@ -4,9 +4,10 @@
 |---|---|
 | agrees | gives this joint, within the limits of KF403 and KF404 |
 | not held | leaves the intended motion free, and more |
-| contradicts | forbids the intended motion, or gives the joint elsewhere |
+| contradicts | forbids the intended motion, as is proven (KF402), or gives the joint elsewhere, or with another pitch |
 | no contact | there is none between the two bodies |
-| undecided | neither; or a part with play between the two may carry the joint, or hold more of it |
+| undecided | neither; or nothing proves that it is forbidden, or elsewhere; or a part with play between the two may \
+carry the joint, or hold more of it |
 """
 
 from __future__ import annotations
@@ -16,14 +17,14 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from kinform.consistency.comparisons.comparison import Comparison, leaves_more
+from kinform.consistency.comparisons.comparison import Comparison
 from kinform.consistency.comparisons.intended_joints import compare_joints
+from kinform.consistency.context import Context
 from kinform.design import Design
 from kinform.foundation.words import counted
 from kinform.frozen import dataclass
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Body
-from kinform.model.tolerances import Tolerances
 
 AnswerName = Literal["agrees", "not held", "contradicts", "no contact", "undecided"]
 ANSWERS: tuple[AnswerName, ...] = get_args(AnswerName)
@@ -55,9 +56,9 @@ def answer_counts(given: Sequence[Answer]) -> tuple[tuple[str, int], ...]:
     return tuple((answer, count) for answer, count in counts if count)
 
 
-def answer_of(assembly: Assembly, c: Comparison) -> Answer:
-    """The answer to the intended joint of a comparison."""
-    kind, free, blocked = _kind(assembly.tolerances, c)
+def answer_of(context: Context, c: Comparison) -> Answer:
+    """The answer to the intended joint of a comparison; needs kinematics."""
+    kind, free, blocked = _kind(context, c)
     return Answer(
         name=c.intended.name,
         between=c.intended.between,
@@ -68,19 +69,21 @@ def answer_of(assembly: Assembly, c: Comparison) -> Answer:
         offset=c.offset,
         free=free,
         blocked_by=blocked,
-        gap=_gap(assembly, c.bodies) if kind == "no contact" else None,
+        gap=_gap(context.assembly, c.bodies) if kind == "no contact" else None,
     )
 
 
-def answers(design: Design) -> tuple[Answer, ...]:
-    """The answers to all intended joints, in the order of the function; needs kinematics."""
+def answers(design: Design, context: Context | None = None) -> tuple[Answer, ...]:
+    """The answers to all intended joints, in the order of the function; needs kinematics. `context` is what else is
+    asked about the design."""
     assert design.kinematics is not None
     assembly = design.assembly
     compared = compare_joints(assembly, design.contacts, design.kinematics, assembly.function.joints)
-    return tuple(answer_of(assembly, one) for one in compared)
+    context = context or Context(design)
+    return tuple(answer_of(context, one) for one in compared)
 
 
-def _kind(tolerances: Tolerances, c: Comparison) -> tuple[AnswerName, str, str]:
+def _kind(context: Context, c: Comparison) -> tuple[AnswerName, str, str]:
     """The answer, what else is free, and what forbids it."""
     if c.state == "taken":
         assert c.joint is not None
@@ -98,15 +101,18 @@ def _kind(tolerances: Tolerances, c: Comparison) -> tuple[AnswerName, str, str]:
         return "undecided", "", ""
     if c.loose:
         return "not held", f"{c.type}, {counted(c.freedoms, 'freedom')} by contact", ""
-    if c.state == "one body":
-        return ("agrees", "", "") if c.right_type else ("contradicts", "", c.reason or "both sides are one body")
+    judged = context.forbidden(c)
+    if judged is not None:
+        why = c.reason or "both sides are one body" if c.state == "one body" else f"by contact it is {c.type}"
+        return ("contradicts", "", why) if judged.witness is not None else ("undecided", "", "")
     if c.right_type:
-        tilted = c.angle is not None and c.angle > tolerances.angle_limit() + c.angle_slack
-        beside = c.offset is not None and c.offset > c.position_limit + c.position_slack
-        return ("contradicts", "", "its axis is elsewhere") if tilted or beside else ("agrees", "", "")
-    if leaves_more(c):
-        return "not held", f"{c.type}, {counted(c.freedoms, 'freedom')} by contact", ""
-    return "contradicts", "", f"by contact it is {c.type}"
+        off = (c.tilted, c.displaced)
+        if any(off):
+            return "contradicts", "", "its axis is elsewhere"
+        if c.other_pitch:
+            return "contradicts", "", "it advances otherwise"
+        return "undecided" if None in off else "agrees", "", ""
+    return "not held", f"{c.type}, {counted(c.freedoms, 'freedom')} by contact", ""
 
 
 def _gap(assembly: Assembly, bodies: Sequence[Body]) -> float | None:

@@ -7,6 +7,7 @@ from typing import Literal
 
 import numpy as np
 
+from kinform.consistency.comparisons.couplings import ROUNDED_RATIO
 from kinform.foundation.algebra.vectors import cross
 from kinform.frozen import dataclass
 from kinform.kinematics.joints.bodies.joints_in_force import leaves_free
@@ -21,8 +22,6 @@ WITH_LINE = ("revolute", "cylindrical", "screw")
 """Joints whose axis is a line: direction and position count."""
 FROM_GEOMETRY = ("fixed", "revolute", "prismatic", "cylindrical", "spherical", "planar")
 """Joint types that contact alone can prove so far; of others only an assumption speaks."""
-
-
 ComparisonState = Literal["stated", "taken", "one body", "absent", "undecided", "found"]
 
 
@@ -60,12 +59,15 @@ class Comparison:
     size: float = 1.0
     """m: diagonal of the smaller body."""
     admitted: bool = False
-    """Contact of another type lets each motion of the intended joint go, in one sense at least."""
+    """What was found is another motion, and contact lets each motion of the intended joint go, in one sense at
+    least."""
     loose: bool = False
     """The joint is stated as fixed, which makes its sides one body, and contact would part them as `type` says."""
     afloat: str = ""
     """That a part with play between the sides may carry the joint where there is no contact, or hold more of it: in
     words."""
+    angle_limit: float = 0.0
+    """By so much the axis may be tilted to the intended one (rad)."""
     position_limit: float = 0.0
     """By so much the axis or centre may lie beside the intended one (m)."""
 
@@ -88,7 +90,7 @@ class Comparison:
         """Whether the joint is there and of the intended type."""
         if self.state == "one body":
             return self.intended.type == "fixed" and not self.loose
-        return self.state == "found" and self.type == self.intended.type
+        return self.state == "found" and self.type == self.intended.type and not self.admitted
 
     @property
     def angle(self) -> float | None:
@@ -114,6 +116,30 @@ class Comparison:
         if self.type not in WITH_LINE or self.intended.axis is None or self.axis is None:
             return None
         return _apart(self.intended.axis, wanted, self.axis, self.point)
+
+    @property
+    def tilted(self) -> bool | None:
+        """Whether the axis is tilted beyond its limit; None where its uncertainty decides."""
+        return _beyond(self.angle, self.angle_limit, self.angle_slack)
+
+    @property
+    def displaced(self) -> bool | None:
+        """Whether the axis or centre is farther off than its limit; None where its uncertainty decides."""
+        return _beyond(self.offset, self.position_limit, self.position_slack)
+
+    @property
+    def other_pitch(self) -> bool | None:
+        """Whether a screw advances otherwise a turn than intended; None where there is no pitch to compare."""
+        wanted = self.intended.pitch
+        if not self.right_type or self.type != "screw" or wanted is None or self.pitch is None:
+            return None
+        return abs(self.pitch - wanted) > ROUNDED_RATIO * abs(wanted)
+
+
+def _beyond(off: float | None, limit: float, slack: float) -> bool | None:
+    if off is None or off <= limit:
+        return False
+    return True if off > limit + slack else None
 
 
 def leaves_more(c: Comparison) -> bool:

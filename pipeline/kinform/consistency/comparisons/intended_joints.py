@@ -28,6 +28,9 @@ SHARED_MOTION = 0.02
 MISSED_SIGMAS = 2.0
 """Standard uncertainties of a found axis beyond which it is elsewhere than stated: 95 % of errors are smaller."""
 
+ANOTHER_AXIS = 0.5**0.5
+"""Cosine between axes below which one is not the other, tilted: nearer to square than to parallel."""
+
 
 def compare_joints(
     assembly: Assembly, contacts: Contacts | None, kinematics: Kinematics, intended: Iterable[IntendedJoint]
@@ -84,7 +87,7 @@ def _compared(
     if state == "found" and intended.closure and found is not None and _shares(intended, form.type, found):
         state, reason = "undecided", f"it only closes a loop, and by contact that joint is {form.type}"
     admitted = False
-    if state == "found" and motion is None and direct is not None and direct.type != intended.type:
+    if state == "found" and motion is None and direct is not None and _another_motion(direct, intended):
         wanted = joint_twists(intended)
         admitted = wanted is not None and admits(
             [every[k] for k in direct.touching], wanted, _first(kinematics, direct).parts
@@ -106,9 +109,17 @@ def _compared(
         angle_slack=MISSED_SIGMAS * angle_slack,
         position_slack=MISSED_SIGMAS * position_slack,
         size=size,
+        angle_limit=assembly.tolerances.angle_limit(),
         position_limit=assembly.tolerances.offset_limit(size),
         admitted=admitted,
     )
+
+
+def _another_motion(found: Joint, intended: IntendedJoint) -> bool:
+    """Whether the joint is of another type than intended, or its axis is nearer to square than to the intended one."""
+    if found.type != intended.type or found.axis is None or intended.axis is None:
+        return found.type != intended.type
+    return abs(float(found.axis @ intended.axis)) < ANOTHER_AXIS
 
 
 def _overlap(contacts: Contacts | None, bodies: tuple[Body, Body]) -> Interference | None:

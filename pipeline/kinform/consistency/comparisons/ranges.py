@@ -16,6 +16,9 @@ from kinform.model.collisions import RangeEnd
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
 
+END_ROUNDING = math.radians(2e-5)
+"""rad to which the end of a turn is found (`docs/conventions.md`): less is no turn."""
+
 
 @dataclass(frozen=True, eq=False)
 class RangeComparison:
@@ -141,4 +144,4 @@ def shown(value: float, joint: IntendedJoint, units: str, digits: int | None = N
         return "free"
     if joint.type == "prismatic":
         return length(value, units, digits or 4)
-    return angle(value, digits or 3)
+    return angle(value if abs(value) > END_ROUNDING else 0.0, digits or 3)

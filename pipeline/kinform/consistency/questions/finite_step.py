@@ -344,16 +344,16 @@ class _Asked:
         closing = self.steps.closing(still, moved, sense * self.twist)
         if closing <= 0.0:
             return None, 0.0
-        pair, tried = _sorted((still, moved)), 0.0
+        pair = _sorted((still, moved))
         counts = self.steps.counts(pair)
-        size, end = CLOSED_FIRST * counts / closing, min(self._most(pair), CLOSED_MOST * counts / closing)
+        end = min(self._most(pair), CLOSED_MOST * counts / closing)
+        size = min(CLOSED_FIRST * counts / closing, end) if closing * end > counts else math.inf
         while size <= end:
-            tried = size
             overlap = self.steps.overlap(still, moved, displacement(sense * size * self.twist))
             if overlap is not None and overlap.depth > counts:
-                return _Collision(size, overlap), tried
+                return _Collision(size, overlap), size
             size = min(STEP_GROWS * size, end) if size < end else math.inf
-        return None, tried
+        return None, end
 
     def _proof(self, sense: int, end: str, before: Mapping[str, tuple[str, _Collision]]) -> Step:
         chain, links = [end], []

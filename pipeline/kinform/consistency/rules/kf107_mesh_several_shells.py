@@ -44,4 +44,4 @@ def check(context: Context) -> Findings:
             )
 
 
-RULE = Rule("KF107", "mesh-several-shells", "note", __doc__, check, needs=("meshes",))
+RULE = Rule("KF107", "mesh-several-shells", "note", __doc__, check, needs=("meshes",), also=("warning",))

@@ -35,4 +35,4 @@ def check(context: Context) -> Findings:
         )
 
 
-RULE = Rule("KF110", "units-implausible", "error", __doc__, check, needs=("sizes",))
+RULE = Rule("KF110", "units-implausible", "error", __doc__, check, needs=("sizes",), also=("warning",))

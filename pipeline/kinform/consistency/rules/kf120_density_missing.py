@@ -73,4 +73,4 @@ def _lack(part: Part) -> str:
     return "" if part.density is not None else "no material and no density"
 
 
-RULE = Rule("KF120", "density-missing", "error", __doc__, check)
+RULE = Rule("KF120", "density-missing", "error", __doc__, check, also=("note",))

@@ -250,4 +250,4 @@ def _unit(ratio: float) -> str:
     return f": the number fits {fits[0]}" if fits else ""
 
 
-RULE = Rule("KF123", "mass-implausible", "warning", __doc__, check, needs=("weighed shapes",))
+RULE = Rule("KF123", "mass-implausible", "warning", __doc__, check, needs=("weighed shapes",), also=("error",))

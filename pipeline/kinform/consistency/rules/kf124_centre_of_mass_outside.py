@@ -17,6 +17,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from kinform.consistency.comparisons.as_written import place_in_link
 from kinform.consistency.comparisons.gathering import Ranked, gathered
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
@@ -50,7 +51,8 @@ def _outside(context: Context) -> Iterator[Ranked]:
                 intended=f"inside, around {place(middle, context.units)}",
                 place=body.centre,
                 declared=body.source,
-                remedy="Correct the centre of mass: in metres, in the frame of the link."
+                remedy="Correct the centre of mass: in the frame of the link, in metres, the middle of the geometry is "
+                f"at {place_in_link(body.described, middle)}."
                 if body.described is not None
                 else "Correct `centre_of_mass`.",
             )

@@ -86,4 +86,4 @@ def _of_description(description: Description) -> Iterator[Ranked]:
         yield Ranked("shaped" if shaped else "bare", float(len(members)), finding)
 
 
-RULE = Rule("KF125", "mass-missing", "warning", __doc__, check, needs=("descriptions",))
+RULE = Rule("KF125", "mass-missing", "warning", __doc__, check, needs=("descriptions",), also=("note",))

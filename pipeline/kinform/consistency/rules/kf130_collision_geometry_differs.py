@@ -92,5 +92,11 @@ def _finding(severity: str, link: DescribedLink, text: str, found: str, intended
 
 
 RULE = Rule(
-    "KF130", "collision-geometry-differs", "warning", __doc__, check, needs=("descriptions", "collision geometry")
+    "KF130",
+    "collision-geometry-differs",
+    "warning",
+    __doc__,
+    check,
+    needs=("descriptions", "collision geometry"),
+    also=("error",),
 )

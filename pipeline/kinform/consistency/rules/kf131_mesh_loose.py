@@ -9,14 +9,17 @@ neither it nor another text of its package names are one note.
 Why it matters: a simulator refuses the description, and a planner that cannot load a collision mesh sees no obstacle
 there. A file that nobody names is forgotten, or misspelt where it was meant.
 
-What to do: correct the file name, or add the file; remove what nobody uses.
+What to do: correct the file name, or add the file; remove what nobody uses. The remedy names a file of the same folder
+that nobody names and whose name is like it.
 
 Example: `arm_collision.stl` was renamed to `arm_coll.stl`, and the URDF was not.
 """
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Sequence
+from pathlib import PurePosixPath
 
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled
@@ -35,8 +38,8 @@ def check(context: Context) -> Outcome:
         for mesh in description.meshes:
             if mesh.missing:
                 missing.setdefault(mesh.path, []).append(mesh)
-        findings += map(_missing, missing.values())
         unnamed = [mesh.path for mesh in description.meshes if not mesh.missing]
+        findings += (_missing(uses, unnamed) for uses in missing.values())
         if unnamed:
             findings.append(
                 RULE.at("note").finding(
@@ -69,8 +72,8 @@ def _nothing(description: Description) -> str:
     return f"no link of {description.file} has geometry to compare with{''.join(there[:1])}"
 
 
-def _missing(uses: Sequence[LooseMesh]) -> Finding:
-    """One finding of a file, however often it is named."""
+def _missing(uses: Sequence[LooseMesh], unnamed: Sequence[str]) -> Finding:
+    """One finding of a file, however often it is named; `unnamed` are files that it may be."""
     mesh, many = uses[0], len(uses) > 1
     links = quoted(dict.fromkeys(use.link for use in uses))
     left_out = any(use.left_out for use in uses)
@@ -85,8 +88,16 @@ def _missing(uses: Sequence[LooseMesh]) -> Finding:
         found="no file",
         intended="a mesh",
         declared=Source(mesh.file, mesh.line),
-        remedy="Correct the file name, or add the file.",
+        remedy=f"Correct the file name{_meant(mesh.path, unnamed)}, or add the file.",
     )
 
 
-RULE = Rule("KF131", "mesh-loose", "error", __doc__, check, needs=("descriptions",))
+def _meant(path: str, unnamed: Sequence[str]) -> str:
+    """ ": `arm_coll.stl` is there, and nothing names it": the file of the same folder that is most like it."""
+    wanted = PurePosixPath(path)
+    beside = {file.stem: file.name for file in map(PurePosixPath, unnamed) if file.parent == wanted.parent}
+    close = difflib.get_close_matches(wanted.stem, beside, n=1)
+    return f": `{beside[close[0]]}` is there, and nothing names it" if close else ""
+
+
+RULE = Rule("KF131", "mesh-loose", "error", __doc__, check, needs=("descriptions",), also=("note",))

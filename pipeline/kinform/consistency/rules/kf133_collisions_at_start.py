@@ -48,4 +48,12 @@ def _ranked(context: Context, description: Description, overlap: StartOverlap) -
     return Ranked("overlap", overlap.depth, finding)
 
 
-RULE = Rule("KF133", "collisions-at-start", "warning", __doc__, check, needs=("descriptions", "collision geometry"))
+RULE = Rule(
+    "KF133",
+    "collisions-at-start",
+    "warning",
+    __doc__,
+    check,
+    needs=("descriptions", "collision geometry"),
+    also=("note",),
+)

@@ -1,9 +1,10 @@
 """Two parts occupy the same space, beyond the facets' own error and not as a fit of mating surfaces.
 
-An error between parts that move relative to each other, a warning between parts of one body (threads,
-pressed or screwed parts are often drawn so), a note where `[[assume]] ignore = true` covers the pair. In a robot
-description, of which the meshes are for looking at, a warning; a note between parts of one link, and between links that
-a joint joins where the overlap is at most 2 % of the smaller one.
+An error between parts that move relative to each other, a warning between parts of one body (threads, pressed or
+screwed parts are often drawn so), a note where it is no deeper than the contact tolerance of the pair and the form
+error of the facets, and where `[[assume]] ignore = true` covers the pair. In a robot description, of which the meshes
+are for looking at, a warning; a note between parts of one link, and between links that a joint joins where the
+overlap is at most 2 % of the smaller one.
 
 Copies of a part in one place are an error wherever they are, inside a group or a sub-assembly too, unless their mass is
 stated: it counts twice. Other overlaps inside a group are meant.
@@ -96,14 +97,27 @@ def _relation(context: Context, overlap: Interference) -> tuple[str, str]:
         sides = [frozenset(assembly.parts_of(name)) for name in assumption.between]
         if assumption.ignore and any(parts[k] in sides[0] and parts[1 - k] in sides[1] for k in (0, 1)):
             return f"; contact between them is ignored: {assumption.reason}", "note"
-    kinematics = context.design.kinematics
+    kinematics, slight = context.design.kinematics, overlap.depth <= _form(context, parts)
     if kinematics is not None and kinematics.body_of(parts[0]).name == kinematics.body_of(parts[1]).name:
-        return "; they move as one body", "note" if _links(context, parts) else "warning"
+        return "; they move as one body", "note" if slight or _links(context, parts) else "warning"
+    if slight:
+        return "; that is within the contact tolerance and the form error of the facets", "note"
     links = _links(context, parts)
     joined = {frozenset(joint.between) for d in assembly.descriptions for joint in d.joints}
     if links and frozenset(links) in joined and overlap.depth <= AT_JOINT * _size(context, links):
         return f"; a joint joins the links {quoted(links)}", "note"
     return f" (links {quoted(links)})" if links else "", "error"
+
+
+def _form(context: Context, parts: tuple[PartName, PartName]) -> float:
+    """m by which the parts may overlap in form: their contact tolerance, and what facets of their contact stand off the
+    surfaces; 0 where a shaft is too large for its bore."""
+    patches = [patch for patch in context.contacts.patches if patch.parts == parts]
+    meshes = [mesh for name in parts if (mesh := context.assembly.part(name).mesh) is not None]
+    if len(meshes) < len(parts) or any(map(beyond_press, patches)):
+        return 0.0
+    tolerance = context.assembly.tolerances.contact_of(meshes[0].size, meshes[1].size)
+    return tolerance + max((patch.chord for patch in patches), default=0.0)
 
 
 def _links(context: Context, parts: tuple[str, str]) -> tuple[str, ...]:
@@ -124,4 +138,4 @@ def _size(context: Context, links: tuple[str, ...]) -> float:
     return min(sizes, default=0.0)
 
 
-RULE = Rule("KF201", "parts-interpenetrate", "error", __doc__, check, needs=("contacts",))
+RULE = Rule("KF201", "parts-interpenetrate", "error", __doc__, check, needs=("contacts",), also=("warning", "note"))

@@ -67,4 +67,4 @@ def _finding(context: Context, patch: Patch, decided: set[frozenset[str | None]]
     )
 
 
-RULE = Rule("KF209", "contact-unknown", "warning", __doc__, check, needs=("several parts", "contacts"))
+RULE = Rule("KF209", "contact-unknown", "warning", __doc__, check, needs=("several parts", "contacts"), also=("note",))

@@ -4,8 +4,6 @@ Facets stand off the surface that they stand for, those of a coarse socket or co
 Solids that share no more than that may overlap or not: the surfaces that were meant are not known so well. An overlap
 that is deeper is known (KF201).
 
-A warning; a note between parts of one body.
-
 Why it matters: an overlap by less than facets stand off is not seen.
 
 What to do: export finer meshes of both parts where they meet, and check again.
@@ -23,9 +21,8 @@ from kinform.foundation.words import length, quoted
 def check(context: Context) -> Findings:
     """Each pair of parts of which it is not known whether they overlap."""
     for overlap in context.contacts.possible_overlaps:
-        one_body = context.design.kinematics is not None and len({context.body(name) for name in overlap.parts}) == 1
         depth = length(overlap.depth, context.units, 2)
-        yield (RULE.at("note") if one_body else RULE).finding(
+        yield RULE.finding(
             overlap.parts,
             f"{quoted(overlap.parts)} share some space, up to {depth} deep, no more than coarse facets there may stand "
             "off the surfaces that are meant: whether these overlap is not known",
@@ -37,4 +34,4 @@ def check(context: Context) -> Findings:
         )
 
 
-RULE = Rule("KF210", "overlap-possible", "warning", __doc__, check, needs=("several parts", "contacts"))
+RULE = Rule("KF210", "overlap-possible", "note", __doc__, check, needs=("several parts", "contacts"))

@@ -67,4 +67,6 @@ def _ranked(context: Context, rows: Sequence[Row]) -> Ranked:
     return Ranked("pin" if missing else "holes", float(len(rows)), finding)
 
 
-RULE = Rule("KF211", "bores-empty", "warning", __doc__, check, needs=("several parts", "contacts", "kinematics"))
+RULE = Rule(
+    "KF211", "bores-empty", "warning", __doc__, check, needs=("several parts", "contacts", "kinematics"), also=("note",)
+)

@@ -6,7 +6,9 @@ KF306), where that is known. A number that counts some or all of the idle freedo
 intended joint that is to move can: the outcome says which it counts. Blocked joints count by their type. Inconclusive
 when a joint is ambiguous, and where a body that no joint connects with ground overlaps with the rest: it would count as
 free, and what is drawn there may hold it. So it is where there are too many freedoms, or bodies that nothing holds, and
-a part has play between two bodies (KF203): it may hold them.
+a part has play between two bodies (KF203): it may hold them; and where all that is too many are turns of couplers about
+the line of their ball joints, which textbooks leave out, or turns of bodies whose meshes are too rough to tell whether
+they are seen.
 
 Why it matters: one freedom too few and the mechanism jams; one too many and something moves that no
 drive holds.
@@ -25,6 +27,8 @@ from kinform.consistency.comparisons.near import nearly_moves, out_of_place
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive
 from kinform.consistency.questions.immobile_joints import immobile_joints
+from kinform.consistency.questions.passive_turns import passive_turns
+from kinform.consistency.questions.rough_turns import rough_turns
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, quoted
 from kinform.kinematics import disconnected_bodies, disconnected_in_words
@@ -62,6 +66,16 @@ def check(context: Context) -> Outcome:
         return decided(reason=f"{counted(intended, 'freedom')}, as intended: {_with_idle(kinematics, spins)}")
     if low < intended < high:
         return inconclusive(f"{_ends(mobility)}: which contact holds while it moves is not known")
+    passive = passive_turns(kinematics.bodies, kinematics.joints, mobility.idle_bodies)
+    if not near and low - len(passive) <= intended < low:
+        return inconclusive(
+            f"{quoted(passive)} {'turns' if len(passive) == 1 else 'turn'} about the line of the ball joints, and "
+            f"{'moves' if len(passive) == 1 else 'move'} nothing else: the {mobility.effective} freedoms count that"
+        )
+    missing = low - intended - len(passive)
+    rough = rough_turns(context.assembly, kinematics, missing) if missing > 0 and not near else ()
+    if 0 < missing <= len(rough):
+        return inconclusive(f"whether anybody sees {quoted(rough)} turn on itself is not known: its mesh is too rough")
     whole, line = context.assembly.source, context.function.mobility_line
     usual = "See the freedoms with `kinform show F.h5 mobility`; correct the joints, or `mobility`."
     finding = RULE.finding(

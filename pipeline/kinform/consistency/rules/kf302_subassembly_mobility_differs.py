@@ -34,7 +34,7 @@ def check(context: Context) -> Outcome:
             continue
         spins = sub.mobility - found.effective
         low, high = found.ends
-        if spins and low < sub.mobility < high:
+        if spins and (low < sub.mobility < high or low - found.passive <= sub.mobility < low):
             unknown.append(sub.name)
             continue
         if spins < 0 and context.design.contacts is not None and context.with_play(parts) is not None:

@@ -1,7 +1,7 @@
 """Contacts hold some motion more than once.
 
 The number is that of independent constraints beyond what the mobility needs. Closed loops of parallel
-hinges always have some: a planar four-bar has three.
+hinges always have some: a planar four-bar has three. So short reports leave the note out; `-v` and JSON have it.
 
 Why it matters: redundant constraints only fit when the parts are exact. In reality they bind or share
 the load in an unknown way, and reactions cannot be computed uniquely.

@@ -24,20 +24,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from kinform.consistency.comparisons.comparison import Comparison, leaves_more
+from kinform.consistency.comparisons.comparison import Comparison
+from kinform.consistency.comparisons.forbidden import AT_HUB, derived_type
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled
 from kinform.consistency.rule import Rule
-from kinform.foundation.words import counted, direction, quoted
-from kinform.kinematics.joints.bodies.stated_joints import joint_twists
+from kinform.foundation.words import counted, direction
 from kinform.model.findings import Finding, Witness
 from kinform.model.kinematics import FREEDOMS
-
-AT_HUB = (
-    "the two links interlock at the hub about the axis of the joint: likely the output of the actuator is drawn in the "
-    "mesh of its housing"
-)
-"""Of a description whose joint is blocked there."""
 
 
 def check(context: Context) -> Outcome:
@@ -46,45 +40,15 @@ def check(context: Context) -> Outcome:
     unknown = [f"'{c.intended.name}': {c.reason}" for c in context.comparisons if c.state == "undecided"]
     findings = []
     for c in present:
-        if c.right_type or leaves_more(c):
+        judged = context.forbidden(c)
+        if judged is None:
             continue
-        judged = _judged(context, c)
-        if isinstance(judged, Finding):
-            findings.append(judged)
-        if not isinstance(judged, Finding) or judged.severity == "note":
-            unknown.append(f"'{c.intended.name}': {AT_HUB if isinstance(judged, Finding) else judged}")
+        if judged.witness is not None:
+            findings.append(_finding(context, c, judged.witness, judged.words))
+        else:
+            findings += [_note(c)] if judged.at_hub else []
+            unknown.append(f"'{c.intended.name}': {judged.doubt}")
     return settled(findings, "; ".join(unknown), f"{counted(len(present), 'joint')} compared")
-
-
-def _judged(context: Context, c: Comparison) -> Finding | str:
-    """The finding of a joint that contact seems to forbid; or why it is not known whether it does."""
-    derived = _derived_type(c)
-    motions, blocked = joint_twists(c.intended), context.blocked_joints
-    if blocked is None:
-        return f"contact gives {derived}, and steps need contacts"
-    first, second, between = _sides(context, c)
-    stated = blocked.rigid_by_text(first, second)
-    if stated is not None:
-        return _finding(context, c, Witness("textual", source_file=stated.file, source_line=stated.line))
-    if motions is None:
-        return f"contact gives {derived}, and the joint does not state where its motions are"
-    answer = blocked.of(first, second, motions, between, c.intended)
-    if answer.witness is not None:
-        return _finding(context, c, answer.witness.record, answer.witness.words(context.units))
-    if answer.at_hub:
-        return _note(c)
-    why = f": {answer.nearest.doubt(context.units)}" if answer.nearest is not None else ""
-    return f"contact gives {derived}, but no step proves that it forbids the intended motion in both senses{why}"
-
-
-def _sides(context: Context, c: Comparison) -> tuple[frozenset[str], frozenset[str], frozenset[str]]:
-    """Parts of both sides, and of what may go with either."""
-    if c.state == "one body":
-        first, second = (frozenset(map(str, context.assembly.parts_of(name))) for name in c.intended.between)
-        return first, second, frozenset(map(str, c.bodies[0].parts)) - first - second
-    first, second = (frozenset(map(str, body.parts)) for body in c.bodies)
-    loose = [context.kinematics.named_bodies[name] for name in c.through]
-    return first, second, frozenset(str(part) for body in loose for part in body.parts)
 
 
 def _note(c: Comparison) -> Finding:
@@ -92,7 +56,7 @@ def _note(c: Comparison) -> Finding:
     return RULE.at("note").finding(
         [c.intended.name],
         f"'{c.intended.name}': {AT_HUB}",
-        found=_derived_type(c),
+        found=derived_type(c),
         intended=c.intended.type,
         place=c.intended.point,
         declared=c.intended,
@@ -100,9 +64,9 @@ def _note(c: Comparison) -> Finding:
     )
 
 
-def _finding(context: Context, c: Comparison, witness: Witness | None, proof: str = "") -> Finding:
+def _finding(context: Context, c: Comparison, witness: Witness, proof: str) -> Finding:
     intended = c.intended
-    derived = _derived_type(c)
+    derived = derived_type(c)
     steps = (f"; {proof}" if proof else "") + _chain(context, c)
     return RULE.finding(
         [intended.name],
@@ -116,11 +80,11 @@ def _finding(context: Context, c: Comparison, witness: Witness | None, proof: st
     )
 
 
-def _place(c: Comparison, witness: Witness | None) -> Iterable[float] | None:
+def _place(c: Comparison, witness: Witness) -> Iterable[float] | None:
     """Of the joint, else of what blocks it."""
     if c.point is not None or c.intended.point is not None:
         return c.point if c.point is not None else c.intended.point
-    return witness.place_ahead if witness is not None else None
+    return witness.place_ahead
 
 
 def _chain(context: Context, c: Comparison) -> str:
@@ -128,14 +92,6 @@ def _chain(context: Context, c: Comparison) -> str:
     chains = {one.joint: one.parts for one in context.kinematics.unparted}
     parts = chains.get(c.intended.name, ())
     return f"; contact that it may not part holds its sides together: {' ~ '.join(parts)}" if parts else ""
-
-
-def _derived_type(c: Comparison) -> str:
-    if c.state == "one body":
-        why = f" ({c.reason})" if c.reason else ""
-        return f"fixed: {quoted(c.intended.between)} are parts of one body{why}"
-    text = c.type if c.type != "general" else f"general with {counted(c.freedoms, 'freedom')}"
-    return text + (f" (through {quoted(c.through)})" if c.through else "")
 
 
 def _consequence(c: Comparison) -> str:
@@ -157,4 +113,4 @@ def _remedy(c: Comparison) -> str:
     return "See the evidence with `kinform show F.h5 joints`; correct the mating surfaces, or the intended type."
 
 
-RULE = Rule("KF402", "joint-wrong-type", "error", __doc__, check, needs=("comparisons",))
+RULE = Rule("KF402", "joint-wrong-type", "error", __doc__, check, needs=("comparisons",), also=("note",))

@@ -7,15 +7,16 @@ by KF403 only.
 
 Why it matters: levers, strokes and clearances are computed from wrong places.
 
-What to do: correct the position of the bore or the pose of the part, or `point` of the intended joint. Raise
-`tolerances.axis_offset` if the difference is acceptable.
+What to do: correct the position of the bore or the pose of the part, or the place of the intended joint: the remedy has
+the nearest one, in the frame and unit of the file. Raise `tolerances.axis_offset` if the difference is acceptable.
 
 Example: a hinge that was moved 2 mm in the CAD model, and not in the manifest.
 """
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.comparison import Comparison
+from kinform.consistency.comparisons.as_written import point_as_written
+from kinform.consistency.comparisons.comparison import WITH_LINE, Comparison
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, inconclusive, skipped
 from kinform.consistency.rule import Rule
@@ -32,9 +33,9 @@ def check(context: Context) -> Outcome:
         if off is None:
             continue
         count += 1
-        if off > c.position_limit + c.position_slack:
-            findings.append(_finding(c, off, units))
-        elif off > c.position_limit:
+        if c.displaced:
+            findings.append(_finding(context, c, off))
+        elif c.displaced is None:
             unknown.append(
                 f"'{c.intended.name}' is {length(off, units)} off, known to {length(c.position_slack, units)}"
             )
@@ -43,8 +44,12 @@ def check(context: Context) -> Outcome:
     return decided(findings, f"{counted(count, 'place')} compared") if count else skipped("no axis to compare")
 
 
-def _finding(c: Comparison, off: float, units: str) -> Finding:
+def _finding(context: Context, c: Comparison, off: float) -> Finding:
     assert c.point is not None and c.intended.point is not None
+    units, nearest = context.units, c.point
+    if c.axis is not None and c.type in WITH_LINE:
+        nearest = c.point + c.axis * float(c.axis @ (c.intended.point - c.point))
+    written = point_as_written(context, c.intended, nearest) or "`point` of the intended joint"
     what = "centre" if c.type in ("spherical", "universal") else "axis"
     return RULE.finding(
         [c.intended.name],
@@ -54,7 +59,7 @@ def _finding(c: Comparison, off: float, units: str) -> Finding:
         intended=f"through {place(c.intended.point, units)}",
         place=c.point,
         declared=c.intended,
-        remedy="Correct the pose or the mating surfaces, or `point` of the intended joint.",
+        remedy=f"Correct the pose or the mating surfaces, or state where the {what} is: {written}.",
     )
 
 

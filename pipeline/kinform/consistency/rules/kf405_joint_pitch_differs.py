@@ -11,7 +11,7 @@ Example: an M6 lead screw with a pitch of 1 mm where 1.25 mm is intended.
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.couplings import ROUNDED_RATIO
+from kinform.consistency.comparisons.as_written import pitch_as_written
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, skipped
 from kinform.consistency.rule import Rule
@@ -22,12 +22,11 @@ def check(context: Context) -> Outcome:
     """Pitches of screw joints."""
     findings, count = [], 0
     for c in context.comparisons:
-        wanted = c.intended.pitch
-        if not c.right_type or c.type != "screw" or wanted is None or c.pitch is None:
+        if c.other_pitch is None or c.pitch is None or c.intended.pitch is None:
             continue
         count += 1
-        if abs(c.pitch - wanted) > ROUNDED_RATIO * abs(wanted):
-            pitch, intended = (f"{length(p, context.units)} a turn" for p in (c.pitch, wanted))
+        if c.other_pitch:
+            pitch, intended = (f"{length(p, context.units)} a turn" for p in (c.pitch, c.intended.pitch))
             findings.append(
                 RULE.finding(
                     [c.intended.name],
@@ -36,7 +35,8 @@ def check(context: Context) -> Outcome:
                     intended=intended,
                     place=c.point,
                     declared=c.intended,
-                    remedy="Correct the thread, or `pitch` of the intended joint (positive: right-handed).",
+                    remedy="Correct the thread, or the pitch of the intended joint (positive: right-handed)"
+                    f"{pitch_as_written(context, c.intended, c.pitch)}.",
                 )
             )
     return decided(findings) if count else skipped("no screw joint to compare")

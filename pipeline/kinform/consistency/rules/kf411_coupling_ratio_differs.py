@@ -16,6 +16,7 @@ Example: `ratio = -2.5` where gears of 20 and 48 teeth give −2.4.
 
 from __future__ import annotations
 
+from kinform.consistency.comparisons.as_written import ratio_as_written
 from kinform.consistency.comparisons.couplings import (
     UNCERTAIN_RATIO,
     Difference,
@@ -55,8 +56,8 @@ def check(context: Context) -> Outcome:
                     found=has,
                     intended=wanted,
                     declared=coupling,
-                    remedy="Correct the teeth or the pitch, or `ratio`: value of the first for one of the second; "
-                    "mind the sign.",
+                    remedy="Correct the teeth or the pitch, or the ratio, the value of the first for one of the second"
+                    f"{ratio_as_written(context, coupling, derived.value) or '; mind the sign'}.",
                 )
             )
     return decided(findings) if count else skipped("no coupling can be compared")

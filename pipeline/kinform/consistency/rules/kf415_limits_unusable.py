@@ -45,15 +45,20 @@ TURNING = ("revolute", "hinge")
 
 def check(context: Context) -> Outcome:
     """The limits of every joint of every description."""
-    joints = [joint for d in context.assembly.descriptions for joint in d.joints if joint.needs_limits or joint.limits]
-    ranked = [found for joint in joints if (found := _of_joint(joint)) is not None]
-    findings = list(gathered((*ranked, *_radians(context, joints)), "joint"))
+    joints = [
+        (joint, d.format)
+        for d in context.assembly.descriptions
+        for joint in d.joints
+        if joint.needs_limits or joint.limits
+    ]
+    ranked = [found for one in joints if (found := _of_joint(*one)) is not None]
+    findings = list(gathered((*ranked, *_radians(context, [joint for joint, _ in joints])), "joint"))
     for description in context.assembly.descriptions:
         findings += _zeros(description)
     return decided(findings, f"limits of {counted(len(joints), 'joint')} looked at")
 
 
-def _of_joint(joint: DescribedJoint) -> Ranked | None:
+def _of_joint(joint: DescribedJoint, format: str) -> Ranked | None:
     if joint.limits is None:
         text, found = f"joint '{joint.name}' is {joint.kind} and states no limits", "no limits"
         return _finding("error", joint, text, found, "State <limit lower=… upper=… effort=… velocity=…/>.")
@@ -61,7 +66,9 @@ def _of_joint(joint: DescribedJoint) -> Ranked | None:
     shown = f"{number(lower, 6)} and {number(upper, 6)}"
     if lower > upper:
         text = f"joint '{joint.name}': its lower limit {number(lower, 6)} is above the upper {number(upper, 6)}"
-        return _finding("error", joint, text, shown, "Exchange them, or correct a sign.")
+        return _finding(
+            "error", joint, text, shown, f"Exchange them{_limits(upper, lower, format)}, or correct a sign."
+        )
     if lower == upper:
         text = f"joint '{joint.name}': its limits are both {number(lower, 6)}, so it cannot move"
         return _finding("warning", joint, text, shown, "State its range, or make it fixed.")
@@ -69,7 +76,9 @@ def _of_joint(joint: DescribedJoint) -> Ranked | None:
     if joint.kind in TURNING and DEGREES[0] <= most <= DEGREES[1]:
         turns = number(most / (2.0 * math.pi), 3)
         text = f"joint '{joint.name}': its limits {shown} rad are {turns} turns: they are probably degrees"
-        return _finding("degrees", joint, text, shown, "State radians; or make it continuous, if it has no limits.")
+        stated = _limits(math.radians(lower), math.radians(upper), format)
+        remedy = f"State radians{stated}; or make it continuous, if it has no limits."
+        return _finding("degrees", joint, text, shown, remedy)
     return None
 
 
@@ -101,6 +110,11 @@ def _stopped(item: RangeComparison, lower: float, upper: float) -> bool:
     low, high = (end.value if end is not None else None for end in (item.lower, item.upper))
     before = low is not None and item.sign * low > lower + room
     return before or (high is not None and item.sign * high < upper - room)
+
+
+def _limits(lower: float, upper: float, format: str) -> str:
+    """ ": `lower="-1" upper="1"`": limits as a URDF has them; "" in other formats."""
+    return f': `lower="{number(lower, 6)}" upper="{number(upper, 6)}"`' if format == "urdf" else ""
 
 
 def _finding(kind: str, joint: DescribedJoint, text: str, found: str, remedy: str) -> Ranked:
@@ -136,4 +150,12 @@ def _zeros(description: Description) -> Iterator[Finding]:
         )
 
 
-RULE = Rule("KF415", "limits-unusable", "error", __doc__, check, needs=("descriptions", "described limits"))
+RULE = Rule(
+    "KF415",
+    "limits-unusable",
+    "error",
+    __doc__,
+    check,
+    needs=("descriptions", "described limits"),
+    also=("warning", "note"),
+)

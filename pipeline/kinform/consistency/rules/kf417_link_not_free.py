@@ -42,4 +42,12 @@ def _finding(held: HeldLink) -> Finding:
     )
 
 
-RULE = Rule("KF417", "link-not-free", "error", __doc__, check, needs=("descriptions", "contacts", "kinematics"))
+RULE = Rule(
+    "KF417",
+    "link-not-free",
+    "error",
+    __doc__,
+    check,
+    needs=("descriptions", "contacts", "kinematics"),
+    also=("warning",),
+)

@@ -18,8 +18,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from kinform.consistency.comparisons.as_written import range_as_written
 from kinform.consistency.comparisons.ranges import shown
-from kinform.consistency.comparisons.written import described_joint, written_range
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided
 from kinform.consistency.rule import Rule
@@ -46,8 +46,8 @@ def check(context: Context) -> Outcome:
 
 def _of_pair(context: Context, coupling: Coupling, follower: IntendedJoint, leader: IntendedJoint) -> Iterator[Finding]:
     assert follower.range is not None and leader.range is not None
-    described = described_joint(context, follower.name)
-    offset = 0.0 if described is None else described[0].offset
+    offsets = (j.offset for d in context.assembly.descriptions for j in d.joints if j.name == follower.name)
+    offset = next(offsets, 0.0)
     (low, high), (first, last) = follower.range, leader.range
     asked = _ends(coupling.ratio * first + offset, coupling.ratio * last + offset)
     shared = max(asked[0], low), min(asked[1], high)
@@ -71,12 +71,14 @@ def _of_pair(context: Context, coupling: Coupling, follower: IntendedJoint, lead
         text += ": they share nothing, and one of the two limits is always passed"
     else:
         text += f": they share only {shown(0.5 * sum(shared), follower, context.units)}, so neither joint can move"
-    remedy = f"Give '{follower.name}' {written_range(context, follower, asked)}"
+    remedy = f"Give '{follower.name}' {range_as_written(context, follower, asked) or mapped}"
     flipped = _ends(offset - coupling.ratio * first, offset - coupling.ratio * last)
     if min(flipped[1], high) - max(flipped[0], low) >= (1.0 - ROUNDED) * (flipped[1] - flipped[0]):
         remedy += f", or turn the ratio round to {number(-coupling.ratio)}, with which the limits agree"
     elif not stuck:
-        remedy += f", or '{leader.name}' {written_range(context, leader, usable)}"
+        remedy += (
+            f", or '{leader.name}' {range_as_written(context, leader, usable) or _between(context, leader, usable)}"
+        )
     witness = Witness("textual", source_file=leader.file, source_line=leader.line) if stuck else None
     yield RULE.at("error" if stuck else "warning").finding(
         coupling.joints, text,
@@ -97,4 +99,12 @@ def _between(context: Context, joint: IntendedJoint, ends: tuple[float, float]) 
     return " to ".join(shown(end, joint, context.units) for end in ends)
 
 
-RULE = Rule("KF418", "coupled-ranges-disagree", "warning", __doc__, check, needs=("stated couplings", "stated ranges"))
+RULE = Rule(
+    "KF418",
+    "coupled-ranges-disagree",
+    "warning",
+    __doc__,
+    check,
+    needs=("stated couplings", "stated ranges"),
+    also=("error",),
+)

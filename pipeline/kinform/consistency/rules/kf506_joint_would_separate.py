@@ -93,4 +93,12 @@ def _shared(shared: Sharing) -> Finding:
     )
 
 
-RULE = Rule("KF506", "joint-would-separate", "warning", __doc__, check, needs=("contacts", "kinematics", "forces"))
+RULE = Rule(
+    "KF506",
+    "joint-would-separate",
+    "warning",
+    __doc__,
+    check,
+    needs=("contacts", "kinematics", "forces"),
+    also=("note",),
+)

@@ -67,4 +67,4 @@ def _finding(context: Context, joint: Joint, intended: IntendedJoint | None) -> 
     )
 
 
-RULE = Rule("KF901", "joint-ambiguous", "note", __doc__, check, needs=("kinematics",))
+RULE = Rule("KF901", "joint-ambiguous", "note", __doc__, check, needs=("kinematics",), also=("warning",))

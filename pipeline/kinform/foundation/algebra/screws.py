@@ -7,8 +7,6 @@ constraint rows compare rotations with translations at the size of the contact.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from kinform.foundation.algebra.vectors import box, cross, lengths, norm, weighted_mean
@@ -84,19 +82,10 @@ def scaled(twists: Array, frame: Frame) -> Array:
 
 def span(vectors: Array, tolerance: float = SINGLE) -> Array:
     """Orthonormal basis (n, r) of the span of the columns of `vectors` (n, k)."""
-    return spans([vectors], tolerance)[0]
-
-
-def spans(spaces: Sequence[Array], tolerance: float = SINGLE) -> list[Array]:
-    """As `span`, of several sets of vectors (n, k), whose numbers k may differ."""
-    out = [np.zeros((len(vectors), 0)) for vectors in spaces]
-    for count in {vectors.shape[1] for vectors in spaces} - {0}:
-        members = [k for k, vectors in enumerate(spaces) if vectors.shape[1] == count]
-        left, values, _ = np.linalg.svd(np.array([spaces[k] for k in members]), full_matrices=False)
-        kept = values > tolerance * np.maximum(values[:, :1], TINY)
-        for k, vectors, of in zip(members, left, kept, strict=True):
-            out[k] = vectors[:, of]
-    return out
+    if not vectors.shape[1]:
+        return np.zeros((len(vectors), 0))
+    left, values, _ = np.linalg.svd(vectors, full_matrices=False)
+    return np.asarray(left[:, values > tolerance * max(float(values[0]), TINY)])
 
 
 def bracket(a: Array, b: Array) -> Array:

@@ -47,6 +47,16 @@ class DrivenFreedom:
         """Greatest rate of an angle (rad for 1 rad or m of the driver)."""
         return float(np.abs(self.rates[self.linkage.turns]).max(initial=0.0))
 
+    def by(self, joint: str) -> DrivenFreedom | None:
+        """The same freedom driven by another joint of one coordinate; None where that rests in it."""
+        at = [k for k, one in enumerate(self.linkage.coordinates) if one.joint == joint]
+        if len(at) != 1 or self.rates[at[0]] == 0.0:
+            return None
+        k = at[0]
+        drivers = self.drivers.copy()
+        drivers[self.driver], drivers[k] = False, True
+        return DrivenFreedom(self.linkage, k, self.rates * (self.linkage.coordinates[k].unit / self.rates[k]), drivers)
+
     def at_first_order(self, values: Array) -> Array:
         """(S, n) coordinates at values (S,) of the driver, loops left open."""
         return values[:, None] * self.rates

@@ -22,7 +22,6 @@ from kinform.foundation.algebra.screws import Frame, twist_at_origin
 from kinform.foundation.graphs.graph import blocks
 from kinform.foundation.lockstep import run_in_lockstep
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import MOST_IN_STEP
 from kinform.kinematics.separation.cone import nothing_opens_in_each
 from kinform.kinematics.separation.constants import HIGHS_FEASIBLE
 from kinform.kinematics.separation.contact_rows import ContactRows, is_stated
@@ -45,6 +44,8 @@ from kinform.model.names import BodyName, JointName
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
 
+MOST_IN_STEP = 250
+"""Programs that are solved together: more gain no speed."""
 MOST_CERTIFIED = 120
 """Components of twists up to which it is first asked whether anything opens in a block: dense algebra of a
 millisecond, where importing and calling a linear program takes hundreds."""

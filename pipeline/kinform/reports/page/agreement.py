@@ -15,7 +15,7 @@ from kinform.consistency import Comparison, compare_joints
 from kinform.design import Design
 from kinform.foundation import words
 from kinform.frozen import dataclass
-from kinform.function import resolve_joint
+from kinform.function import joint_as_stated, range_as_stated, resolve_joint
 from kinform.model.collisions import RangeEnd
 from kinform.model.findings import Severity
 from kinform.model.function import IntendedJoint, Requirement
@@ -132,7 +132,7 @@ class _Table:
         elif found.afloat:
             behaviour = f"not known: {found.afloat}"
         elif derived is not None:
-            behaviour = self._derived(derived) + self._range_found(joint)
+            behaviour = self._found(joint, derived)
         else:
             behaviour = found.type + (f", through {', '.join(found.through)}" if found.through else "")
         right = None if found.state in ("stated", "undecided") else found.right_type
@@ -142,22 +142,23 @@ class _Table:
         ambiguous = row.mark == "agrees" and derived is not None and derived.status == "ambiguous"
         return replace(row, mark="not decided") if ambiguous else row
 
-    def _range_found(self, intended: IntendedJoint) -> str:
-        """ ", range -31° to 90°": how far an intended joint goes, in the designer's sign, where its range is stated."""
-        assembly, kinematics = self.design.assembly, self.design.kinematics
-        if intended.range is None or kinematics is None:
-            return ""
+    def _found(self, intended: IntendedJoint, derived: Joint) -> str:
+        """ "revolute about -z, range -31° to 90°": the joint of an intended one in the designer's order and sense, and
+        how far it goes where its range is stated."""
+        assembly, kinematics, run = self.design.assembly, self.design.kinematics, self.design.simulation
+        assert kinematics is not None
         resolution = resolve_joint(assembly, kinematics, intended.name)
-        run = self.design.simulation
+        text = self._derived(joint_as_stated(resolution) or derived)
+        if intended.range is None:
+            return text
         ranges = () if run is None else run.ranges or ()
-        name = None if resolution.joint is None else resolution.joint.name
-        item = next((item for item in ranges if item.joint == name), None)
+        item = next((item for item in ranges if item.joint == derived.name), None)
         if item is None:
-            return ", range not looked for"
+            return f"{text}, range not looked for"
         if item.status == "unbounded":
-            return ", range free"
-        ends = [_end(intended, resolution.sign, end, self.units) for end in (item.lower, item.upper)]
-        return ", range " + " to ".join(ends if resolution.sign > 0 else ends[::-1])
+            return f"{text}, range free"
+        item = range_as_stated(item, resolution)
+        return f"{text}, range {_end(intended, item.lower, self.units)} to {_end(intended, item.upper, self.units)}"
 
     def _other(self, joint: Joint) -> Row:
         row = self._judged_by_name(Row(joint.name, self._form(joint), self._derived(joint)), {joint.name}, None)
@@ -247,8 +248,8 @@ def _limit(joint: IntendedJoint, value: float, units: str) -> str:
     return words.length(value, units) if joint.type == "prismatic" else words.angle(value, 4)
 
 
-def _end(joint: IntendedJoint, sign: int, end: RangeEnd, units: str) -> str:
-    """One end of the range that was found, in the designer's sign."""
+def _end(joint: IntendedJoint, end: RangeEnd, units: str) -> str:
+    """One end of the range that was found."""
     if end.status == "unknown":
         return "not known"
-    return "free" if end.value is None else _limit(joint, sign * end.value, units)
+    return "free" if end.value is None else _limit(joint, end.value, units)

@@ -4,6 +4,7 @@ assumptions, rules."""
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Literal
 
@@ -11,12 +12,12 @@ from kinform.consistency import explain
 from kinform.design import Design
 from kinform.foundation import words
 from kinform.frozen import dataclass
-from kinform.function import as_intended, designers_joints
+from kinform.function import range_as_stated, resolve_joint
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.findings import SEVERITIES, RuleOutcome, Severity
-from kinform.model.kinematics import Joint, Kinematics
+from kinform.model.kinematics import Joint
 from kinform.reports.page.phrases import assumption, joint_sentence, patch_words
-from kinform.reports.page.subjects import wanted_names
+from kinform.reports.page.subjects import as_stated, wanted_names
 from kinform.reports.phrases import rule_counts, severity_counts, verdict_told, verdict_word, where
 
 MOST_LISTED_PATCHES = 14
@@ -139,7 +140,8 @@ def joints(design: Design) -> list[JointFacts]:
     kinematics = design.ranged
     if kinematics is None:
         return []
-    wanted, ranges = wanted_names(design), _ranges(design, kinematics)
+    wanted, run = wanted_names(design), design.simulation
+    ranges = {str(item.joint): item for item in (run.ranges if run is not None else None) or ()}
     return [
         _joint(design, k, joint, wanted.get(joint.name, []), ranges.get(joint.name))
         for k, joint in enumerate(kinematics.joints)
@@ -147,14 +149,16 @@ def joints(design: Design) -> list[JointFacts]:
 
 
 def _joint(design: Design, index: int, joint: Joint, wanted: list[str], computed: JointRange | None) -> JointFacts:
-    """A joint with its contact, what its singular values say, its range, and what holds it or is in its way."""
+    """A joint with its contact, what its singular values say, its range, and what holds it or is in its way; in the
+    order and sense of the first of its names in the function."""
+    seen = as_stated(design, joint, wanted)
     units = design.assembly.units
     patches = () if design.contacts is None else design.contacts.patches
     carried = sorted(
         (patches[k] for k in joint.patches if k < len(patches)), key=lambda p: (-p.area, p.parts, p.surfaces)
     )
     listed = tuple(f"{' and '.join(p.parts)}: {patch_words(p, units)}" for p in carried[:MOST_LISTED_PATCHES])
-    facts = [("between", " and ".join(joint.bodies)), ("evidence", ", ".join(joint.evidence) or "none")]
+    facts = [("between", " and ".join(seen.bodies)), ("evidence", ", ".join(joint.evidence) or "none")]
     values = [float(v) for v in joint.singular_values if math.isfinite(v)]
     tolerances = design.assembly.tolerances
     if any(values) and joint.patches:
@@ -162,7 +166,7 @@ def _joint(design: Design, index: int, joint: Joint, wanted: list[str], computed
         text = f"{words.counted(len(free), 'freedom')} below {tolerances.free:g}"
         facts.append(("singular values", text + (f"; the smallest other is {rest[0]:.3g}" if rest else "")))
     if joint.freedoms:
-        facts.append(("range", _range(design, computed)))
+        facts += _ranges(design, wanted, computed)
     if joint.held is not None:
         leaving = "; ".join(way.words for way in joint.releases[:4])
         facts.append(("held by contact", "yes" if joint.held else f"no: {leaving}" if leaving else "no"))
@@ -174,20 +178,20 @@ def _joint(design: Design, index: int, joint: Joint, wanted: list[str], computed
         for b in joint.blockers
     )
     return JointFacts(
-        index=index, name=joint.name, wanted=", ".join(wanted), sentence=joint_sentence(joint, units),
+        index=index, name=joint.name, wanted=", ".join(wanted), sentence=joint_sentence(seen, units),
         status=joint.status, reason=joint.reason, facts=tuple(facts), patches=listed,
         more=max(0, len(carried) - MOST_LISTED_PATCHES), blockers=blockers,
     )  # fmt: skip
 
 
-def _ranges(design: Design, kinematics: Kinematics) -> dict[str, JointRange]:
-    """By the names of derived joints: how far they go, in the designer's sense where there is one."""
-    if design.simulation is None or design.kinematics is None:
-        return {}
-    known = designers_joints(design.assembly, design.kinematics)
-    ranges = {str(item.joint): item for item in reversed(as_intended(design.simulation, known).ranges or ())}
-    names = {str(j.name): known[j.name].name if j.name in known else str(j.name) for j in kinematics.joints}
-    return {joint: ranges[name] for joint, name in names.items() if name in ranges}
+def _ranges(design: Design, wanted: Sequence[str], computed: JointRange | None) -> list[tuple[str, str]]:
+    """How far a joint goes in the sense of each of its names in the function; once where they agree."""
+    kinematics = design.kinematics
+    if computed is None or kinematics is None or not wanted:
+        return [("range", _range(design, computed))]
+    named = [resolve_joint(design.assembly, kinematics, name) for name in wanted]
+    told = [(f"range of {one.name}", _range(design, range_as_stated(computed, one))) for one in named]
+    return told if len({text for _, text in told}) > 1 else [("range", told[0][1])]
 
 
 def _range(design: Design, computed: JointRange | None) -> str:

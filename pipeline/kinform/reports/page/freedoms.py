@@ -6,7 +6,7 @@ What moves, and where to, is found by `kinematics.mobility.freedom_motions`.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
@@ -35,6 +35,9 @@ choice."""
 MOST_COORDINATES = 240
 """Assemblies with loops and more joint coordinates than this are shown at first order only: closing them is slow.
 Chosen, not measured."""
+EVEN = np.linspace(0.0, 1.0, 2 * SIDE_FRAMES + 1)
+"""Shares of the way of a joint that another drives. By their sine the steps are small at its end, where a linkage turns
+back and the loops close only just."""
 MOST_FREEDOMS = 60
 """Freedoms that are shown. Chosen, not measured."""
 
@@ -66,12 +69,20 @@ class Span:
     upper: float | None = None
 
 
-def freedom_motions(kinematics: Kinematics, size: float, spans: Mapping[str, Span] | None = None) -> list[Showing]:
-    """Each freedom of the assembly of this size (m) as a motion; `spans` of joints by name."""
+def freedom_motions(
+    kinematics: Kinematics, size: float, spans: Mapping[str, Span] | None = None, asked: Iterable[str] = ()
+) -> list[Showing]:
+    """Each freedom of the assembly of this size (m) as a motion, then those that move the joints `asked` for, driven by
+    these where another joint drives the freedom; `spans` of joints by name."""
     driven, loose = driven_freedoms(kinematics, size, MOST_FREEDOMS)
     has_loops, coordinates = looped(kinematics)
     large = has_loops and coordinates > MOST_COORDINATES
     out = [_shown(kinematics, freedom, size, spans or {}, large) for freedom in driven]
+    led = {freedom.coordinate.joint for freedom in driven}
+    for name in asked:
+        others = (other for freedom in driven if (other := freedom.by(name)) is not None)
+        if name not in led and len(out) < MOST_FREEDOMS and (other := next(others, None)) is not None:
+            out.append(_shown(kinematics, other, size, spans or {}, large, np.sin(0.5 * np.pi * EVEN)))
     return out + [_adrift(kinematics, twists, size) for twists in loose[: MOST_FREEDOMS - len(out)]]
 
 
@@ -84,24 +95,30 @@ def _adrift(kinematics: Kinematics, twists: Array, size: float) -> Showing:
 
 
 def _shown(
-    kinematics: Kinematics, freedom: DrivenFreedom, size: float, spans: Mapping[str, Span], large: bool
+    kinematics: Kinematics,
+    freedom: DrivenFreedom,
+    size: float,
+    spans: Mapping[str, Span],
+    large: bool,
+    steps: Array | None = None,
 ) -> Showing:
-    """The motion of a freedom, as far to both sides as the span of its driver says and the loops close."""
+    """The motion of a freedom, as far to both sides as the span of its driver says and the loops close; `steps` are
+    shares of the way to either side, even ones where none are given."""
     joint, angular = freedom.coordinate.joint, freedom.coordinate.turns
     span = spans.get(joint, Span())
     poses, shares, note, ends = [], [], "", []
     for sign, end in ((-1.0, span.lower), (1.0, span.upper)):
         reach = _reach(freedom, size, end)
         many = max(SIDE_FRAMES, int(np.ceil(reach / FINEST_TURN))) if angular else SIDE_FRAMES
-        steps = np.linspace(0.0, 1.0, many + 1)
-        values = sign * reach * steps
+        shown = np.linspace(0.0, 1.0, many + 1) if steps is None else steps
+        values = sign * reach * shown
         q = freedom.at_first_order(LARGE_SHARE * values) if large else freedom.followed(values)
         followed = freedom.linkage.poses(q)
         if len(q) < len(values):
             note = note or "the loops do not close any further"
             followed = np.concatenate([followed, np.repeat(followed[-1:], len(values) - len(q), axis=0)])
         poses.append(followed)
-        shares.append(sign * steps)
+        shares.append(sign * shown)
         ends.append(sign * reach)
     every = np.concatenate([poses[0][:0:-1], poses[1]])
     return Showing(

@@ -17,13 +17,13 @@ from kinform.foundation import words
 from kinform.foundation.algebra.spatial import quaternions, to_matrix
 from kinform.foundation.rounding import SOLVED
 from kinform.frozen import dataclass
-from kinform.function import DesignersJoint, designers_joints, stated_ranges
+from kinform.function import DesignersJoint, designers_joints, resolve_joint, stated_ranges
 from kinform.model.arrays import Array
 from kinform.model.collisions import Collision, RangeEnd
+from kinform.model.kinematics import Joint
 from kinform.model.names import PartName
 from kinform.model.simulation import Simulation
 from kinform.reports.page.freedoms import Showing, Span, freedom_motions
-from kinform.reports.page.subjects import wanted_names
 
 MOST_FRAMES = 600
 """Poses of a simulated motion that are embedded; of longer ones an even choice. Twenty seconds at 30 a
@@ -79,6 +79,27 @@ class Movement:
             out[name][:3, 3] = (1.0 - share) * self.places[k, b] + share * self.places[k + 1, b]
         return out
 
+    def values(self, joint: Joint) -> Array:
+        """(F,) of a joint of one freedom along it (rad or m): 0 at the pose of the meshes, and continuous."""
+        poses = [self._displacements(name) for name in joint.bodies]
+        relative = np.linalg.inv(poses[0]) @ poses[1]
+        assert joint.axis is not None
+        if joint.type == "prismatic":
+            return np.asarray(relative[:, :3, 3] @ joint.axis)
+        turned = relative[:, :3, :3]
+        sines = np.stack([turned[:, k, j] - turned[:, j, k] for j, k in ((1, 2), (2, 0), (0, 1))], axis=1)
+        angles = np.unwrap(np.arctan2(sines @ joint.axis, np.trace(turned, axis1=1, axis2=2) - 1.0))
+        return np.asarray(angles - angles[np.argmin(np.abs(self.time))])
+
+    def _displacements(self, body: str) -> Array:
+        """(F, 4, 4) of a body from the pose of the meshes."""
+        out = np.tile(np.eye(4), (len(self.time), 1, 1))
+        if body in self.bodies:
+            b = self.bodies.index(body)
+            out[:, :3, :3] = [to_matrix(turn) for turn in self.turns[:, b]]
+            out[:, :3, 3] = self.places[:, b]
+        return out
+
 
 def movements_of(design: Design, size: float) -> list[Movement]:
     """The simulated run, where there is one, then the freedoms; `size` is that of the assembly (m)."""
@@ -87,12 +108,18 @@ def movements_of(design: Design, size: float) -> list[Movement]:
     out = [] if run is None or len(run.time) < 2 else [_run(design, run, known)]
     if design.kinematics is not None:
         spans = _Spans(design)
-        names = wanted_names(design)
-        senses = designers_joints(design.assembly, design.kinematics)
-        for showing in freedom_motions(design.kinematics, size, spans.known):
-            made = _freedom(design, showing, spans, names)
-            out.append(_as_designed(made, senses.get(showing.driver or "")))
+        for showing in freedom_motions(design.kinematics, size, spans.known, spans.short):
+            out.append(_as_designed(_freedom(design, showing, spans), spans.named.get(showing.driver or "")))
     return out
+
+
+def _short(design: Design) -> list[str]:
+    """Joints, by kinform's names, whose range falls short (KF412): the page shows their ends."""
+    found = () if design.report is None else design.report.findings
+    names = dict.fromkeys(one.subject[0] for one in found if one.code == "KF412")
+    assert design.kinematics is not None
+    joints = (resolve_joint(design.assembly, design.kinematics, name).joint for name in names)
+    return [str(joint.name) for joint in joints if joint is not None]
 
 
 def _run(design: Design, run: Simulation, known: set[str]) -> Movement:
@@ -121,10 +148,10 @@ def _collision(item: Collision, units: str) -> Mark:
     return Mark(item.time, "collision", text, item.parts, item.place)
 
 
-def _freedom(design: Design, showing: Showing, spans: _Spans, names: dict[str, list[str]]) -> Movement:
+def _freedom(design: Design, showing: Showing, spans: _Spans) -> Movement:
     subject = ", ".join(showing.bodies)
     if showing.driver is not None:
-        subject = names.get(showing.driver, [showing.driver])[0]
+        subject = spans.named[showing.driver].name if showing.driver in spans.named else showing.driver
     assert design.kinematics is not None
     moving = [k for k, body in enumerate(design.kinematics.bodies) if body.name in showing.bodies]
     poses = showing.poses[:, moving]
@@ -163,8 +190,8 @@ class _Spans:
     def __init__(self, design: Design):
         self.design = design
         kinematics = design.kinematics
-        known = {} if kinematics is None else designers_joints(design.assembly, kinematics)
-        self.signs = {name: one.sign for name, one in known.items()}
+        self.short = [] if kinematics is None else _short(design)
+        self.named = {} if kinematics is None else designers_joints(design.assembly, kinematics)
         run = design.simulation
         found = () if run is None else run.ranges or ()
         self.ranges = {str(item.joint): item for item in found}
@@ -180,10 +207,13 @@ class _Spans:
             if joint.freedoms == 1 and joint.name in self.ranges:
                 ends = self.ranges[joint.name].lower, self.ranges[joint.name].upper
                 low, high = (self._stop(end) for end in ends)
+                if joint.name in self.short:  # where a slide has left its guide
+                    low, high = ends[0].leaves if low is None else low, ends[1].leaves if high is None else high
                 wanted = asked.get(joint.name, (0.0, 0.0))
-                out[joint.name] = Span(
-                    None if low is None else min(low, wanted[0]), None if high is None else max(high, wanted[1])
-                )
+                # beyond where parts meet there is something to see, beyond where a linkage turns back there is nothing
+                low = min(low, wanted[0]) if low is not None and ends[0].parts else low
+                high = max(high, wanted[1]) if high is not None and ends[1].parts else high
+                out[joint.name] = Span(low, high)
         return out
 
     @staticmethod
@@ -200,7 +230,7 @@ class _Spans:
             if value is None or not end.parts or not 0.0 <= sign * value <= sign * reach * (1.0 + SOLVED):
                 continue
             units = self.design.assembly.units
-            told = self.signs.get(showing.driver, 1) * value
+            told = value if showing.driver not in self.named else self.named[showing.driver].sign * value
             shown = words.angle(told, 4) if showing.turns else words.length(told, units)
             text = f"{shown}: {' and '.join(end.parts)} meet"
             share = sign * min(1.0, value / reach) if reach else float(sign)

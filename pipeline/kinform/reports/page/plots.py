@@ -18,7 +18,6 @@ from kinform.model.simulation import Simulation
 from kinform.reports.page.curves import Plot, Series, number, plot_svg
 from kinform.reports.page.sizing import SIZED, sizing_svgs
 from kinform.reports.page.spectra import AROUND, METHOD, envelope_plots, spectrum_svg
-from kinform.reports.page.subjects import wanted_names
 from kinform.reports.values.runs import coordinates
 
 MOST_PLOTS = 48
@@ -30,7 +29,8 @@ def plot_groups(design: Design) -> list[tuple[str, list[str], str]]:
     run = design.simulation
     if run is None or len(run.time) < 2:
         return []
-    titles = {name: f"{', '.join(known)}, {name}" for name, known in wanted_names(design).items()}
+    named = {} if design.kinematics is None else designers_joints(design.assembly, design.kinematics)
+    titles = {name: f"{one.name}, {name}" for name, one in named.items()}
     groups = [
         ("Joint values", _values(design, run, titles)),
         ("Sensors", _sensors(design, run)),

@@ -20,6 +20,7 @@ from kinform.reports.page.movements import Movement
 from kinform.reports.page.packing import Blob, quantised
 from kinform.reports.page.phrases import joint_sentence, patch_words
 from kinform.reports.page.scene import Scene
+from kinform.reports.page.subjects import as_stated
 from kinform.reports.values.plain import fields, plain
 
 FIT_COLOURS = {"clearance": "#3f7fbf", "touch": "#2e9e76", "transition": "#c9962b", "interference": "#c2410c"}
@@ -93,11 +94,12 @@ def embedded_scene(scene: Scene) -> tuple[dict[str, Any], str]:
 def _joint(scene: Scene, joint: Joint) -> dict[str, Any]:
     number = scene.body_number
     point, size = scene.sign_of(joint)
+    wanted = scene.wanted.get(joint.name, [])
     return {
         "name": joint.name,
-        "wanted": ", ".join(scene.wanted.get(joint.name, [])),
+        "wanted": ", ".join(wanted),
         **fields(joint, "type", "status"),
-        "text": joint_sentence(joint, scene.design.assembly.units),
+        "text": joint_sentence(as_stated(scene.design, joint, wanted), scene.design.assembly.units),
         "bodies": [number[name] for name in joint.bodies],
         **fields(joint, "axis", "axis2"),
         "point": point,

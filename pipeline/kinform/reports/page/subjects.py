@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from weakref import WeakKeyDictionary
 
 from kinform.design import Design
 from kinform.frozen import dataclass
+from kinform.function import joint_as_stated, resolve_joint
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
 from kinform.model.names import PartName
@@ -68,6 +69,13 @@ def _collected(design: Design) -> _Names:
         {joint.name: joint for joint in joints},
         {joint.name: joint for joint in assembly.function.joints},
     )
+
+
+def as_stated(design: Design, joint: Joint, names: Sequence[str]) -> Joint:
+    """The joint in the order and sense of the first of the names that the designer gave to it."""
+    if not names or design.kinematics is None:
+        return joint
+    return joint_as_stated(resolve_joint(design.assembly, design.kinematics, names[0])) or joint
 
 
 def wanted_names(design: Design) -> dict[str, list[str]]:

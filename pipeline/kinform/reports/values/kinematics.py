@@ -7,6 +7,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from kinform.design import Design
+from kinform.function import designers_joints, joint_as_stated, resolve_joint
 from kinform.kinematics import Motions
 from kinform.model.kinematics import Joint, Kinematics, Mobility, Release
 from kinform.reports.freedom_phrases import freedom_text, metres
@@ -19,20 +20,17 @@ if TYPE_CHECKING:
 def joint_values(design: Design) -> dict[str, Any]:
     """Bodies and joints, and how they come apart."""
     from kinform.consistency.comparisons.answers import answer_counts, answers
-    from kinform.function import designers_joints
 
     kinematics = design.ranged or _kinematics(design)
     computed = ranged(design)
     given = answers(design)
-    known = designers_joints(design.assembly, kinematics)
+    stated = InDesignersSense(design)
     return {
         "bodies": [fields(body, "name", "parts", "ground", "merged") for body in kinematics.bodies],
         "joints": [
-            one_joint(joint, joint.name in computed)
-            | {"intended_name": known[joint.name].name if joint.name in known else None}
-            for joint in kinematics.joints
+            one_joint(joint, joint.name in computed) | stated.of_derived(joint.name) for joint in kinematics.joints
         ],
-        "intended": [asdict(answer) for answer in given],
+        "intended": [asdict(answer) | stated.of_intended(answer.name) for answer in given],
         "answers": dict(answer_counts(given)) | {"share_undecided": _share(given)},
         "sides": [asdict(one) for one in kinematics.sides],
         "asides": [asdict(aside) for aside in kinematics.asides],
@@ -46,6 +44,31 @@ def joint_values(design: Design) -> dict[str, Any]:
             fields(item, "bodies") | {"releases": [release(way) for way in item.releases]} for item in kinematics.slides
         ],
     }
+
+
+class InDesignersSense:
+    """Derived joints in the designer's names, order and sense."""
+
+    def __init__(self, design: Design):
+        assembly, kinematics, computed = design.assembly, design.ranged or _kinematics(design), ranged(design)
+        self._named = {name: one.name for name, one in designers_joints(assembly, kinematics).items()}
+        self._found = {}
+        for intended in assembly.function.joints:
+            joint = joint_as_stated(resolve_joint(assembly, kinematics, intended.name))
+            if joint is not None:
+                limits = _limits(joint) if joint.name in computed else None
+                self._found[intended.name] = {"bodies": joint.bodies, "axis": joint.axis, "range": limits}
+
+    def of_intended(self, name: str) -> dict[str, Any]:
+        """What was found for an intended joint; nulls where nothing was."""
+        found = self._found.get(name, {})
+        return {f"found_{key}": found.get(key) for key in ("axis", "range")}
+
+    def of_derived(self, name: str) -> dict[str, Any]:
+        """What the designer calls a derived joint, and how it reads then; nulls where it has no name."""
+        intended = self._named.get(name)
+        found = {} if intended is None else self._found[intended]
+        return {"intended_name": intended} | {f"intended_{key}": found.get(key) for key in ("bodies", "axis", "range")}
 
 
 def _share(given: Sequence[Answer]) -> float | None:
@@ -74,14 +97,13 @@ def ranged(design: Design) -> set[str]:
 def one_joint(joint: Joint, computed: bool) -> dict[str, Any]:
     """Its range is null as long as it has not been computed: one that was computed and is not known says so."""
     of_blocker = ("parts", "patch", "area", "share", "place", "gap", "forbids")
-    limits = {"lower": joint.range_lower, "upper": joint.range_upper, "status": joint.range_status}
     return {
         **fields(joint, "name", "bodies", "type", "axis", "point"),
         **({"axis2": joint.axis2} if joint.type == "universal" else {}),
         **fields(joint, "pitch", "freedoms"),
         **({"twists": joint.twists} if joint.type == "general" else {}),
         **fields(joint, "evidence", "status", "reason", "motion"),
-        "range": limits if computed else None,
+        "range": _limits(joint) if computed else None,
         "patches": joint.patches,
         "blocked_by": [fields(blocker, *of_blocker) for blocker in joint.blockers],
         "readings": [
@@ -94,6 +116,10 @@ def one_joint(joint: Joint, computed: bool) -> dict[str, Any]:
         **fields(joint, "held", "held_reason", "extremes"),
         "releases": [release(way) for way in joint.releases],
     }
+
+
+def _limits(joint: Joint) -> dict[str, Any]:
+    return {"lower": joint.range_lower, "upper": joint.range_upper, "status": joint.range_status}
 
 
 def release(way: Release) -> dict[str, Any]:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
 from kinform.behaviour.joints import KINDS
 from kinform.design import Design
-from kinform.function import as_intended, designers_joints
+from kinform.function import DesignersJoint, as_intended, designers_joints, range_as_stated
 from kinform.model.arrays import Array
 from kinform.model.collisions import JointRange
 from kinform.model.simulation import Simulation
@@ -40,6 +40,7 @@ def simulation_values(design: Design) -> dict[str, Any]:
     run = design.simulation
     assert run is not None
     ran = bool(len(run.time))
+    known = {} if design.kinematics is None else designers_joints(design.assembly, design.kinematics)
     return {
         "status": run.status,
         "reason": run.reason or None,
@@ -48,7 +49,7 @@ def simulation_values(design: Design) -> dict[str, Any]:
         "duration": run.time[-1] if ran else None,
         "samples": len(run.time),
         "bodies": run.body_names,
-        "joints": _courses(design, run) if ran else [],
+        "joints": _courses(run, known) if ran else [],
         "residual": run.residual.max() if len(run.residual) else None,
         "balance": run.balance.max() if run.level == "dynamic" and len(run.balance) else None,
         "drives": [fields(use, *_OF_DRIVE) for use in run.drives],
@@ -70,7 +71,7 @@ def simulation_values(design: Design) -> dict[str, Any]:
         },
         "assumptions": run.assumptions,
         "failures": [{"subject": subject, "message": message} for subject, message in run.failures],
-        "ranges": None if run.ranges is None else [_range(item) for item in run.ranges],
+        "ranges": None if run.ranges is None else [_range(item, known.get(item.joint)) for item in run.ranges],
         "collisions": None
         if run.collisions is None
         else [fields(item, "parts", "time", "place", "depth") for item in run.collisions],
@@ -92,20 +93,24 @@ def _extremes(values: Array) -> dict[str, Any]:
 _COMPONENTS = ("tau_x", "tau_y", "tau_z", "f_x", "f_y", "f_z")
 
 
-def _range(item: JointRange) -> dict[str, Any]:
+def _range(item: JointRange, one: DesignersJoint | None) -> dict[str, Any]:
+    """A range as kinform has it, and with the name and in the sense that the function gives its joint."""
     of_end = ("status", "value", "parts", "place", "reason", "leaves")
+    stated = None if one is None else range_as_stated(item, one)
     return {
         "joint": item.joint,
         "status": item.status,
         "lower": fields(item.lower, *of_end),
         "upper": fields(item.upper, *of_end),
         "left_out": item.left_out,
+        "intended_name": None if stated is None else stated.joint,
+        "intended_lower": None if stated is None else fields(stated.lower, *of_end),
+        "intended_upper": None if stated is None else fields(stated.upper, *of_end),
     }
 
 
-def _courses(design: Design, run: Simulation) -> list[dict[str, Any]]:
+def _courses(run: Simulation, known: Mapping[str, DesignersJoint]) -> list[dict[str, Any]]:
     """Each coordinate as kinform has it, and with the name and in the sense that the function gives its joint."""
-    known = {} if design.kinematics is None else designers_joints(design.assembly, design.kinematics)
     seen = as_intended(run, known)
     out = []
     for (name, kind, unit, column), (theirs, *_) in zip(coordinates(run), coordinates(seen), strict=True):

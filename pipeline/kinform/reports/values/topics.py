@@ -42,17 +42,19 @@ def summary_json(design: Design, topic: str | None = None) -> str:
 def joint_evidence(design: Design, name: str) -> dict[str, Any]:
     """All the evidence of one joint. Raises StageError when joints are not known, KeyError for another name."""
     from kinform.kinematics import insight
-    from kinform.reports.values.kinematics import one_joint, ranged
+    from kinform.reports.values.kinematics import InDesignersSense, one_joint, ranged
 
     require(design, "joints")
-    found = insight(design, name)
+    found, computed = insight(design, name), design.ranged
+    assert computed is not None
     of_patch = ("parts", "surfaces", "kind", "one_sided", "area", "gap", "fit")
     evidence: dict[str, Any] = plain(
         {
             "schema": "kinform/joint/1",
             "assembly": design.assembly.name,
             "units": design.assembly.units,
-            "joint": one_joint(found.joint, found.joint.name in ranged(design)),
+            "joint": one_joint(computed.named_joints[found.joint.name], found.joint.name in ranged(design))
+            | InDesignersSense(design).of_derived(found.joint.name),
             "patches": [
                 fields(item, "index", "role", "share", "rows") | fields(item.patch, *of_patch) for item in found.patches
             ],

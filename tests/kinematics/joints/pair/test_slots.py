@@ -10,8 +10,8 @@ from support.solids import box, part, random_pose, rod
 from support.touching import touching as touching_of
 
 from kinform import kinematics
-from kinform.consistency.comparisons.answers import answer_of
-from kinform.consistency.comparisons.intended_joints import compare_joints
+from kinform.consistency.comparisons.answers import answers
+from kinform.design import Design
 from kinform.model.function import IntendedJoint
 
 SHAFT = rod(6, -25, 25, 56, 3.0)
@@ -51,7 +51,8 @@ def found(block, shaft, type_, along=(0, 0, 1), pose=None, scale=1e-3):
     known, touching = touching_of(made)
     derived = kinematics.derive(made, known, touching)
     (joint,) = derived.joints
-    return joint, answer_of(made, *compare_joints(made, touching, derived, [wanted])).answer
+    (answer,) = answers(Design(made, known, touching, derived))
+    return joint, answer.answer
 
 
 HELD = {

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from kinform.form.constants import FILES_DEEP, FRAME_ROUNDING
+from kinform.form.problems import Problems
 from kinform.formats.description.elements import FILE, Element, Xml, parse_xml, tag_of
 from kinform.formats.description.mesh_files import MeshFiles
 from kinform.formats.description.poses import about, pose, quaternion, turn
@@ -289,3 +291,30 @@ def _scale_and_pose(
         return scale, None
     first = along * np.sign(scale)
     return first, pose(M / first, -M @ p)
+
+
+def elements(root: Any, tag: str) -> Iterator[tuple[Any, str | None]]:
+    """Elements of the world with that name, each with the class that it inherits."""
+    waiting = [(world, world.get("childclass")) for world in root if tag_of(world) == "worldbody"]
+    while waiting:
+        element, named = waiting.pop()
+        for child in element:
+            inherited = child.get("childclass") or named
+            if tag_of(child) == tag:
+                yield child, inherited if tag == "body" else named
+            if tag_of(child) in ("body", "frame"):
+                waiting.append((child, inherited))
+
+
+def ranges_of(
+    root: Any, joint: str, bounds: tuple[float, float], *, slides: bool
+) -> Iterator[tuple[Any, tuple[float, float]]]:
+    """The elements of a joint, each with the range (rad or m, 0 at the pose of the file) in the units of the file."""
+    xml = Xml("", Problems())
+    compiler, defaults = Compiler.of(xml, root), Defaults(xml, root)
+    unit = 1.0 if slides or not compiler.degrees else math.pi / 180.0
+    for element, named in elements(root, "joint"):
+        said = defaults.said(element, named)
+        if (said.get("name") or "").replace("/", "_") == joint:
+            ref = float(said.get("ref", "0"))
+            yield element, (bounds[0] / unit + ref, bounds[1] / unit + ref)

@@ -2,52 +2,30 @@
 
 from __future__ import annotations
 
-import math
 import posixpath
-from collections.abc import Iterator
 from typing import Any
 
 from lxml import etree
 
-from kinform.form.problems import Problems
-from kinform.formats.description.elements import Xml, tag_of
+from kinform.formats.description.elements import tag_of
 from kinform.formats.description.robot import Inertial, Robot
 from kinform.formats.description.writing.xml_edits import numbers
-from kinform.formats.mjcf.reading.defaults import Compiler, Defaults
+from kinform.formats.mjcf.reading.defaults import elements, ranges_of
 
 _TURNED = ("quat", "euler", "axisangle", "xyaxes", "zaxis", "diaginertia")
 
 
-def _elements(root: Any, tag: str) -> Iterator[tuple[Any, str | None]]:
-    """Elements of the world with that name, each with the class that it inherits."""
-    waiting = [(world, world.get("childclass")) for world in root if tag_of(world) == "worldbody"]
-    while waiting:
-        element, named = waiting.pop()
-        for child in element:
-            inherited = child.get("childclass") or named
-            if tag_of(child) == tag:
-                yield child, inherited if tag == "body" else named
-            if tag_of(child) in ("body", "frame"):
-                waiting.append((child, inherited))
-
-
 def write_range(root: Any, robot: Robot, joint: str, bounds: tuple[float, float]) -> None:
     """The range (rad or m, 0 at the pose of the file) of a joint, in the units of the file."""
-    xml = Xml("", Problems())
-    compiler, defaults = Compiler.of(xml, root), Defaults(xml, root)
     slides = next(j.type == "prismatic" for j in robot.joints if j.name == joint)
-    for element, named in _elements(root, "joint"):
-        said = defaults.said(element, named)
-        if (said.get("name") or "").replace("/", "_") == joint:
-            unit = 1.0 if slides or not compiler.degrees else math.pi / 180.0
-            ref = float(said.get("ref", "0"))
-            element.set("range", numbers(bound / unit + ref for bound in bounds))
-            element.set("limited", "true")
+    for element, values in ranges_of(root, joint, bounds, slides=slides):
+        element.set("range", numbers(values))
+        element.set("limited", "true")
 
 
 def write_inertial(root: Any, link: str, stated: Inertial) -> None:
     """The inertial of a body, in its frame."""
-    body = next(e for e, _ in _elements(root, "body") if (e.get("name") or "").replace("/", "_") == link)
+    body = next(e for e, _ in elements(root, "body") if (e.get("name") or "").replace("/", "_") == link)
     inertial = next((child for child in body if tag_of(child) == "inertial"), None)
     if inertial is None:
         inertial = etree.Element("inertial")

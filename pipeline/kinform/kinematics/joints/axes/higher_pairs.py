@@ -18,8 +18,7 @@ from kinform.foundation.algebra.vectors import cross, norm
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.rounding import SOLVED, TINY
 from kinform.frozen import dataclass
-from kinform.kinematics.joints.pair.certainty import meets
-from kinform.kinematics.joints.pair.touches import TOUCHING
+from kinform.kinematics.joints.pair.touches import TOUCHING, meets
 from kinform.kinematics.screws.canonical_basis import canonical_twists
 from kinform.mechanism.constants import SIGMAS
 from kinform.mechanism.first_order import body_twists

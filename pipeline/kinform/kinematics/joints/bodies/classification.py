@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from kinform.foundation.words import quoted
 from kinform.kinematics.joints.bodies.admitted import admits
+from kinform.kinematics.joints.bodies.backlash import without_backlash
 from kinform.kinematics.joints.bodies.complete_function import without_effect
 from kinform.kinematics.joints.bodies.extents import Extents
 from kinform.kinematics.joints.bodies.merging import Merger
@@ -20,7 +21,7 @@ from kinform.model.arrays import Ints
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.kinematics import Body, Joint, body_of_part
-from kinform.model.names import PartName
+from kinform.model.names import BodyName, PartName
 from kinform.model.tolerances import Tolerances
 
 
@@ -98,6 +99,13 @@ def _stated_to_move(assembly: Assembly, merger: Merger, touching: Mapping[Pair, 
     return out
 
 
+def _stated_to_turn(assembly: Assembly, of_part: Mapping[PartName, BodyName]) -> set[Pair]:
+    """Pairs of bodies that the function states to turn relative to each other."""
+    turning = [joint for joint in assembly.function.joints if joint.type not in ("fixed", "prismatic")]
+    pairs = (pair_between(assembly, of_part, joint.between) for joint in turning)
+    return {pair for pair in pairs if pair is not None}
+
+
 def decide_ignored(pairs: Pairs, merger: Merger) -> list[Joint]:
     """What contact would hold between bodies that a function which states all joints moves by others, sorted by their
     bodies: it constrains nothing."""
@@ -131,6 +139,7 @@ def _decided(
     decided = pairs.decide([(touching[pair], [of_name[n] for n in pair]) for pair in new.values()])
     known |= zip(new, decided, strict=True)
     overlaps = deepest_overlaps(pairs.interferences, body_of_part(bodies))
+    turning = _stated_to_turn(pairs.assembly, body_of_part(bodies))
     out: dict[Pair, tuple[Answer, Joint]] = {}
     for pair, key in keys.items():
         answer = known[key]
@@ -138,6 +147,9 @@ def _decided(
             continue
         places = [index for index, _, _ in touching[pair]]
         joint = joint_between(answer.joint, pair, places)
+        if joint.at_stop and pair not in turning:
+            sides = ([pairs.assembly.part(part) for part in of_name[name].parts] for name in pair)
+            joint = without_backlash(joint, pairs.patches, *sides)
         if pair in overlaps:
             joint = with_overlap(joint, overlaps[pair])
         if answer.other is not None:

@@ -48,15 +48,13 @@ The steps
    contact beside it, is the joint, drawn at its end stop (a door on its jamb). A small part that is drawn into the
    other body by more than a press, and alone forbids a motion, is left out, and the joint is `blocked` by it.
    `certainty` says what makes the answer doubtful: it is `ambiguous` then, never silently one or the other.
-   `uncertainty` says how well the fits know the axis and its place; `scraps` which patches are too slight for the
-   answer to hang on them; `one_sided` which faces may end a motion at this pose and not guide it; `slots` what pins
-   hold. Of the last three the other reading is kept (`Joint.readings`), and the stated function may choose
-   (`bodies.readings`).
+   Contact that may not hold what its rows say is listed by generators (`suspects`) in one table of precedence:
+   `uncertainty` and `strays` what the fits hardly know and what may not be meant to touch, `coarse_flats` what coarse
+   meshes may hide, `scraps` what is too slight for the answer to hang on it, `slots` what pins hold,
+   `one_sided` which faces may end a motion at this pose and not guide it. Of the last ones the other reading is kept
+   (`Joint.readings`), and the stated function may choose (`bodies.readings`).
 7. `joint` has the result as a `Joint`; `question` is all of it as a function of what it depends on; `extremes` are
    the samples that the constraint matrix has rows for.
-
-Many pairs are decided at once: `in_step` lets each go its own way through these steps, and stacks what they ask of
-linear algebra. Each is decided as it would be alone, to the last bit.
 
 A pin in a bore, with a collar at each end
 ------------------------------------------

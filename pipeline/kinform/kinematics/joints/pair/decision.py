@@ -20,21 +20,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import norm, sine, widest_gap
-from kinform.foundation.lockstep import run_in_lockstep
-from kinform.foundation.words import counted
+from kinform.foundation.algebra.vectors import norm
 from kinform.frozen import dataclass
-from kinform.kinematics.joints.pair.certainty import Certainty, certainty, doubtful, momentary
-from kinform.kinematics.joints.pair.evidence import COAXIAL, GUIDES, Evidence, Item
+from kinform.kinematics.joints.pair.certainty import Certainty, certainty
+from kinform.kinematics.joints.pair.evidence import COAXIAL, GUIDES, Evidence
 from kinform.kinematics.joints.pair.extremes import extreme_samples
-from kinform.kinematics.joints.pair.freedoms import freedoms, freedoms_beyond
+from kinform.kinematics.joints.pair.freedoms import NEW_FREEDOM, beyond
 from kinform.kinematics.joints.pair.hypotheses import Motion, candidate_motions
-from kinform.kinematics.joints.pair.in_step import NEW_FREEDOM, Steps, remains
 from kinform.kinematics.joints.pair.lower_pairs import JointForm
-from kinform.kinematics.joints.pair.motion_cone import SLIDES, MotionCone, motion_cone
-from kinform.kinematics.joints.pair.one_sided import ALONG_AXIS, HALF_ROUND, OtherReading, leaves_several_ways
-from kinform.kinematics.joints.pair.preserved import preserved_by_each
-from kinform.kinematics.joints.pair.touches import TOUCHING
+from kinform.kinematics.joints.pair.motion_cone import MotionCone, motion_cone
+from kinform.kinematics.joints.pair.one_sided import lets_turn, new_turns
+from kinform.kinematics.joints.pair.preserved import preserved_motions
+from kinform.kinematics.joints.pair.suspects import AtRest, Pair, suspect
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.kinematics import JointStatus, ReadingCause
 from kinform.model.tolerances import Tolerances
@@ -45,8 +42,6 @@ PRESS_RATIO = 2.0
 """Nor do overlaps within this many times those of the patches that carry the joint. Chosen, not measured."""
 MOST_LEFT_OUT = 0.25
 """Largest share of the contact area that may be left out as an overlap. Chosen, not measured."""
-IN_CLOSED = 0.1
-"""Share of a motion that may be outside of what is closed, which is known to slack only. Chosen, not measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,148 +71,50 @@ class Decision:
     """Items left out that end a motion at this pose, each with the motion and the sense in which it ends it."""
 
 
-Question = tuple[Evidence, Tolerances, Sequence[Ints]]
-"""The evidence of a pair, and of each of its items the samples that bound its patch."""
+def decide(evidence: Evidence, tolerances: Tolerances, bounds: Sequence[Ints] | None = None) -> Decision:
+    """The joint between the two bodies of the evidence; `bounds`: of each item the samples that bound its patch, where
+    these are known."""
+    if bounds is None:
+        bounds = extreme_samples([item.patch for item in evidence.items])
+    candidates = candidate_motions(evidence, tolerances.alignment)
+    twists = np.array([motion.twist for motion in candidates]).reshape(-1, 6).T
+    return _decide(Pair(evidence, tolerances, bounds, candidates, twists, preserved_motions(evidence, twists)))
 
 
-def decide(evidence: Evidence, tolerances: Tolerances) -> Decision:
-    """The joint between the two bodies of the evidence."""
-    return decide_each([(evidence, tolerances, extreme_samples([item.patch for item in evidence.items]))])[0]
-
-
-def decide_each(pairs: Sequence[Question]) -> list[Decision]:
-    """The joints of several pairs of bodies, each by the evidence of its own contacts alone."""
-    candidates = [candidate_motions(evidence, tolerances.alignment) for evidence, tolerances, _ in pairs]
-    twists = [np.array([m.twist for m in of_pair]).reshape(-1, 6).T for of_pair in candidates]
-    preserved = preserved_by_each([(evidence, of_pair) for (evidence, *_), of_pair in zip(pairs, twists, strict=True)])
-    of_each = zip(pairs, candidates, twists, preserved, strict=True)
-    return run_in_lockstep(
-        [_decide(_Pair(*pair, motions, of_pair, flags)) for pair, motions, of_pair, flags in of_each], remains
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class _Pair:
-    """What is known of a pair: its patches, and which of them preserve which candidate motions."""
-
-    evidence: Evidence
-    tolerances: Tolerances
-    bounds: Sequence[Ints]
-    candidates: tuple[Motion, ...]
-    twists: Array
-    """(6, n)."""
-    preserved: Flags
-    """(items, n)."""
-
-    def without(self, out: Flags) -> _Pair:
-        """The pair if these items (items,) were not there."""
-        bounds = [samples for samples, left in zip(self.bounds, ~out, strict=True) if left]
-        return replace(self, evidence=self.evidence.without(out), bounds=bounds, preserved=self.preserved[~out])
-
-
-def _decide(pair: _Pair) -> Steps[Decision]:
+def _decide(pair: Pair) -> Decision:
     """The joint by what the patches say of candidate motions."""
-    evidence, preserved = pair.evidence, pair.preserved
-    everything = np.ones(len(evidence.items), dtype=bool)
-    strict, values = yield from freedoms(evidence, pair.twists, preserved, everything, pair.tolerances)
+    evidence = pair.evidence
+    strict, values = pair.left_by(np.ones(len(evidence.items), dtype=bool))
     cone = motion_cone(evidence, strict, pair.bounds)
-    turned: OtherReading | None = None
     if cone.extra and not cone.opened.all():
-        _, freed = yield from freedoms_beyond(evidence, pair.twists, preserved, ~cone.opened, pair.tolerances, strict)
-        cone = cone.exactly(freed)
-    if cone.extra:
-        stopped = yield from _at_stop(pair, strict, cone)
-        if isinstance(stopped, Decision):
-            return stopped
-        turned = stopped
-    blocked = yield from _blocked(pair, strict, cone)
-    if blocked is not None:
-        return blocked
-    sure = yield from certainty(evidence, pair.twists, preserved, strict, values, pair.tolerances, cone)
-    if turned is not None and sure.status == "determined" and not cone.plainly_open:
-        sure = doubtful(evidence, strict, turned)
-    elif sure.status == "determined" and leaves_several_ways(cone):
-        sure = Certainty(
-            "ambiguous",
-            f"fixed while all contact holds; {counted(cone.extra, 'motion')} beside that go one "
-            "way only, and no one opens all of it",
-        )
+        cone = cone.exactly(beyond(pair.left_by(~cone.opened)[0], strict))
+    rest = AtRest(
+        evidence, pair.tolerances, pair.bounds, pair.candidates, pair.twists, pair.preserved, strict, values, cone
+    )
+    decided = (_at_stop(rest) if cone.extra else None) or _blocked(rest)
+    if decided is not None:
+        return decided
+    sure = certainty(rest)
     kept = tuple(range(len(evidence.items)))
-    form = JointForm("general") if momentary(evidence, strict) else evidence.form(strict)
-    other = None if sure.other is None else _other(evidence, sure, pair.candidates, preserved, values)
+    form = JointForm("general") if rest.momentary else rest.form
+    other = None if sure.other is None else _other(rest, sure)
     return Decision(form, strict, strict, sure.status, sure.reason, kept, (), values, other, cone=cone)
 
 
-def _at_stop(pair: _Pair, strict: Array, cone: MotionCone) -> Steps[Decision | OtherReading | None]:
+def _at_stop(pair: AtRest) -> Decision | None:
     """The joint of a pair that is drawn where contact ends its rotation: that of the rest of the contact, where it
-    leaves what is at rest and a turn about its journal; a reading where the journal does not go more than half round,
-    None where there is no such turn."""
-    evidence = pair.evidence
-    reading: OtherReading | None = None
-    for n, motion in _new_turns(pair, strict):
-        out = ~pair.preserved[:, n]
-        journal = _journal(evidence.chosen(~out), motion)
-        if not (journal or reading is None) or _in_corner(evidence, out):
+    leaves what is at rest and a turn about its journal; None where there is no such turn."""
+    for motion, out, journal in new_turns(pair):
+        basis, freed = pair.freed(~out) if journal else (pair.basis, pair.basis[:, :0])
+        if not freed.shape[1] or lets_turn(pair, suspect(out, "stop"), basis, freed) is None:
             continue
-        basis, freed = yield from freedoms_beyond(evidence, pair.twists, pair.preserved, ~out, pair.tolerances, strict)
-        if not freed.shape[1] or not _in_one_sense(cone, basis, freed):
-            continue
-        if not journal:
-            reading = OtherReading(evidence.form(basis), basis, tuple(np.flatnonzero(out).tolist()), "stop")
-            continue
-        rest = yield from _decide(pair.without(out))
+        rest = _decide(pair.without(out))
         if rest.basis.shape[1] != basis.shape[1] or rest.status == "blocked":
             continue
-        sense = 0.0 if freed.shape[1] > 1 else -_sense(evidence.speeds_of(out, motion.twist))
+        sense = 0.0 if freed.shape[1] > 1 else -_sense(pair.evidence.speeds_of(out, motion.twist))
         ended = tuple((int(k), motion, sense) for k in np.flatnonzero(out))
-        return _with_left_out(rest, out, motion, strict, cone.exactly(freed), ended, "")
-    return reading
-
-
-def _in_corner(evidence: Evidence, out: Flags) -> bool:
-    """Would a pin be taken off one wall that stays at another? Which of them it leaves is not known."""
-    held, left = (
-        {(item.patch.parts[k], item.patch.surfaces[k]) for item in of for k in (0, 1) if item.patch.radii[k] > 0.0}
-        for of in ([i for i in evidence.chosen(flags) if i.patch.kind in TOUCHING] for flags in (~out, out))
-    )
-    return not held.isdisjoint(left)
-
-
-def _in_one_sense(cone: MotionCone, basis: Array, freed: Array) -> bool:
-    """Whether contact lets go in some sense whatever its rest leaves free beside what is at rest, and that is turns."""
-    turning = np.linalg.svd(freed[:3], compute_uv=False).min() > SLIDES
-    missed = basis - cone.closed @ (cone.closed.T @ basis)
-    return bool(turning and np.linalg.norm(missed, axis=0).max() < IN_CLOSED)
-
-
-def _new_turns(pair: _Pair, strict: Array) -> list[tuple[int, Motion]]:
-    """Turns about curved surfaces that are no freedoms at rest, and that some patch preserves, best supported first."""
-    some = pair.preserved.any(axis=0) & ~pair.preserved.all(axis=0)
-    turns = [(int(n), pair.candidates[n]) for n in np.flatnonzero(some)]
-    return [
-        (n, motion)
-        for n, motion in turns
-        if motion.turn
-        and motion.curved
-        and not motion.pitch
-        and norm(motion.twist - strict @ (strict.T @ motion.twist)) > NEW_FREEDOM
-    ]
-
-
-def _journal(kept: Sequence[Item], motion: Motion) -> bool:
-    """Do surfaces that both bodies have go more than half round the axis of the turn, all of them together, or a ball
-    more than half round its centre?"""
-    rounds = [item for item in kept if not item.patch.one_sided]
-    about = [
-        item.normals
-        for item in rounds
-        if item.patch.kind in COAXIAL and sine(item.patch.axis, motion.axis) < ALONG_AXIS
-    ]
-    if about and widest_gap(np.concatenate(about), motion.axis) < HALF_ROUND:
-        return True
-    return any(
-        item.patch.kind == "sphere" and float((item.normals @ item.normals.mean(axis=0)).min()) < 0.0 for item in rounds
-    )
+        return _with_left_out(rest, out, motion, pair.basis, pair.cone.exactly(freed), ended, "")
+    return None
 
 
 def _sense(speeds: Array) -> float:
@@ -225,11 +122,11 @@ def _sense(speeds: Array) -> float:
     return 1.0 if float(speeds.max()) > -float(speeds.min()) else -1.0
 
 
-def _blocked(pair: _Pair, strict: Array, cone: MotionCone) -> Steps[Decision | None]:
+def _blocked(pair: AtRest) -> Decision | None:
     """The joint of a pair of which a small part is drawn into each other and forbids what the rest of the contact
     allows; None where none does. Of the candidates the one that leaves out the smallest share of the area, the first of
     equals; where contact already leaves a freedom, only a turn about a curved surface may be added."""
-    evidence, total = pair.evidence, float(pair.evidence.areas.sum())
+    evidence, strict, total = pair.evidence, pair.basis, float(pair.evidence.areas.sum())
     if not any(item.interferes for item in evidence.items):
         return None
     found: list[tuple[float, int]] = []
@@ -246,12 +143,12 @@ def _blocked(pair: _Pair, strict: Array, cone: MotionCone) -> Steps[Decision | N
         return None
     share, n = min(found)
     out = ~pair.preserved[:, n]
-    basis, _ = yield from freedoms(evidence, pair.twists, pair.preserved, ~out, pair.tolerances)
+    basis, _ = pair.left_by(~out)
     if basis.shape[1] <= strict.shape[1]:
         return None
-    rest = yield from _decide(pair.without(out))
+    rest = _decide(pair.without(out))
     words = f"{int(out.sum())} of {len(out)} patches ({100 * share:.1f} % of the area) left out: they block it"
-    return _with_left_out(rest, out, pair.candidates[n], strict, cone, (), words)
+    return _with_left_out(rest, out, pair.candidates[n], strict, pair.cone, (), words)
 
 
 def _overlaps(evidence: Evidence, motion: Motion, out: Flags) -> bool:
@@ -301,21 +198,19 @@ def _with_left_out(
     )
 
 
-def _other(
-    evidence: Evidence, sure: Certainty, candidates: tuple[Motion, ...], preserved: Flags, values: Array
-) -> Decision:
+def _other(pair: AtRest, sure: Certainty) -> Decision:
     """The other reading of a doubtful answer, as a decision of its own: what it leaves out forbids a motion."""
     other = sure.other
     assert other is not None
-    keep = np.ones(len(evidence.items), dtype=bool)
+    keep = np.ones(len(pair.patches), dtype=bool)
     keep[list(other.out)] = False
-    free = preserved[keep].all(axis=0)
+    free = pair.preserved[keep].all(axis=0)
     # each forbids a motion that the kept patches leave; where it does so only together with others, any that it forbids
     out = []
     for k in other.out:
-        forbids = free & ~preserved[k]
-        out.append((k, candidates[int(np.argmax(forbids if forbids.any() else ~preserved[k]))]))
+        forbids = free & ~pair.preserved[k]
+        out.append((k, pair.candidates[int(np.argmax(forbids if forbids.any() else ~pair.preserved[k]))]))
     kept = tuple(int(k) for k in np.flatnonzero(keep))
     return Decision(
-        other.form, other.basis, other.basis, "inferred", sure.reason, kept, tuple(out), values, role=other.role
+        other.form, other.basis, other.basis, "inferred", sure.reason, kept, tuple(out), pair.values, role=other.role
     )

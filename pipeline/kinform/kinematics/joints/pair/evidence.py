@@ -118,11 +118,11 @@ class Evidence:
         """(items,) m²."""
         return np.array([item.area for item in self.items])
 
-    def form(self, basis: Array, turns: tuple[Array, Array] | None = None) -> JointForm:
-        """The joint whose freedoms are the columns of `basis` (6, k), whose turns may be known (`name_space`); of an
-        array that was asked about before it is known."""
+    def form(self, basis: Array) -> JointForm:
+        """The joint whose freedoms are the columns of `basis` (6, k); of an array that was asked about before it is
+        known."""
         if id(basis) not in self._forms:
-            self._forms[id(basis)] = basis, name_space(basis, self.frame, turns)
+            self._forms[id(basis)] = basis, name_space(basis, self.frame)
         return self._forms[id(basis)][1]
 
     def rows_of(self, chosen: Flags) -> tuple[Array, Array]:

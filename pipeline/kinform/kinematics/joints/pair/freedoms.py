@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.foundation.algebra.screws import span
 from kinform.foundation.algebra.vectors import norm
 from kinform.kinematics.joints.pair.evidence import Evidence
-from kinform.kinematics.joints.pair.in_step import NEW_FREEDOM, Remainder, Remains, Steps
 from kinform.kinematics.joints.pair.lower_pairs import nearest_pair
 from kinform.kinematics.joints.pair.preserved import preserved_motions
 from kinform.model.arrays import Array, Flags
@@ -22,42 +22,55 @@ CLEARLY_NEW = 0.5
 DIFFERENCE_SLACK = 2.0
 """What is left of a further motion may be off by this many times the tolerances: it is a difference. Chosen, not
 measured."""
+NEW_FREEDOM = 0.03
+"""A motion adds a freedom when this much of its unit twist lies outside those already found. Chosen, not measured."""
 
 
 def freedoms(
     evidence: Evidence, twists: Array, preserved: Flags, keep: Flags, tolerances: Tolerances
-) -> Steps[tuple[Array, Array]]:
-    """Basis (6, k) of what the kept patches leave free, and the singular values (6,) that say so.
+) -> tuple[Array, Array]:
+    """Basis (6, k) of what the kept patches leave free, and the singular values (6,) that say so: as a lower pair,
+    where it is one but for what they can tell.
 
     `preserved` (items, motions) is what `preserved_motions` says of the candidate `twists` (6, motions); `keep`
     (items,) which patches count.
     """
-    basis, values, _, _ = yield from _remains(evidence, twists, preserved, keep, tolerances, None)
+    rows, share = evidence.rows_of(keep)
+    known = _independent(evidence, twists[:, preserved[keep].all(axis=0)], keep)
+    basis, values = left_by(rows, share, known, tolerances.free)
+    if evidence.form(basis).type == "general":
+        rounded = nearest_pair(basis, evidence.frame)
+        if rounded is not None and _all_preserve(evidence, rounded, keep):
+            basis, values = left_by(rows, share, rounded, tolerances.free)
     return basis, values
+
+
+def left_by(rows: Array, share: Array, known: Array, free: float) -> tuple[Array, Array]:
+    """Orthonormal basis (6, k) of what rows (n, 6) with the weights `share` (n,) of their squares leave free, and their
+    singular values (6,), ascending, of which those below `free` count as none; the rows are made exactly consistent
+    with the motions `known` (6, m), orthonormal."""
+    rows = rows * np.sqrt(share / share.sum())[:, None]
+    rows = rows - (rows @ known) @ known.T
+    triangle = np.linalg.qr(rows, mode="r") if len(rows) >= 6 else rows
+    _, values, right = np.linalg.svd(np.concatenate([triangle, np.zeros((6, 6))]))
+    values, right = values[5::-1], right[5::-1]
+    return span(right[values < free].T), values
+
+
+def beyond(basis: Array, strict: Array) -> Array:
+    """(6, n) orthonormal: what the freedoms `basis` (6, k) have beyond the freedoms `strict` (6, m)."""
+    basis, strict = np.ascontiguousarray(basis), np.ascontiguousarray(strict)
+    vectors, sizes, _ = np.linalg.svd(basis - strict @ (strict.T @ basis), full_matrices=False)
+    return np.asarray(vectors[:, sizes > NEW_FREEDOM])
 
 
 def freedoms_beyond(
     evidence: Evidence, twists: Array, preserved: Flags, keep: Flags, tolerances: Tolerances, strict: Array
-) -> Steps[tuple[Array, Array]]:
+) -> tuple[Array, Array]:
     """Basis (6, k) of what the kept patches leave free, as of `freedoms`, and what it has beyond the freedoms `strict`
     (6, k'): (6, n) orthonormal."""
-    basis, _, _, freed = yield from _remains(evidence, twists, preserved, keep, tolerances, strict)
-    return basis, freed
-
-
-def _remains(
-    evidence: Evidence, twists: Array, preserved: Flags, keep: Flags, tolerances: Tolerances, strict: Array | None
-) -> Steps[Remains]:
-    """What the kept patches leave: as a lower pair, where it is one but for what they can tell."""
-    rows, share = evidence.rows_of(keep)
-    known = _independent(evidence, twists[:, preserved[keep].all(axis=0)], keep)
-    left = yield Remainder(rows, share, known, tolerances.free, strict)
-    basis, _, turns, _ = left
-    if evidence.form(basis, turns).type == "general":
-        rounded = nearest_pair(basis, evidence.frame)
-        if rounded is not None and _all_preserve(evidence, rounded, keep):
-            left = yield Remainder(rows, share, rounded, tolerances.free, strict)
-    return left
+    basis, _ = freedoms(evidence, twists, preserved, keep, tolerances)
+    return basis, beyond(basis, strict)
 
 
 def _independent(evidence: Evidence, twists: Array, keep: Flags) -> Array:

@@ -11,7 +11,8 @@ from kinform.kinematics.joints.pair.decision import Decision
 from kinform.kinematics.joints.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.joints.pair.hypotheses import Motion, motion_words
 from kinform.kinematics.joints.pair.lower_pairs import JointForm
-from kinform.kinematics.joints.pair.one_sided import BESIDE_AXIS, ROLES
+from kinform.kinematics.joints.pair.one_sided import BESIDE_AXIS
+from kinform.kinematics.joints.pair.suspects import ROLES
 from kinform.kinematics.joints.pair.uncertainty import disagreement, joint_uncertainty
 from kinform.kinematics.screws.canonical_basis import canonical_twists
 from kinform.kinematics.screws.wording import direction_words, motions_in_words
@@ -104,10 +105,11 @@ def joint_from_decision(bodies: tuple[BodyName, BodyName], evidence: Evidence, d
         point_uncertainty=place,
     )
     if cone is not None:
+        at_rest = canonical_twists(cone.rest, frame)
         joint = replace(
             joint,
-            at_rest=canonical_twists(cone.rest, frame),
-            closed=canonical_twists(cone.closed, frame),
+            at_rest=at_rest,
+            closed=canonical_twists(cone.closed, frame) if cone.extra else at_rest,
             open=cone.plainly_open or cone.withdraws,
             at_stop=tuple(_end_stop(evidence.items[k], motion, sense, form) for k, motion, sense in decision.ended),
         )

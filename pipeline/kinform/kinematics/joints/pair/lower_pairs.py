@@ -35,15 +35,14 @@ class JointForm:
     """Of a universal joint: its axis in the second body."""
 
 
-def name_space(basis: Array, frame: Frame, turns_of_basis: tuple[Array, Array] | None = None) -> JointForm:
-    """The joint whose freedoms are the columns of `basis` (6, k), scaled twists in `frame`; with singular values and
-    right singular vectors of its turns (3, k), where these are known."""
+def name_space(basis: Array, frame: Frame) -> JointForm:
+    """The joint whose freedoms are the columns of `basis` (6, k), scaled twists in `frame`."""
     freedoms = basis.shape[1]
     if freedoms == 0:
         return JointForm("fixed")
     if freedoms == 1:
         return _one_freedom(basis[:, 0], frame)
-    values, right = turns_of_basis or np.linalg.svd(basis[:3], full_matrices=True)[1:]
+    _, values, right = np.linalg.svd(basis[:3], full_matrices=True)
     turns = int(np.count_nonzero(values > SINGLE))
     mixed = basis @ right.T
     if turns == 1:

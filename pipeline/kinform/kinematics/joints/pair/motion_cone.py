@@ -139,20 +139,23 @@ class _Rows:
     apart: Array
     """(n,) slack by gaps, of a unit twist."""
 
-    @property
+    @cached_property
     def least(self) -> Array:
         """(n,) slack that there is for every motion: a share of that of a unit twist, whatever it does at the sample,
         as the motion of the cone nearest to one asked about is another one."""
         return np.asarray(LEAST_SLACK * (self.angle * (1.0 + np.linalg.norm(self.arms, axis=1)) + self.position))
 
-    def slack(self, motion: Array) -> Array:
-        """(n,) by how much rows may be missed by about this motion (6,)."""
-        return self.noise(motion) + self.apart
+    def slack(self, motions: Array) -> Array:
+        """(m, n) by how much rows may be missed by about these motions (m, 6)."""
+        return np.asarray(self.noise(motions) + self.apart)
 
-    def noise(self, motion: Array) -> Array:
-        """(n,) the part of it that surfaces give, not gaps: a wider gap holds no more."""
-        speed = np.linalg.norm(motion[3:] + cross(motion[:3], self.arms), axis=1)
-        return np.asarray(self.angle * speed + self.position * norm(motion[:3]) + self.least)
+    def noise(self, motions: Array) -> Array:
+        """(m, n) the part of it that surfaces give, not gaps: a wider gap holds no more."""
+        turns, slides = motions[:, None, :3], motions[:, None, 3:]
+        x, y, z = np.moveaxis(slides + cross(turns, self.arms), -1, 0)
+        turning = np.sqrt(np.einsum("mi,mi->m", motions[:, :3], motions[:, :3]))
+        speed = np.sqrt(x * x + y * y + z * z)
+        return np.asarray(self.angle * speed + self.position * turning[:, None] + self.least)
 
 
 def _rows(evidence: Evidence, chosen: Ints, owner: Ints) -> _Rows:
@@ -182,7 +185,7 @@ def _firm(seen: _Rows, across: Array) -> Array:
         return np.zeros((0, 0))
     rows = seen.rows @ across
     _, vectors = np.linalg.eigh(rows.T @ rows)
-    firm = [bool((np.abs(rows @ way) * REACH > 2.0 * seen.noise(across @ way)).any()) for way in vectors.T]
+    firm = (np.abs(rows @ vectors).T * REACH > 2.0 * seen.noise((across @ vectors).T)).any(axis=1)
     return np.asarray(vectors[:, firm])
 
 
@@ -194,8 +197,7 @@ def _reached(seen: _Rows, across: Array) -> tuple[Array, Array]:
     space, left = np.zeros((size, 0)), np.linalg.eigh(rows.T @ rows)[1] if size else np.zeros((0, 0))
     while left.shape[1]:
         new = []
-        for way in left.T:
-            slack = seen.slack(across @ way)
+        for way, slack in zip(left.T, seen.slack((across @ left).T), strict=True):
             for point in (nearest_within(rows, slack, sense * way) for sense in (1.0, -1.0)):
                 if norm(left.T @ point) > REACH:
                     new.append(point / norm(point))
@@ -217,15 +219,16 @@ def nearest_within(rows: Array, slack: Array, point: Array) -> Array:
     missed = -slack - rows @ point
     if not (missed > 0.0).any():
         return point
-    system = np.vstack([rows.T, missed])
-    size = np.linalg.norm(system, axis=0)
+    system = np.empty((len(point) + 1, len(rows)))
+    system[:-1], system[-1] = rows.T, missed
+    system /= np.sqrt(np.einsum("ij,ij->j", system, system))
     target = np.zeros(len(system))
     target[-1] = 1.0
     least, best = np.inf, np.zeros_like(point)
     for attempt in range(TRIES):
-        scaled = size / (1.0 + np.modf((np.arange(len(rows)) + 1.0) * 0.618 * attempt)[0])
-        weights, _ = nnls(system / scaled, target)
-        rest = system / scaled @ weights - target
+        scaled = system * (1.0 + np.modf((np.arange(len(rows)) + 1.0) * 0.618 * attempt)[0]) if attempt else system
+        weights, _ = nnls(scaled, target)
+        rest = scaled @ weights - target
         if abs(rest[-1]) < SOLVED:
             continue
         nearest = point - rest[:-1] / rest[-1]

@@ -22,19 +22,21 @@ at its edges then holds any load beside its axis (W. Beitz, K.-H. Küttner, Dubb
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import perpendicular, sine, widest_turn
-from kinform.frozen import dataclass
+from kinform.foundation.algebra.vectors import norm, perpendicular, sine, widest_gap, widest_turn
+from kinform.foundation.words import counted
+from kinform.kinematics.joints.pair.constants import ALONG_AXIS, OPPOSING_SPEED
 from kinform.kinematics.joints.pair.evidence import COAXIAL, Evidence, Item
-from kinform.kinematics.joints.pair.freedoms import freedoms_beyond
-from kinform.kinematics.joints.pair.in_step import Steps
+from kinform.kinematics.joints.pair.freedoms import NEW_FREEDOM
+from kinform.kinematics.joints.pair.hypotheses import Motion
 from kinform.kinematics.joints.pair.lower_pairs import JointForm
-from kinform.kinematics.joints.pair.motion_cone import MotionCone
+from kinform.kinematics.joints.pair.motion_cone import SLIDES
+from kinform.kinematics.joints.pair.suspects import AtRest, Suspect, suspect
+from kinform.kinematics.joints.pair.touches import TOUCHING
 from kinform.model.arrays import Array, Flags
-from kinform.model.kinematics import ReadingCause
-from kinform.model.tolerances import Tolerances
 
 ONE_WAY = 1.0 - 1e-4
 """Cosine of normals of faces that look one way: 0.8°. Chosen, not measured."""
@@ -42,10 +44,6 @@ LEAST_PART = 0.1
 """Share of a candidate motion that is in what is asked about from which on it counts. Chosen, not measured."""
 ALIKE = math.cos(math.radians(15.0))
 """Cosine between motions that are one but for slack: rounds have bins of normals of up to 15°."""
-ALONG_AXIS = 0.01
-"""Normals and axes this near (sine) to an axis are along it. Chosen, not measured."""
-OPPOSING_SPEED = 0.05
-"""Share of a patch's greatest normal speed that is opposition, and no rounding beside it. Chosen, not measured."""
 SLIDES_FROM = 0.5
 """Length of a guide over its width from which on it slides and does not jam. Chosen, not measured."""
 ONE_SECTION = 0.05
@@ -60,84 +58,65 @@ HALF_ROUND = math.radians(175.0)
 facets of 72 sides round the ends of a half bearing. Chosen, not measured."""
 BESIDE_AXIS = math.radians(200.0)
 """rad without any of a face about the axis, beyond which it lies beside it. Half a turn, and 20° for facets."""
+IN_CLOSED = 0.1
+"""Share of a motion that may be outside of what is closed, which is known to slack only. Chosen, not measured."""
 
 
-ROLES = {
-    "stop": "an end stop",
-    "sliver": "too slight to decide",
-    "flank": "the flank of a tooth or cam, which bears nothing",
-    "prism": "those of a prism",
-    "pin": "of a pin that has play in its slot",
-    "bend": "a line along which a roller lies in its ring",
-}
-"""What faces are that may not be meant to hold."""
+def seats(pair: AtRest) -> Iterator[Suspect]:
+    """What is of no surface that is known for certain beside what is: a rim in its seat, facets of no known surface."""
+    if not pair.touching and pair.sure.any() and not pair.sure.all():
+        yield suspect(~pair.sure, "stop")
 
 
-@dataclass(frozen=True, eq=False)
-class OtherReading:
-    """What the patches say without some that may not be meant."""
-
-    form: JointForm
-    basis: Array
-    """(6, k) scaled freedoms."""
-    out: tuple[int, ...]
-    """Items that are left out."""
-    role: ReadingCause
-    """What those are then: stop, sliver, flank or pin. prism: nothing is left out; flats do not let the bodies
-    turn. bend: nor here; a roller turns less in its ring than its line says."""
+def ends_one_motion(pair: AtRest, of: Suspect, free: Array, freed: Array) -> Array | None:
+    """What is free without suspects that end one motion in one sense."""
+    return free if freed.shape[1] == 1 and opposes_one_way(pair.evidence, freed[:, 0], of.items) else None
 
 
-def stop_reading(
-    evidence: Evidence, twists: Array, preserved: Flags, strict: Array, tolerances: Tolerances, cone: MotionCone
-) -> Steps[OtherReading | None]:
-    """The other reading of a pair whose freedoms are `strict` (6, k), where what it lets go in one sense may be meant;
-    None where not.
+def opposes_one_way(evidence: Evidence, motion: Array, items: tuple[int, ...]) -> bool:
+    """Do the items oppose the motion (6,) in one sense only?"""
+    speeds = np.concatenate([evidence.rows[evidence.start[k] : evidence.start[k + 1]] @ motion for k in items])
+    most, least = float(speeds.max()), float(speeds.min())
+    large = OPPOSING_SPEED * max(most, -least)
+    return not (most > large and least < -large)
 
-    `twists` (6, n) are candidate motions, `preserved` (items, n) which patches slide on themselves under them.
-    """
+
+def ends(pair: AtRest) -> Iterator[Suspect]:
+    """Contact that one motion opens, or, of bodies without freedoms that may leave each other in several ways, faces
+    that look one way, the least area first."""
+    cone, items = pair.cone, pair.evidence.items
     if not cone.extra or cone.plainly_open or cone.opened.all():
-        return None
+        return
+    if cone.extra == 1:
+        yield suspect(cone.opened, "stop")
+        return
+    left = [k for k in np.flatnonzero(cone.opened).tolist() if items[k].patch.kind == "plane" and not pair.count]
+    alike = []
+    while left:
+        normal = items[left[0]].normals[0]
+        alike.append(tuple(k for k in left if float(items[k].normals[0] @ normal) > ONE_WAY))
+        left = [k for k in left if k not in alike[-1]]
+    for out in sorted(alike, key=lambda out: sum(items[k].area for k in out)):
+        yield Suspect(out, "stop")
+
+
+def at_end_of_guide(pair: AtRest, of: Suspect, free: Array, freed: Array) -> Array | None:
+    """What is free without faces that end a guide, or that a turn or a round leaves."""
+    evidence, cone = pair.evidence, pair.cone
+    faces = [evidence.items[k] for k in of.items]
+    guides = [item for k, item in enumerate(evidence.items) if k not in of.items]
     if cone.extra > 1:
-        return (
-            None if strict.shape[1] else (yield from _end_of_some_guide(evidence, twists, preserved, tolerances, cone))
-        )
-    keep = ~cone.opened
-    _, freed = yield from freedoms_beyond(evidence, twists, preserved, keep, tolerances, strict)
+        return free if freed.shape[1] == 1 and _ends_guide(evidence.form(free), guides, faces) else None
     basis = cone.exactly(freed).closed
-    if not freed.shape[1] or basis is cone.closed:
+    if basis is cone.closed:
         return None
     if freed.shape[1] > 1:
-        basis = np.column_stack([strict, _nearest(basis[:, -1], freed, twists[:, preserved[keep].all(axis=0)])])
-    out = tuple(int(k) for k in np.flatnonzero(cone.opened))
-    reading = OtherReading(evidence.form(basis), basis, out, "stop")
-    turned = {"fixed": ("revolute",), "prismatic": ("cylindrical",)}
-    if reading.form.type in turned.get(evidence.form(strict).type, ()):
-        return reading
-    faces = evidence.chosen(cone.opened)
-    if not strict.shape[1] and any(i.patch.kind in ("cylinder", "sphere") and not i.patch.one_sided for i in faces):
-        return reading
-    return reading if _ends_guide(reading.form, evidence.chosen(keep), faces) else None
-
-
-def _end_of_some_guide(
-    evidence: Evidence, twists: Array, preserved: Flags, tolerances: Tolerances, cone: MotionCone
-) -> Steps[OtherReading | None]:
-    """The slide of a pair without freedoms that faces which look one way end, where the rest of the contact is its
-    guide; of several the one that ends on the least area."""
-    nothing = np.zeros((6, 0))
-    left = [k for k in np.flatnonzero(cone.opened).tolist() if evidence.items[k].patch.kind == "plane"]
-    readings: list[tuple[float, OtherReading]] = []
-    while left:
-        normal = evidence.items[left[0]].normals[0]
-        out = tuple(k for k in left if float(evidence.items[k].normals[0] @ normal) > ONE_WAY)
-        left = [k for k in left if k not in out]
-        keep = np.ones(len(evidence.items), dtype=bool)
-        keep[list(out)] = False
-        basis, freed = yield from freedoms_beyond(evidence, twists, preserved, keep, tolerances, nothing)
-        form = evidence.form(basis)
-        if freed.shape[1] == 1 and _ends_guide(form, evidence.chosen(keep), evidence.chosen(~keep)):
-            readings.append((sum(evidence.items[k].area for k in out), OtherReading(form, basis, out, "stop")))
-    return min(readings, key=lambda one: one[0])[1] if readings else None
+        kept = pair.preserved[~cone.opened].all(axis=0)
+        basis = np.column_stack([pair.basis, _nearest(basis[:, -1], freed, pair.twists[:, kept])])
+    form = evidence.form(basis)
+    turned = (pair.form.type, form.type) in (("fixed", "revolute"), ("prismatic", "cylindrical"))
+    round_end = not pair.count and any(i.patch.kind in ("cylinder", "sphere") and not i.patch.one_sided for i in faces)
+    return basis if turned or round_end or _ends_guide(form, guides, faces) else None
 
 
 def _nearest(motion: Array, freed: Array, candidates: Array) -> Array:
@@ -153,58 +132,75 @@ def _nearest(motion: Array, freed: Array, candidates: Array) -> Array:
     return np.asarray(freed @ within[:, best]) if alike[best] > ALIKE else motion
 
 
-def leaves_several_ways(cone: MotionCone) -> bool:
-    """Whether bodies without freedoms may leave each other in several ways, no one of which opens all contact."""
-    return not cone.rest.shape[1] and cone.extra > 1 and not cone.plainly_open
+def turns_ended(pair: AtRest) -> Iterator[Suspect]:
+    """What ends a turn about a surface that goes no more than half round, best supported first."""
+    if pair.cone.extra and not pair.cone.plainly_open:
+        for _, out, journal in new_turns(pair):
+            if not journal:
+                yield suspect(out, "stop")
 
 
-def seat_reading(
-    evidence: Evidence, twists: Array, preserved: Flags, strict: Array, sure: Flags, tolerances: Tolerances
-) -> Steps[OtherReading | None]:
-    """The other reading of a pair whose freedoms are `strict` (6, k), if surfaces that are known (`sure` (items,)) hold
-    all of it but one motion, and the rest, such as a rim in its seat or facets of no known surface, ends that in one
-    sense; None if not."""
-    if sure.all() or not sure.any():
-        return None
-    basis, freed = yield from freedoms_beyond(evidence, twists, preserved, sure, tolerances, strict)
-    out = tuple(int(k) for k in np.flatnonzero(~sure))
-    if freed.shape[1] != 1 or not one_sense(evidence, freed[:, 0], out):
-        return None
-    return OtherReading(evidence.form(basis), basis, out, "stop")
+def new_turns(pair: AtRest) -> Iterator[tuple[Motion, Flags, bool]]:
+    """Turns about curved surfaces that are no freedoms at rest, and that some patch preserves, best supported first;
+    what ends them (items,), and whether the rest goes more than half round the axis."""
+    some = pair.preserved.any(axis=0) & ~pair.preserved.all(axis=0)
+    for n in np.flatnonzero(some).tolist():
+        motion, out = pair.candidates[n], ~pair.preserved[:, n]
+        if not motion.turn or not motion.curved or motion.pitch or _in_corner(pair.evidence, out):
+            continue
+        if norm(motion.twist - pair.basis @ (pair.basis.T @ motion.twist)) > NEW_FREEDOM:
+            yield motion, out, _journal(pair.evidence.chosen(~out), motion)
 
 
-def one_sense(evidence: Evidence, motion: Array, out: tuple[int, ...]) -> bool:
-    """Do the items oppose the motion (6,) in one sense only?"""
-    speeds = np.concatenate([evidence.rows[evidence.start[k] : evidence.start[k + 1]] @ motion for k in out])
-    most, least = float(speeds.max()), float(speeds.min())
-    large = OPPOSING_SPEED * max(most, -least)
-    return not (most > large and least < -large)
+def _in_corner(evidence: Evidence, out: Flags) -> bool:
+    """Would a pin be taken off one wall that stays at another? Which of them it leaves is not known."""
+    held, left = (
+        {(item.patch.parts[k], item.patch.surfaces[k]) for item in of for k in (0, 1) if item.patch.radii[k] > 0.0}
+        for of in ([i for i in evidence.chosen(flags) if i.patch.kind in TOUCHING] for flags in (~out, out))
+    )
+    return not held.isdisjoint(left)
 
 
-@dataclass(frozen=True, eq=False)
-class _End:
-    """Faces at the end of a guide that is long enough to slide in."""
+def lets_turn(pair: AtRest, of: Suspect, free: Array, freed: Array) -> Array | None:
+    """What is free, whose new motions are turns that contact lets go in some sense."""
+    turning = np.linalg.svd(freed[:3], compute_uv=False).min() > SLIDES
+    missed = free - pair.cone.closed @ (pair.cone.closed.T @ free)
+    return free if turning and np.linalg.norm(missed, axis=0).max() < IN_CLOSED else None
 
-    inside: bool
-    """Of its cross-section."""
-    beside: bool
-    """Beside its axis."""
+
+def _journal(kept: list[Item], motion: Motion) -> bool:
+    """Do surfaces that both bodies have go more than half round the axis of the turn, all of them together, or a ball
+    more than half round its centre?"""
+    rounds = [item for item in kept if not item.patch.one_sided]
+    about = [
+        item.normals
+        for item in rounds
+        if item.patch.kind in COAXIAL and sine(item.patch.axis, motion.axis) < ALONG_AXIS
+    ]
+    if about and widest_gap(np.concatenate(about), motion.axis) < HALF_ROUND:
+        return True
+    return any(
+        item.patch.kind == "sphere" and float((item.normals @ item.normals.mean(axis=0)).min()) < 0.0 for item in rounds
+    )
+
+
+def several_ways(pair: AtRest) -> Iterator[Suspect]:
+    """What bodies without freedoms leave in several ways, no one of which opens all contact."""
+    cone = pair.cone
+    if not pair.count and cone.extra > 1 and not cone.plainly_open:
+        words = f"{counted(cone.extra, 'motion')} beside that go one way only, and no one opens all of it"
+        yield suspect(cone.holding, "doubt", f"fixed while all contact holds; {words}")
 
 
 def _ends_guide(form: JointForm, guides: list[Item], faces: list[Item]) -> bool:
-    """Are the faces at the end of a guide along the joint's axis, inside of its cross-section or beside its axis?"""
-    end = _end_of_guide(form, guides, faces)
-    return end is not None and (end.inside or end.beside)
-
-
-def _end_of_guide(form: JointForm, guides: list[Item], faces: list[Item]) -> _End | None:
-    """Where faces are at the end of a guide along the joint's axis; None where there is none, or it is too short."""
+    """Are the faces at the end of a guide along the joint's axis that is long enough to slide in, inside of its
+    cross-section or beside its axis?"""
     axis = form.axis
     if axis is None:
-        return None
+        return False
     running = [i for i in guides if i.patch.kind in (*COAXIAL, "extrusion", "plane") and _runs_along(i, axis)]
     if form.type not in ("cylindrical", "prismatic") or not running:
-        return None
+        return False
     centre = form.point if form.type == "cylindrical" else None
     if centre is None:
         centre = np.concatenate([i.points for i in running]).mean(axis=0)
@@ -213,13 +209,13 @@ def _end_of_guide(form: JointForm, guides: list[Item], faces: list[Item]) -> _En
         (_extent(section, axis), float(_distances((section - centre) @ across).max())) for section in _sections(running)
     ]
     if all(length < SLIDES_FROM * 2.0 * half for length, half in lengths):
-        return None
+        return False
     ends = (np.concatenate([i.points for i in faces]) - centre) @ across
     away = _distances(ends)
     face_reach = float(away.max())
     inside = face_reach <= INSIDE_GUIDE * max(half for _, half in lengths)
     far = ends[away > ROUND_FROM * face_reach]
-    return _End(inside, widest_turn(np.arctan2(far[:, 1], far[:, 0])) > BESIDE_AXIS)
+    return inside or widest_turn(np.arctan2(far[:, 1], far[:, 0])) > BESIDE_AXIS
 
 
 def _extent(points: Array, axis: Array) -> float:
@@ -254,12 +250,3 @@ def _runs_along(item: Item, axis: Array) -> bool:
     if item.patch.kind == "plane":
         return abs(float(item.patch.axis @ axis)) < ALONG_AXIS
     return sine(item.patch.axis, axis) < ALONG_AXIS
-
-
-def faces_in_words(evidence: Evidence, out: tuple[int, ...]) -> str:
-    """Patches in words: "the plane of 12.5 mm² between base and rod"."""
-    items = [evidence.items[k] for k in out]
-    area = 1e6 * sum(item.patch.area for item in items)
-    largest = max(items, key=lambda item: (item.patch.area, item.patch.parts))
-    kinds = largest.patch.kind if len(items) == 1 else f"{largest.patch.kind} (in {len(items)} pieces)"
-    return f"the {kinds} of {area:.3g} mm² between {' and '.join(largest.patch.parts)}"

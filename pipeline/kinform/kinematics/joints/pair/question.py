@@ -12,9 +12,8 @@ from itertools import islice
 from kinform.foundation.algebra.screws import twist_at_origin
 from kinform.foundation.records import altered
 from kinform.frozen import dataclass
-from kinform.kinematics.constants import MOST_IN_STEP
-from kinform.kinematics.joints.pair.decision import Decision, decide_each
-from kinform.kinematics.joints.pair.evidence import Evidence, gather
+from kinform.kinematics.joints.pair.decision import decide
+from kinform.kinematics.joints.pair.evidence import gather
 from kinform.kinematics.joints.pair.extremes import extreme_samples
 from kinform.kinematics.joints.pair.joint import joint_from_decision, misalignment
 from kinform.model.arrays import Array, Ints
@@ -61,37 +60,17 @@ def bare_patches(patches: Sequence[Patch]) -> tuple[Patch, ...]:
 
 
 def answer_each(questions: Sequence[Question]) -> list[Answer]:
-    """The joints that the contacts leave, each with the samples that bound its patches. An answer is the same, to the
-    last bit, whatever is asked with it."""
-    first = range(0, len(questions), MOST_IN_STEP)
-    return [answer for k in first for answer in _answer_each(questions[k : k + MOST_IN_STEP])]
-
-
-def _answer_each(questions: Sequence[Question]) -> list[Answer]:
+    """The joints that the contacts leave, each with the samples that bound its patches."""
     bounds = iter(extreme_samples([patch for question in questions for patch, _ in question.members]))
-    extremes = [tuple(islice(bounds, len(question.members))) for question in questions]
-    evidences = [_evidence(question) for question in questions]
-    decisions = iter(
-        decide_each(
-            [
-                (e, q.tolerances, [samples[item.index] for item in e.items])
-                for q, e, samples in zip(questions, evidences, extremes, strict=True)
-                if e is not None
-            ]
-        )
-    )
-    return [
-        Answer(samples, None) if evidence is None else _answer(samples, evidence, next(decisions))
-        for samples, evidence in zip(extremes, evidences, strict=True)
-    ]
+    return [_answer(question, tuple(islice(bounds, len(question.members)))) for question in questions]
 
 
-def _evidence(question: Question) -> Evidence | None:
+def _answer(question: Question, extremes: tuple[Ints, ...]) -> Answer:
     members = [(k, patch, turned) for k, (patch, turned) in enumerate(question.members)]
-    return gather(members, question.tolerances, question.contact, question.size)
-
-
-def _answer(extremes: tuple[Ints, ...], evidence: Evidence, decision: Decision) -> Answer:
+    evidence = gather(members, question.tolerances, question.contact, question.size)
+    if evidence is None:
+        return Answer(extremes, None)
+    decision = decide(evidence, question.tolerances, [extremes[item.index] for item in evidence.items])
     joint = joint_from_decision((BodyName(""), BodyName("")), evidence, decision)
     blocked = decision.status == "blocked"
     strict = twist_at_origin(decision.strict, evidence.frame).T if blocked else None

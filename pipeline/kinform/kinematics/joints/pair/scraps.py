@@ -10,7 +10,7 @@ this module, with the robots that chose it.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import combinations
 
 import numpy as np
@@ -19,7 +19,10 @@ from kinform.foundation.algebra.vectors import widest_gap
 from kinform.foundation.rounding import TINY
 from kinform.kinematics.joints.pair.evidence import Evidence, Item, Line
 from kinform.kinematics.joints.pair.hypotheses import coaxial_lines
-from kinform.model.arrays import Flags
+from kinform.kinematics.joints.pair.one_sided import opposes_one_way
+from kinform.kinematics.joints.pair.suspects import AtRest, Suspect, suspect
+from kinform.kinematics.joints.pair.touches import HIGHER, TOUCHING
+from kinform.model.arrays import Array, Flags
 
 SLIVER_ARC = math.radians(30.0)
 """rad: rounds that cover less about their axis, ..."""
@@ -42,7 +45,33 @@ STEP_CORNER = 0.5
 """Largest cosine between the normals of the two faces of a step. Chosen, not measured."""
 
 
-def scraps(evidence: Evidence, alignment: float) -> Flags:
+def slivers(pair: AtRest) -> Iterator[Suspect]:
+    """Scraps, with points, lines and facets of no known surface."""
+    slight = _scraps(pair.evidence, pair.tolerances.alignment)
+    if not pair.touching and slight.any():
+        yield suspect(slight | [patch.kind in HIGHER for patch in pair.patches], "sliver")
+
+
+def is_scrap(pair: AtRest, of: Suspect, free: Array, freed: Array) -> Array | None:
+    """What is free without scraps; None of the flat of a shaft, which holds a turn both ways, however small it is."""
+    items = [pair.evidence.items[k] for k in of.items]
+    flats = all(item.patch.kind == "plane" and not item.interferes and not item.patch.narrow for item in items)
+    both_ways = freed.shape[1] == 1 and not opposes_one_way(pair.evidence, freed[:, 0], of.items)
+    return None if flats and both_ways else free
+
+
+def flanks(pair: AtRest) -> Iterator[Suspect]:
+    """Points and lines of contact beside faces, where they hold all but one of what these leave.
+
+    Teeth and cams drive bodies that something else bears. Where the bodies bear on each other by faces, as planes do,
+    and the flanks hold nearly all of what these leave, one of the two is drawn where it is not.
+    """
+    of = np.array([patch.kind in TOUCHING for patch in pair.patches])
+    if pair.touching and pair.count < 2 and of.any() and not of.all():
+        yield suspect(of, "flank")
+
+
+def _scraps(evidence: Evidence, alignment: float) -> Flags:
     """(items,): which patches are too slight to decide. Surfaces about one axis count together.
 
     `alignment` (rad): within this axes are one.
@@ -67,10 +96,10 @@ def scraps(evidence: Evidence, alignment: float) -> Flags:
             slight[members] = little or _arc(items, line) < SLIVER_ARC_ONE_SIDED
         else:
             slight[members] = little and _arc(items, line) < SLIVER_ARC
-    return slight | narrow(evidence) | _steps(items)
+    return slight | _narrow(evidence) | _steps(items)
 
 
-def narrow(evidence: Evidence) -> Flags:
+def _narrow(evidence: Evidence) -> Flags:
     """(items,): which patches are of faces that may not touch at all, as far as their outlines tell."""
     return np.array([item.patch.narrow for item in evidence.items], dtype=bool)
 

@@ -13,43 +13,40 @@ whose play lets it turn, and one beside contact that is in doubt itself.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross
-from kinform.foundation.rounding import SINGLE, TINY
+from kinform.foundation.rounding import SINGLE
+from kinform.kinematics.joints.pair.constants import OPPOSING_SPEED
 from kinform.kinematics.joints.pair.evidence import LOOSE_ANGLE, Evidence
-from kinform.kinematics.joints.pair.freedoms import freedoms_beyond
-from kinform.kinematics.joints.pair.in_step import Steps
-from kinform.kinematics.joints.pair.one_sided import OPPOSING_SPEED, OtherReading
-from kinform.model.arrays import Array, Flags
-from kinform.model.tolerances import Tolerances
+from kinform.kinematics.joints.pair.motion_cone import WITHIN
+from kinform.kinematics.joints.pair.suspects import AtRest, Suspect, suspect
+from kinform.model.arrays import Array
 
 SLOT_PLAY = math.radians(5.0)
 """rad by which what a pin holds may turn until it touches either side of its slot: as with axes that mate, no play
 excuses a greater angle."""
-SLOT_OPPOSED = -0.999
-"""Greatest cosine between what two sides of a slot hold: as in `contacts`. Their faces are parallel to 2.6°."""
 
 
-def pin_reading(
-    evidence: Evidence, twists: Array, preserved: Flags, basis: Array, sure: Flags, tolerances: Tolerances
-) -> Steps[OtherReading | None]:
-    """What is free where pins do not hold, of a pair whose freedoms are `basis` (6, k), if all contact is of surfaces
-    that are known (`sure` (items,)) and of pins in slots beside them; None if not."""
-    pins = np.array([_on_plane(item.patch.flat and not item.patch.one_sided, item.angle) for item in evidence.items])
-    if not pins.any() or pins.all() or not (pins | sure).all():
+def pins(pair: AtRest) -> Iterator[Suspect]:
+    """Touches on planes whose directions are known, if all else is of surfaces that are known."""
+    flags = np.array(
+        [item.patch.flat and not item.patch.one_sided and item.angle < LOOSE_ANGLE for item in pair.evidence.items]
+    )
+    if not pair.touching and flags.any() and not flags.all() and (flags | pair.sure).all():
+        yield suspect(flags, "pin")
+
+
+def is_slot(pair: AtRest, of: Suspect, free: Array, freed: Array) -> Array | None:
+    """What is free where pins do not hold; None where they are not in slots: where the cone of motions has in one sense
+    what they hold, or their play lets it turn."""
+    along = pair.cone.beyond.T @ freed
+    in_one_sense = along.size and float(np.linalg.svd(along, compute_uv=False)[0]) > WITHIN
+    if in_one_sense or not _stay(pair.evidence, pair.basis, of.items):
         return None
-    free, freed = yield from freedoms_beyond(evidence, twists, preserved, ~pins, tolerances, basis)
-    out = tuple(int(k) for k in np.flatnonzero(pins))
-    if not freed.shape[1] or not _stay(evidence, basis, out) or not _hold(evidence, freed, out):
-        return None
-    return OtherReading(evidence.form(free), free, out, "pin")
-
-
-def _on_plane(flat: bool, angle: float) -> bool:
-    """Is it a touch on a plane whose direction is known?"""
-    return flat and angle < LOOSE_ANGLE
+    return free if _play(pair.evidence, freed, of.items) <= SLOT_PLAY else None
 
 
 def _stay(evidence: Evidence, basis: Array, out: tuple[int, ...]) -> bool:
@@ -64,25 +61,18 @@ def _stay(evidence: Evidence, basis: Array, out: tuple[int, ...]) -> bool:
     return True
 
 
-def _hold(evidence: Evidence, freed: Array, out: tuple[int, ...]) -> bool:
-    """Do the items `out` oppose the motions (6, n) that they alone hold in both senses, and with little play?"""
-    pieces = [slice(evidence.start[k], evidence.start[k + 1]) for k in out]
-    rows = np.concatenate([evidence.rows[of] for of in pieces])
+def _play(evidence: Evidence, freed: Array, out: tuple[int, ...]) -> float:
+    """rad by which the motions (6, n) that the items `out` alone hold may turn until they hold, in either sense; a
+    lever that is short sees that better than its row does."""
+    rows = np.concatenate([evidence.rows[evidence.start[k] : evidence.start[k + 1]] for k in out])
     gaps = np.concatenate([evidence.items[k].patch.gaps for k in out])
-    speeds = rows @ freed
-    size = np.linalg.norm(speeds, axis=1)
-    unit = speeds / np.maximum(size, TINY)[:, None]
-    holds = size > OPPOSING_SPEED * float(size.max())
-    opposed = (unit[holds] @ unit[holds].T < SLOT_OPPOSED).any(axis=1)
-    if not opposed.all():
-        return False
     _, turns, mixed = np.linalg.svd(freed[:3], full_matrices=True)
+    most = 0.0
     for turn, motion in zip(turns, mixed, strict=False):
-        if turn <= SINGLE:
-            continue
-        levers = speeds @ motion * evidence.frame.length / turn
-        for sense in (1.0, -1.0):
-            against = sense * levers > OPPOSING_SPEED * float(np.abs(levers).max())
-            if not against.any() or float((gaps[against] / np.abs(levers[against])).min()) > SLOT_PLAY:
-                return False
-    return True
+        if turn > SINGLE:
+            levers = rows @ (freed @ motion) * evidence.frame.length / turn
+            least = OPPOSING_SPEED * float(np.abs(levers).max())
+            for sense in (1.0, -1.0):
+                against = sense * levers > least
+                most = max(most, float((gaps[against] / np.abs(levers[against])).min(initial=math.inf)))
+    return most

@@ -1,5 +1,5 @@
-"""Touches that may be none: contact on one side only, so small or so far from zero gap that it may not be meant; and
-lines that hold more than their normals say.
+"""Contact at points and along lines: what the bodies do at this instant, and lines that hold more than their normals
+say.
 
 A roller that lies in a ring turns about the normal of the line in which they touch, by the rows of that line. It does
 not: its ends would go into the ring. To second order it is held, so that it has one freedom less over a distance than
@@ -15,65 +15,54 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross, norm, sine
 from kinform.foundation.rounding import SINGLE
 from kinform.kinematics.constants import SAME_DIRECTION
-from kinform.kinematics.joints.pair.evidence import GAP_BANDS, Evidence
+from kinform.kinematics.joints.pair.evidence import Evidence
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 
-WIDE_GAP = GAP_BANDS[1][0]
-"""Gaps beyond this share have the least weight."""
-PASSING_GAP = 2e-3
-"""Gaps below this share of the size of the smaller body are as good as none. Chosen, not measured."""
-STRAY_AREA = 5e-4
-"""Share of the squared size of the smaller body below which a one-directional contact that touches may be a stray.
-Chosen, not measured."""
-STRAY_AREA_APART = 2e-2
-"""The same where it does not touch. Chosen, not measured."""
-WIDE_CONTACT = 0.15
-"""Contact whose box is larger than this share of the smaller body is not one stray touch: feet, rims. Chosen, not
-measured."""
+ON_RADIUS = 0.02
+"""Relative: points this near to the radius of a surface from an axis are on a surface about that axis. A facet of a
+cylinder of 16 sides is 2 % inside its radius (1 - cos(π/16))."""
 
 
 TOUCHING = ("point", "line")
 """Kinds of higher pairs: alone they are no joint, and leave what they leave at this instant."""
+HIGHER = (*TOUCHING, "freeform", "other")
+"""Kinds of patches whose normals turn, or whose place moves, as soon as the bodies do."""
 
 
-def apart_doubt(evidence: Evidence) -> str:
-    """Are points on one side all that touches, and do none of them touch, as well as that is known?
-
-    A ball rests on its plate. Where two curved surfaces pass each other with a gap, or are drawn into each other,
-    nothing tells that they are meant to meet just there. Lines are not asked: flanks of teeth have play.
-    """
-    patches = [item.patch for item in evidence.items]
-    if not all(patch.kind == "point" for patch in patches) or not _on_one_side(evidence):
-        return ""
-    if any(patch.fit not in ("clearance", "interference") for patch in patches):
-        return ""
-    gap = min((patch.gap for patch in patches), key=abs)
-    what = "pass each other with a gap of" if gap > 0.0 else "are drawn into each other by"
-    return (
-        f"they {what} {1e3 * abs(gap):.2g} mm at a point on one side only: "
-        "whether they are meant to touch there is not known"
+def meets(patches: Sequence[Patch]) -> bool:
+    """Whether all contact is along points and lines, beside nothing but planes across the lines, or balls about a place
+    on them: a cam that rubs, a roller between flanges."""
+    lines = [patch for patch in patches if patch.kind == "line"]
+    if any(patch.kind in TOUCHING and patch.one_sided for patch in patches):
+        return False  # nobody knows where facets touch next
+    return any(patch.kind in TOUCHING for patch in patches) and all(
+        patch.kind in TOUCHING or (bool(lines) and all(beside_flange(line, patch) for line in lines))
+        for patch in patches
     )
 
 
-def stray_doubt(evidence: Evidence) -> str:
-    """Is all of the contact on one side, and so small, or so far apart, that it may not be meant?"""
-    if evidence.size == 0.0 or not _on_one_side(evidence):
-        return ""
-    area = sum(item.patch.area for item in evidence.items)
-    least = max(WIDE_GAP * evidence.contact, PASSING_GAP * evidence.size)
-    apart = all(item.patch.gap > least for item in evidence.items)
-    least_area = STRAY_AREA_APART if apart else STRAY_AREA
-    if area >= least_area * evidence.size**2 or evidence.frame.length > WIDE_CONTACT * evidence.size:
-        return ""
-    what = "they pass each other without touching" if apart else "they touch"
-    return f"{what} over {1e6 * area:.3g} mm² on one side only: too little to tell a joint from a stray touch"
-
-
-def _on_one_side(evidence: Evidence) -> bool:
-    """Do all normals lean the way of their weighted mean?"""
-    normals = evidence.rows[:, 3:]
-    return bool((normals @ (evidence.share @ normals) > 0.0).all())
+def momentary(evidence: Evidence, basis: Array) -> bool:
+    """Whether points and lines alone leave a turn that takes the surfaces off each other: that of two gears about
+    their pitch line, while a roller in a groove turns about its own axis."""
+    if not meets([item.patch for item in evidence.items]):
+        return False
+    form = evidence.form(basis)
+    if form.type not in ("revolute", "cylindrical", "screw", "spherical") or form.point is None:
+        return False
+    for item in evidence.items:
+        if item.patch.kind not in TOUCHING:
+            continue
+        arm = item.points - form.point
+        if form.axis is not None:
+            arm = arm - np.outer(arm @ form.axis, form.axis)
+        away = np.linalg.norm(arm, axis=1)
+        if all(
+            (np.abs(away - radius) > ON_RADIUS * max(radius, ON_RADIUS * evidence.frame.length)).any()
+            for radius in item.patch.radii
+        ):
+            return True
+    return False
 
 
 def beside_flange(line: Patch, other: Patch) -> bool:

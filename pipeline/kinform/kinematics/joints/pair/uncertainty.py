@@ -7,14 +7,18 @@ two of them meet in it. A place is said by surfaces of revolution about it and b
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from math import sqrt
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import sine
+from kinform.foundation.rounding import TINY
+from kinform.foundation.words import quoted
 from kinform.kinematics.joints.pair.constants import VAGUE_AXIS
-from kinform.kinematics.joints.pair.evidence import COAXIAL, Item
+from kinform.kinematics.joints.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.joints.pair.lower_pairs import JointForm
+from kinform.kinematics.joints.pair.suspects import AtRest, Suspect, suspect
 from kinform.model.arrays import Array
 
 SAYS_DIRECTION = 0.1
@@ -22,6 +26,10 @@ SAYS_DIRECTION = 0.1
 not measured."""
 VAGUE_PLACE = 0.03
 """The same of its place, as a share of its radius: what a clearance may be. Chosen, not measured."""
+
+WEYL_SIGMAS = 3.0
+"""A constraint whose singular value is less than so many standard uncertainties of the directions of all rows may be
+none: one of 2,000 random assemblies was wrong without this (two hexagons of 6 mm whose vertices scatter by 3 µm)."""
 
 
 PLACED = ("revolute", "cylindrical", "screw", "spherical", "universal")
@@ -53,32 +61,93 @@ def disagreement(items: Sequence[Item], form: JointForm) -> float:
     return min(out, default=0.0)
 
 
-def uncertainty_doubt(items: Sequence[Item], form: JointForm, length: float) -> str:
-    """Why the axis or the place is known too badly for a joint, in words; empty where it is not.
-
-    `length` (m) is the size of the contact, for a place that has no radius of its own.
-    """
+def vague_axes(pair: AtRest) -> Iterator[Suspect]:
+    """What decides the joint, if its axis or place is known too badly."""
+    form, items = pair.form, pair.evidence.items
     direction, place = joint_uncertainty(items, form)
     if direction > VAGUE_AXIS:
-        return (
+        saying = np.array([_angle(item, form) is not None for item in items])
+        yield suspect(
+            saying,
+            "doubt",
             f"the axis is known to {np.degrees(direction):.2g}° only, by the fits of what decides it "
-            f"(more than {np.degrees(VAGUE_AXIS):.2g}°)"
+            f"(more than {np.degrees(VAGUE_AXIS):.2g}°)",
         )
-    radius = max(
-        (max(i.patch.radii) for i in items if i.patch.kind in ("cylinder", "sphere") and _says(i, form)), default=0.0
-    )
-    least = VAGUE_PLACE * (radius or length)
-    if place > least:
-        return (
+    saying = np.array([_shift(item, form) is not None for item in items])
+    rounds = [i for i in pair.evidence.chosen(saying) if i.patch.kind in ("cylinder", "sphere")]
+    # the size of the contact, of a place that has no radius of its own
+    radius = max((max(item.patch.radii) for item in rounds), default=0.0) or pair.evidence.frame.length
+    if place > VAGUE_PLACE * radius:
+        yield suspect(
+            saying,
+            "doubt",
             f"the place of the axis is known to {1e3 * place:.2g} mm only, by the fits of what decides it "
-            f"(more than {100 * VAGUE_PLACE:.2g} % of its radius of {1e3 * (radius or length):.3g} mm)"
+            f"(more than {100 * VAGUE_PLACE:.2g} % of its radius of {1e3 * radius:.3g} mm)",
         )
-    return ""
 
 
-def _says(item: Item, form: JointForm) -> bool:
-    """Has the patch a say about the place of the joint's axis or centre?"""
-    return _shift(item, form) is not None
+def unknown_contact(pair: AtRest) -> Iterator[Suspect]:
+    """All contact, where none is of a known kind."""
+    if not all(patch.unknown for patch in pair.patches):
+        return
+    least = min(pair.patches, key=lambda patch: patch.gap)
+    words = (
+        f"{quoted(least.parts)} come within {1e3 * max(least.gap, 0.0):.2g} mm of each other, in a way that is no "
+        "contact that kinform knows: what it holds is not known"
+    )
+    yield Suspect(tuple(range(len(pair.patches))), "doubt", words)
+
+
+def weak_rows(pair: AtRest) -> Iterator[Suspect]:
+    """All contact, where a constraint is too weak to be one for certain."""
+    tolerances, every = pair.tolerances, tuple(range(len(pair.patches)))
+    if pair.count == 6:
+        return
+    value, spread = pair.values[pair.count], _spread(pair.evidence)
+    if value < tolerances.held:
+        between = (
+            f"singular value {value:.2g} lies between free (< {tolerances.free:g}) and held (> {tolerances.held:g})"
+        )
+        yield Suspect(every, "doubt", between)
+    if value < WEYL_SIGMAS * spread:
+        known = f"the directions of the surfaces are known to {np.degrees(spread):.2g}°"
+        yield Suspect(every, "doubt", f"singular value {value:.2g} may be nothing: {known}")
+
+
+def _spread(evidence: Evidence) -> float:
+    """rad: how well the directions of the surfaces are known, the mean of all by their weights, but for those that are
+    known so little that they do not decide alone in any case.
+
+    By so much, and no more, do singular values change when the rows turn (H. Weyl, Math. Ann. 71, 1912).
+    """
+    shares = np.add.reduceat(evidence.share, evidence.start[:-1]).tolist()
+    turns = [item.patch.mismatch[0] for item in evidence.items]
+    known = [(share, turn) for share, turn in zip(shares, turns, strict=True) if turn <= VAGUE_AXIS]
+    return sqrt(sum(share * turn**2 for share, turn in known) / max(sum(share for share, _ in known), TINY))
+
+
+def unknown_facets(pair: AtRest) -> Iterator[Suspect]:
+    """Points, lines and facets of no known surface, and where bodies are one those that are unknown on one side."""
+    if not pair.touching and not pair.firm.all():
+        kinds = sorted({item.patch.kind for item in pair.evidence.chosen(~pair.firm)})
+        why = f"contact along {', '.join(kinds)} without a mating surface"
+        yield suspect(~pair.firm, "drop", f"{pair.count} of 6 freedoms are left only because of {why}")
+
+
+def scattered_facets(pair: AtRest) -> Iterator[Suspect]:
+    """These, and surfaces whose directions are vague."""
+    vague = pair.vague[pair.firm & ~pair.sure]
+    if not pair.touching and len(vague):
+        why = f"surfaces whose direction is known no better than to {np.degrees(vague.min()):.2g}°"
+        words = f"{pair.count} of 6 freedoms are left only because of {why}: the vertices of the mesh scatter"
+        yield suspect(~pair.sure, "drop", words)
+
+
+def near_axes(pair: AtRest) -> Iterator[Suspect]:
+    """Axes and centres, of bodies that are fixed: they may be so only because these miss each other by a little."""
+    wide = np.array([patch.kind in (*COAXIAL, "sphere") and not patch.one_sided for patch in pair.patches])
+    if not pair.count and wide.any():
+        yield suspect(wide, "widen", "axes that miss each other by little hold the bodies")
 
 
 def _angle(item: Item, form: JointForm) -> float | None:
