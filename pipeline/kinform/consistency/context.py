@@ -7,7 +7,7 @@ hands on (`lacks`). Properties that give the result of a stage may be read where
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import field
+from dataclasses import field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, TypeVar
 
@@ -24,6 +24,8 @@ from kinform.consistency.comparisons.plausibility import Doubt, doubts
 from kinform.consistency.outcome import Outcome, inconclusive, skipped
 from kinform.consistency.questions.blocked_joints import BlockedJoints
 from kinform.consistency.questions.captive_parts import CaptivePart, CaptiveParts
+from kinform.consistency.questions.empty_bores import Row, empty_rows
+from kinform.consistency.questions.open_loops import OpenLoop, open_loops
 from kinform.design import Design
 from kinform.foundation.meshes.shell_faults import ShellFaults, shell_faults
 from kinform.frozen import dataclass
@@ -304,6 +306,18 @@ class Context:
         number = {str(part): k for k, body in enumerate(self.kinematics.bodies) for part in body.parts}
         some = self.afloat.units if parts is None else {name: self.afloat.units[name] for name in parts}
         return next(self.afloat.between({unit: number[name] for name, unit in some.items()}), None)
+
+    @cached_property
+    def empty_rows(self) -> tuple[Row, ...]:
+        """Bores of several bodies in a row, with nothing in them. Needs kinematics."""
+        return empty_rows(replace(self.design, kinematics=self.kinematics))
+
+    @cached_property
+    def open_loops(self) -> tuple[OpenLoop, ...]:
+        """Loops of descriptions that contact closes, and no stated joint."""
+        if not self.assembly.descriptions or self.lacks("contacts") is not None:
+            return ()
+        return tuple(open_loops(self.kinematics, self.contacts))
 
     @cached_property
     def mass(self) -> MassReport:

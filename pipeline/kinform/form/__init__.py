@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = ["CODE_VERSION", "from_meshes", "init_manifest", "load", "load_meshes", "schema"]
 
-CODE_VERSION: int = 29
+CODE_VERSION: int = 30
 """Bumped when results change."""
 
 __getattr__ = lazy_attributes(

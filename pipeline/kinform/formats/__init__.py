@@ -21,5 +21,5 @@ Sub-packages; each imports only those above it:
 
 __all__ = ["CODE_VERSION"]
 
-CODE_VERSION: int = 1
+CODE_VERSION: int = 2
 """Bumped when what readers make of the same file changes."""

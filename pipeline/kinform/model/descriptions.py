@@ -89,6 +89,10 @@ class DescribedJoint:
     effort: Annotated[float, "N·m or N"] | None
     """As stated, also zero."""
     speed: Annotated[float, "rad/s or m/s"] | None
+    degrees: bool = False
+    """Whether the file has the limits in degrees."""
+    offset: Annotated[float, "rad or m"] = 0.0
+    """Value of the joint where the one that it mimics is at zero."""
 
     @property
     def span(self) -> JointValue:
@@ -112,6 +116,24 @@ class LooseMesh:
 
 
 @dataclass(frozen=True, eq=False)
+class StartOverlap:
+    """Collision geometry of two links that overlaps in the pose of the file, where no joint joins them."""
+
+    links: Annotated[tuple[str, str], columns("link_a", "link_b")]
+    """Sorted."""
+    depth: Metres
+    """Of their pieces that are deepest in each other: of convex ones how far they must move to part, of others no more
+    than the overlap is thick."""
+    volume: Annotated[float, "m³"]
+    place: Place
+    """(3,) m: in the overlap."""
+    lines: Annotated[tuple[int, int], columns("line_a", "line_b")]
+    """Of these pieces."""
+    hulls: bool
+    """Whether one of them counts as its convex hull: it is not closed, or very fine."""
+
+
+@dataclass(frozen=True, eq=False)
 class Description:
     """One robot description among the sources of a design."""
 
@@ -125,6 +147,8 @@ class Description:
     links: tuple[DescribedLink, ...] = field(default=())
     joints: tuple[DescribedJoint, ...] = field(default=())
     meshes: tuple[LooseMesh, ...] = field(default=())
+    overlaps: tuple[StartOverlap, ...] = field(default=())
+    """Looked for where the parts are the visual geometry."""
 
     @property
     def incomplete(self) -> frozenset[str]:

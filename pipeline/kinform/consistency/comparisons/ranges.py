@@ -103,6 +103,23 @@ def _clear(intended: IntendedJoint, end: RangeEnd) -> RangeEnd | None:
     return None if abs(end.value) <= near else end
 
 
+def free_reversed(item: RangeComparison) -> bool:
+    """Whether nothing known stops the joint within its stated range with both signs turned round: the joint was driven
+    to either side until something stopped it."""
+    lower, upper = item.intended.range or (-math.inf, math.inf)
+    if item.left_out or not math.isfinite(upper - lower) or lower == -upper:
+        return False
+    sides = ((item.lower, -upper, -1.0), (item.upper, -lower, 1.0))
+    return all(_reaches(end, item.sign, value, toward) for end, value, toward in sides)
+
+
+def _reaches(end: RangeEnd | None, sign: float, value: float, toward: float) -> bool:
+    if end is None or end.status == "unknown":
+        return False
+    ends = [toward * sign * v for v in (end.value, end.leaves) if v is not None]
+    return toward * value <= min(ends, default=math.inf)
+
+
 def _doubted(joint: Joint | None) -> bool:
     """Whether contact leaves undecided what the joint is."""
     return joint is not None and bool(joint.readings) and joint.readings[0].cause == "doubt"

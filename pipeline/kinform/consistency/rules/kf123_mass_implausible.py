@@ -5,7 +5,10 @@ count twice), and over the volume of the convex hull, which nothing can exceed. 
 denser than any material (23 000 kg/m³), or the inertia is larger than if all of the mass were at the farthest point of
 the shape, and 30 times that of the mass spread evenly. A warning above 12 000 kg/m³ or below 5 kg/m³ of the enclosed
 volume, where the inertia is too large for the shape by less (something may not be drawn), or 30 times less than that of
-the mass spread evenly. Impossible masses and inertias are KF121.
+the mass spread evenly. Where the stated centre of mass is the centroid of the closed geometry, the link was weighed as
+a solid: a principal moment of less than half of what the solid has is a warning, and so is an inertia that is that of
+the solid about the frame of the link. A cause that explains the numbers is named: terms of the parallel axis theorem
+that were left out when parts were summed, or a mass that was changed alone. Impossible masses and inertias are KF121.
 
 Why it matters: torques, natural frequencies and controllers tuned in simulation are wrong by the same factor, and a
 simulator with tiny inertias needs tiny steps or explodes.
@@ -27,7 +30,10 @@ from kinform.consistency.comparisons.links import Weighed
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided
 from kinform.consistency.rule import Rule
+from kinform.foundation.rounding import SINGLE
 from kinform.foundation.words import counted, mass, number, volume
+from kinform.mass.shapes import solid_of
+from kinform.model.arrays import Array
 from kinform.model.findings import Witness, computed
 
 DENSEST = 23000.0
@@ -45,7 +51,17 @@ INERTIA_FAR = 30.0
 """Factor by which an inertia may be below or above that of the same mass, spread evenly over the shape, before it is
 doubted: hollow shells have up to 3, dense motors in light shells down to a tenth."""
 
+SAME_CENTRE = 0.02
+"""Share of a link's size by which the stated centre of mass may be off the centroid of its geometry, and is that. In 38
+public robots the moments of such links are the geometry's within a third, but for those that are plainly wrong."""
+TOO_SMALL = 0.5
+"""Share of the geometry's principal moment below which the stated one is doubted there: dense cores have 0.64."""
+EXPLAINED = 0.05
+"""Share of its trace by which an inertia may be off one that explains it. Chosen, not measured."""
 
+
+_KEYS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+_SIX = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 _UNITS = {1e9: "g·mm²", 1e6: "kg·mm²", 1e4: "kg·cm²", 1e3: "g·m²", 1e7: "g·cm²"}
 
 
@@ -56,7 +72,9 @@ def check(context: Context) -> Outcome:
     for body in context.weighed:
         if not body.possible or body.hull is None or doubted & {body.name, *(part.name for part in body.parts)}:
             continue
-        found = _of_mass(context, body) or _of_inertia(body)
+        of_solid = _of_solid(context, body)
+        explained = of_solid if of_solid is not None and of_solid.kind == "explained" else None
+        found = _of_mass(context, body) or explained or _of_inertia(body) or of_solid
         if found is not None:
             ranked.append(found)
     findings = gathered(ranked, "link" if context.assembly.descriptions else "part")
@@ -143,6 +161,87 @@ def _of_inertia(body: Weighed) -> Ranked | None:
         witness=witness,
     )  # fmt: skip
     return Ranked("inertia", max(ratio, 1.0 / ratio) if ratio > 0.0 else math.inf, finding)
+
+
+def _of_solid(context: Context, body: Weighed) -> Ranked | None:
+    """Principal moments beside those of the solid whose centroid the stated centre of mass is."""
+    solid = body.solid
+    if solid is None or solid.open_parts or np.linalg.norm(solid.centroid - body.centre) > SAME_CENTRE * body.size:
+        return None
+    density = body.mass / solid.volume
+    moments, axes = np.linalg.eigh(density * solid.inertia)
+    ratios = np.einsum("ij,ik,kj->j", axes, body.inertia, axes) / moments
+    of_frame = _about_frame(body, density * solid.inertia)
+    worst = int(np.argmax(ratios) if of_frame else np.argmin(ratios))
+    if not of_frame and ratios[worst] >= TOO_SMALL:
+        return None
+    ratio = float(ratios[worst])
+    stated, usual = number(float(ratio * moments[worst]), 3), number(float(moments[worst]), 3)
+    off = f", {number(max(ratio, 1.0 / ratio), 2)} times too {'small' if ratio < 1.0 else 'large'}" if ratio else ""
+    text = (
+        f"{body.what} of {mass(body.mass)} states a principal moment of inertia of {stated} kg·m²{off}: its closed "
+        f"geometry with the same centre of mass has {usual} kg·m² at that mass"
+    )
+    cause = of_frame or _summed(body, density, ratios)
+    finding = RULE.finding(
+        [body.name], text + (f"; likely cause: {cause}" if cause else ""),
+        found=f"{stated} kg·m²{off}",
+        intended=f"about {usual} kg·m²",
+        place=body.centre,
+        declared=body.source,
+        remedy=_written(context, body, density * solid.inertia),
+    )  # fmt: skip
+    return Ranked("explained" if cause else "solid", max(ratio, 1.0 / ratio) if ratio > 0.0 else math.inf, finding)
+
+
+def _about_frame(body: Weighed, inertia: Array) -> str:
+    """That the stated inertia is this one (3, 3) about the frame of the link; "" where it is not, or is no other."""
+    if body.described is None:
+        return ""
+    arm = body.centre - body.described.position
+    moved = inertia + body.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    off, size = float(np.linalg.norm(body.inertia - moved)), float(np.trace(moved))
+    if size <= float(np.trace(inertia)) / TOO_SMALL or off > EXPLAINED * size:
+        return ""
+    return "the inertia is about the frame of the link, and not about the centre of mass"
+
+
+def _summed(body: Weighed, density: float, ratios: Array) -> str:
+    """What explains moments that are too small: "" where neither does."""
+    assert body.solid is not None
+    whole = density * body.solid.inertia
+    if float(np.ptp(ratios)) <= EXPLAINED * float(np.max(ratios)):
+        return "mass and inertia are of different densities"
+    pieces = [solid_of([part]) for part in body.parts]
+    own = density * sum((piece.inertia for piece in pieces if piece is not None), np.zeros((3, 3)))
+    of_parts = len(pieces) > 1 and float(np.linalg.norm(body.inertia - own)) <= EXPLAINED * float(np.trace(own))
+    # Σ m d dᵀ of parts at d from the common centre: of two parts it has one direction
+    missing = 0.5 * float(np.trace(whole - body.inertia)) * np.eye(3) - (whole - body.inertia)
+    (least, middle, most), lines = np.linalg.eigh(missing)
+    about = (float(lines[:, 2] @ tensor @ lines[:, 2]) for tensor in (body.inertia, whole))
+    kept = abs(next(about) / next(about) - 1.0) <= EXPLAINED
+    along_one = kept and most > 0.0 and max(abs(least), abs(middle)) <= EXPLAINED * most
+    if not (of_parts or along_one):
+        return ""
+    return "inertias of parts were summed without the terms of the parallel axis theorem"
+
+
+def _written(context: Context, body: Weighed, inertia: Array) -> str:
+    """The inertia of the geometry (3, 3), ready to paste where the file has it along the axes of the link."""
+    link = body.described
+    if link is None:
+        return "Correct the inertia (kg·m² about the centre of mass), or remove it and give a density."
+    export = "`kinform export --to urdf --fix inertia` writes that of the geometry"
+    R = link.rotation
+    along = R.T @ body.inertia @ R
+    six = None if link.stated is None else link.stated.inertia
+    (form,) = {str(d.format) for d in context.assembly.descriptions if link in d.links} or {""}
+    if six is None or form != "urdf" or not np.allclose(six, [along[k] for k in _SIX], atol=1e-6 * np.trace(along)):
+        return f"Correct the inertia (kg·m² about the centre of mass); {export}."
+    least = SINGLE * float(np.trace(inertia))
+    values = {key: float((R.T @ inertia @ R)[k]) for key, k in zip(_KEYS, _SIX, strict=True)}
+    shown = " ".join(f'{key}="{number(value if abs(value) > least else 0.0, 5)}"' for key, value in values.items())
+    return f"State <inertia {shown}/>; {export}."
 
 
 def _even(body: Weighed) -> float:

@@ -52,4 +52,4 @@ def _finding(context: Context, certificate: FiniteCertificate) -> Finding:
     )
 
 
-RULE = Rule("KF305", "mobility-infinitesimal", "warning", __doc__, check, needs=("kinematics",))
+RULE = Rule("KF305", "mobility-infinitesimal", "warning", __doc__, check, needs=("kinematics",), also=("note",))

@@ -48,4 +48,4 @@ def _finding(context: Context, certificate: FiniteCertificate) -> Finding:
     )
 
 
-RULE = Rule("KF306", "pose-singular", "warning", __doc__, check, needs=("kinematics",))
+RULE = Rule("KF306", "pose-singular", "warning", __doc__, check, needs=("kinematics",), also=("note",))

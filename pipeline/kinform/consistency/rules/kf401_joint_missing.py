@@ -15,6 +15,7 @@ Example: the pin of a hinge was left out, and the two leaves are 2 mm apart.
 from __future__ import annotations
 
 from kinform.consistency.comparisons.comparison import Comparison
+from kinform.consistency.comparisons.missing_pin import missing_pin
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled
 from kinform.consistency.questions.gaps import gap_between
@@ -29,16 +30,20 @@ def check(context: Context) -> Outcome:
         (
             RULE.finding(
                 [c.intended.name],
-                f"the intended {c.intended.type} joint '{c.intended.name}' is missing: {_reason(context, c)}",
-                found="no contact",
+                f"the intended {c.intended.type} joint '{c.intended.name}' is missing: {_reason(context, c)}"
+                + (f"; {pin[0]}" if pin else ""),
+                found="no contact" + (f", {pin[0]}" if pin else ""),
                 intended=f"{c.intended.type} joint of {quoted(c.intended.between)}",
                 place=c.intended.point,
                 declared=c.intended,
-                remedy="Check poses and clearances, add the part that carries the joint, or correct `between`.",
+                remedy=pin[1]
+                if pin
+                else "Check poses and clearances, add the part that carries the joint, or correct `between`.",
                 witness=gap_between(context.assembly, *(body.parts for body in c.bodies)),
             )
             for c in context.comparisons
             if c.state == "absent" or _taken(c)
+            for pin in [missing_pin(context, c)]
         ),
         "; ".join(doubts),
         reason=f"{counted(len(context.comparisons), 'joint')} compared",

@@ -4,7 +4,8 @@ Applies when `[[function.joint]]` is stated at all, to bodies that an intended j
 other bodies (pins, bearings, screws) are means and are not compared; those bodies are listed by KF408.
 Flat or irregular contact is KF407. Of a joint that is ambiguous the rule finds nothing, and is inconclusive.
 Where the function states all joints (`complete = true`), contact that goes against the motion that these let two bodies
-have is found here, or by KF407; the joints and the mobility are those of the function without it.
+have is found here, or by KF407; the joints and the mobility are those of the function without it. Contact that closes a
+loop of a robot description is KF419.
 
 Why it matters: a guide, journal or socket that nobody wanted takes freedoms away.
 
@@ -31,7 +32,8 @@ def check(context: Context) -> Outcome:
     unknown = [joint.name for joint in joints if joint.status == "ambiguous"]
     found = [joint for joint in joints if joint.name not in unknown and joint.type not in ("planar", "general")]
     findings = [_finding(context, joint) for joint in found]
-    findings += [_beside(context, aside) for aside in context.kinematics.asides if not aside.loose]
+    loops = {loop.aside.name for loop in context.open_loops}
+    findings += [_beside(context, a) for a in context.kinematics.asides if not a.loose and a.name not in loops]
     return settled(findings, f"not intended and ambiguous: {quoted(unknown)}" if unknown else "")
 
 

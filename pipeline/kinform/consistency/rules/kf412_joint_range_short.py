@@ -4,7 +4,8 @@ A finding for each side of a stated range that is longer than what the meshes le
 0.02° or 0.1 % of the range. Joints of the same loops, and joints that the function couples (mimic joints), move along;
 all others are at rest. A side stated as free (`inf`) must not
 be stopped. A slide or screw that contact determines has left its guide where the last of the surfaces along which it
-goes ends; of one that is taken as stated the guide is in no mesh.
+goes ends; of one that is taken as stated the guide is in no mesh. Where the same range with the other sign is free, the
+sign of the axis is asked about.
 
 Any finding is an error in a design. In a robot description it is one where more than a tenth of the range is blocked,
 beyond the contact tolerance of the parts that meet, and a warning else.
@@ -24,17 +25,25 @@ import math
 import numpy as np
 
 from kinform.consistency.comparisons.as_written import range_as_written
-from kinform.consistency.comparisons.ranges import RangeComparison, joint_as_intended, range_comparisons, shown
+from kinform.consistency.comparisons.ranges import (
+    RangeComparison,
+    free_reversed,
+    joint_as_intended,
+    range_comparisons,
+    shown,
+)
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided, skipped
 from kinform.consistency.questions.proofs import beyond_guide, beyond_stop
 from kinform.consistency.rule import Rule
-from kinform.foundation.words import quoted
+from kinform.foundation.words import number, quoted
 from kinform.model.collisions import RangeEnd
 from kinform.model.findings import Finding, Severity, Witness
 
 SHORT_TURN = math.radians(0.02)
 """rad by which a turn may fall short: a stop on facets is not where it is on the surface. Chosen, not measured."""
+WRONG_SIGN = 0.1
+"""Share of the range that has to be short where the axis is asked about: less is a matter of a stop. A choice."""
 SHORT_SLIDE = 1e-3
 """Share of a stated length by which a slide may fall short: as `SHORT_TURN` of a turn of 20°."""
 DESCRIBED = 0.1
@@ -112,16 +121,37 @@ def _finding(
     if end.status == "unbounded":
         what = f"goes only to {end_value}"
         remedy = f"Lengthen the guide, add an end stop, or {state}."
+    text = f"joint '{joint.name}' {what} on the {side} side ({by}), intended is {intended}"
+    turned = _turned(context, item, stated - value)
+    if turned:
+        text += f"; it is free from {turned[0]}: is the sign of {turned[1]} wrong?"
+        remedy = turned[2]
     return rule.finding(
         [joint.name, *end.parts],
-        f"joint '{joint.name}' {what} on the {side} side ({by}), intended is {intended}",
-        found=end_value,
+        text,
+        found=end_value if not turned else f"{end_value} (free from {turned[0]})",
         intended=intended,
         place=end.place if end.place is not None else joint.point,
         declared=joint,
         remedy=remedy,
         witness=_witness(context, item, stated, end),
     )
+
+
+def _turned(context: Context, item: RangeComparison, short: float) -> tuple[str, str, str] | None:
+    """The same range with the other sign where that is free, what may have the wrong sign, and what to do; None where
+    it is not free, or too little is short."""
+    joint = item.intended
+    lower, upper = joint.range or (-math.inf, math.inf)
+    follows = next((c for c in context.function.couplings if not c.others and c.joints[0] == joint.name), None)
+    if not free_reversed(item) or (follows is None and abs(short) <= WRONG_SIGN * (upper - lower)):
+        return None
+    free = f"{shown(-upper, joint, context.units)} to {shown(-lower, joint, context.units)}"
+    suspect = "its axis" if follows is None else "its axis or of its ratio"
+    remedy = f"Turn the axis round, or state {range_as_written(context, joint, (-upper, -lower)) or free}"
+    if follows is not None:
+        remedy += f" and the ratio {number(-follows.ratio)} to '{follows.joints[1]}'"
+    return free, suspect, remedy + "; else remove what is in the way, or state the range that is needed."
 
 
 def _range(context: Context, item: RangeComparison) -> str:

@@ -19,6 +19,7 @@ Example: a pitch axis whose shaft can slide out is cylindrical, not revolute.
 from __future__ import annotations
 
 from kinform.consistency.comparisons.comparison import Comparison, leaves_more
+from kinform.consistency.comparisons.missing_pin import missing_pin
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled
 from kinform.consistency.questions.proofs import opening
@@ -34,10 +35,10 @@ def check(context: Context) -> Outcome:
     """Intended joints that contact leaves free without holding them."""
     loose = [c for c in context.comparisons if leaves_more(c) or (c.left_free and not c.afloat) or c.loose]
     doubts = [f"'{c.intended.name}': {c.afloat}" for c in context.comparisons if c.afloat and c.touch]
-    return settled([_finding(context, c) for c in loose], "; ".join(doubts))
+    return settled([_finding(context, c, missing_pin(context, c)) for c in loose], "; ".join(doubts))
 
 
-def _finding(context: Context, c: Comparison) -> Finding:
+def _finding(context: Context, c: Comparison, pin: tuple[str, str] | None) -> Finding:
     intended = c.intended
     reading = c.joint.readings[0] if c.state == "taken" and c.joint is not None else None
     found = reading.type if reading is not None else c.type
@@ -51,12 +52,13 @@ def _finding(context: Context, c: Comparison) -> Finding:
     word = found if found != "general" else f"general with {counted(freedoms, 'freedom')}"
     return RULE.finding(
         [intended.name],
-        f"joint '{intended.name}' is {word}{through} by contact, intended is {intended.type}: {beside}",
-        found=word + (f" about {direction(axis)}" if axis is not None else ""),
+        f"joint '{intended.name}' is {word}{through} by contact, intended is {intended.type}: {beside}"
+        + (f"; {pin[0]}" if pin else ""),
+        found=word + (f" about {direction(axis)}" if axis is not None else "") + (f", {pin[0]}" if pin else ""),
         intended=intended.type + (f" about {direction(intended.axis)}" if intended.axis is not None else ""),
         place=c.point if c.point is not None else intended.point,
         declared=intended,
-        remedy=_remedy(intended.type, found, taken=c.state == "taken" or c.loose),
+        remedy=pin[1] if pin else _remedy(intended.type, found, taken=c.state == "taken" or c.loose),
         witness=_witness(context, c, reading),
     )
 

@@ -22,10 +22,11 @@ from kinform.formats.description.coverage import coverage_of
 from kinform.formats.description.facts import Facts
 from kinform.formats.description.mesh_files import MeshFiles, files_below
 from kinform.formats.description.robot import Shape, Solid
+from kinform.formats.description.start_overlaps import CollisionPiece, excluded_pairs, start_overlaps
 from kinform.formats.description.tables import shape_table
 from kinform.model.arrays import Array
 from kinform.model.assembly import Part
-from kinform.model.descriptions import Coverage, DescribedJoint, DescribedLink, Description, LooseMesh
+from kinform.model.descriptions import Coverage, DescribedJoint, DescribedLink, Description, LooseMesh, StartOverlap
 
 SIBLINGS_MOST = 300
 """Files of a package that are looked through for the names of meshes, at most: a package has a few dozen. Chosen, not
@@ -51,6 +52,7 @@ class _Describer:
         self.scope, self.facts, self.files = scope, facts, files
         self.parts = {str(part.name): part for part in parts}
         self.missing: dict[tuple[str, int], LooseMesh] = {}
+        self._pieces: dict[tuple[str, int], CollisionPiece | None] = {}
 
     def description(self) -> Description:
         """All of it."""
@@ -63,7 +65,7 @@ class _Describer:
         loose = (*sorted(self.missing.values(), key=lambda mesh: (mesh.line, mesh.path)), *self._unreferenced())
         if loose:
             self.files.unsettled = True
-        return replace(given, prefix=prefix, links=links, joints=joints, meshes=loose)
+        return replace(given, prefix=prefix, links=links, joints=joints, meshes=loose, overlaps=self._overlaps())
 
     def _link(self, link: DescribedLink) -> DescribedLink:
         X, prefix = self.scope.X_WF, self.scope.prefix
@@ -103,12 +105,44 @@ class _Describer:
                 visual.append((part.mesh.vertices @ local[:3, :3].T + local[:3, 3], part.mesh.faces))
         return coverage_of(visual, [points for _, points in placed]) if placed else None
 
+    def _overlaps(self) -> tuple[StartOverlap, ...]:
+        """Of the collision geometry of links, in the world."""
+        given = self.facts.description
+        if self.files.reading.geometry != "visual":
+            return ()
+        pieces = {
+            link.name: [p for s in self.facts.others.get(link.name, ()) if (p := self._piece(link.name, s)) is not None]
+            for link in given.links
+        }
+        alike = self.facts.alike
+        excluded = excluded_pairs(given.text)
+        X, prefix = self.scope.X_WF, self.scope.prefix
+        return tuple(
+            replace(
+                overlap,
+                links=(prefix + overlap.links[0], prefix + overlap.links[1]),
+                place=X[:3, :3] @ overlap.place + X[:3, 3],
+            )
+            for overlap in start_overlaps(pieces, given.joints)
+            if not alike.issuperset(overlap.links) and frozenset(overlap.links) not in excluded
+        )
+
     def _points(self, link: str, shape: Shape) -> Array | None:
         """Vertices (n, 3) m of a shape of a link in the frame of the description; None where they cannot be had."""
-        X = shape.X_FG
+        piece = self._piece(link, shape)
+        return None if piece is None else piece.points
+
+    def _piece(self, link: str, shape: Shape) -> CollisionPiece | None:
+        key = (link, id(shape))
+        if key not in self._pieces:
+            self._pieces[key] = self._read_piece(link, shape)
+        return self._pieces[key]
+
+    def _read_piece(self, link: str, shape: Shape) -> CollisionPiece | None:
+        X, line = shape.X_FG, shape.at.line
         if isinstance(shape.geometry, Solid):
-            points = primitive(_SHAPES.validate_python(shape_table(shape.geometry, 1.0)), 1.0).vertices
-            return points @ X[:3, :3].T + X[:3, 3]
+            solid = primitive(_SHAPES.validate_python(shape_table(shape.geometry, 1.0)), 1.0)
+            return CollisionPiece(solid.vertices @ X[:3, :3].T + X[:3, 3], solid.faces, line)
         if not shape.geometry.is_file():
             self._note_missing(shape, link, left_out=False)
             return None
@@ -118,8 +152,9 @@ class _Describer:
             return None
         if raw is None or not len(raw.vertices):
             return None
-        points = raw.vertices * (shape.metres * np.array(shape.scale))
-        return points @ X[:3, :3].T + X[:3, 3]
+        scale = shape.metres * np.array(shape.scale)
+        faces = raw.faces if scale.prod() > 0.0 else raw.faces[:, ::-1]
+        return CollisionPiece((raw.vertices * scale) @ X[:3, :3].T + X[:3, 3], np.asarray(faces), line)
 
     def _note_missing(self, shape: Shape, link: str, *, left_out: bool) -> None:
         missing, at = Path(str(shape.geometry)), shape.at

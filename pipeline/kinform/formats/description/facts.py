@@ -34,13 +34,14 @@ def facts_of(
     """The facts of a robot; `geometry` is what its parts are, `parts` are their names by link, and `absent` the shapes
     of links without files."""
     other = "collision" if geometry == "visual" else "visual"
+    offsets = {ratio.joints[0]: ratio.offset for ratio in robot.ratios}
     description = Description(
         file=file,
         prefix="",
         format=robot.format,
         text=robot.text,
         links=tuple(_link(link, tuple(parts.get(link.name, ()))) for link in robot.links),
-        joints=tuple(_joint(joint) for joint in robot.joints if not joint.closure),
+        joints=tuple(_joint(joint, offsets.get(joint.name, 0.0)) for joint in robot.joints if not joint.closure),
     )
     alike = frozenset(
         link.name for link in robot.links if set(map(_key, link.visual)) == set(map(_key, link.collision))
@@ -63,10 +64,11 @@ def _stated(stated: Stated) -> StatedMass:
     return StatedMass(stated.mass, None if stated.six is None else np.array(stated.six), stated.at.line)
 
 
-def _joint(joint: RobotJoint) -> DescribedJoint:
+def _joint(joint: RobotJoint, offset: float) -> DescribedJoint:
     limits = joint.limits
     return DescribedJoint(
         joint.name, joint.at.file, joint.at.line, limits.kind if limits else joint.type, joint.between,
         joint.axis, joint.point, limits is not None and limits.needed,
         limits.bounds if limits else None, limits.effort if limits else None, limits.speed if limits else None,
+        limits is not None and limits.degrees, offset,
     )  # fmt: skip

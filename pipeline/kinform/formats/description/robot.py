@@ -86,6 +86,8 @@ class Limits:
     bounds: tuple[float, float] | None = None
     effort: float | None = None
     speed: float | None = None
+    degrees: bool = False
+    """Whether the file has the bounds in degrees."""
 
 
 def bounded(lower: float, upper: float) -> tuple[float, float] | None:
@@ -143,11 +145,13 @@ class RobotJoint:
 
 @dataclass(frozen=True)
 class Ratio:
-    """value(first) = ratio · value(second), SI."""
+    """value(first) = ratio · value(second) + offset, SI."""
 
     joints: tuple[str, str]
     ratio: float
     at: At
+    offset: float = 0.0
+    """rad or m; kept for rules alone: the motion is that of ratios without offset."""
 
 
 @dataclass(frozen=True, eq=False)

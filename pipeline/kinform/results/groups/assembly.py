@@ -103,6 +103,7 @@ LAYOUT = Layout(
         ),
         Table("described_joints", field="joints", owner="description"),
         Table("loose_meshes", field="meshes", owner="description"),
+        Table("start_overlaps", field="overlaps", owner="description", if_any=True),
         if_any=True,
     ),
     Subgroup("function", FUNCTION),

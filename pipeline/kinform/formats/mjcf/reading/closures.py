@@ -130,4 +130,4 @@ def ratios(
             continue
         if polynomial[0]:
             left.add("offset of <joint> of <equality>")
-        yield Ratio((first, second), polynomial[1], xml.at(element))
+        yield Ratio((first, second), polynomial[1], xml.at(element), polynomial[0])

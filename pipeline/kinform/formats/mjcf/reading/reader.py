@@ -309,7 +309,9 @@ class _Reader:
         limited = said.get("limited", "auto")
         off = values is None or limited == "false" or (limited == "auto" and not self.compiler.autolimits)
         bounds = None if off or values is None else (turn(values[0]), turn(values[1]))
-        return Limits(said.get("type", "hinge"), limited == "true", bounds)
+        return Limits(
+            said.get("type", "hinge"), limited == "true", bounds, degrees=kind == "revolute" and self.compiler.degrees
+        )
 
     def _first(self, element: Element, said: Mapping[str, str], key: str) -> float | None:
         """The first number of an attribute, where it is positive: later ones are of a polynomial."""

@@ -302,13 +302,14 @@ class _Reader:
             self.xml.complain(mimic, message, remedy)
             return None
         ratio = self.values.finite(mimic, "multiplier", 1.0)
-        if self.values.finite(mimic, "offset", 0.0) or self.values.finite(mimic, "reference", 0.0):
+        offset, reference = (self.values.finite(mimic, key, 0.0) for key in ("offset", "reference"))
+        if offset or reference:
             self.left.add("offset of <mimic>")
         movable = all(self.joints[j].type in ("revolute", "prismatic") for j in (name, leader) if j in self.joints)
         if not ratio or leader not in self.joints or not movable or mimic.get("axis", "axis") != "axis":
             self.left.add("<mimic> of ratio zero" if not ratio else "<mimic> of a joint that is not carried")
             return None
-        return Ratio((name, leader), ratio, self.xml.at(mimic))
+        return Ratio((name, leader), ratio, self.xml.at(mimic), offset - ratio * reference)
 
 
 def _bound(value: float, most: float = math.inf) -> float | None:

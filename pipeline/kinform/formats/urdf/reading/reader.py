@@ -333,11 +333,12 @@ class _Reader:
                 self.xml.complain(mimic, wrong, remedy)
                 continue
             ratio = self.xml.number(mimic, "multiplier", 1.0)
-            if self.xml.number(mimic, "offset", 0.0):
+            offset = self.xml.number(mimic, "offset", 0.0) or 0.0
+            if offset:
                 self.left.add("offset of <mimic>")
             if not ratio or name not in made or leader not in made:
                 self.left.add("<mimic> of ratio zero" if not ratio else "<mimic> of a joint that is not carried")
                 continue
-            out.append(Ratio((name, leader), ratio, self.xml.at(mimic)))
+            out.append(Ratio((name, leader), ratio, self.xml.at(mimic), offset))
         refuse_circle(out, self.xml.problems)
         return out
