@@ -8,7 +8,8 @@ from typing import Literal
 
 import numpy as np
 
-from kinform.consistency import verdict
+from kinform.consistency import verdict_of
+from kinform.consistency.judgement import VerdictKind
 from kinform.design import Design
 from kinform.errors import StageError
 from kinform.foundation.graphs.graph import forest
@@ -26,9 +27,12 @@ _UNDECIDED = "KF902"
 """The rule that lists the requirements that nobody could decide."""
 _KINDS = ("KF42", "KF43")
 """How the codes of the rules of single kinds of requirements begin."""
-Verdict = Literal["verified", "findings", "not verified"]
-VERDICTS: tuple[Verdict, ...] = ("verified", "findings", "not verified")
-"""By exit code of the gate."""
+Verdict = Literal["verified", "no errors found", "findings", "not verified"]
+VERDICTS: dict[VerdictKind, Verdict] = {
+    "consistent": "verified", "no errors found": "no errors found", "inconsistent": "findings",
+    "not verified": "not verified",
+}  # fmt: skip
+"""By the kind of the gate's verdict."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +115,7 @@ def entry_of(design: Design, path: str, digest: str) -> Entry:
         loops=_loops(kinematics),
         mass=_mass(design),
         size=_size(design.assembly),
-        verdict=None if design.report is None else VERDICTS[verdict(design.report)],
+        verdict=None if design.report is None else VERDICTS[verdict_of(design.report).kind],
         joints=_joints(design.assembly, kinematics),
         requirements=tuple(_requirement(wanted, design.report) for wanted in design.assembly.function.requirements),
         graph=graph_of(

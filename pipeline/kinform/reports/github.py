@@ -5,11 +5,12 @@ No line begins with text that a user chose: a part cannot be named so that it be
 
 from __future__ import annotations
 
+from kinform.consistency import verdict_of
 from kinform.design import Design
 from kinform.foundation import escapes
 from kinform.foundation.escapes import one_line
 from kinform.model.findings import CheckReport, Finding, RuleOutcome
-from kinform.reports.phrases import details, rule_counts, severity_counts, verdict_line
+from kinform.reports.phrases import details, rule_counts, severity_counts
 
 _COMMANDS = {"error": "error", "warning": "warning", "note": "notice"}
 
@@ -19,8 +20,9 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     manifest = design.assembly.source.file
     lines = [_finding(finding, manifest, design.assembly.units) for finding in report.findings]
     lines += [_undecided(rule, manifest) for rule in report.rules if rule.outcome == "inconclusive"]
-    counts = f"{severity_counts(report)}; {rule_counts(report)}"
-    lines.append(escapes.lines(f"{verdict_line(report, fail_on)}; {counts}; {one_line(design.assembly.name)}"))
+    verdict = verdict_of(report, fail_on)
+    told = (verdict.line, verdict.coverage, severity_counts(report), rule_counts(report), design.assembly.name)
+    lines.append(escapes.lines("; ".join(one_line(text) for text in told if text)))
     return "\n".join(lines) + "\n"
 
 

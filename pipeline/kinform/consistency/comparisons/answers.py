@@ -11,7 +11,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import Literal, get_args
 
 import numpy as np
@@ -49,9 +51,10 @@ class Answer:
     """Between the boxes of the two bodies, where they do not touch; 0 where the boxes meet."""
 
 
-def answer_counts(given: Sequence[Answer]) -> tuple[tuple[str, int], ...]:
+def answer_counts(given: Iterable[str]) -> tuple[tuple[str, int], ...]:
     """How many joints have each answer, in the order of `ANSWERS`, without those that none has."""
-    counts = [(answer, sum(one.answer == answer for one in given)) for answer in ANSWERS]
+    every = Counter(given)
+    counts = [(answer, every[answer]) for answer in ANSWERS]
     return tuple((answer, count) for answer, count in counts if count)
 
 
@@ -73,11 +76,22 @@ def answer_of(assembly: Assembly, c: Comparison) -> Answer:
 
 
 def answers(design: Design) -> tuple[Answer, ...]:
-    """The answers to all intended joints, in the order of the function; needs kinematics."""
+    """The answers to all intended joints, in the order of the function; needs kinematics. Where rules have run, the
+    answers are theirs: a contradiction that none could prove is undecided."""
     assert design.kinematics is not None
     assembly = design.assembly
     compared = compare_joints(assembly, design.contacts, design.kinematics, assembly.function.joints)
-    return tuple(answer_of(assembly, one) for one in compared)
+    given = tuple(answer_of(assembly, one) for one in compared)
+    if design.report is None:
+        return given
+    judged = {
+        s.name: answer
+        for s in design.report.statements
+        if s.kind == "joint"
+        for answer in ANSWERS
+        if answer == s.outcome
+    }
+    return tuple(replace(one, answer=judged.get(one.name, one.answer)) for one in given)
 
 
 def _kind(tolerances: Tolerances, c: Comparison) -> tuple[AnswerName, str, str]:
@@ -101,9 +115,17 @@ def _kind(tolerances: Tolerances, c: Comparison) -> tuple[AnswerName, str, str]:
     if c.state == "one body":
         return ("agrees", "", "") if c.right_type else ("contradicts", "", c.reason or "both sides are one body")
     if c.right_type:
-        tilted = c.angle is not None and c.angle > tolerances.angle_limit() + c.angle_slack
-        beside = c.offset is not None and c.offset > c.position_limit + c.position_slack
-        return ("contradicts", "", "its axis is elsewhere") if tilted or beside else ("agrees", "", "")
+        off = [
+            (value - limit, slack)
+            for value, limit, slack in (
+                (c.angle, tolerances.angle_limit(), c.angle_slack),
+                (c.offset, c.position_limit, c.position_slack),
+            )
+            if value is not None and value > limit
+        ]
+        if any(beyond > slack for beyond, slack in off):
+            return "contradicts", "", "its axis is elsewhere"
+        return ("undecided" if off else "agrees"), "", ""
     if leaves_more(c):
         return "not held", f"{c.type}, {counted(c.freedoms, 'freedom')} by contact", ""
     return "contradicts", "", f"by contact it is {c.type}"

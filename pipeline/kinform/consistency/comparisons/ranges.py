@@ -32,6 +32,18 @@ class RangeComparison:
     given: bool = False
     """Neither body has a mesh, and nothing in the assembly could meet: there is nothing to compare with."""
 
+    @property
+    def unknown(self) -> str:
+        """Why a side is not known; empty where both are."""
+        if self.reason:
+            return self.reason
+        sides = (("lower", self.lower), ("upper", self.upper))
+        why = "; ".join(f"{side}: {end.reason}" for side, end in sides if end is not None and end.status == "unknown")
+        if why or not self.left_out:
+            return why
+        few = ", ".join(" and ".join(pair) for pair in self.left_out[:3])
+        return f"without {few}, which overlap from the start, it is; with them it may be shorter"
+
 
 def range_comparisons(context: Context) -> list[RangeComparison]:
     """Every intended joint that states a range, sorted by name."""

@@ -33,7 +33,7 @@ def joint_values(design: Design) -> dict[str, Any]:
             for joint in kinematics.joints
         ],
         "intended": [asdict(answer) for answer in given],
-        "answers": dict(answer_counts(given)) | {"share_undecided": _share(given)},
+        "answers": dict(answer_counts(one.answer for one in given)) | {"share_undecided": _share(given)},
         "sides": [asdict(one) for one in kinematics.sides],
         "asides": [asdict(aside) for aside in kinematics.asides],
         "mobility": mobility_counts(kinematics.mobility),
