@@ -82,16 +82,9 @@ def answers(design: Design) -> tuple[Answer, ...]:
     assembly = design.assembly
     compared = compare_joints(assembly, design.contacts, design.kinematics, assembly.function.joints)
     given = tuple(answer_of(assembly, one) for one in compared)
-    if design.report is None:
-        return given
-    judged = {
-        s.name: answer
-        for s in design.report.statements
-        if s.kind == "joint"
-        for answer in ANSWERS
-        if answer == s.outcome
-    }
-    return tuple(replace(one, answer=judged.get(one.name, one.answer)) for one in given)
+    said = {} if design.report is None else {s.name: s.outcome for s in design.report.statements if s.kind == "joint"}
+    words: dict[str, AnswerName] = {answer: answer for answer in ANSWERS} | {"not checked": "undecided"}
+    return tuple(replace(one, answer=words.get(said.get(one.name, ""), one.answer)) for one in given)
 
 
 def _kind(tolerances: Tolerances, c: Comparison) -> tuple[AnswerName, str, str]:
