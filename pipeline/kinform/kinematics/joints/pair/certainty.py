@@ -104,15 +104,15 @@ def certainty(
     if count < 6 and values[count] < tolerances.held:
         return Certainty(
             "ambiguous",
-            f"singular value {values[count]:.2g} lies between free (< {tolerances.free:g}) "
-            f"and held (> {tolerances.held:g})",
+            "a motion is neither clearly held nor clearly free: lengthen the surface that locates it, or export a "
+            f"finer mesh (singular value {values[count]:.2g}, between {tolerances.free:g} and {tolerances.held:g})",
         )
     spread = _spread(evidence)
     if count < 6 and values[count] < WEYL_SIGMAS * spread:
         return Certainty(
             "ambiguous",
-            f"singular value {values[count]:.2g} may be nothing: the directions of the surfaces are known to "
-            f"{np.degrees(spread):.2g}°",
+            f"a motion is held by less than the {np.degrees(spread):.2g}° to which the directions of the surfaces are "
+            f"known: export a finer mesh (singular value {values[count]:.2g})",
         )
     form = evidence.form(basis)
     touching = momentary(evidence, basis) or (form.type == "general" and meets([item.patch for item in evidence.items]))
@@ -240,11 +240,14 @@ def _loose_doubt(
     if firm.all() or (firm.any() and (yield from _count(evidence, twists, firm, tolerances)) <= count):
         least = float(vague[firm & ~clear].min())
         return (
-            f"{count} of 6 freedoms are left only because of surfaces whose direction is known no better than to "
-            f"{np.degrees(least):.2g}°: the vertices of the mesh scatter"
+            f"surfaces decide whose direction is known no better than to {np.degrees(least):.2g}°, as the vertices of "
+            f"the mesh scatter: export a finer mesh ({count} of 6 freedoms are left with them)"
         )
     kinds = sorted({item.patch.kind for item in evidence.chosen(~firm)})
-    return f"{count} of 6 freedoms are left only because of contact along {', '.join(kinds)} without a mating surface"
+    return (
+        f"contact along {', '.join(kinds)} without a mating surface decides: give it surfaces that fit each other, or "
+        f"state the joint ({count} of 6 freedoms are left with it)"
+    )
 
 
 def _scrap_reading(
