@@ -11,6 +11,7 @@ from support.places import FIXTURES
 
 import kinform
 from kinform.api import Results
+from kinform.consistency import verdict_of
 
 pytestmark = pytest.mark.usefixtures("small_pictures")
 
@@ -21,9 +22,11 @@ def results(derive_design):
     return Results(derive_design(FIXTURES / "broken" / "seeker_gimbal_overlaps" / "seeker_gimbal_overlaps.toml"))
 
 
-def test_the_verdict_is_a_word(results, derive_design):
-    assert results.verdict == "inconsistent"
-    assert Results(derive_design(FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml")).verdict == "consistent"
+def test_the_verdict_is_that_of_the_gate(results, derive_design):
+    assert results.verdict == verdict_of(results.report).line and results.verdict.startswith("FAILED")
+    good = Results(derive_design(FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml"))
+    assert good.verdict == "consistent"
+    assert good.coverage == verdict_of(good.report).coverage and good.coverage in repr(good)
 
 
 def test_tables_are_shown_as_html_with_names_as_text(results):
@@ -34,7 +37,7 @@ def test_tables_are_shown_as_html_with_names_as_text(results):
     assert "KF201" in results.findings._repr_html_()
     assert results.findings == results.report.findings
     whole = results._repr_html_()
-    assert "inconsistent" in whole and "KF201" in whole and shown in whole
+    assert html.escape(results.verdict) in whole and "KF201" in whole and shown in whole
 
 
 def test_the_view_is_the_page_in_a_frame(results):

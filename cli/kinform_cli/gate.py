@@ -31,7 +31,7 @@ class Gate:
     manifest_folder: Path | None = None
     """Formats that a repository's host reads name files as seen from here: this goes before them."""
     strict: bool = False
-    """Whether the exit code is 2 where results are of unknown origin and no finding fails."""
+    """Whether the exit code is 2 also where the report leaves open what `Verdict.open` lists."""
 
     def judge_run(self, outcome: Outcome) -> int:
         """What a run says on its own account, then its findings; returns the exit code of the gate."""
@@ -52,10 +52,11 @@ class Gate:
         """
         report, fail_on = design.report, self.fail_on.value
         assert report is not None
-        if self.strict and report.origin == "unknown":
-            report = replace(report, origin="refused")
+        if self.strict:
+            report = replace(report, strict=True)
             design = replace(design, report=report)
-        from kinform.model.findings import SEVERITIES, verdict
+        from kinform.consistency import verdict
+        from kinform.model.findings import SEVERITIES
 
         run = None
         if outcome is not None:

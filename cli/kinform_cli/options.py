@@ -259,6 +259,14 @@ LookedAt = Annotated[
     argument("F.h5", "Results file; of a manifest, robot description or scene all is computed, and not kept."),
 ]
 Output = Annotated[Path, option("--output -o", "F.h5", "Results file to write; may be the one that is read.")]
+Strict = Annotated[
+    bool,
+    typer.Option(
+        "--strict",
+        help="Exit with 2 also where joints are undecided or ambiguous, bodies are fused by contact at rest alone, "
+        "meshes may be several parts, or your kinform did not write the results.",
+    ),
+]
 TrustResults = Annotated[
     bool,
     typer.Option(

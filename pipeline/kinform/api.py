@@ -224,10 +224,17 @@ class Results:
 
     @property
     def verdict(self) -> str:
-        """As in "consistent", "inconsistent" or "not verified: 2 rules could not decide"."""
-        from kinform.reports.phrases import verdict_line
+        """As in "consistent", "no errors found (nothing declared)" or "FAILED: 1 joint error. 2 of 3 joints match"."""
+        from kinform.consistency import verdict_of
 
-        return verdict_line(self.report)
+        return verdict_of(self.report).line
+
+    @property
+    def coverage(self) -> str:
+        """What the check covers and leaves open, in one line."""
+        from kinform.consistency import verdict_of
+
+        return verdict_of(self.report).coverage
 
     def page(self) -> str:
         """The page of `kinform report`, as HTML."""
@@ -244,6 +251,8 @@ class Results:
         design = self.design
         shown = [f"<p><b>{escapes.html(design.assembly.name)}</b>: {len(design.assembly.parts)} parts"]
         shown[0] += f"; {escapes.html(self.verdict)}</p>" if design.report is not None else "</p>"
+        if design.report is not None and self.coverage:
+            shown.append(f"<p>{escapes.html(self.coverage)}</p>")
         if design.kinematics is not None:
             shown.append(self.joints._repr_html_())
         if design.report is not None and design.report.findings:
@@ -279,6 +288,7 @@ class Results:
         if design.simulation is not None:
             lines.append(f"simulation: {design.simulation.level} {design.simulation.status}".rstrip())
         if design.report is not None:
+            lines += filter(None, (escapes.one_line(self.verdict), escapes.one_line(self.coverage)))
             lines.append(f"{len(design.report.findings)} findings, {design.report.ran} rules ran")
         return "\n".join(lines)
 

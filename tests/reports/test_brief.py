@@ -8,12 +8,13 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from support.hostile import DESIGN
+from support.hostile import DESIGN, REPORT
 from support.places import FIXTURES
 
+from kinform.consistency import verdict_of
+from kinform.foundation.escapes import one_line
 from kinform.foundation.words import shortened
 from kinform.model.findings import CheckReport, Finding, RuleOutcome
-from kinform.model.function import IntendedJoint
 from kinform.reports import as_json, concise, full, github, render
 
 LONG = "waveshare_mounting_plate_of_the_second_arm_v2"
@@ -37,16 +38,6 @@ def brief(told, width=80):
 
 def numbers(line):
     return [int(number) for number in re.findall(r"\d+", line)]
-
-
-def word(text):
-    """The verdict, which stands in the first line behind the name of the design."""
-    return re.match(r"\w+", text.removeprefix(f"{DESIGN.assembly.name}: "))[0]
-
-
-def topics(text):
-    """Errors by what they are about, as the first line counts them."""
-    return {topic: int(many) for topic, many in re.findall(r"(\w+): (\d+) errors?", text.splitlines()[0])}
 
 
 def heads(lines):
@@ -130,23 +121,10 @@ def test_what_was_assumed_is_said(derive_design):
     assert any(ground in line for line in more)
 
 
-def stated(design, *joints):
-    function = replace(design.assembly.function, joints=tuple(joints))
-    return replace(design, assembly=replace(design.assembly, function=function))
-
-
-def test_the_verdict_says_what_was_compared_and_what_is_faulty():
-    mesh = finding("KF101", "error", "plate")
-    told = replace(report(mesh), answers=(("agrees", 6),))
-    pan = IntendedJoint("pan", ("a", "b"), "revolute", *[None] * 7)
-    with_function = stated(DESIGN, pan)
-    assert render(told, with_function, "brief").startswith(f"{DESIGN.assembly.name}: all 6 ")
-    assert topics(render(report(mesh), DESIGN, "brief")) == {"meshes": 1}
-    against = replace(report(mesh, finding("KF403", "error", "pan")), answers=(("agrees", 5), ("contradicts", 1)))
-    text = render(against, with_function, "brief")
-    assert (word(text), topics(text)) == ("inconsistent", {"function": 1, "meshes": 1})
-    text = render(report(finding("KF202", "note")), DESIGN, "brief")
-    assert (word(text), topics(text)) == ("consistent", {})
+def test_the_verdict_and_its_coverage_come_first():
+    verdict = verdict_of(REPORT)
+    text = " ".join(" ".join(render(REPORT, DESIGN, "brief").split()).split("; 5 rules")[:1])
+    assert text.startswith(f"{DESIGN.assembly.name}: {verdict.line} {one_line(verdict.coverage)} 1 error")
 
 
 def test_what_was_found_is_whole_before_names_and_before_more_findings():
@@ -161,8 +139,8 @@ def test_what_was_found_is_whole_before_names_and_before_more_findings():
 
 def test_many_joints_without_a_function_are_told_how_they_get_fewer(derive_design):
     design = derive_design(FIXTURES / "mechanisms" / "stewart_platform" / "stewart_platform.toml")
-    bare = stated(design)
-    bare = replace(bare, assembly=replace(bare.assembly, function=replace(bare.assembly.function, complete=())))
+    function = replace(design.assembly.function, joints=(), complete=())
+    bare = replace(design, assembly=replace(design.assembly, function=function))
     text = " ".join(render(report(), bare, "brief").split())
     many = len(design.kinematics.joints)
     (told,) = re.findall(rf"\b{many} joints between {len(design.assembly.parts)} parts", text)

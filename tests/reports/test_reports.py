@@ -8,7 +8,7 @@ import json
 import pytest
 from support.assemblies import assembly, part
 
-from kinform.consistency import verdict
+from kinform.consistency import verdict, verdict_of
 from kinform.design import Design
 from kinform.model.findings import CheckReport, Finding, RuleOutcome
 from kinform.reports import render
@@ -33,7 +33,7 @@ def test_concise_has_a_line_a_finding_and_a_line_a_doubt():
         "m.toml: note KF107 a, b: 2 shells",
         "m.toml:12: error KF402 el\\nbow: the joint is fixed, a revolute one is intended",
         "m.toml: inconclusive KF904 range-not-checked: no rule checks ranges yet",
-        "test: inconsistent; 1 error, 0 warnings, 1 note; 3 rules ran, 1 skipped, 1 inconclusive",
+        f"test: {verdict_of(REPORT).line}; 1 error, 0 warnings, 1 note; 3 rules ran, 1 skipped, 1 inconclusive",
     ]
 
 
@@ -64,7 +64,7 @@ def test_full_tells_everything_within_eighty_columns():
         "skipped:\n"
         "  no simulation is requested: KF501\n"
         "\n"
-        "test: inconsistent; function: 1 error\n"
+        f"test: {verdict_of(REPORT).line}\n"
         "1 error, 0 warnings, 1 note\n"
         "3 rules ran, 1 skipped, 1 inconclusive\n"
     )

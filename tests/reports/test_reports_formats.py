@@ -16,7 +16,7 @@ from markdown_it import MarkdownIt
 from support import sarif_structure
 from support.hostile import DESIGN, ERROR, NAMES, REPORT, RULES, named
 
-from kinform.consistency import Rule, adopt, with_baseline
+from kinform.consistency import Rule, adopt, verdict_of, with_baseline
 from kinform.model.findings import CheckReport, Finding, RuleOutcome
 from kinform.reports import FORMATS, render
 
@@ -146,6 +146,9 @@ def suite_of(report, **settings):
     whole = ElementTree.fromstring(render(report, DESIGN, "junit", **settings))
     assert whole.tag == "testsuites"
     (suite,) = whole
+    (properties,) = suite.findall("properties")
+    assert next(iter(suite)) is properties and {one.get("name") for one in properties} <= {"verdict", "coverage"}
+    suite.remove(properties)
     cases = list(suite)
     assert {case.tag for case in cases} <= {"testcase"}
     assert all(set(case.attrib) >= {"classname", "name"} for case in cases)
@@ -224,7 +227,7 @@ def test_github_has_an_annotation_a_finding_and_a_doubt():
     (error,) = (finding for finding in REPORT.findings if finding.code == "KF402")
     assert any(line.endswith(error.remedy) for line in found[1][2].splitlines())
     assert "KF904" in found[3][1]["title"]
-    assert last.startswith("inconsistent; ")
+    assert last.startswith(f"{verdict_of(REPORT).line}; {verdict_of(REPORT).coverage}; ")
 
 
 def test_github_keeps_every_name_and_no_name_becomes_a_command():

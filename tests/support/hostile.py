@@ -6,6 +6,7 @@ import dataclasses
 
 from kinform.design import Design
 from kinform.model.assembly import Source
+from kinform.model.coverage import Coverage, Statement
 from kinform.model.findings import CheckReport, Finding, Ignored, RuleOutcome, Witness
 from support.assemblies import assembly, part
 
@@ -58,7 +59,16 @@ ACCEPTED = Ignored(
     "manifest",
     "glued, see {drawing} <3>",
 )  # fmt: skip
-REPORT = CheckReport((NOTE, ERROR, WARNING), RULES, (ACCEPTED,))
+STATEMENTS = (
+    Statement("joint", "el\nbow", "contradicts"),
+    Statement("joint", "wr|ist", "undecided", "joint 'wr|ist' is ambiguous"),
+    Statement("limit", "wr|ist", "not checked", "no simulation requested", "torque"),
+)
+COVERAGE = Coverage(
+    stated=True, joints=3, joints_understood=2, contacts=4, contacts_understood=3, interpretations=("a~<b>",),
+    several=("a", "b|c"), fused=("c|<i>~d",), lowered=("KF406",),
+)  # fmt: skip
+REPORT = CheckReport((NOTE, ERROR, WARNING), RULES, (ACCEPTED,), statements=STATEMENTS, coverage=COVERAGE)
 
 
 def named(names: tuple[str, ...] = NAMES) -> CheckReport:

@@ -21,6 +21,7 @@ from kinform_cli.options import (
     FailOn,
     Jobs,
     Severity,
+    Strict,
     TrustResults,
     argument,
     cores,
@@ -92,6 +93,7 @@ def batch(
         option("--catalog -c", "FILE", "Also add all results to this catalog (SQLite), made where there is none."),
     ] = None,
     fail_on: FailOn = Severity.error,
+    strict: Strict = False,
     format: Annotated[
         list[str] | None,
         option(
@@ -107,8 +109,8 @@ def batch(
 
     What is unchanged is not touched; one bad design stops no other.
 
-    Exit code 0: all are consistent. 1: one has findings at or above --fail-on.
-    2: one is not verified: a rule could not decide, the input is bad, or its worker died.
+    Exit code 0: none has findings or is not verified. 1: one has findings at or above --fail-on.
+    2: one is not verified: a rule could not decide, the input is bad, its worker died, or what --strict adds.
     """
     shown, written = _printed(format or [])
     limits = limits_of(seconds, memory)
@@ -133,6 +135,7 @@ def batch(
     began = time.monotonic()
     with Pace("batch", began) as pace:
         rows = many.run(found, output, settings, pace, console.warn) if found else ()
+    rows = tuple(replace(row, strict=strict) for row in rows)
     _tell(rows, output, fail_on.value, shown, written)
     if catalog is not None:
         _fill(catalog, rows, output, trust_results)

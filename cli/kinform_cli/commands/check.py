@@ -22,6 +22,7 @@ from kinform_cli.options import (
     Printed,
     PrintedFindings,
     Severity,
+    Strict,
     Verbose,
     examples,
     option,
@@ -65,9 +66,7 @@ def check(
     ] = None,
     manifest_folder: ManifestFolder = None,
     lock: Annotated[Path | None, option("--lock", "FILE", "Also compare the behaviour with this lock (KF450).")] = None,
-    strict: Annotated[
-        bool, typer.Option("--strict", help="Exit with 2 where your kinform did not write the results file.")
-    ] = False,
+    strict: Strict = False,
     witness: Annotated[
         bool,
         typer.Option("--witness", help="Replay the witness of every finding by another method, in place of checking."),
@@ -75,9 +74,9 @@ def check(
 ) -> None:
     """Check form, behaviour and function against each other.
 
-    Exit code 0: every rule that applies ran and passed.
+    Exit code 0: no findings, and nothing that was asked for is undecided.
     1: findings at or above --fail-on.
-    2: not verified: a rule could not decide, none ran, or the input is bad.
+    2: not verified: a rule could not decide, none ran, the input is bad, or what --strict adds.
 
     With --witness: 0 where no witness fails, 1 where one does not hold.
 

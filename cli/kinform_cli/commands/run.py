@@ -24,6 +24,7 @@ from kinform_cli.options import (
     Ranges,
     Severity,
     Sources,
+    Strict,
     TrustResults,
     Units,
     Verbose,
@@ -65,15 +66,16 @@ def run(
     ranges: Ranges = None,
     jobs: Jobs = None,
     depfile: Depfile = None,
+    strict: Strict = False,
     trust_results: TrustResults = False,
 ) -> None:
     """Import, contacts, joints, mass, simulate and check in one go.
 
     Only what a change affects is computed again.
 
-    Exit code 0: every rule that applies ran and passed.
+    Exit code 0: no findings, and nothing that was asked for is undecided.
     1: findings at or above --fail-on.
-    2: not verified: a rule could not decide, none ran, or the input is bad.
+    2: not verified: a rule could not decide, none ran, the input is bad, or what --strict adds.
     """
     sources = files.sources_of(sources)
     how = printed(format, verbose)
@@ -98,7 +100,7 @@ def run(
         )
     if depfile is not None and output is not None:
         files.write_rule(depfile, output, outcome.gist, sources)
-    code = Gate(how, fail_on, sources[0].parent if manifest else None).judge_run(outcome)
+    code = Gate(how, fail_on, sources[0].parent if manifest else None, strict).judge_run(outcome)
     if output is None:
         again = command("kinform", "run", *sources, *(["--units", units] if units else []), "-o", _results(sources[0]))
         console.say(f"nothing was kept: {again} keeps it for `kinform show` and `kinform report`")

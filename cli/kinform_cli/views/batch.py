@@ -12,7 +12,7 @@ from kinform_cli.tables import Rows
 if TYPE_CHECKING:
     from kinform.batch import Row
 
-_HEADINGS = ("design", "verdict", "errors", "warnings", "notes", "undecided", "seconds")
+_HEADINGS = ("design", "verdict", "errors", "warnings", "notes", "undecided", "ignored", "seconds")
 
 
 def table(rows: Sequence[Row], fail_on: str) -> Rows:

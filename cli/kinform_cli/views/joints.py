@@ -91,7 +91,7 @@ def _intended(design: Design, given: Sequence[Answer], lengths: Lengths) -> list
         return []
     from kinform.consistency.comparisons.answers import answer_counts
 
-    title = f"\nIntended joints: {answers_line(answer_counts(given))}"
+    title = f"\nIntended joints: {answers_line(answer_counts(one.answer for one in given))}"
     rows = Rows("intended", "type", "answer", "because", title=title, names=["intended"], texts=["because"])
     for one in given:
         gap = "" if one.gap is None else f"gap {lengths.length(one.gap)} {lengths.small}"

@@ -13,13 +13,14 @@ from typing import Any, Literal
 
 from kinform.batch.discovery import RECORD
 from kinform.batch.task import FailureKind
+from kinform.consistency.judgement import CODES, VerdictKind, in_strict_words
 from kinform.errors import InputError, Problem
 from kinform.foundation import provenance
 from kinform.frozen import dataclass
-from kinform.model.findings import SEVERITIES
 from kinform.results import computed_anew, refuse_links, replace_file
 
-SCHEMA = "kinform/batch-record/2"
+SCHEMA = "kinform/batch-record/3"
+KIND_OF: dict[str, VerdictKind] = {kind: kind for kind in CODES}
 NAME = RECORD
 """Of the file in the folder of results."""
 
@@ -45,6 +46,12 @@ class Row:
     """Findings that the manifest accepts."""
     unselected: int = 0
     """Rules that the manifest leaves out."""
+    verdicts: Mapping[str, tuple[VerdictKind, str]] = field(default_factory=dict)
+    """By the least severity that fails: the verdict's kind and line."""
+    coverage: str = ""
+    """Of the verdict."""
+    open: tuple[str, ...] = ()
+    """Of the verdict."""
     seconds: float = 0.0
     tries: int = 1
     failure: FailureKind | Literal[""] = ""
@@ -62,21 +69,26 @@ class Row:
     """Whether this user's kinform computed the results, or had recorded what was reused."""
     unchanged: bool = False
     """Whether nothing had to be done."""
+    strict: bool = False
+    """As of CheckReport."""
+
+    def kind(self, fail_on: str = "error") -> VerdictKind:
+        """The kind of the verdict that `kinform run` would have."""
+        if self.failure:
+            return "not verified"
+        kind = self.verdicts[fail_on][0]
+        return "not verified" if self.strict and self.open and CODES[kind] == 0 else kind
 
     def code(self, fail_on: str = "error") -> int:
         """The exit code that `kinform run` would have."""
-        if self.failure:
-            return 2
-        failing = SEVERITIES[SEVERITIES.index(fail_on) :]
-        if any(self.counts.get(severity, 0) for severity in failing):
-            return 1
-        return 2 if self.ran == 0 or self.inconclusive else 0
+        return CODES[self.kind(fail_on)]
 
     def verdict(self, fail_on: str = "error") -> str:
-        """In a few words."""
+        """The verdict in one line."""
         if self.failure:
-            return f"not verified: {self.failure}" if self.failure != "input" else "not verified: input"
-        return ("consistent", "inconsistent", "not verified")[self.code(fail_on)]
+            return f"not verified: {self.failure}"
+        kind, line = self.verdicts[fail_on]
+        return line if self.kind(fail_on) == kind else in_strict_words(self.open)
 
 
 @dataclass
@@ -125,7 +137,7 @@ def write(record: Record, folder: Path) -> None:
     rows = []
     for name in sorted(record.rows):
         values = dataclasses.asdict(record.rows[name])
-        del values["unchanged"]
+        del values["unchanged"], values["strict"]
         if values["recorded"]:
             del values["recorded"]
         rows.append(values)
@@ -148,4 +160,6 @@ def _row(values: Mapping[str, Any]) -> Row:
     notes = tuple(map(str, known.pop("notes", ())))
     counts = {str(key): int(value) for key, value in known.pop("counts", {}).items()}
     files = {str(key): str(value) for key, value in known.pop("files", {}).items()}
-    return Row(**known, problems=problems, notes=notes, counts=counts, files=files)
+    left_open = tuple(map(str, known.pop("open", ())))
+    verdicts = {str(key): (KIND_OF[kind], str(line)) for key, (kind, line) in known.pop("verdicts", {}).items()}
+    return Row(**known, problems=problems, notes=notes, counts=counts, files=files, verdicts=verdicts, open=left_open)

@@ -12,6 +12,8 @@ from xml.etree import ElementTree
 
 from kinform import results
 from kinform.batch.record import Row
+from kinform.consistency import verdict_of
+from kinform.consistency.judgement import CODES, UNKNOWN
 from kinform.design import Design
 from kinform.errors import KinformError, Problem
 from kinform.foundation.escapes import json_text, lines, one_line, xml_legal
@@ -19,7 +21,6 @@ from kinform.foundation.words import counted, number
 from kinform.model.findings import SEVERITIES, CheckReport
 from kinform.reports import TEXTS, as_json, concise, github, junit, markdown, sarif
 from kinform.reports.from_here import seen_from_here
-from kinform.reports.phrases import UNKNOWN, verdict_word
 from kinform.version import __version__
 
 SCHEMA = "kinform/batch/1"
@@ -54,19 +55,19 @@ class _Whole:
                 gone = Problem(str(error).splitlines()[0])
                 yield dataclasses.replace(row, failure="input", problems=(gone,)), None
                 continue
-            yield row, seen_from_here(gist, Path(row.source).parent)
+            report = dataclasses.replace(_report(gist), strict=row.strict)
+            yield row, seen_from_here(dataclasses.replace(gist, report=report), Path(row.source).parent)
 
 
 def totals(rows: Sequence[Row], fail_on: str = "error") -> dict[str, int]:
-    """How many designs are consistent, inconsistent, not verified; and how many of them nothing was done for."""
-    codes = [row.code(fail_on) for row in rows]
-    words = {"consistent": 0, "inconsistent": 1, "not verified": 2}
+    """How many designs have each kind of verdict; and for how many of them nothing was done."""
+    kinds = [row.kind(fail_on) for row in rows]
     unchanged = sum(row.unchanged and row.recorded for row in rows)
-    return {word: codes.count(code) for word, code in words.items()} | {"unchanged": unchanged}
+    return {kind: kinds.count(kind) for kind in CODES} | {"unchanged": unchanged}
 
 
 def summary_line(rows: Sequence[Row], fail_on: str = "error") -> str:
-    """ "25 designs: 23 consistent, 0 inconsistent, 2 not verified; 20 unchanged"; how many are
+    """ "25 designs: 20 consistent, 3 no errors found, 0 inconsistent, 2 not verified; 20 unchanged"; how many are
     trusted; and what manifests set aside."""
     told = totals(rows, fail_on)
     unchanged = told.pop("unchanged")
@@ -93,12 +94,13 @@ def exit_code(rows: Sequence[Row], fail_on: str = "error") -> int:
 def _json(whole: _Whole) -> str:
     designs = []
     for row, gist in whole.designs():
-        verdict = row.verdict(whole.fail_on) if gist is None else verdict_word(_report(gist), whole.fail_on)
+        verdict = row.verdict(whole.fail_on) if gist is None else verdict_of(_report(gist), whole.fail_on).word
         designs.append({
             "design": row.name, "source": row.source, "results": row.results if gist is not None else None,
             "verdict": verdict, "exit_code": row.code(whole.fail_on), "mobility": row.mobility,
             "counts": {severity: row.counts.get(severity, 0) for severity in reversed(SEVERITIES)},
-            "inconclusive": row.inconclusive, "seconds": row.seconds, "unchanged": row.unchanged, "tries": row.tries,
+            "inconclusive": row.inconclusive, "ignored": row.ignored, "coverage": row.coverage,
+            "seconds": row.seconds, "unchanged": row.unchanged, "tries": row.tries,
             "failure": row.failure or None, "problems": [dataclasses.asdict(p) for p in row.problems],
             "notes": list(row.notes),
             "findings": None if gist is None else as_json.document(_report(gist), gist, whole.fail_on),
@@ -192,14 +194,15 @@ def _md(whole: _Whole) -> str:
     """One table, then what is not consistent, design by design."""
     lines, details = [], []
     for row, gist in whole.designs():
-        cells = (markdown.cell_code(row.name), row.verdict(whole.fail_on), *_counts(row), _seconds(row))
+        verdict = markdown.escaped(row.verdict(whole.fail_on))
+        cells = (markdown.cell_code(row.name), verdict, *_counts(row), _seconds(row))
         lines.append(cells)
         if gist is None:
             told = "\n".join(f"- {markdown.escaped(str(p).replace(chr(10), ' '))}" for p in row.problems)
             details.append(f"### {markdown.code(row.name)} – not verified: {row.failure}\n\n{told}")
         elif row.code(whole.fail_on):
             details.append(markdown.render(_report(gist), gist, whole.fail_on).rstrip())
-    head = ("design", "verdict", *reversed(SEVERITIES), "undecided", "seconds")
+    head = ("design", "verdict", *reversed(SEVERITIES), "undecided", "ignored", "seconds")
     blocks = [f"## kinform: {summary_line(whole.rows, whole.fail_on)}", markdown.table(head, lines), *details]
     return "\n\n".join(blocks) + "\n"
 
@@ -229,8 +232,9 @@ def _concise(whole: _Whole) -> str:
 
 def _counts(row: Row) -> tuple[str, ...]:
     if row.failure:
-        return ("",) * (len(SEVERITIES) + 1)
-    return (*(str(row.counts.get(severity, 0)) for severity in reversed(SEVERITIES)), str(row.inconclusive))
+        return ("",) * (len(SEVERITIES) + 2)
+    counts = [row.counts.get(severity, 0) for severity in reversed(SEVERITIES)]
+    return tuple(map(str, (*counts, row.inconclusive, row.ignored)))
 
 
 def _seconds(row: Row) -> str:
@@ -238,7 +242,7 @@ def _seconds(row: Row) -> str:
 
 
 def table_row(row: Row, fail_on: str = "error") -> tuple[str, ...]:
-    """Design, verdict, errors, warnings, notes, undecided rules, seconds; as texts."""
+    """Design, verdict, errors, warnings, notes, undecided rules, ignored findings, seconds; as texts."""
     return (row.name, row.verdict(fail_on), *_counts(row), _seconds(row))
 
 

@@ -10,10 +10,12 @@ from pathlib import Path
 from typing import Any
 
 from kinform import method, results, stages
+from kinform.consistency import verdict_of
 from kinform.design import Design
 from kinform.errors import InputError, Problem
 from kinform.form.sources import Reading
 from kinform.foundation.boundary import OUTSIDE, OUTSIDE_REMEDY, leads_out
+from kinform.model.findings import SEVERITIES
 
 
 def refuse_outside(source: str, *, allow_outside: bool) -> None:
@@ -64,6 +66,7 @@ def summary_of(gist: Design, data: bytes, said: list[str]) -> dict[str, Any]:
     """The fields of the row of a design, from the gist of its results and their bytes."""
     report, kinematics = gist.report, gist.kinematics
     assert report is not None and kinematics is not None
+    verdicts = {severity: verdict_of(report, severity) for severity in SEVERITIES}
     return {
         "assembly": gist.assembly.name,
         "mobility": kinematics.mobility.effective,
@@ -72,6 +75,9 @@ def summary_of(gist: Design, data: bytes, said: list[str]) -> dict[str, Any]:
         "inconclusive": report.inconclusive,
         "ignored": len(report.ignored),
         "unselected": len(report.unselected),
+        "verdicts": {fail_on: (one.kind, one.line) for fail_on, one in verdicts.items()},
+        "coverage": verdicts["error"].coverage,
+        "open": verdicts["error"].open,
         "notes": tuple(said),
         "lineage": gist.fingerprints.lineage.get("findings", ""),
         "files": dict(gist.fingerprints.files),

@@ -8,7 +8,8 @@ from typing import Literal
 
 import numpy as np
 
-from kinform.consistency import verdict
+from kinform.consistency import verdict_of
+from kinform.consistency.judgement import VerdictKind
 from kinform.design import Design
 from kinform.errors import StageError
 from kinform.foundation.graphs.graph import forest
@@ -22,13 +23,12 @@ from kinform.model.kinematics import Joint, Kinematics
 
 Triple = tuple[float, float, float]
 
-_UNDECIDED = "KF902"
-"""The rule that lists the requirements that nobody could decide."""
-_KINDS = ("KF42", "KF43")
-"""How the codes of the rules of single kinds of requirements begin."""
-Verdict = Literal["verified", "findings", "not verified"]
-VERDICTS: tuple[Verdict, ...] = ("verified", "findings", "not verified")
-"""By exit code of the gate."""
+Verdict = Literal["verified", "no errors found", "findings", "not verified"]
+VERDICTS: dict[VerdictKind, Verdict] = {
+    "consistent": "verified", "no errors found": "no errors found", "inconsistent": "findings",
+    "not verified": "not verified",
+}  # fmt: skip
+"""By the kind of the gate's verdict."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ def entry_of(design: Design, path: str, digest: str) -> Entry:
         loops=_loops(kinematics),
         mass=_mass(design),
         size=_size(design.assembly),
-        verdict=None if design.report is None else VERDICTS[verdict(design.report)],
+        verdict=None if design.report is None else VERDICTS[verdict_of(design.report).kind],
         joints=_joints(design.assembly, kinematics),
         requirements=tuple(_requirement(wanted, design.report) for wanted in design.assembly.function.requirements),
         graph=graph_of(
@@ -200,18 +200,10 @@ def _range(joint: Joint) -> tuple[float | None, float | None]:
 
 
 def _requirement(wanted: Requirement, report: CheckReport | None) -> CatalogRequirement:
-    """Met only where the gate decided it and found nothing, be it accepted; what it did not look at is not known."""
-    if report is None or not any(rule.code == _UNDECIDED and rule.outcome != "skipped" for rule in report.rules):
-        return CatalogRequirement(wanted.name, wanted.kind, None)
-    accepted = (item.finding for item in report.ignored)
-    codes = {
-        finding.code
-        for finding in (*report.findings, *accepted)
-        if finding.subject[:1] == (wanted.name,) and (finding.file, finding.line) == (wanted.file, wanted.line)
-    }
-    narrowed = any(code.startswith(_KINDS) for code in report.unselected)
-    met = not codes
-    return CatalogRequirement(wanted.name, wanted.kind, None if _UNDECIDED in codes or (met and narrowed) else met)
+    """Met only where a rule decided it and found nothing, be it accepted; what none looked at is not known."""
+    said = () if report is None else report.statements
+    decided = [s.holds for s in said if s.name == wanted.name and s.kind in ("requirement", "limit") and s.decided]
+    return CatalogRequirement(wanted.name, wanted.kind, all(decided) if decided else None)
 
 
 def _triple(values: object) -> Triple | None:

@@ -39,5 +39,5 @@ from kinform.collisions.run_collisions import along
 
 __all__ = ["CODE_VERSION", "along", "ranges", "too_large"]
 
-CODE_VERSION: int = 27
+CODE_VERSION: int = 28
 """Raised when the same input would give other ranges or collisions."""

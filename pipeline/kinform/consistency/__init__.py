@@ -1,8 +1,8 @@
 """Compares form, behaviour and function, and reports every inconsistency with place, size and remedy.
 
 `check` runs the rules of `RULES` on a design; each rule passes, fails, is inconclusive or is skipped
-because it does not apply. `verdict` turns a report into the exit code of the gate, `explain` prints
-what a code means.
+because it does not apply. `verdict_of` says what a report claims as a whole, with the exit code of
+the gate; `explain` prints what a code means.
 
 Sub-packages; each imports only those above it:
 
@@ -16,7 +16,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinform.foundation.lazy_imports import lazy_attributes
-from kinform.model.findings import verdict
 
 if TYPE_CHECKING:
     from kinform.consistency.baseline import Baseline, adopt, read_baseline, with_baseline
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     from kinform.consistency.comparisons.intended_joints import compare_joints
     from kinform.consistency.documentation import UnknownRuleError, explain, rules_markdown
     from kinform.consistency.inspection import amended, check, margins
+    from kinform.consistency.judgement import Verdict, verdict, verdict_of
     from kinform.consistency.outcome import Outcome
     from kinform.consistency.rule import Rule
     from kinform.consistency.rules import RULES
@@ -36,6 +36,7 @@ __all__ = [
     "Outcome",
     "Rule",
     "UnknownRuleError",
+    "Verdict",
     "adopt",
     "amended",
     "check",
@@ -45,10 +46,11 @@ __all__ = [
     "read_baseline",
     "rules_markdown",
     "verdict",
+    "verdict_of",
     "with_baseline",
 ]
 
-CODE_VERSION: int = 59
+CODE_VERSION: int = 60
 """Bumped when results of this package change for the same input."""
 
 __getattr__ = lazy_attributes(
@@ -69,5 +71,8 @@ __getattr__ = lazy_attributes(
         "Outcome": "outcome",
         "Rule": "rule",
         "RULES": "rules",
+        "Verdict": "judgement",
+        "verdict": "judgement",
+        "verdict_of": "judgement",
     },
 )

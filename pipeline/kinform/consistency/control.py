@@ -28,6 +28,8 @@ DOUBT = "KF9"
 class Applied:
     """One rule under `[check]`: its findings that count, those that are ignored, its outcome."""
 
+    judged: Outcome
+    """What the rule said, whatever `[check]` makes of it."""
     outcome: RuleOutcome
     findings: tuple[Finding, ...]
     ignored: tuple[Ignored, ...]
@@ -42,7 +44,7 @@ def is_selected(rule: Rule, settings: CheckSettings) -> bool:
 
 def apply(rule: Rule, outcome: Outcome, settings: CheckSettings) -> Applied:
     """The rule's outcome with other severities, and without what is ignored."""
-    levels = [level for word, level in settings.severity if means(rule, word)]
+    judged, levels = outcome, [level for word, level in settings.severity if means(rule, word)]
     if settings.profile == "description" and outcome.kind == "inconclusive" and rule.code in SETTLED:
         outcome = replace(outcome, kind="decided")
     severities = [levels[-1] if levels else at_most(rule.code, f.severity, settings.profile) for f in outcome.findings]
@@ -64,7 +66,8 @@ def apply(rule: Rule, outcome: Outcome, settings: CheckSettings) -> Applied:
         kept = list(_few(kept))
         outcome = replace(outcome, findings=tuple(kept))
     settled = whole is not None or (rule.code.startswith(DOUBT) and bool(ignored) and not kept)
-    return Applied(_outcome_under(rule, outcome, ignored, settled, whole), tuple(kept), tuple(ignored), tuple(used))
+    told = _outcome_under(rule, outcome, ignored, settled, whole)
+    return Applied(judged, told, tuple(kept), tuple(ignored), tuple(used))
 
 
 def _few(findings: Sequence[Finding]) -> Iterator[Finding]:

@@ -83,14 +83,28 @@ GLOSSARY: dict[str, tuple[str, str]] = {
         "What slides counts, and so does a turn that a joint of [function] names.",
     ),
     "redundant": (COUNT, "Constraints more than are needed to hold what is held (KF303): two hinges on one axis."),
-    "consistent": (OUTCOME, "Every rule that applies ran, and found nothing that fails. Exit code 0."),
+    "consistent": (OUTCOME, "The function states something, all of it was decided, and nothing fails. Exit code 0."),
+    "no errors found": (
+        OUTCOME,
+        "Nothing fails, and less is verified than for consistent: nothing is declared, or some of it was not decided "
+        "or not checked. The verdict says which. Exit code 0.",
+    ),
     "inconsistent": (
         OUTCOME,
-        "The design does not do what is stated, or what is stated contradicts itself: findings of function, mobility "
-        "or motion. Where only meshes or contacts are faulty the verdict says so beside what agrees. Exit code 1 in "
-        "both cases.",
+        "There are findings at or above the severity that fails. The verdict counts them by what they are about, and "
+        "says how many of the stated joints match. Exit code 1.",
     ),
-    "not verified": (OUTCOME, "No rule ran, or one could not decide: silence is no pass. Exit code 2."),
+    "not verified": (
+        OUTCOME,
+        "No rule ran, or one could not decide: silence is no pass. With --strict also what the verdict leaves open. "
+        "Exit code 2.",
+    ),
+    "not checked": (OUTCOME, "Nothing asked for the rule: limits of efforts need a simulation. It is never met."),
+    "coverage": (
+        OUTCOME,
+        "The line below the verdict: how many joints and contacts are understood, what is open, what was not checked, "
+        "and which rules [check] leaves out, ignores or lowers to notes.",
+    ),
     "inconclusive": (OUTCOME, "A rule could not decide; its reason says what is missing."),
     "skipped": (OUTCOME, "A rule that does not apply: nothing is stated that it could compare. It does not count."),
     "ignored": (OUTCOME, "A finding that [check] in the manifest or a baseline accepts. It does not count."),

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from kinform.consistency.comparisons.answers import answer_counts, answers
+from kinform.consistency.comparisons.answers import answer_counts
 from kinform.consistency.context import Context
 from kinform.consistency.control import Applied, apply, idle_ignore, is_selected, means, unused_entries
+from kinform.consistency.coverage import coverage, statements
 from kinform.consistency.outcome import Outcome, decided, skipped
 from kinform.consistency.places import with_place
 from kinform.consistency.requirements import RequirementRule
@@ -39,11 +40,14 @@ def check(design: Design) -> CheckReport:
         # a rule about the rules verifies nothing of the design
         nothing = RuleOutcome(CONTROL.code, CONTROL.name, "skipped", "no other rule ran")
         rules = [nothing if rule.code == CONTROL.code else rule for rule in rules]
+    stated = statements(context, applied)
     return CheckReport(
         findings=tuple(sorted((f for run in applied.values() for f in run.findings), key=_order)),
         rules=tuple(rules),
         ignored=tuple(sorted((i for run in applied.values() for i in run.ignored), key=lambda i: _order(i.finding))),
-        answers=() if context.lacks("comparisons") else answer_counts(answers(context.design, context)),
+        answers=answer_counts([s.outcome for s in stated if s.kind == "joint"]),
+        statements=stated,
+        coverage=coverage(context, applied, RULES),
     )
 
 

@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal, Protocol, get_args
 import numpy as np
 
 from kinform.frozen import dataclass
+from kinform.model.coverage import Coverage, Statement
 from kinform.model.quantities import columns
 
 Severity = Literal["note", "warning", "error"]
@@ -18,9 +19,9 @@ SEVERITIES: tuple[Severity, ...] = get_args(Severity)
 OutcomeName = Literal["passed", "failed", "inconclusive", "skipped", "ignored"]
 OUTCOMES: tuple[OutcomeName, ...] = get_args(OutcomeName)
 
-Origin = Literal["recorded", "unknown", "refused"]
+Origin = Literal["recorded", "unknown"]
 """Where results come from that findings rest on: this user's kinform computed them, or recorded the file that they were
-read from; it did not, and they count; it did not, and nothing is verified by them."""
+read from; or it did not."""
 
 
 class Place(Protocol):
@@ -211,8 +212,14 @@ class CheckReport:
     """Codes and subjects of a baseline that are not found any more; None where no baseline was compared."""
     answers: tuple[Annotated[tuple[str, int], columns("answer", "joints")], ...] = ()
     """How many intended joints geometry gives each answer to; empty where there are none, or nothing was derived."""
+    statements: tuple[Statement, ...] = ()
+    """Everything that the function states, with its outcome: by kind, then in the order of the function."""
+    coverage: Coverage | None = None
+    """None: an older version checked it."""
     origin: Origin = "recorded"
     """No part of results files: it is another on another machine."""
+    strict: bool = False
+    """Whether whoever reads it takes as not verified what `Verdict.open` lists. No part of results files."""
 
     @property
     def ran(self) -> int:
@@ -236,15 +243,3 @@ def severity_of(word: str) -> Severity:
         if severity == word:
             return severity
     raise ValueError(f"unknown severity {word!r}: expected one of {', '.join(SEVERITIES)}")
-
-
-def verdict(report: CheckReport, fail_on: str = "error") -> int:
-    """Exit code of the gate: 0 verified, 1 findings at or above `fail_on`, 2 not verified.
-
-    Not verified: no rule ran, one was inconclusive, or results of unknown origin are refused. Where 1 and 2 both apply,
-    1. `fail_on`: note, warning or error; ValueError otherwise.
-    """
-    level = SEVERITIES.index(severity_of(fail_on))
-    if any(SEVERITIES.index(finding.severity) >= level for finding in report.findings):
-        return 1
-    return 2 if report.ran == 0 or report.inconclusive or report.origin == "refused" else 0

@@ -80,7 +80,9 @@ class Body:
     """Sorted."""
     ground: bool
     merged: tuple[str, ...] = ()
-    """Why the parts are one body: "group shoulder", "contact a~b of rank 6", "assumed: reason"."""
+    """Why the parts are one body: "group shoulder", "contact a~b leaves no freedom", "assumed: reason"."""
+    turning: tuple[str, ...] = ()
+    """Pairs of parts, "a~b", that are one by contact at rest, which only pushes and lets them turn apart."""
 
     @cached_property
     def why_one(self) -> str:

@@ -7,10 +7,10 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
+from kinform.consistency import verdict_of
 from kinform.design import Design
 from kinform.foundation.escapes import json_text
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
-from kinform.reports.phrases import verdict_word
 
 SCHEMA = "kinform/findings/1"
 
@@ -37,16 +37,22 @@ def of_design(design: Design) -> dict[str, Any]:
 
 def document(report: CheckReport, design: Design, fail_on: str = "error") -> dict[str, Any]:
     """An object with the schema, the verdict, counts, findings, those that are accepted, and rules."""
+    verdict = verdict_of(report, fail_on)
     counts = {s: sum(f.severity == s for f in report.findings) for s in reversed(SEVERITIES)}
     outcomes = ("passed", "failed", "inconclusive", "skipped", "ignored")
     return {
         "schema": SCHEMA,
         "assembly": design.assembly.name,
-        "verdict": verdict_word(report, fail_on),
+        "verdict": verdict.word,
+        "verdict_line": verdict.line,
+        "exit_code": verdict.code,
         **({} if report.origin == "recorded" else {"origin": "unknown"}),
         "counts": counts | {o: sum(r.outcome == o for r in report.rules) for o in outcomes},
         "findings": [_finding(f) for f in report.findings],
         "ignored": [_finding(item.finding) | {"ignored_by": item.by, "reason": item.reason} for item in report.ignored],
         "unselected": list(report.unselected),
         "rules": [dataclasses.asdict(r) for r in report.rules],
+        "statements": [dataclasses.asdict(s) for s in report.statements],
+        "coverage": {"line": verdict.coverage, "open": list(verdict.open)}
+        | ({} if report.coverage is None else dataclasses.asdict(report.coverage)),
     }

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Sequence
 from itertools import groupby
 from typing import Literal, get_args
 
+from kinform.consistency import verdict_of
 from kinform.design import Design
 from kinform.foundation.escapes import one_line
 from kinform.foundation.words import counted, shortened, shortened_ends
@@ -19,7 +20,7 @@ from kinform.frozen import dataclass
 from kinform.function.body_titles import body_titles
 from kinform.model.findings import CheckReport, Finding
 from kinform.reports.constants import QUIET_NOTES, WIDTH
-from kinform.reports.phrases import answers_line, rule_counts, severity_counts, verdict_told
+from kinform.reports.phrases import answers_line, rule_counts, severity_counts
 
 MOST_BRIEF = 10
 """Findings that are told line by line, the worst; with all that stands around them they fill a screen of 24 lines."""
@@ -70,10 +71,9 @@ def render(report: CheckReport, design: Design, fail_on: str = "error", *, width
     """Verdict and counts; a line for each group of notes; what was skipped or assumed; the worst findings, the worst
     last. No line is longer than `width`, unless it has one word that is."""
     name = shortened(one_line(design.assembly.name), width // 2)
-    lines = textwrap.wrap(
-        f"{name}: {verdict_told(report, design.assembly.function.stated, fail_on)}", width, subsequent_indent="  "
-    )
-    lines += textwrap.wrap(f"{severity_counts(report)}; {rule_counts(report)}", width, subsequent_indent="  ")
+    verdict = verdict_of(report, fail_on)
+    heads = (f"{name}: {one_line(verdict.line)}", one_line(verdict.coverage), _counted(report))
+    lines = [line for head in heads for line in textwrap.wrap(head, width, subsequent_indent="  ")]
     lines += _notes(report, width)
     lines += _assumed(report, design, width)
     lines += _many_joints(design, width)
@@ -87,6 +87,10 @@ def render(report: CheckReport, design: Design, fail_on: str = "error", *, width
         if whole:
             break
     return "\n".join([*lines, *more, *told]) + "\n"
+
+
+def _counted(report: CheckReport) -> str:
+    return f"{severity_counts(report)}; {rule_counts(report)}"
 
 
 def _more(rest: Sequence[_Item], width: int) -> list[str]:

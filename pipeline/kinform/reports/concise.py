@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from kinform.consistency import verdict_of
 from kinform.design import Design
 from kinform.foundation.escapes import one_line
 from kinform.model.findings import CheckReport
 from kinform.reports.constants import QUIET_NOTES
-from kinform.reports.phrases import rule_counts, severity_counts, verdict_line, where
+from kinform.reports.phrases import rule_counts, severity_counts, where
 
 
 def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
-    """Findings by code, then rules that could not decide, then one line of summary."""
+    """Findings by code, then rules that could not decide, then a line of summary, and one of coverage."""
     file = one_line(design.assembly.source.file)
     lines = [
         f"{one_line(where(f)) or file}: {f.severity} {f.code} "
@@ -23,5 +24,7 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
         for r in report.rules
         if r.outcome == "inconclusive"
     ]
-    summary = f"{verdict_line(report, fail_on)}; {severity_counts(report)}; {rule_counts(report)}"
-    return "\n".join([*lines, f"{one_line(design.assembly.name)}: {summary}"]) + "\n"
+    verdict, name = verdict_of(report, fail_on), one_line(design.assembly.name)
+    lines.append(f"{name}: {one_line(verdict.line)}; {severity_counts(report)}; {rule_counts(report)}")
+    lines += [f"{name}: {one_line(verdict.coverage)}"] if verdict.coverage else []
+    return "\n".join(lines) + "\n"

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import textwrap
 
+from kinform.consistency import verdict_of
 from kinform.design import Design
 from kinform.foundation.escapes import one_line
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
 from kinform.reports.constants import WIDTH
-from kinform.reports.phrases import accepted, place, rule_counts, severity_counts, skipped, verdict_told, where
+from kinform.reports.phrases import accepted, place, rule_counts, severity_counts, skipped, where
 from kinform.reports.proofs import proof
 
 
@@ -27,15 +28,9 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
         if told:
             blocks.append("\n".join([head, *(line for text in told for line in _wrapped(text, "  ", "      "))]))
     name = one_line(design.assembly.name)
-    blocks.append(
-        "\n".join(
-            [
-                f"{name}: {verdict_told(report, design.assembly.function.stated, fail_on)}",
-                severity_counts(report),
-                rule_counts(report),
-            ]
-        )
-    )
+    verdict = verdict_of(report, fail_on)
+    told = [*_wrapped(f"{name}: {one_line(verdict.line)}", "", "  "), *_wrapped(one_line(verdict.coverage), "", "  ")]
+    blocks.append("\n".join([*told, severity_counts(report), rule_counts(report)]))
     return "\n\n".join(blocks) + "\n"
 
 

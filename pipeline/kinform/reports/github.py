@@ -5,12 +5,13 @@ No line begins with text that a user chose: a part cannot be named so that it be
 
 from __future__ import annotations
 
+from kinform.consistency import verdict_of
 from kinform.design import Design
 from kinform.foundation import escapes
 from kinform.foundation.escapes import one_line
 from kinform.model.findings import CheckReport, Finding, RuleOutcome
 from kinform.reports.constants import QUIET_NOTES
-from kinform.reports.phrases import details, rule_counts, severity_counts, verdict_line
+from kinform.reports.phrases import details, rule_counts, severity_counts
 
 _COMMANDS = {"error": "error", "warning": "warning", "note": "notice"}
 
@@ -21,8 +22,9 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     told = [f for f in report.findings if f.severity != "note" or f.code not in QUIET_NOTES]
     lines = [_finding(finding, manifest, design.assembly.units) for finding in told]
     lines += [_undecided(rule, manifest) for rule in report.rules if rule.outcome == "inconclusive"]
-    counts = f"{severity_counts(report)}; {rule_counts(report)}"
-    lines.append(escapes.lines(f"{verdict_line(report, fail_on)}; {counts}; {one_line(design.assembly.name)}"))
+    verdict = verdict_of(report, fail_on)
+    last = (verdict.line, verdict.coverage, severity_counts(report), rule_counts(report), design.assembly.name)
+    lines.append(escapes.lines("; ".join(one_line(text) for text in last if text)))
     return "\n".join(lines) + "\n"
 
 

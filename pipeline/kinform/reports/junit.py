@@ -11,10 +11,12 @@ from __future__ import annotations
 from collections import Counter
 from xml.etree import ElementTree
 
+from kinform.consistency import verdict_of
+from kinform.consistency.judgement import UNKNOWN
 from kinform.design import Design
 from kinform.foundation.escapes import xml_legal, xml_text
 from kinform.model.findings import SEVERITIES, CheckReport, Finding, Ignored, RuleOutcome
-from kinform.reports.phrases import UNKNOWN, details, verdict_line
+from kinform.reports.phrases import details
 
 
 def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
@@ -34,19 +36,25 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     for finding in report.findings:
         if finding.code not in known:
             _case_of_finding(suite, finding, design.assembly.units, finding.severity in failing)
+    verdict = verdict_of(report, fail_on)
     if report.ran == 0:
         case = ElementTree.SubElement(suite, "testcase", classname="kinform", name="rules ran")
-        ElementTree.SubElement(case, "error", type="inconclusive", message=verdict_line(report, fail_on))
-    if report.origin != "recorded":
-        case = ElementTree.SubElement(suite, "testcase", classname="kinform", name="origin of results")
-        if report.origin == "unknown":
-            ElementTree.SubElement(case, "skipped", message=UNKNOWN)
-        else:
-            ElementTree.SubElement(case, "error", type="origin", message=UNKNOWN)
+        ElementTree.SubElement(case, "error", type="inconclusive", message=xml_legal(verdict.line))
+    for left_open in verdict.open:
+        if report.strict or left_open == UNKNOWN:
+            name = "origin of results" if left_open == UNKNOWN else "left open"
+            case = ElementTree.SubElement(suite, "testcase", classname="kinform", name=name)
+            kind = {"type": "strict"} if report.strict else {}
+            ElementTree.SubElement(case, "error" if report.strict else "skipped", kind, message=xml_legal(left_open))
     found = Counter(child.tag for case in suite for child in case)
     counts = {"tests": len(suite), "failures": found["failure"], "errors": found["error"], "skipped": found["skipped"]}
     whole = ElementTree.Element("testsuites", name="kinform")
     whole.append(suite)
+    properties = ElementTree.Element("properties")
+    for label, value in (("verdict", verdict.line), ("coverage", verdict.coverage)):
+        if value:
+            ElementTree.SubElement(properties, "property", name=label, value=xml_legal(value))
+    suite.insert(0, properties)
     for element in (whole, suite):
         for name, count in counts.items():
             if element is suite or name != "skipped":

@@ -9,18 +9,20 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from kinform.consistency import verdict_of
 from kinform.design import Design
 from kinform.foundation.escapes import one_line
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
-from kinform.reports.phrases import accepted, details, rule_counts, severity_counts, skipped, verdict_told, where
+from kinform.reports.phrases import accepted, details, rule_counts, severity_counts, skipped, where
 
 
 def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     """Verdict, a table of findings (the most severe first), their details, the rules that could not decide, and what is
     ignored or skipped."""
-    verdict = verdict_told(report, design.assembly.function.stated, fail_on)
+    verdict = verdict_of(report, fail_on)
     blocks = [
-        f"### kinform: {code(design.assembly.name)} – {escaped(verdict)}",
+        f"### kinform: {code(design.assembly.name)} – {escaped(verdict.line)}",
+        *([escaped(verdict.coverage)] if verdict.coverage else []),
         f"{severity_counts(report)}; {rule_counts(report)}",
     ]
     found = sorted(report.findings, key=lambda finding: -SEVERITIES.index(finding.severity))

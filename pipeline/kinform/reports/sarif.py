@@ -16,10 +16,10 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
+from kinform.consistency import verdict_of
 from kinform.design import Design
 from kinform.foundation.escapes import json_text
 from kinform.model.findings import CheckReport, Finding, Ignored, RuleOutcome
-from kinform.reports.phrases import verdict_word
 from kinform.version import __version__
 
 if TYPE_CHECKING:
@@ -46,13 +46,16 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
         if rule.outcome == "inconclusive"
     ]
     driver = {"name": "kinform", "version": __version__, "rules": _descriptors(report.rules)}
+    verdict = verdict_of(report, fail_on)
     run = {
         "tool": {"driver": driver},
         "columnKind": "unicodeCodePoints",
         "results": results,
         "properties": {
             "assembly": design.assembly.name,
-            "verdict": verdict_word(report, fail_on),
+            "verdict": verdict.word,
+            "verdictLine": verdict.line,
+            "coverage": verdict.coverage,
             **({} if report.origin == "recorded" else {"origin": "unknown"}),
             "rules": [_present({"code": r.code, "outcome": r.outcome, "reason": r.reason}) for r in report.rules],
         },

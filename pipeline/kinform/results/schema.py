@@ -11,6 +11,7 @@ from typing import Literal
 
 from kinform.frozen import dataclass
 from kinform.model.collisions import RANGE_STATUSES
+from kinform.model.coverage import STATEMENT_KINDS, STATEMENT_OUTCOMES
 from kinform.model.findings import OUTCOMES, SEVERITIES
 from kinform.model.kinematics import JOINT_TYPES, STATUSES
 from kinform.model.surfaces import KINDS
@@ -173,6 +174,8 @@ WORDS: dict[str, tuple[str, ...]] = {
     "joints/asides.status": STATUSES,
     "findings/findings.severity": SEVERITIES,
     "findings/rules.outcome": OUTCOMES,
+    "findings/statements.kind": STATEMENT_KINDS,
+    "findings/statements.outcome": STATEMENT_OUTCOMES,
     "simulation/ranges.status": RANGE_STATUSES,
     "simulation/ranges.side": ("lower", "upper"),
     "simulation/summary.status": ("done", "not requested", "partial", "refused", "stopped"),

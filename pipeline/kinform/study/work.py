@@ -133,10 +133,8 @@ def _unit(values: Any, steps: tuple[str, ...]) -> str:
 
 def _topic(design: Design, topic: str) -> Any:
     if topic == "exit_code":
-        from kinform.model.findings import verdict
-
         assert design.report is not None
-        return verdict(design.report)
+        return consistency.verdict(design.report)
     if topic == "requirements":
         from kinform.catalog import entry_of
 

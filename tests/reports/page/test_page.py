@@ -138,8 +138,10 @@ def test_what_no_rule_could_decide_never_agrees(tmp_path):
     open_range = RuleOutcome("KF904", "range-not-checked", "inconclusive", "1 range not checked")
     note = Finding("KF904", "range-not-checked", "note", ("main",), "the range of joint 'main' is not checked yet")
     others = tuple(rule for rule in report.rules if rule.code != "KF904")
-    closed = CheckReport((), tuple(replace(rule, outcome="passed") for rule in others))
-    undecided = CheckReport((note,), (*closed.rules, open_range))
+    held = tuple(replace(s, outcome="agrees" if s.kind == "joint" else "met") for s in report.statements)
+    closed = CheckReport((), tuple(replace(rule, outcome="passed") for rule in others), statements=held)
+    unknown = tuple(replace(s, outcome="undecided") if s.kind == "range" else s for s in held)
+    undecided = CheckReport((note,), (*closed.rules, open_range), statements=unknown)
     (mark,) = (row.mark for row in rows(replace(design, report=closed)) if row.name == "main")
     assert mark == "agrees"
     (mark,) = (row.mark for row in rows(replace(design, report=undecided)) if row.name == "main")
@@ -245,12 +247,9 @@ def test_sliders_go_in_the_designers_sense(derive_design):
 
 def test_only_what_was_compared_with_a_function_is_ticked(derive_design):
     design = derive_design(SEEKER)
-    passed = tuple(replace(rule, outcome="passed") for rule in design.report.rules)
-    whole = replace(design, report=CheckReport((), passed))
-    silent = replace(whole, assembly=replace(whole.assembly, function=type(whole.assembly.function)()))
-    assert not silent.assembly.function.stated
-    assert (facts.verdict_of(whole).kind, facts.verdict_of(whole).sign) == ("consistent", "✓")
-    told = facts.verdict_of(silent)
+    assert (facts.verdict_of(design).kind, facts.verdict_of(design).sign) == ("consistent", "✓")
+    nothing = replace(design.report, statements=(), coverage=replace(design.report.coverage, stated=False))
+    told = facts.verdict_of(replace(design, report=nothing))
     assert (told.kind, told.sign) == ("unverified", "–")
 
 

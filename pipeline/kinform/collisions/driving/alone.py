@@ -196,7 +196,10 @@ def _end(candidates: Sequence[Candidate], sign: int, limit: float, start: float)
     if unknown:
         return RangeEnd("unknown", reason=overlap_words(unknown, candidates[0].units)), left_out
     if exhausted is not None and exhausted[0] < at:
-        return RangeEnd("unknown", reason=f"{' and '.join(exhausted[1])} stay too close to be followed"), left_out
+        return RangeEnd(
+            "unknown",
+            reason=f"{' and '.join(exhausted[1])} stay too close to be followed: give them clearance",
+        ), left_out
     if best is not None:
         return RangeEnd("found", sign * at + 0.0, best.parts, best.place), left_out
     return RangeEnd("unbounded"), left_out

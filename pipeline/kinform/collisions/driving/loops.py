@@ -39,7 +39,7 @@ LOOP_STOP = 1e-3
 
 LEAVES = "leaves its guide"
 FREE = "nothing stops it"
-STILL = "the loops do not move"
+STILL = "its loops do not move: `kinform show F.h5 mobility` says what does"
 
 
 def drive_loops(
@@ -230,7 +230,7 @@ def _range(joint: Joint, driven: Driven, column: int, ends: Sequence[_Travelled]
     left_out = tuple(sorted({pair for end in ends for pair in end.left_out}))
     overlap = next((end.overlap for end in ends if end.overlap), "")
     if high - low < ACCEPTED and any(np.ptp(end.s) > 1.0 for end in ends):
-        still = RangeEnd("unknown", reason="its loops move, and it does not")
+        still = RangeEnd("unknown", reason="its loops move, and this joint stands still")
         return JointRange(joint.name, still, still, left_out)
     returned = any(end.why == RETURNED for end in ends)
     if returned and driven.linkage.turns[column] and high - low > TURNED_ROUND:

@@ -32,4 +32,4 @@ def overlap_words(overlaps: Sequence[Overlap], units: str) -> str:
     by = f" by {length(first.depth, units, 2)}" if first.depth > 0.0 else ""
     at = "" if first.place is None else f" at {place(first.place, units)}"
     more = f"; and {counted(len(others), 'pair')} more" if others else ""
-    return f"{' and '.join(first.pair)} overlap{by} as drawn{at}{more}"
+    return f"{' and '.join(first.pair)} overlap{by} as modelled{at}{more}: separate them first"

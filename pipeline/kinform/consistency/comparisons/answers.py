@@ -12,7 +12,9 @@ carry the joint, or hold more of it |
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import Literal, get_args
 
 import numpy as np
@@ -50,9 +52,10 @@ class Answer:
     """Between the boxes of the two bodies, where they do not touch; 0 where the boxes meet."""
 
 
-def answer_counts(given: Sequence[Answer]) -> tuple[tuple[str, int], ...]:
+def answer_counts(given: Iterable[str]) -> tuple[tuple[str, int], ...]:
     """How many joints have each answer, in the order of `ANSWERS`, without those that none has."""
-    counts = [(answer, sum(one.answer == answer for one in given)) for answer in ANSWERS]
+    every = Counter(given)
+    counts = [(answer, every[answer]) for answer in ANSWERS]
     return tuple((answer, count) for answer, count in counts if count)
 
 
@@ -74,13 +77,16 @@ def answer_of(context: Context, c: Comparison) -> Answer:
 
 
 def answers(design: Design, context: Context | None = None) -> tuple[Answer, ...]:
-    """The answers to all intended joints, in the order of the function; needs kinematics. `context` is what else is
-    asked about the design."""
+    """The answers to all intended joints, in the order of the function; needs kinematics. Where rules have run, the
+    answers are theirs. `context` is what else is asked about the design."""
     assert design.kinematics is not None
     assembly = design.assembly
     compared = compare_joints(assembly, design.contacts, design.kinematics, assembly.function.joints)
     context = context or Context(design)
-    return tuple(answer_of(context, one) for one in compared)
+    given = tuple(answer_of(context, one) for one in compared)
+    said = {} if design.report is None else {s.name: s.outcome for s in design.report.statements if s.kind == "joint"}
+    words: dict[str, AnswerName] = {answer: answer for answer in ANSWERS} | {"not checked": "undecided"}
+    return tuple(replace(one, answer=words.get(said.get(one.name, ""), one.answer)) for one in given)
 
 
 def _kind(context: Context, c: Comparison) -> tuple[AnswerName, str, str]:

@@ -53,15 +53,15 @@ def derived_ratio(
             return end.reason
     first, second = (str(end.joint.name) for end in ends if end.joint is not None)
     if first == second:
-        return "both names stand for one joint"
+        return "both names stand for one joint: name two"
     chain = _chain(kinematics, first, second) or _aside(assembly, kinematics, first, second, contacts)
     if chain is None:
-        return "no contact of teeth, cam or screw is found that ties these joints"
+        return "no gear, cam or screw contact between these joints: bring the teeth into contact"
     ratio, relative = float(ends[0].sign * ends[1].sign), 0.0
     links = [(ratio, 1.0)]
     for coupling, forward in chain:
         if coupling.status != "determined":
-            return f"the coupling through '{coupling.through}' is {coupling.status}"
+            return f"the contact '{coupling.through}' is {coupling.status}: export a finer mesh, or model all teeth"
         if coupling.kind == "cam":
             return f"'{coupling.through}' is a cam: its ratio is another in every pose"
         up, down = _turns(coupling)
@@ -77,7 +77,10 @@ def derived_ratio(
             ROUNDED_RATIO if coupling.kind == "screw" else UNCOUNTED_TEETH,
         )
     if relative > UNCERTAIN_RATIO * len(chain):
-        return f"the {shown_ratio(assembly, stated, ratio)} is uncertain by {100 * relative:.2g} %"
+        return (
+            f"the {shown_ratio(assembly, stated, ratio)} is uncertain by {100 * relative:.2g} %: model the teeth of "
+            "both sides, or export a finer mesh"
+        )
     through = tuple(str(coupling.through) for coupling, _ in chain)
     return Ratio(ratio, abs(ratio) * relative, through, tuple(links))
 
@@ -142,7 +145,7 @@ def derived_sum(
         if contacts is not None and is_higher(joint, contacts.patches) and _on_the_way(kinematics, names, joint)
     ]
     if kinematics.mobility.by_contact is not None or not tied:
-        return "no contact of teeth, cam or screw is found that ties these joints"
+        return "no gear, cam or screw contact between these joints: bring the teeth into contact"
     moved = [{str(name): rate for name, _, rate in freedom.drives} for freedom in kinematics.mobility.named]
     terms = np.array([factor * end.sign for end, factor in zip(ends, stated.terms.values(), strict=True)])
     rates = np.array([[motion.get(name, 0.0) for name in names] for motion in moved]).reshape(-1, len(names)) * terms

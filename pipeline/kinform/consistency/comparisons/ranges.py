@@ -35,6 +35,18 @@ class RangeComparison:
     given: bool = False
     """Neither body has a mesh, and nothing in the assembly could meet: there is nothing to compare with."""
 
+    @property
+    def unknown(self) -> str:
+        """Why a side is not known; empty where both are."""
+        if self.reason:
+            return self.reason
+        sides = (("lower", self.lower), ("upper", self.upper))
+        why = "; ".join(f"{side}: {end.reason}" for side, end in sides if end is not None and end.status == "unknown")
+        if why or not self.left_out:
+            return why
+        few = ", ".join(" and ".join(pair) for pair in self.left_out[:3])
+        return f"{few} overlap from the start, and may stop it: separate them first"
+
 
 def range_comparisons(context: Context) -> list[RangeComparison]:
     """Every intended joint that states a range, sorted by name."""
@@ -59,7 +71,9 @@ def _of_sticks(context: Context, intended: IntendedJoint) -> RangeComparison | N
         return None
     given = bare == bodies and len(context.shaped) < 2
     return RangeComparison(
-        intended, reason=f"{quoted(bare)} {'has' if len(bare) == 1 else 'have'} no mesh", given=given
+        intended,
+        reason=f"{quoted(bare)} {'has' if len(bare) == 1 else 'have'} no mesh: add one, or check the range otherwise",
+        given=given,
     )
 
 
@@ -67,18 +81,18 @@ def _beside_ends(context: Context, intended: IntendedJoint, comparison: Comparis
     run, match = context.design.simulation, joint_as_intended(comparison)
     if match is None and comparison.right_type and comparison.through:
         loose = quoted(comparison.through)
-        reason = (
-            f"{loose} may move in both of its sides: where it is fastened to one, by a [[group]], the range is found"
-        )
+        reason = f"{loose} may move relative to both sides: fasten it to one of them by a [[group]]"
         return RangeComparison(intended, reason=reason)
     if match is None:
-        return RangeComparison(intended, reason="no joint of that type was found directly between its parts")
+        return RangeComparison(
+            intended, reason=f"no {intended.type} joint was found directly between its parts: correct the joint first"
+        )
     joint, sign = match
     if run is None or run.ranges is None:
         return RangeComparison(intended, reason="ranges have not been computed: run `kinform simulate --ranges`")
     reach = next((item for item in run.ranges if item.joint == joint.name), None)
     if reach is None:
-        return RangeComparison(intended, reason="no range was computed for it")
+        return RangeComparison(intended, reason="no range was computed for it: run `kinform simulate --ranges`")
     lower, upper = (reach.lower, reach.upper) if sign > 0.0 else (reach.upper, reach.lower)
     if joint.status == "stated" or is_stated(joint):  # what guides it is in no mesh
         lower, upper = replace(lower, leaves=None), replace(upper, leaves=None)

@@ -9,8 +9,8 @@ A face may also be read in two ways, as a guide or as an end stop: the bottom of
 the step bearing of a shaft. Both readings are named then, and an intended joint chooses among them. A pin in a
 slot holds or has play; that it holds may be chosen so, and not that it has play.
 
-What to do: export a finer mesh, make the locating surface longer, part what overlaps where nothing mates, state the
-intended joint where there are two readings, or state the joint by `[[assume]]`.
+What to do: export a finer mesh, make the locating surface longer, separate parts that overlap, state the intended
+joint where there are two readings, or state the joint by `[[assume]]`.
 
 Example: a disc 0.2 mm thick in a bore of 40 mm: it hardly keeps the axis.
 """
@@ -48,9 +48,10 @@ def _wanted(context: Context, joint: Joint) -> IntendedJoint | None:
 
 
 def _finding(context: Context, joint: Joint, intended: IntendedJoint | None) -> Finding:
-    values = ", ".join(f"{value:.2g}" for value in joint.singular_values)
     others = " or ".join(reading.type for reading in joint.readings) or "another"
-    remedy = "Export a finer mesh, lengthen the locating surface, part what overlaps, or state the joint by [[assume]]."
+    remedy = (
+        "Export a finer mesh, lengthen the locating surface, separate overlapping parts, or state it by [[assume]]."
+    )
     if joint.readings:
         remedy = "State the joint that is meant as [[function.joint]]: it chooses among these. Else by [[assume]]."
     if any(reading.cause == "bend" for reading in joint.readings):
@@ -59,7 +60,7 @@ def _finding(context: Context, joint: Joint, intended: IntendedJoint | None) -> 
     return RULE.at("warning" if intended is None else RULE.severity).finding(
         [joint.name if intended is None else intended.name],
         f"the joint of {quoted(joint.bodies)} is ambiguous: {joint.reason}",
-        found=f"{joint.type}, or {others}; singular values {values}",
+        found=f"{joint.type}, or {others}",
         intended=intended.type if intended is not None else None,
         place=context.place_of(joint),
         declared=intended,

@@ -14,7 +14,7 @@ Example: `range = [-110, 110]` for a shoulder whose motor overlaps its bracket i
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.ranges import RangeComparison, range_comparisons, shown
+from kinform.consistency.comparisons.ranges import range_comparisons, shown
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled, skipped
 from kinform.consistency.rule import Rule
@@ -42,21 +42,9 @@ def check(context: Context) -> Outcome:
             remedy="Follow the reason, or check it by other means.",
         )
         for item in open_
-        if (why := _unknown(item))
+        if (why := item.unknown)
     ]
     return settled(findings, f"{counted(len(findings), 'range')} not checked" if findings else "")
-
-
-def _unknown(item: RangeComparison) -> str:
-    """Why the range is not known; empty where it is."""
-    if item.reason:
-        return item.reason
-    sides = (("lower", item.lower), ("upper", item.upper))
-    why = "; ".join(f"{side}: {end.reason}" for side, end in sides if end is not None and end.status == "unknown")
-    if why or not item.left_out:
-        return why
-    few = ", ".join(" and ".join(pair) for pair in item.left_out[:3])
-    return f"without {few}, which overlap from the start, it is; with them it may be shorter"
 
 
 RULE = Rule("KF904", "range-not-checked", "note", __doc__, check, speaks_for=("KF412",))

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
 from kinform.foundation.meshes.ray_parity import RAYS, Ray
-from kinform.foundation.meshes.shells import shells_of
+from kinform.foundation.meshes.shells import shell_volumes, shells_of
 from kinform.foundation.meshes.subdivision import inner_weights
 from kinform.foundation.rounding import TINY
 from kinform.frozen import dataclass
@@ -41,8 +41,7 @@ def shell_faults(mesh: Mesh) -> ShellFaults:
     if health.shells < 2 or not (health.watertight and health.consistent_winding):
         return ShellFaults()
     shell = shells_of(mesh.vertices, mesh.faces)
-    corners = mesh.vertices[mesh.faces] - mesh.vertices.mean(axis=0)
-    volumes = np.bincount(shell, dot(corners[:, 0], cross(corners[:, 1], corners[:, 2]))) / 6.0
+    volumes = shell_volumes(mesh.vertices, mesh.faces, shell)
     chosen = _chosen(shell)
     chosen = chosen[(_beside_others(mesh, shell) | (volumes < 0.0))[shell[chosen]]]
     share = _wrong(mesh, shell[chosen], chosen, volumes)

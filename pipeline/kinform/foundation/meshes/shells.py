@@ -30,6 +30,12 @@ def shells_of(vertices: Array, faces: Ints, edges: EdgeTable | None = None) -> I
     return components(first, second, len(faces))
 
 
+def shell_volumes(vertices: Array, faces: Ints, shell: Ints) -> Array:
+    """(S,) m³, signed, that each shell of a closed mesh bounds: cavities are negative."""
+    corners = vertices[faces] - vertices.mean(axis=0)
+    return np.bincount(shell, dot(corners[:, 0], cross(corners[:, 1], corners[:, 2]))) / 6.0
+
+
 def _radial_links(vertices: Array, faces: Ints, edges: EdgeTable) -> Ints:
     """Pairs of half-edges that belong together at edges of more than two facets."""
     busy = edges.counts > 2

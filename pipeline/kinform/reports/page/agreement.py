@@ -1,7 +1,7 @@
 """Form, behaviour and function side by side: a row for each thing that at least one of them speaks of.
 
-What disagrees the findings say. A row agrees only where the function states something, the rules have run, none that
-speaks of it was left undecided, and what was found is what was asked for.
+What disagrees the findings say. A row agrees only where the function states something, and the rules found it to hold:
+`Statement` has the outcome, and nothing is judged here.
 """
 
 from __future__ import annotations
@@ -17,21 +17,32 @@ from kinform.foundation import words
 from kinform.frozen import dataclass
 from kinform.function import joint_as_stated, range_as_stated, resolve_joint
 from kinform.model.collisions import RangeEnd
-from kinform.model.findings import Severity
+from kinform.model.coverage import Statement, StatementKind, StatementOutcome
+from kinform.model.findings import OutcomeName, Severity
 from kinform.model.function import IntendedJoint, Requirement
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.reports.page.phrases import axis_words, contact, joint_sentence, point_words
 from kinform.requirements.words import requirement_words
 
-MarkName = Literal["agrees", "disagrees", "doubtful", "not decided", "not stated", "not checked"]
+MarkName = Literal["agrees", "disagrees", "doubtful", "not decided", "not stated", "not checked", "accepted"]
 MARKS: dict[MarkName, str] = {
     "agrees": "✓", "disagrees": "✕", "doubtful": "▲", "not decided": "?", "not stated": "–", "not checked": "?",
+    "accepted": "○",
 }  # fmt: skip
 """What a row says, and its sign."""
 MARK_OF: dict[Severity, MarkName] = {"error": "disagrees", "warning": "doubtful", "note": "not decided"}
 """The mark of a finding that no row is about."""
-ORDER: tuple[MarkName, ...] = ("disagrees", "doubtful", "not decided", "not checked", "agrees", "not stated")
-"""What the page shows first."""
+MARK_OF_OUTCOME: dict[StatementOutcome, MarkName] = {
+    "agrees": "agrees", "met": "agrees", "not held": "not decided", "contradicts": "disagrees", "violated": "disagrees",
+    "no contact": "not decided", "undecided": "not decided", "not checked": "not checked", "given": "not checked",
+}  # fmt: skip
+MARK_OF_RULE: dict[OutcomeName, MarkName] = {
+    "passed": "agrees", "failed": "disagrees", "inconclusive": "not decided", "ignored": "accepted",
+}  # fmt: skip
+ORDER: tuple[MarkName, ...] = (
+    "disagrees", "doubtful", "not decided", "not checked", "accepted", "agrees", "not stated",
+)  # fmt: skip
+"""What the page shows first; of several outcomes of one row the first counts."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +83,12 @@ class _Table:
                 self.about.setdefault(name, []).append(k)
         rules = () if design.report is None else design.report.rules
         self.undecided = {rule.code for rule in rules if rule.outcome == "inconclusive"}
+        self.outcomes = {rule.code: rule for rule in rules}
+        statements = () if design.report is None else design.report.statements
+        self.statements = {(s.kind, s.name): s for s in statements}
+        self.accepted = (
+            set() if design.report is None else {n for i in design.report.ignored for n in i.finding.subject}
+        )
 
     def known(self) -> Iterator[Row]:
         """Rows that do not need a finding."""
@@ -88,7 +105,7 @@ class _Table:
         else:
             for joint in wanted:
                 row = Row(joint.name, behaviour="not derived yet", function=self._stated(joint))
-                yield self._judged_by_name(row, {joint.name}, False)
+                yield self._judged_by_name(row, {joint.name})
         if self.design.simulation is not None and self.design.simulation.status != "not requested":
             yield self._motion()
         for requirement in sorted(self.design.assembly.function.requirements, key=lambda r: r.name):
@@ -119,9 +136,9 @@ class _Table:
             behaviour += f"; only {mobility.finite} finite"
         stated = assembly.function.mobility
         row = Row("mobility of the whole", form, behaviour, "" if stated is None else f"mobility {stated}")
-        right = None if stated is None else mobility.admits(stated)
         about = [k for k, finding in enumerate(self.findings) if finding.code[:4] == "KF30"]
-        return self._judged(row, about, right, "KF301")
+        said = self._said(assembly.name, "mobility")
+        return self._judged(row, about, [self._mark(one) for one in said])
 
     def _intended(self, joint: IntendedJoint, found: Comparison) -> Row:
         derived = found.joint
@@ -135,12 +152,9 @@ class _Table:
             behaviour = self._found(joint, derived)
         else:
             behaviour = found.type + (f", through {', '.join(found.through)}" if found.through else "")
-        right = None if found.state in ("stated", "undecided") else found.right_type
         names = {joint.name} if derived is None else {joint.name, str(derived.name)}
         row = Row(joint.name, self._form(derived), behaviour, self._stated(joint))
-        row = self._judged_by_name(row, names, right)
-        ambiguous = row.mark == "agrees" and derived is not None and derived.status == "ambiguous"
-        return replace(row, mark="not decided") if ambiguous else row
+        return self._judged_by_name(row, names, *self._said(joint.name, "joint", "range"))
 
     def _found(self, intended: IntendedJoint, derived: Joint) -> str:
         """ "revolute about -z, range -31° to 90°": the joint of an intended one in the designer's order and sense, and
@@ -161,16 +175,17 @@ class _Table:
         return f"{text}, range {_end(intended, item.lower, self.units)} to {_end(intended, item.upper, self.units)}"
 
     def _other(self, joint: Joint) -> Row:
-        row = self._judged_by_name(Row(joint.name, self._form(joint), self._derived(joint)), {joint.name}, None)
+        row = self._judged_by_name(Row(joint.name, self._form(joint), self._derived(joint)), {joint.name})
         unstated = row.mark == "not decided" and joint.status != "ambiguous"
         return replace(row, mark="not stated") if unstated else row
 
     def _requirement(self, wanted: Requirement) -> Row:
-        """What is asked for, and what was found where it does not hold."""
+        """What is asked for, what was found where it does not hold, and why it is not known."""
         values = [f.found for f in self.findings if wanted.name in f.subject and f.severity != "note" and f.found]
-        row = Row(wanted.name, "", "; ".join(values), requirement_words(self.design.assembly, wanted))
-        row = self._judged_by_name(row, {wanted.name}, True)
-        return replace(row, behaviour="met") if row.mark == "agrees" else row
+        said = self._said(wanted.name, "limit" if wanted.when_run else "requirement")
+        told = [f"{one.outcome}: {one.reason}" if one.reason else one.outcome for one in said]
+        row = Row(wanted.name, "", "; ".join(values or told), requirement_words(self.design.assembly, wanted))
+        return self._judged_by_name(row, {wanted.name}, *said)
 
     def _motion(self) -> Row:
         design, run = self.design, self.design.simulation
@@ -185,36 +200,41 @@ class _Table:
         if design.mass is not None:
             weighed = sum(part.mass is not None for part in design.mass.parts)
             form = f"masses of {weighed} of {len(design.assembly.parts)} parts"
-        right = True if drives and run.status == "done" else None
         about = [k for k, f in enumerate(self.findings) if f.code in ("KF409", "KF410") or f.code[:3] == "KF5"]
-        return self._judged(Row("motion", form, text, "; ".join(drives)), about, right, "KF501")
+        rule = self.outcomes.get("KF501")
+        mark: MarkName = "not checked"
+        if rule is not None and drives and run.status == "done":
+            mark = MARK_OF_RULE.get(rule.outcome, "not checked")
+        return self._judged(Row("motion", form, text, "; ".join(drives)), about, [mark])
 
-    def _judged_by_name(self, row: Row, names: set[str], right: bool | None) -> Row:
+    def _said(self, name: str, *kinds: StatementKind) -> list[Statement]:
+        """What the rules made of what the function states by this name."""
+        return [self.statements[kind, name] for kind in kinds if (kind, name) in self.statements]
+
+    def _judged_by_name(self, row: Row, names: set[str], *said: Statement) -> Row:
         """The row with the findings about any of the names."""
         about = sorted({k for name in names for k in self.about.get(name, ())})
-        return self._judged(row, about, right)
+        return self._judged(row, about, [self._mark(one) for one in said])
 
-    def _judged(self, row: Row, findings: Sequence[int], right: bool | None, rule: str = "") -> Row:
-        """The row with its findings, by their positions in the report, and its mark.
-
-        `right`: what was found is what was asked for; None: there is nothing to compare, or no answer. `rule` is the
-        code of the rule that decides.
-        """
+    def _judged(self, row: Row, findings: Sequence[int], marks: Sequence[MarkName]) -> Row:
+        """The row with its findings, by their positions in the report, and its mark: that of the worst finding, else of
+        what the rules say of what the function states."""
         self.used.update(findings)
         severities = {self.findings[k].severity for k in findings}
-        undecided = rule in self.undecided or any(self.findings[k].code in self.undecided for k in findings)
         mark: MarkName
         if severities - {"note"}:
             mark = "disagrees" if "error" in severities else "doubtful"
-        elif self.design.report is None:
+        elif self.design.report is None or (row.function and not marks):
             mark = "not checked" if row.function else "not stated"
-        elif undecided:
+        elif any(self.findings[k].code in self.undecided for k in findings):
             mark = "not decided"
-        elif not row.function:
-            mark = "not stated"
         else:
-            mark = "agrees" if right else "not decided"
+            mark = min(marks, key=ORDER.index, default="not stated")
         return replace(row, mark=mark, findings=tuple(findings))
+
+    def _mark(self, one: Statement) -> MarkName:
+        """The mark of a statement by itself; of what does not hold, whose findings are ignored, that it is accepted."""
+        return "accepted" if not one.holds and one.name in self.accepted else MARK_OF_OUTCOME[one.outcome]
 
     def _form(self, joint: Joint | None) -> str:
         """The contact behind a joint."""

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Literal
 
+from kinform import consistency
 from kinform.consistency import explain
 from kinform.design import Design
 from kinform.foundation import words
@@ -18,7 +19,7 @@ from kinform.model.findings import SEVERITIES, RuleOutcome, Severity
 from kinform.model.kinematics import Joint
 from kinform.reports.page.phrases import assumption, joint_sentence, patch_words
 from kinform.reports.page.subjects import as_stated, wanted_names
-from kinform.reports.phrases import rule_counts, severity_counts, verdict_told, verdict_word, where
+from kinform.reports.phrases import rule_counts, severity_counts, where
 from kinform.reports.proofs import proof
 
 MOST_LISTED_PATCHES = 14
@@ -26,6 +27,8 @@ MOST_LISTED_PATCHES = 14
 
 
 VerdictKind = Literal["consistent", "inconsistent", "unverified"]
+KINDS: dict[str, VerdictKind] = {"consistent": "consistent", "inconsistent": "inconsistent"}
+"""How the page sets a kind of verdict; all others as unverified."""
 SIGNS: dict[Severity, str] = {"error": "✕", "warning": "▲", "note": "●"}
 
 
@@ -37,6 +40,7 @@ class Verdict:
     sign: str
     line: str
     counts: str
+    coverage: str = ""
 
 
 @dataclass(frozen=True)
@@ -89,15 +93,10 @@ def verdict_of(design: Design) -> Verdict:
     """Of a design; without findings in the file it is not verified."""
     if design.report is None:
         return Verdict("unverified", "?", "not verified: the rules have not been run", "run `kinform check`")
-    line = verdict_word(design.report)
-    stated = design.assembly.function.stated
-    kind: VerdictKind = "inconsistent" if line == "inconsistent" else "unverified"
-    if line == "consistent" and stated:
-        kind = "consistent"
-    unsure = "–" if line == "consistent" else "?"
-    sign = {"consistent": "✓", "inconsistent": "✕", "unverified": unsure}[kind]
-    told = verdict_told(design.report, stated)
-    return Verdict(kind, sign, told, f"{severity_counts(design.report)} · {rule_counts(design.report)}")
+    found = consistency.verdict_of(design.report)
+    kind = KINDS.get(found.kind, "unverified")
+    counts = f"{severity_counts(design.report)} · {rule_counts(design.report)}"
+    return Verdict(kind, found.sign, found.line, counts, found.coverage)
 
 
 def findings(design: Design) -> list[FindingFacts]:

@@ -44,6 +44,7 @@ def page_summary(design: Design, notes: bool = False) -> str:
     lines = [
         f"# {name}: {verdict.sign} {escaped(verdict.line)}",
         "",
+        *([escaped(verdict.coverage), ""] if verdict.coverage else []),
         escaped(verdict.counts),
         "",
         f"![{name}](overview.png)",

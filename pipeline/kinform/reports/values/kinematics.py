@@ -31,7 +31,7 @@ def joint_values(design: Design) -> dict[str, Any]:
             one_joint(joint, joint.name in computed) | stated.of_derived(joint.name) for joint in kinematics.joints
         ],
         "intended": [asdict(answer) | stated.of_intended(answer.name) for answer in given],
-        "answers": dict(answer_counts(given)) | {"share_undecided": _share(given)},
+        "answers": dict(answer_counts(one.answer for one in given)) | {"share_undecided": _share(given)},
         "sides": [asdict(one) for one in kinematics.sides],
         "asides": [asdict(aside) for aside in kinematics.asides],
         "mobility": mobility_counts(kinematics.mobility),

@@ -6,6 +6,9 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
+
+from kinform.foundation.rounding import SINGLE
 from kinform.foundation.words import quoted
 from kinform.kinematics.joints.bodies.admitted import admits
 from kinform.kinematics.joints.bodies.backlash import without_backlash
@@ -79,7 +82,8 @@ def decide_all(pairs: Pairs, merger: Merger, *, fusing: bool = True) -> dict[Pai
             if not fusing or pair in moving or frozenset(merger.root(p) for p in parts) in stated:
                 continue
             if joint.type == "fixed" and joint.status == "determined":
-                merger.fuse(parts[0], parts[1], f"contact {parts[0]}~{parts[1]} leaves no freedom")
+                turning = bool(np.abs(joint.closed[:, :3]).max(initial=0.0) > SINGLE)
+                merger.fuse(parts[0], parts[1], f"contact {parts[0]}~{parts[1]} leaves no freedom", turning=turning)
                 fused = True
         if not fused:
             return out

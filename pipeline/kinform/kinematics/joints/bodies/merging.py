@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Iterable
 
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.tied_sizes import largest
@@ -21,6 +22,7 @@ class Merger:
         self._index = {name: k for k, name in enumerate(self._names)}
         self._sets = UnionFind(len(self._names))
         self._reasons: list[tuple[int, str]] = []
+        self._turning: list[tuple[int, str]] = []
         for group in assembly.groups:
             self._join(group.parts, f"group {group.name}")
         covered = set(assembly.function.complete)
@@ -38,14 +40,17 @@ class Merger:
             self._sets.union(self._index[parts[0]], self._index[other])
         self._reasons.append((self._index[parts[0]], reason))
 
-    def fuse(self, first: PartName, second: PartName, reason: str) -> None:
-        """Make the bodies that contain the two parts one."""
+    def fuse(self, first: PartName, second: PartName, reason: str, *, turning: bool = False) -> None:
+        """Make the bodies that contain the two parts one; `turning`: contact lets them turn apart."""
         self._join([first, second], reason)
+        if turning:
+            self._turning.append((self._index[first], f"{first}~{second}"))
 
     def copy(self) -> Merger:
         """The same parts, to be merged further on their own."""
         out = Merger(self._assembly)
-        out._sets.parent, out._reasons = list(self._sets.parent), list(self._reasons)
+        out._sets.parent = list(self._sets.parent)
+        out._reasons, out._turning = list(self._reasons), list(self._turning)
         return out
 
     def root(self, part: PartName) -> int:
@@ -57,15 +62,20 @@ class Merger:
         members: dict[int, list[PartName]] = defaultdict(list)
         for name in self._names:
             members[self.root(name)].append(name)
-        reasons: dict[int, set[str]] = defaultdict(set)
-        for index, reason in self._reasons:
-            reasons[self._sets.find(index)].add(reason)
+        reasons, turning = self._by_body(self._reasons), self._by_body(self._turning)
         ground = self._ground(members)
         bodies = [
-            Body(self._body_name(parts), tuple(sorted(parts)), root == ground, tuple(sorted(reasons[root])))
+            Body(self._body_name(parts), tuple(sorted(parts)), root == ground, reasons[root], turning[root])
             for root, parts in members.items()
         ]
         return tuple(sorted(bodies, key=lambda body: body.name))
+
+    def _by_body(self, texts: Iterable[tuple[int, str]]) -> defaultdict[int, tuple[str, ...]]:
+        """Sorted texts about parts, each once, by the numbers of their bodies."""
+        found: dict[int, set[str]] = defaultdict(set)
+        for index, text in texts:
+            found[self._sets.find(index)].add(text)
+        return defaultdict(tuple, {root: tuple(sorted(every)) for root, every in found.items()})
 
     def _body_name(self, parts: list[PartName]) -> BodyName:
         inside = set(parts)

@@ -115,13 +115,17 @@ def weak_rows(pair: AtRest) -> Iterator[Suspect]:
         return
     value, spread = pair.values[pair.count], _spread(pair.evidence)
     if value < tolerances.held:
-        between = (
-            f"singular value {value:.2g} lies between free (< {tolerances.free:g}) and held (> {tolerances.held:g})"
+        words = (
+            "a motion is neither clearly held nor clearly free: lengthen the surface that locates it, or export a "
+            f"finer mesh (singular value {value:.2g}, between {tolerances.free:g} and {tolerances.held:g})"
         )
-        yield Suspect(every, "doubt", between)
+        yield Suspect(every, "doubt", words)
     if value < WEYL_SIGMAS * spread:
-        known = f"the directions of the surfaces are known to {np.degrees(spread):.2g}°"
-        yield Suspect(every, "doubt", f"singular value {value:.2g} may be nothing: {known}")
+        words = (
+            f"a motion is held by less than the {np.degrees(spread):.2g}° to which the directions of the surfaces are "
+            f"known: export a finer mesh (singular value {value:.2g})"
+        )
+        yield Suspect(every, "doubt", words)
 
 
 def _spread(evidence: Evidence) -> float:
@@ -140,16 +144,21 @@ def unknown_facets(pair: AtRest) -> Iterator[Suspect]:
     """Points, lines and facets of no known surface, and where bodies are one those that are unknown on one side."""
     if not pair.touching and not pair.firm.all():
         kinds = sorted({item.patch.kind for item in pair.evidence.chosen(~pair.firm)})
-        why = f"contact along {', '.join(kinds)} without a mating surface"
-        yield suspect(~pair.firm, "drop", f"{pair.count} of 6 freedoms are left only because of {why}")
+        words = (
+            f"contact along {', '.join(kinds)} without a mating surface decides: give it surfaces that fit each other, "
+            f"or state the joint ({pair.count} of 6 freedoms are left with it)"
+        )
+        yield suspect(~pair.firm, "drop", words)
 
 
 def scattered_facets(pair: AtRest) -> Iterator[Suspect]:
     """These, and surfaces whose directions are vague."""
     vague = pair.vague[pair.firm & ~pair.sure]
     if not pair.touching and len(vague):
-        why = f"surfaces whose direction is known no better than to {np.degrees(vague.min()):.2g}°"
-        words = f"{pair.count} of 6 freedoms are left only because of {why}: the vertices of the mesh scatter"
+        words = (
+            f"surfaces decide whose direction is known no better than to {np.degrees(vague.min()):.2g}°, as the "
+            f"vertices of the mesh scatter: export a finer mesh ({pair.count} of 6 freedoms are left with them)"
+        )
         yield suspect(~pair.sure, "drop", words)
 
 
