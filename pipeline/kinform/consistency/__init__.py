@@ -8,6 +8,7 @@ Sub-packages; each imports only those above it:
 
 - `questions`: what several rules ask of a design, and nobody else
 - `comparisons`: quantities of function and behaviour beside each other
+- `causes`: one finding for each cause: what findings have in common, proved by asking again
 - `rules`: one rule a file
 """
 

@@ -37,7 +37,11 @@ def document(report: CheckReport, design: Design, fail_on: str = "error") -> dic
         "verdict": verdict_word(report, fail_on),
         **({} if report.origin == "recorded" else {"origin": "unknown"}),
         "counts": counts | {o: sum(r.outcome == o for r in report.rules) for o in outcomes},
-        "findings": [dataclasses.asdict(f) for f in report.findings],
+        "findings": [
+            dataclasses.asdict(f)
+            | {"members": [] if f.cause is None else [dataclasses.asdict(m) for m in report.members_of(f)]}
+            for f in report.findings
+        ],
         "ignored": [
             dataclasses.asdict(item.finding) | {"ignored_by": item.by, "reason": item.reason} for item in report.ignored
         ],

@@ -64,11 +64,13 @@ class _Table:
         self.design = design
         self.units = design.assembly.units
         self.findings = () if design.report is None else design.report.findings
+        self.members = [] if design.report is None else list(map(design.report.members_of, self.findings))
+        """What each of them stands for."""
         self.used: set[int] = set()
         self.about: dict[str, list[int]] = {}
         """Findings about each name."""
         for k, finding in enumerate(self.findings):
-            for name in finding.subject:
+            for name in dict.fromkeys(name for one in (finding, *self.members[k]) for name in one.subject):
                 self.about.setdefault(name, []).append(k)
         rules = () if design.report is None else design.report.rules
         self.undecided = {rule.code for rule in rules if rule.outcome == "inconclusive"}
@@ -120,7 +122,7 @@ class _Table:
         stated = assembly.function.mobility
         row = Row("mobility of the whole", form, behaviour, "" if stated is None else f"mobility {stated}")
         right = None if stated is None else mobility.admits(stated)
-        about = [k for k, finding in enumerate(self.findings) if finding.code[:4] == "KF30"]
+        about = [k for k, members in enumerate(self.members) if any(one.code[:4] == "KF30" for one in members)]
         return self._judged(row, about, right, "KF301")
 
     def _intended(self, joint: IntendedJoint, found: Comparison) -> Row:
@@ -201,7 +203,9 @@ class _Table:
         """
         self.used.update(findings)
         severities = {self.findings[k].severity for k in findings}
-        undecided = rule in self.undecided or any(self.findings[k].code in self.undecided for k in findings)
+        undecided = rule in self.undecided or any(
+            one.code in self.undecided for k in findings for one in self.members[k]
+        )
         mark: MarkName
         if severities - {"note"}:
             mark = "disagrees" if "error" in severities else "doubtful"

@@ -10,7 +10,13 @@ from kinform.results.held import HeldGroup
 from kinform.results.layout import Layout, Table
 
 LAYOUT = Layout(
-    CheckReport, Table("findings"), Table("rules"), Table("ignored"), Table("gone"), Table("answers", if_any=True)
+    CheckReport,
+    Table("findings"),
+    Table("rules"),
+    Table("ignored"),
+    Table("gone"),
+    Table("answers", if_any=True),
+    Table("members", if_any=True),
 )
 
 
