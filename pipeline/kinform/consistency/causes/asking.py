@@ -70,7 +70,8 @@ def _with_contacts(
 ) -> Design:
     from kinform.contacts import find  # most designs need no second look
 
-    design, known = context.design, context.contacts
+    design, known = context.design, context.design.contacts
+    assert known is not None
     assembly = replace(context.assembly, parts=parts)
     every = {**design.surfaces, **surfaces}
     same = frozenset(pair for pair in known.candidates if not set(pair) & set(other))

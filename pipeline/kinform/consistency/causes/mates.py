@@ -1,14 +1,14 @@
 """Surfaces of parts that would mate if the parts were moved, and the motions that make most of them do so.
 
-A cylinder and a bore of its radius, two balls of one radius, two planes that face each other: each says by how much one
-side would have to move. What is missing to the pose that the designer meant is a vector that many of them agree on.
+A cylinder and a bore of its radius, a ball and its socket, two bores of one radius end to end, two planes that face
+each other: each says by how much one side would have to move. What is missing to the pose that the designer meant is a
+vector that many of them agree on.
 """
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Mapping
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,13 +48,11 @@ class Mates:
     """(n,) m: as far may the middles be from each other along the surface."""
     within: Array
     """(n,) m: by so much may t be off."""
-    heights: Array
-    """(n, 4) normal of the moved plane, and its height along it (m); noughts of cylinders and balls."""
-
-    @cached_property
-    def curved(self) -> Flags:
-        """(n,) Which of them are cylinders and balls."""
-        return np.asarray(~self.heights[:, :3].any(axis=1))
+    firm: Flags
+    """(n,) A shaft in its bore, a ball in its socket: the radius says that they belong together. Else planes that face
+    each other, and bores in line."""
+    marks: Array
+    """(n, 4) the same for one moved plane, or one moved axis, whatever it mates with."""
 
     def met(self, shift: Array) -> Flags:
         """(n,) Which of them mate after this shift."""
@@ -65,20 +63,19 @@ class Mates:
         return np.asarray((np.linalg.norm(off, axis=1) <= self.within) & near)
 
     def gain(self, shift: Array) -> float:
-        """How many more mate after the shift than before it, planes by a half; nought where one of those that come to
-        do so could have been chosen to give any vector: a cylinder has a radius to agree on, a plane alone has
-        nothing."""
+        """How many more mate after the shift than before it, by a half those that are not firm; nought where a single
+        one of these decides some of the shift: any would fit."""
         now, then = self.met(np.zeros(3)), self.met(shift)
-        weights = np.where(self.curved, 1.0, 0.5)
+        weights = np.where(self.firm, 1.0, 0.5)
         new = np.flatnonzero(then & ~now).astype(np.int64)
         more = float(weights[new].sum() - weights[now & ~then].sum())
         return more if self._confirmed(shift, new) else 0.0
 
     def _confirmed(self, shift: Array, new: NDArray[np.int64]) -> bool:
-        """Whether all of the shift follows from the others, whichever plane is left out."""
-        firm = self.projections[new[self.curved[new]]].sum(axis=0) if len(new) else np.zeros((3, 3))
-        planes = {tuple(np.round(self.heights[k] / self.within[k]).tolist()): k for k in new[~self.curved[new]]}
-        each = list(planes.values())[:CLUSTERS]
+        """Whether all of the shift follows from the others, whichever is left out of those that are not firm."""
+        firm = self.projections[new[self.firm[new]]].sum(axis=0)
+        others = {tuple(np.round(self.marks[k] / self.within[k]).tolist()): k for k in new[~self.firm[new]]}
+        each = list(others.values())[:CLUSTERS]
         total = firm + self.projections[each].sum(axis=0)
         left = [total - self.projections[k] for k in each] or [total]
         return all(_determines(rows, shift) for rows in left)
@@ -91,6 +88,8 @@ def _determines(rows: Array, shift: Array) -> bool:
     return bool(np.linalg.norm(open_.T @ shift) <= PARALLEL * np.linalg.norm(shift))
 
 
+Row = tuple[Array, Array, Array, float, float, bool, Array]
+"""Of one pair in `Mates`."""
 Placed = tuple[Surface, Array, Array, float]
 """A surface with its axis, its middle and half its length or breadth (m), in the world."""
 
@@ -124,51 +123,55 @@ def mates_of(
     those of the others."""
     mine = [item for part in moved if part.mesh is not None for item in _placed(part, surfaces, scale)]
     theirs = [item for part in others if part.mesh is not None for item in _placed(part, surfaces, 1.0)]
-    rows: list[tuple[Array, Array, Array, float, float, Array]] = []
+    rows: list[Row] = []
     for kind in ("cylinder", "sphere", "plane"):
         here, there = ([item for item in side if item[0].kind == kind] for side in (mine, theirs))
         if here and there:
             rows += _of_kind(kind, here, there, scale)
     if not rows:
         none = np.zeros((0, 3))
-        return Mates(np.zeros((0, 3, 3)), none, none, np.zeros(0), np.zeros(0), np.zeros((0, 4)))
+        return Mates(np.zeros((0, 3, 3)), none, none, none[:, 0], none[:, 0], none[:, 0] > 0.0, np.zeros((0, 4)))
     return Mates(*(np.array(column) for column in zip(*rows, strict=True)))
 
 
-def _of_kind(
-    kind: str, here: list[Placed], there: list[Placed], scale: float
-) -> list[tuple[Array, Array, Array, float, float, Array]]:
+def _of_kind(kind: str, here: list[Placed], there: list[Placed], scale: float) -> list[Row]:
     """The rows of `Mates` of one kind of surface."""
     axes, axes_o = (np.array([item[1] for item in side]) for side in (here, there))
     sides, sides_o = (np.array([item[0].side for item in side]) for side in (here, there))
     radii, radii_o = (np.array([item[0].radius for item in side]) for side in (here, there))
     radii = scale * radii
     if kind == "plane":
+        firm = np.zeros((len(here), len(there)), dtype=bool)
         fits = axes @ axes_o.T < -(1.0 - 0.5 * PARALLEL**2)
     else:
         inside = sides[:, None] > 0
         inner = np.where(inside, radii[:, None], radii_o[None])
         outer = np.where(inside, radii_o[None], radii[:, None])
-        fits = (sides[:, None] * sides_o[None] < 0) & (outer >= (1.0 - PRESSED) * inner)
-        fits &= outer <= (1.0 + ROOM) * inner
+        firm = (sides[:, None] * sides_o[None] < 0) & (outer >= (1.0 - PRESSED) * inner)
+        firm &= outer <= (1.0 + ROOM) * inner
+        fits = firm
         if kind == "cylinder":
+            bores = (sides[:, None] < 0) & (sides_o[None] < 0)
+            fits = fits | (bores & (np.abs(radii[:, None] - radii_o[None]) <= SAME * radii[:, None]))
             fits &= np.abs(axes @ axes_o.T) > 1.0 - 0.5 * PARALLEL**2
-    rows = []
+    rows: list[Row] = []
     for i, j in zip(*np.nonzero(fits), strict=True):
         (_, axis, middle, half), (_, _, other, half_o) = here[i], there[j]
         along = np.outer(axis, axis)
         P = along if kind == "plane" else np.eye(3) - along if kind == "cylinder" else np.eye(3)
-        within = SAME * half if kind == "plane" else SAME * radii[i] + abs(radii[i] - radii_o[j])
-        height = np.array([*axis, axis @ middle]) if kind == "plane" else np.zeros(4)
-        rows.append((P, P @ (other - middle), other - middle, half + half_o, float(within), height))
+        within = SAME * half if kind == "plane" else SAME * radii[i] + (abs(radii[i] - radii_o[j]) if firm[i, j] else 0)
+        mark = np.array([*axis, axis @ middle] if kind == "plane" else [*(P @ middle), radii[i]])
+        # bores in line end on each other: as far apart as a facet is off
+        reach = half + half_o + (0.0 if firm[i, j] else within)
+        rows.append((P, P @ (other - middle), other - middle, reach, float(within), bool(firm[i, j]), mark))
     return rows
 
 
 def vectors(mates: Mates, longest: float) -> list[tuple[Array, float]]:
     """Translations (m, world) up to some length, after which more surfaces mate, with how many more; the best first,
     then the shortest."""
-    proposals = _clusters(mates, mates.curved, longest)
-    flats = _clusters(mates, ~mates.curved, longest)
+    flat = np.linalg.matrix_rank(mates.projections, tol=0.5, hermitian=True) == 1
+    proposals, flats = (_clusters(mates, chosen, longest) for chosen in (~flat, flat))
     combined = [*proposals]
     for vector in [np.zeros(3), *proposals]:
         for flat in flats:

@@ -54,7 +54,10 @@ def movables(context: Context, findings: Sequence[Finding]) -> list[Movable]:
         if not is_serious(finding) and not (of_links and finding.code in OF_JOINTS | {"KF203", "KF201"}):
             continue
         about = {part for name in finding.subject for part in parts_of(context, name)}
-        for one in {one for part in about for one in _around(context, part)}:
+        sets = {one for part in about for one in _around(context, part)}
+        if finding.code == "KF203" and len(about) > 1:
+            sets.add(Movable(finding.subject[0], frozenset(about)))
+        for one in sets:
             if not about <= one.parts or len(about) == 1 or one.parts <= about:
                 counts[one] += 1 + 10 * is_serious(finding)
     ground = _ground(context)

@@ -31,6 +31,8 @@ PARTS_TRIED = 6
 """Parts that are tried, at most: the ones that most findings are about."""
 TRIED = 6
 """Hypotheses of which contacts are looked for, at most."""
+LEAST = 0.75
+"""Of what mates more: one shaft in its bore, or two of planes and bores in line. One plane alone is chance."""
 SMALLEST = 2
 """Links with findings from which all meshes of a description may be of another unit."""
 
@@ -73,6 +75,11 @@ def _hypotheses(context: Context, findings: Sequence[Finding]) -> Iterator[tuple
         if len(about) >= SMALLEST and len(names) > 1:
             for factor in FACTORS[:4]:
                 yield names, factor, True
+    for finding in serious:
+        if finding.code == "KF110":
+            names = tuple(name for name in finding.subject if name in context.assembly.named_parts)
+            if names and all(_has_mesh(context, name) for name in names):
+                yield from ((names, factor, False) for factor in FACTORS[:2])
     counts: dict[str, int] = {}
     for finding in serious:
         for name in {part for word in finding.subject for part in parts_of(context, word)}:
@@ -87,21 +94,20 @@ def _hypotheses(context: Context, findings: Sequence[Finding]) -> Iterator[tuple
         if surface_count(context, [part]) * surface_count(context, others) > SURFACES / len(FACTORS):
             continue
         now = _mating(context, part, others, 1.0)
-        for factor in FACTORS:
+        for number, factor in enumerate(FACTORS):
             mating = _mating(context, part, others, factor)
-            if mating > now:
-                ranked.append((-mating, place, FACTORS.index(factor), name))
-    for _, _, factor_index, name in sorted(ranked):
-        yield (name,), FACTORS[factor_index], False
+            if mating > max(now, LEAST):
+                ranked.append((-mating, place, number, name))
+    for _, _, number, name in sorted(ranked):
+        yield (name,), FACTORS[number], False
 
 
 def _mating(context: Context, part: Part, others: Sequence[Part], scale: float) -> float:
-    """How many surfaces of a part mate with those of others where it is so many times as large, planes by a half;
-    cylinders and balls among them."""
+    """How many surfaces of a part mate with those of others where it is so many times as large, by a half those that
+    are not firm."""
     mates = mates_of([part], others, context.design.surfaces, scale)
     met = mates.met(np.zeros(3))
-    curved = int((met & mates.curved).sum())
-    return curved + 0.5 * float((met & ~mates.curved).sum()) if curved else 0.0
+    return float((met & mates.firm).sum()) + 0.5 * float((met & ~mates.firm).sum())
 
 
 def _has_mesh(context: Context, name: str) -> bool:
