@@ -19,8 +19,8 @@ from kinform.model.findings import SEVERITIES, Finding
 from kinform.model.surfaces import MeshSurfaces
 
 ASKED = frozenset(
-    "KF110 KF124 KF201 KF202 KF203 KF204 KF205 KF206 KF209 KF210 KF301 KF401 KF402 KF403 KF404 KF405 KF406 KF407 KF414 "
-    "KF417 KF901".split()
+    "KF110 KF123 KF124 KF201 KF202 KF203 KF204 KF205 KF206 KF209 KF210 KF301 KF401 KF402 KF403 KF404 KF405 KF406 KF407 "
+    "KF414 KF417 KF901".split()
 )
 """Rules that need no more than contacts and joints, and whose findings a wrong place or size makes."""
 SPOILT = frozenset({"KF201", "KF203", "KF204", "KF401", "KF402", "KF403", "KF404", "KF414"})
@@ -102,8 +102,11 @@ def asked(design: Design, before: Sequence[Finding], again: Again) -> Asked | No
     answers = again(design, codes)
     after = [finding for applied in answers.values() for finding in applied.findings]
     known = {_key(finding): SEVERITIES.index(finding.severity) for finding in before}
+    doubted = {finding.subject for finding in before if finding.code in OF_JOINTS}
     for finding in after:
-        if is_serious(finding) and SEVERITIES.index(finding.severity) > known.get(_key(finding), -1):
+        worse = SEVERITIES.index(finding.severity) > known.get(_key(finding), -1)
+        spoils = finding.code in SPOILT and finding.subject not in doubted
+        if worse and (is_serious(finding) or spoils):
             return None
     left = {_key(finding) for finding in after}
     joints = {finding.subject for finding in after if finding.code in OF_JOINTS}

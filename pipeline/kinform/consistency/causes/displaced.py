@@ -12,9 +12,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.consistency.causes.asking import Again, Asked, asked, changed, overlapping
+from kinform.consistency.causes.asking import Again, Asked, asked, changed, is_serious, overlapping
 from kinform.consistency.causes.mates import mates_of, vectors
-from kinform.consistency.causes.movable import Movable, movables
+from kinform.consistency.causes.movable import Movable, grounded, movables, parts_of
 from kinform.consistency.causes.remedies import pose_in_file, pose_of, rounded
 from kinform.consistency.context import Context
 from kinform.frozen import dataclass
@@ -23,10 +23,16 @@ from kinform.model.assembly import Assembly, Part
 from kinform.model.descriptions import DescribedLink
 from kinform.model.findings import Finding
 
-CONTACTS_TRIED = 12
-"""Motions of which contacts are looked for, at most, in search of one cause."""
-JOINTS_TRIED = 4
-"""Motions of which joints are derived, at most: those after which no more pairs overlap."""
+CONTACTS_TRIED = 16
+"""Motions of which contacts are looked for, at most, in search of one cause, ..."""
+JOINTS_TRIED = 8
+"""... and of which joints are derived: those after which no more pairs overlap; ..."""
+PARTS_TRIED = 300
+"""... fewer of many parts: so many parts in all of designs whose joints are derived, and five times as many of those
+whose contacts are looked for. Joints of 100 parts take a second or more."""
+GAP = 0.5
+"""Share of the smallest part that is moved: gaps of descriptions, whose pins and bearings are in no mesh, are smaller.
+Chosen, not measured."""
 SURFACES = 4_000_000
 """Pairs of surfaces that are compared for one set of parts, at most: half a second. Of more, none are."""
 
@@ -40,6 +46,8 @@ class Motion:
     """(4, 4) in the world."""
     frame: str = ""
     """The link in whose frame the meshes are; "" where they are only moved."""
+    confirmed: bool = True
+    """No single surface decides some of it."""
     whole: bool = False
     """All links have their meshes in that frame."""
 
@@ -51,7 +59,7 @@ class Displaced:
     motion: Motion
     asked: Asked
     alternative: Motion | None = None
-    """Another that resolves the same: the joint of a link moved instead of its mesh."""
+    """Another that resolves as much: the joint of a link moved instead of its mesh, the other side of a gap."""
 
 
 def displaced(context: Context, findings: Sequence[Finding], again: Again) -> Displaced | None:
@@ -60,9 +68,12 @@ def displaced(context: Context, findings: Sequence[Finding], again: Again) -> Di
     if not sets:
         return None
     tried, proved = 0, list[tuple[Motion, Asked]]()
-    before = overlapping(context.design)
-    for count, motion in enumerate(_hypotheses(context, sets)):
-        if count >= CONTACTS_TRIED or tried >= JOINTS_TRIED:
+    before, many = overlapping(context.design), len(context.assembly.parts)
+    if many > PARTS_TRIED:
+        return None
+    most, most_joints = min(CONTACTS_TRIED, 5 * PARTS_TRIED // many), min(JOINTS_TRIED, PARTS_TRIED // many)
+    for count, motion in enumerate(_hypotheses(context, sets, findings)):
+        if count >= most or tried >= most_joints or (proved and not motion.confirmed):
             break
         design = changed(context, _moved(context, motion), {})
         if not overlapping(design) <= before:
@@ -73,28 +84,40 @@ def displaced(context: Context, findings: Sequence[Finding], again: Again) -> Di
             proved.append((motion, found))
     if not proved:
         return None
-    # the best first; sorting keeps the order in which they were proposed
-    proved.sort(key=lambda item: tuple(-count for count in item[1].weight))
+    ground = grounded(context)
+    # the best first, rather what is not on the ground; sorting keeps the order in which they were proposed
+    proved.sort(key=lambda item: (*(-count for count in item[1].weight), not ground.isdisjoint(item[0].moved.parts)))
     (best, found), others = proved[0], proved[1:]
-    same = (m for m, a in others if a.weight == found.weight and m.moved.name == best.moved.name)
-    alternative = next((m for m in same if np.allclose(m.X, best.X) and m.moved.branch != best.moved.branch), None)
+    alternative = next((m for m, a in others if a.weight == found.weight and m.moved != best.moved), None)
     return Displaced(best, found, alternative)
 
 
-def _hypotheses(context: Context, sets: Sequence[Movable]) -> Iterator[Motion]:
-    """Frames that a description has, then vectors that surfaces agree on, the ones first after which most mate."""
+def _far(context: Context, motion: Motion) -> bool:
+    """Whether it is farther than a gap that a part which is in no mesh would fill."""
+    meshes = [mesh for name in motion.moved.parts if (mesh := context.assembly.part(name).mesh) is not None]
+    return float(np.linalg.norm(motion.X[:3, 3])) > GAP * min((mesh.diagonal for mesh in meshes), default=np.inf)
+
+
+def _hypotheses(context: Context, sets: Sequence[Movable], findings: Sequence[Finding]) -> Iterator[Motion]:
+    """Frames that a description has, then vectors that surfaces agree on, the ones first after which most mate. Of
+    parts that only notes are about, vectors that are longer than gaps are."""
+    words = (word for finding in findings if is_serious(finding) for word in finding.subject)
+    doubted = {part for word in words for part in parts_of(context, word)}
     yield from _frames(context, sets)
-    ranked: list[tuple[float, float, int, Motion]] = []
+    ranked: list[tuple[bool, float, float, int, Motion]] = []
     for place, one in enumerate(sets):
-        for vector, gain in _vectors(context, one):
+        for vector, gain, confirmed in _vectors(context, one):
             X = np.eye(4)
             X[:3, 3] = rounded(vector)
-            ranked.append((-gain, float(np.linalg.norm(vector)), place, Motion(one, X)))
-    ranked.sort(key=lambda item: item[:3])
+            if not one.parts.isdisjoint(doubted) or _far(context, Motion(one, X)):
+                ranked.append(
+                    (not confirmed, -gain, float(np.linalg.norm(vector)), place, Motion(one, X, confirmed=confirmed))
+                )
+    ranked.sort(key=lambda item: item[:4])
     yield from (motion for *_, motion in ranked)
 
 
-def _vectors(context: Context, one: Movable) -> list[tuple[Array, float]]:
+def _vectors(context: Context, one: Movable) -> list[tuple[Array, float, bool]]:
     """Translations of these parts after which more of their surfaces mate, no farther than they are large."""
     inside, outside = list[Part](), list[Part]()
     for part in context.assembly.parts:
@@ -153,15 +176,15 @@ def _parts(links: dict[str, DescribedLink], name: str) -> tuple[str, ...]:
 
 def _into(context: Context, link: DescribedLink, other: DescribedLink) -> Array | None:
     """The motion (4, 4) that puts the mesh files of a link into the frame of another; None where they are there, or are
-    not all in one frame."""
+    not taken as in the frame of their link."""
     parts = [context.assembly.part(name) for name in link.parts]
     if link is other or not parts or any(part.mesh is None for part in parts):
         return None
     poses = [pose_in_file(part) for part in parts]
-    if not all(np.allclose(X, poses[0]) for X in poses):
-        return None
-    motion = pose_of(other) @ np.linalg.inv(poses[0])
     size = max(part.mesh.diagonal for part in parts if part.mesh is not None)
+    if not all(np.allclose(X, pose_of(link), atol=1e-3 * size) for X in poses):
+        return None
+    motion = pose_of(other) @ np.linalg.inv(pose_of(link))
     return None if np.allclose(motion, np.eye(4), atol=1e-3 * size) else np.asarray(motion)
 
 

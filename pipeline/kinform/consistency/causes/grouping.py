@@ -35,6 +35,9 @@ last."""
 OF_CONTACT = ("KF20", "KF21", "KF3", "KF40", "KF414", "KF417", "KF90")
 """What follows from contacts, by how codes begin."""
 
+PROVED = ("frame", "displaced", "scaled")
+"""Causes that are at least a warning."""
+
 Grouped = tuple[list[Finding], list[Finding]]
 """Findings that stand, one for each cause, and the members of those that state causes."""
 
@@ -206,10 +209,11 @@ def _scaled(context: Context, found: Scaled) -> Finding:
 def _repeated(group: Sequence[Finding]) -> Finding:
     """Findings about the same shapes as one: the worst, which is the first, and how many."""
     first = group[0]
-    names = [" and ".join(f"'{name}'" for name in finding.subject) for finding in group[1:4]]
-    more = f" and {len(group) - 4} more" if len(group) > 4 else ""
-    message = f"{first.message}; {len(group)} times, of the same shapes: likewise {', '.join(names)}{more}"
-    told = f"{len(group)} times: {first.found}" if first.found else f"{len(group)} times"
+    others = [finding for finding in group if (finding.code, finding.severity) == (first.code, first.severity)][1:]
+    names = [" and ".join(f"'{name}'" for name in finding.subject) for finding in others[:3]]
+    more = f" and {len(others) - 3} more" if len(others) > 3 else ""
+    message = f"{first.message}; {len(others) + 1} times, of the same shapes: likewise {', '.join(names)}{more}"
+    told = f"{len(others) + 1} times: {first.found}" if first.found else f"{len(others) + 1} times"
     return _stated(group, "repeated", first.subject, message, told, first.remedy)
 
 
@@ -247,7 +251,16 @@ def _stated(
     key = f"{kind} {worst.code} {', '.join(subject)}"
     vector = None if shift is None else triple(shift)
     cause = Cause(kind, key, vector, scale)
+    # of notes alone: what is proved to be in a wrong place or size is more than that
+    severity = "warning" if worst.severity == "note" and kind in PROVED else worst.severity
     intended = worst.intended if kind == "repeated" else None
     return replace(
-        worst, subject=tuple(subject), message=message, found=found, intended=intended, remedy=remedy, cause=cause
+        worst,
+        severity=severity,
+        subject=tuple(subject),
+        message=message,
+        found=found,
+        intended=intended,
+        remedy=remedy,
+        cause=cause,
     )

@@ -62,14 +62,17 @@ class Mates:
         near = np.linalg.norm(along, axis=1) <= self.reach
         return np.asarray((np.linalg.norm(off, axis=1) <= self.within) & near)
 
-    def gain(self, shift: Array) -> float:
-        """How many more mate after the shift than before it, by a half those that are not firm; nought where a single
-        one of these decides some of the shift: any would fit."""
+    def gain(self, shift: Array) -> tuple[float, bool]:
+        """How many more mate after the shift than before it, by a half those that are not firm; and whether all of the
+        shift is confirmed: no single one of these decides some of it, as any would. Nought where nothing is."""
         now, then = self.met(np.zeros(3)), self.met(shift)
         weights = np.where(self.firm, 1.0, 0.5)
         new = np.flatnonzero(then & ~now).astype(np.int64)
         more = float(weights[new].sum() - weights[now & ~then].sum())
-        return more if self._confirmed(shift, new) else 0.0
+        if self._confirmed(shift, new):
+            return more, True
+        follows = bool(self.firm[new].any()) and _determines(self.projections[new].sum(axis=0), shift)
+        return (more if follows else 0.0), False
 
     def _confirmed(self, shift: Array, new: NDArray[np.int64]) -> bool:
         """Whether all of the shift follows from the others, whichever is left out of those that are not firm."""
@@ -167,9 +170,9 @@ def _of_kind(kind: str, here: list[Placed], there: list[Placed], scale: float) -
     return rows
 
 
-def vectors(mates: Mates, longest: float) -> list[tuple[Array, float]]:
-    """Translations (m, world) up to some length, after which more surfaces mate, with how many more; the best first,
-    then the shortest."""
+def vectors(mates: Mates, longest: float) -> list[tuple[Array, float, bool]]:
+    """Translations (m, world) up to some length, after which more surfaces mate, with how many more and whether that
+    confirms them; those that are first, then the best, then the shortest."""
     flat = np.linalg.matrix_rank(mates.projections, tol=0.5, hermitian=True) == 1
     proposals, flats = (_clusters(mates, chosen, longest) for chosen in (~flat, flat))
     combined = [*proposals]
@@ -181,15 +184,15 @@ def vectors(mates: Mates, longest: float) -> list[tuple[Array, float]]:
             combined.append(one + other)
     for one, other in itertools.combinations(proposals, 2):
         combined.append(_both(one, other))
-    found: list[tuple[Array, float]] = []
+    found: list[tuple[Array, float, bool]] = []
     for vector in combined:
         size = float(np.linalg.norm(vector))
         if not 0.0 < size <= longest:
             continue
-        gain = mates.gain(vector)
-        if gain > 0.0 and not any(np.allclose(vector, known, atol=1e-3 * size) for known, _ in found):
-            found.append((vector, gain))
-    found.sort(key=lambda item: (-item[1], round(float(np.linalg.norm(item[0])), 9), *item[0].tolist()))
+        gain, confirmed = mates.gain(vector)
+        if gain > 0.0 and not any(np.allclose(vector, known, atol=1e-3 * size) for known, *_ in found):
+            found.append((vector, gain, confirmed))
+    found.sort(key=lambda item: (not item[2], -item[1], round(float(np.linalg.norm(item[0])), 9), *item[0].tolist()))
     return found[:VECTORS]
 
 

@@ -47,31 +47,32 @@ def parts_of(context: Context, name: str) -> tuple[str, ...]:
 
 def movables(context: Context, findings: Sequence[Finding]) -> list[Movable]:
     """What the findings are about, as sets of parts that may be moved, the ones that most are about first; at most
-    half of all parts."""
+    half of all parts, or a branch."""
     of_links = bool(context.assembly.descriptions)
     counts: Counter[Movable] = Counter()
     for finding in findings:
         if not is_serious(finding) and not (of_links and finding.code in OF_JOINTS | {"KF203", "KF201"}):
             continue
         about = {part for name in finding.subject for part in parts_of(context, name)}
-        sets = {one for part in about for one in _around(context, part)}
+        tried = {one for part in about for one in _around(context, part)}
         if finding.code == "KF203" and len(about) > 1:
-            sets.add(Movable(finding.subject[0], frozenset(about)))
-        for one in sets:
+            tried.add(Movable(finding.subject[0], frozenset(about)))
+        for one in tried:
             if not about <= one.parts or len(about) == 1 or one.parts <= about:
                 counts[one] += 1 + 10 * is_serious(finding)
-    ground = _ground(context)
+    ground = grounded(context)
     half = max(1, len(context.assembly.parts) // 2)
     # of the same parts the first name: a link of one part has its name
     sets: dict[tuple[frozenset[str], bool], Movable] = {}
     for one in sorted(counts, key=lambda one: (one.branch, one.name)):
-        if len(one.parts) <= half:
+        if len(one.parts) <= half or (one.branch and one.parts.isdisjoint(ground)):
             sets.setdefault((one.parts, one.branch), one)
     ordered = sorted(sets.values(), key=lambda s: (-counts[s], not s.parts.isdisjoint(ground), len(s.parts), s.name))
     return ordered[:SETS]
 
 
-def _ground(context: Context) -> frozenset[str]:
+def grounded(context: Context) -> frozenset[str]:
+    """The parts at rest."""
     kinematics = context.design.kinematics
     if kinematics is None:
         return frozenset()

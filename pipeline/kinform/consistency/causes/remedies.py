@@ -9,7 +9,7 @@ import numpy as np
 from kinform.consistency.causes.movable import Movable
 from kinform.consistency.context import Context
 from kinform.foundation.units import METRES_PER_UNIT
-from kinform.foundation.words import length_unit, number
+from kinform.foundation.words import length_unit, number, quoted
 from kinform.model.arrays import Array
 from kinform.model.assembly import Part
 from kinform.model.descriptions import DescribedJoint, DescribedLink, Description
@@ -64,8 +64,9 @@ def placing(context: Context, moved: Movable, motion: Array) -> str:
         size = float(np.linalg.norm(motion[:3, 3]))
         digits = -math.floor(math.log10(STEP * size))
         values = numbers(np.round(position, digits), 1.0 / METRES_PER_UNIT[context.units])
-        return f"Move it by {vector}: `position = [{', '.join(values)}]`."
-    return f"Move {'it' if len(moved.parts) == 1 else 'them'} by {vector}, in the axes of the file."
+        return f"Move '{name}' by {vector}: `position = [{', '.join(values)}]`."
+    what = f"'{name}'" if len(moved.parts) == 1 else f"the parts {quoted(sorted(moved.parts))}"
+    return f"Move {what} by {vector}, in the axes of the file."
 
 
 def _of_link(

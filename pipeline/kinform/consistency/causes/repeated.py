@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import cached_property
 
 from kinform.consistency.context import Context
-from kinform.model.findings import Finding
+from kinform.model.findings import SEVERITIES, Finding
 
 RULES = frozenset("KF201 KF202 KF204 KF206 KF209 KF210 KF406 KF407 KF901".split())
 """Rules about contact, whose findings follow from the shapes of two parts and how they lie. What is stated of joints is
@@ -57,9 +57,22 @@ class Shapes:
                 return ()
         return tuple(sorted(found))
 
+    def bodies(self, findings: Sequence[Finding]) -> frozenset[frozenset[str]]:
+        """The bodies that each of some findings is about, or its parts where they are one body."""
+        kinematics = self._context.design.kinematics
+        of_part = {} if kinematics is None else {str(p): str(b.name) for b in kinematics.bodies for p in b.parts}
+        out = set()
+        for finding in findings:
+            joints = [] if kinematics is None else [kinematics.named_joints.get(name) for name in finding.subject]
+            names = [name for joint in joints if joint is not None for name in joint.bodies]
+            about = frozenset(map(str, names)) or frozenset(of_part.get(name, name) for name in finding.subject)
+            out.add(about if len(about) > 1 else frozenset(finding.subject))
+        return frozenset(out)
+
 
 def repeated(context: Context, findings: Sequence[Finding]) -> list[tuple[Finding, ...]]:
-    """Findings of one rule and severity about the same shapes, where there are several, in their order."""
+    """Findings of one rule and severity about the same shapes, where there are several, in their order; with those of
+    other rules about the same bodies."""
     candidates = [finding for finding in findings if finding.code in RULES]
     if len(candidates) < LEAST:
         return []
@@ -69,4 +82,15 @@ def repeated(context: Context, findings: Sequence[Finding]) -> list[tuple[Findin
         of = shapes.of(finding)
         if of:
             groups.setdefault((finding.code, finding.severity, of), []).append(finding)
-    return [tuple(group) for group in groups.values() if len({finding.subject for finding in group}) >= LEAST]
+    several = [group for group in groups.values() if len({finding.subject for finding in group}) >= LEAST]
+    # the worst first: what else is found of the same bodies is found with it
+    several.sort(key=lambda group: -SEVERITIES.index(group[0].severity))
+    out: list[tuple[frozenset[frozenset[str]], list[Finding]]] = []
+    for group in several:
+        about = shapes.bodies(group)
+        alike = next((members for known, members in out if known <= about or about <= known), None)
+        if alike is None:
+            out.append((about, group))
+        else:
+            alike += group
+    return [tuple(members) for _, members in out]

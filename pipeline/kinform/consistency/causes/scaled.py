@@ -13,11 +13,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.consistency.causes.asking import Again, Asked, asked, changed, is_serious, overlapping
+from kinform.consistency.causes.asking import OF_JOINTS, Again, Asked, asked, changed, is_serious, overlapping
 from kinform.consistency.causes.displaced import SURFACES, surface_count
 from kinform.consistency.causes.mates import mates_of
 from kinform.consistency.causes.movable import parts_of
+from kinform.consistency.comparisons.answers import answers
 from kinform.consistency.context import Context
+from kinform.design import Design
 from kinform.frozen import dataclass
 from kinform.model.arrays import freeze
 from kinform.model.assembly import Mesh, Part
@@ -29,8 +31,10 @@ FACTORS = (1e-3, 1e3, 1.0 / 25.4, 25.4, 0.1, 10.0, 25.4e-3, 1.0 / 25.4e-3, 1e-2,
 inches and metres, centimetres and metres."""
 PARTS_TRIED = 6
 """Parts that are tried, at most: the ones that most findings are about."""
-TRIED = 6
+TRIED = 10
 """Hypotheses of which contacts are looked for, at most."""
+MOST_PARTS = 300
+"""Parts of a design of which this is asked, at most."""
 LEAST = 0.75
 """Of what mates more: one shaft in its bore, or two of planes and bores in line. One plane alone is chance."""
 SMALLEST = 2
@@ -51,6 +55,8 @@ class Scaled:
 def scaled(context: Context, findings: Sequence[Finding], again: Again) -> Scaled | None:
     """The factor that resolves most, if any does."""
     proved: list[Scaled] = []
+    if len(context.assembly.parts) > MOST_PARTS:
+        return None
     for count, (names, factor, whole) in enumerate(_hypotheses(context, findings)):
         if count >= TRIED:
             break
@@ -59,16 +65,25 @@ def scaled(context: Context, findings: Sequence[Finding], again: Again) -> Scale
         if not whole and not overlapping(design) <= overlapping(context.design):
             continue
         found = asked(design, findings, again)
-        if found is not None and any(map(is_serious, found.resolved)):
+        if found is None:
+            continue
+        agrees = _agreeing(found.design) > _agreeing(context.design)
+        if agrees or (not whole and any(map(is_serious, found.resolved))):
             proved.append(Scaled(names, factor, whole, found))
             if not any(map(is_serious, found.findings)):
                 break
     return max(proved, key=lambda one: one.asked.weight, default=None)
 
 
+def _agreeing(design: Design) -> int:
+    """How many stated joints the geometry agrees with."""
+    return sum(one.answer == "agrees" for one in answers(design))
+
+
 def _hypotheses(context: Context, findings: Sequence[Finding]) -> Iterator[tuple[tuple[str, ...], float, bool]]:
     """Parts and factors, those after which most surfaces mate first."""
-    serious = [finding for finding in findings if is_serious(finding)]
+    of_links = bool(context.assembly.descriptions)
+    serious = [f for f in findings if is_serious(f) or (of_links and f.code in OF_JOINTS)]
     for description in context.assembly.descriptions:
         names = tuple(sorted(name for link in description.links for name in link.parts if _has_mesh(context, name)))
         about = {name for f in serious for word in f.subject for name in parts_of(context, word)} & set(names)
