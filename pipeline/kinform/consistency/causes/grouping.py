@@ -176,7 +176,8 @@ def _displaced(context: Context, found: Displaced) -> Finding:
         remedy += " Or export the mesh in the frame of its link."
         kind: CauseKind = "frame"
     else:
-        message = f"{what} is displaced: moved by {vector}, it fits, and {vanish}"
+        worst = max(resolved, key=lambda finding: SEVERITIES.index(finding.severity))
+        message = f"{what} is displaced: moved by {vector}, it fits, and {vanish}; the worst of them: {worst.message}"
         found_words = f"displaced; moved by {vector}, {vanish}"
         kind = "displaced"
     return _stated(resolved, kind, (moved.name,), message, found_words, remedy, shift=shift)
@@ -187,6 +188,7 @@ def _scaled(context: Context, found: Scaled) -> Finding:
     resolved, factor = found.asked.resolved, found.factor
     vanish = "this finding vanishes" if len(resolved) == 1 else f"all {counted(len(resolved), 'finding')} vanish"
     times = f"{number(1.0 / factor)} times too large" if factor < 1.0 else f"{number(factor)} times too small"
+    applied = f"divided by {number(1.0 / factor, 6)}" if factor < 1.0 else f"multiplied by {number(factor, 6)}"
     if found.whole:
         what, verb = f"the meshes of all {len(found.parts)} parts", "are"
     else:
@@ -200,9 +202,9 @@ def _scaled(context: Context, found: Scaled) -> Finding:
             (u for u, m in METRES_PER_UNIT.items() if abs(m / METRES_PER_UNIT[parts[0].units] / factor - 1) < 1e-6),
             None,
         )
-        remedy = f'Write `units = "{unit}"` at the part.' if unit else f"Multiply the mesh by {number(factor, 6)}."
-    message = f"{what} {verb} {times}: multiplied by {number(factor, 6)}, {vanish}"
-    told = f"{times}; multiplied by {number(factor, 6)}, {vanish}"
+        remedy = f'Write `units = "{unit}"` at the part.' if unit else f"Export the mesh again, {applied}."
+    message = f"{what} {verb} {times}: {applied}, {vanish}"
+    told = f"{times}; {applied}, {vanish}"
     return _stated(resolved, "scaled", found.parts, message, told, remedy, scale=factor)
 
 
