@@ -80,7 +80,7 @@ def displaced(context: Context, findings: Sequence[Finding], again: Again) -> Di
             continue
         tried += 1
         found = asked(replace(design, assembly=_with_joints(design.assembly, motion)), findings, again)
-        if found is not None:
+        if found is not None and not _unfit(context, motion, found):
             proved.append((motion, found))
     if not proved:
         return None
@@ -90,6 +90,12 @@ def displaced(context: Context, findings: Sequence[Finding], again: Again) -> Di
     (best, found), others = proved[0], proved[1:]
     alternative = next((m for m, a in others if a.weight == found.weight and m.moved != best.moved), None)
     return Displaced(best, found, alternative)
+
+
+def _unfit(context: Context, motion: Motion, found: Asked) -> bool:
+    """Whether the parts still overlap others in their new places: they are in a wrong place there too."""
+    left = (finding for finding in found.findings if finding.code == "KF201" and is_serious(finding))
+    return not motion.whole and any(not motion.moved.parts.isdisjoint(finding.subject) for finding in left)
 
 
 def _far(context: Context, motion: Motion) -> bool:
