@@ -116,7 +116,7 @@ def snapshot(design: Design) -> Snapshot:
         else tuple(
             (code, subject, severity, count)
             for (code, subject, severity), count in sorted(
-                Counter((f.code, f.subject, f.severity) for f in report.findings).items()
+                Counter((f.code, f.subject, f.severity) for f in report.singles).items()
             )
         ),
         ranges=None if found is None else tuple(sorted(map(str, known))),

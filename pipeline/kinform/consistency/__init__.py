@@ -8,6 +8,7 @@ Sub-packages; each imports only those above it:
 
 - `questions`: what several rules ask of a design, and nobody else
 - `comparisons`: quantities of function and behaviour beside each other
+- `causes`: one finding for each cause: what findings have in common, proved by asking again
 - `rules`: one rule a file
 """
 
@@ -50,7 +51,7 @@ __all__ = [
     "with_baseline",
 ]
 
-CODE_VERSION: int = 60
+CODE_VERSION: int = 61
 """Bumped when results of this package change for the same input."""
 
 __getattr__ = lazy_attributes(

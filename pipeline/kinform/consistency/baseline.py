@@ -51,7 +51,7 @@ class Baseline:
 def adopt(report: CheckReport) -> Baseline:
     """The baseline of a report: its findings, those that an earlier baseline accepted included."""
     earlier = [item.finding for item in report.ignored if item.by == "baseline"]
-    return Baseline(dict(Counter((_key(f), f.severity) for f in (*report.findings, *earlier) if _counts(f))))
+    return Baseline(dict(Counter((_key(f), f.severity) for f in (*report.singles, *earlier) if _counts(f))))
 
 
 def read_baseline(text: str, file: str) -> Baseline:
@@ -74,22 +74,27 @@ def read_baseline(text: str, file: str) -> Baseline:
 
 
 def with_baseline(report: CheckReport, baseline: Baseline) -> tuple[CheckReport, tuple[Key, ...]]:
-    """The report without the findings that the baseline adopts, and the keys of it that are not found any more."""
+    """The report without the findings that the baseline adopts, and the keys of it that are not found any more. A
+    cause is adopted when all of its members are."""
     groups: dict[Key, list[Finding]] = {}
-    for finding in report.findings:
+    for finding in report.singles:
         groups.setdefault(_key(finding), []).append(finding)
     adopted = {key for key, findings in groups.items() if _is_adopted(key, findings, baseline)}
-    kept = tuple(f for f in report.findings if _key(f) not in adopted or not _counts(f))
-    ignored = [Ignored(f, "baseline") for f in report.findings if _key(f) in adopted and _counts(f)]
+    is_known = lambda f: _key(f) in adopted and _counts(f)
+    kept = tuple(f for f in report.findings if not all(map(is_known, report.members_of(f))))
+    left = [single for finding in kept for single in report.members_of(finding)]
+    gone_for = [f for f in report.findings if all(map(is_known, report.members_of(f)))]
+    ignored = [Ignored(single, "baseline") for finding in gone_for for single in report.members_of(finding)]
     rules = tuple(
         outcome_without(
-            rule, [f for f in kept if f.code == rule.code], [i for i in ignored if i.finding.code == rule.code]
+            rule, [f for f in left if f.code == rule.code], [i for i in ignored if i.finding.code == rule.code]
         )
         for rule in report.rules
     )
     every = sorted((*report.ignored, *ignored), key=lambda item: (item.finding.code, item.finding.subject, item.by))
     gone = tuple(sorted(baseline.keys - groups.keys() - {_key(item.finding) for item in report.ignored}))
-    return replace(report, findings=kept, rules=rules, ignored=tuple(every), gone=gone), gone
+    members = tuple(single for single in left if single.cause is not None)
+    return replace(report, findings=kept, rules=rules, ignored=tuple(every), gone=gone, members=members), gone
 
 
 def _is_adopted(key: Key, findings: Iterable[Finding], baseline: Baseline) -> bool:

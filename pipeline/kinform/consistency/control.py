@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from kinform.consistency.comparisons.gathering import ALIKE_MOST, NAMED_MOST
 from kinform.consistency.context import Unused
 from kinform.consistency.outcome import Outcome
 from kinform.consistency.profiles import SETTLED, at_most
@@ -14,11 +13,6 @@ from kinform.foundation.words import counted
 from kinform.frozen import dataclass
 from kinform.model.checks import CheckSettings, Ignore
 from kinform.model.findings import Finding, Ignored, RuleOutcome
-
-FEW_WARNINGS = 6
-"""Warnings of one rule on a robot description that are told one by one: the sides of three joints. Of more, nobody
-reads the last."""
-
 
 DOUBT = "KF9"
 """Rules that have one finding for each thing that could not be decided."""
@@ -62,30 +56,9 @@ def apply(rule: Rule, outcome: Outcome, settings: CheckSettings) -> Applied:
     whole = next((entry for entry in entries if entry.subject is None), None)
     if outcome.kind == "inconclusive" and whole is not None and whole not in used:
         used.append(whole)
-    if settings.profile == "description":
-        kept = list(_few(kept))
-        outcome = replace(outcome, findings=tuple(kept))
     settled = whole is not None or (rule.code.startswith(DOUBT) and bool(ignored) and not kept)
     told = _outcome_under(rule, outcome, ignored, settled, whole)
     return Applied(judged, told, tuple(kept), tuple(ignored), tuple(used))
-
-
-def _few(findings: Sequence[Finding]) -> Iterator[Finding]:
-    """The findings of one rule on a description: of many warnings the first ones, which are the worst, and one that
-    names all that the others are about."""
-    warnings = [finding for finding in findings if finding.severity == "warning"]
-    yield from (finding for finding in findings if finding.severity != "warning")
-    if len(warnings) <= FEW_WARNINGS:
-        yield from warnings
-        return
-    told, rest = warnings[:ALIKE_MOST], warnings[ALIKE_MOST:]
-    yield from told
-    about = [" and ".join(f"'{name}'" for name in finding.subject[:2]) for finding in rest]
-    text = f"{len(rest)} more of this rule, none worse: {'; '.join(about[:NAMED_MOST])}"
-    if len(about) > NAMED_MOST:
-        text += f' and {len(about) - NAMED_MOST} more; `[check] profile = "design"` lists all'
-    subject = tuple(dict.fromkeys(name for finding in rest for name in finding.subject))
-    yield replace(rest[0], subject=subject, message=text, found=None, intended=None, place=None)
 
 
 def outcome_without(rule: RuleOutcome, left: Sequence[Finding], ignored: Sequence[Ignored]) -> RuleOutcome:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 
+from kinform.consistency.causes.grouping import by_cause
 from kinform.consistency.comparisons.answers import answer_counts
 from kinform.consistency.context import Context
 from kinform.consistency.control import Applied, apply, idle_ignore, is_selected, means, unused_entries
@@ -41,14 +43,22 @@ def check(design: Design) -> CheckReport:
         nothing = RuleOutcome(CONTROL.code, CONTROL.name, "skipped", "no other rule ran")
         rules = [nothing if rule.code == CONTROL.code else rule for rule in rules]
     stated = statements(context, applied)
+    told, members = by_cause(context, [f for run in applied.values() for f in run.findings], _again)
     return CheckReport(
-        findings=tuple(sorted((f for run in applied.values() for f in run.findings), key=_order)),
+        findings=tuple(sorted(told, key=_order)),
         rules=tuple(rules),
         ignored=tuple(sorted((i for run in applied.values() for i in run.ignored), key=lambda i: _order(i.finding))),
         answers=answer_counts([s.outcome for s in stated if s.kind == "joint"]),
         statements=stated,
         coverage=coverage(context, applied, RULES),
+        members=tuple(sorted(members, key=_order)),
     )
+
+
+def _again(design: Design, codes: Collection[str]) -> dict[str, Applied]:
+    """What these rules say of another design, under `[check]`."""
+    context = _judging(design)
+    return {rule.code: _run(rule, context) for rule in RULES if rule.code in codes}
 
 
 def margins(design: Design) -> dict[str, Margin | None]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import field
+from functools import cached_property
 from typing import Annotated, Any, Literal, Protocol, get_args
 
 import numpy as np
@@ -153,6 +154,26 @@ def computed(
     )  # fmt: skip
 
 
+CauseKind = Literal["repeated", "duplicated", "displaced", "frame", "scaled", "unplaced", "laid out", "alike"]
+"""repeated: the same shapes again and again. duplicated: copies in one place. displaced: parts that one motion puts
+right. frame: a mesh in the frame of another link. scaled: a mesh of another unit. unplaced: every part at its own
+origin. laid out: parts beside each other that do not touch. alike: no cause that is known, but more of one rule than
+anybody reads."""
+
+
+@dataclass(frozen=True)
+class Cause:
+    """What several findings follow from: one finding states it, and the others are its members."""
+
+    kind: CauseKind
+    key: str
+    """Shared by the finding that states the cause and by its members, and by no others of the report."""
+    shift: Annotated[tuple[float, float, float], "m", columns("shift_x", "shift_y", "shift_z")] | None = None
+    """World: moved by this, the parts fit. Of a mesh that has to be turned too, of the origin of its part frame."""
+    scale: Annotated[float, "1"] | None = None
+    """Multiplied by this, the mesh fits."""
+
+
 @dataclass(frozen=True)
 class Finding:
     """One inconsistency."""
@@ -174,6 +195,13 @@ class Finding:
     remedy: str | None = None
     witness: Witness | None = None
     """What proves it; None of results that an earlier version wrote, and of rules that give none yet."""
+    cause: (
+        Annotated[
+            Cause, columns("cause", "cause_key", "cause_shift_x", "cause_shift_y", "cause_shift_z", "cause_scale")
+        ]
+        | None
+    ) = None
+    """What it states the cause of, or follows from; None where it stands alone."""
 
 
 @dataclass(frozen=True)
@@ -205,6 +233,7 @@ class CheckReport:
     """All findings (sorted by code, subject), and all rules with their outcome (sorted by code)."""
 
     findings: tuple[Finding, ...]
+    """One of each cause; as severe as the worst of its members."""
     rules: tuple[RuleOutcome, ...]
     ignored: tuple[Ignored, ...] = ()
     """Findings that are accepted, in the order of findings; they decide nothing."""
@@ -216,10 +245,31 @@ class CheckReport:
     """Everything that the function states, with its outcome: by kind, then in the order of the function."""
     coverage: Coverage | None = None
     """None: an older version checked it."""
+    members: tuple[Finding, ...] = ()
+    """In the order of findings: what the findings that state causes stand for."""
     origin: Origin = "recorded"
     """No part of results files: it is another on another machine."""
     strict: bool = False
     """Whether whoever reads it takes as not verified what `Verdict.open` lists. No part of results files."""
+
+    def members_of(self, finding: Finding) -> tuple[Finding, ...]:
+        """The findings that a finding stands for: of one that states no cause, itself."""
+        if finding.cause is None:
+            return (finding,)
+        return self._members.get(finding.cause.key, (finding,))
+
+    @property
+    def singles(self) -> tuple[Finding, ...]:
+        """Every finding of a rule: those that state causes replaced by what they stand for."""
+        return tuple(single for finding in self.findings for single in self.members_of(finding))
+
+    @cached_property
+    def _members(self) -> dict[str, tuple[Finding, ...]]:
+        found: dict[str, list[Finding]] = {}
+        for member in self.members:
+            if member.cause is not None:
+                found.setdefault(member.cause.key, []).append(member)
+        return {key: tuple(members) for key, members in found.items()}
 
     @property
     def ran(self) -> int:

@@ -36,7 +36,7 @@ def replay_all(report: CheckReport, design: Design, folder: Path, boundary: Boun
     from kinform.replays.geometric import Sides
 
     sides = Sides(design, Files(folder, boundary))
-    findings = [*report.findings, *(item.finding for item in report.ignored)]
+    findings = [*report.singles, *(item.finding for item in report.ignored)]
     return tuple(
         Replayed(finding, replay(finding, sides))
         for finding in findings

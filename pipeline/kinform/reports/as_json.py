@@ -29,6 +29,11 @@ def _finding(finding: Finding) -> dict[str, Any]:
     return fields
 
 
+def _members(report: CheckReport, finding: Finding) -> list[dict[str, Any]]:
+    """What a finding stands for; empty where it states no cause."""
+    return [] if finding.cause is None else [_finding(one) for one in report.members_of(finding)]
+
+
 def of_design(design: Design) -> dict[str, Any]:
     """The object for the findings of a design that has been checked."""
     assert design.report is not None
@@ -48,7 +53,7 @@ def document(report: CheckReport, design: Design, fail_on: str = "error") -> dic
         "exit_code": verdict.code,
         **({} if report.origin == "recorded" else {"origin": "unknown"}),
         "counts": counts | {o: sum(r.outcome == o for r in report.rules) for o in outcomes},
-        "findings": [_finding(f) for f in report.findings],
+        "findings": [_finding(f) | {"members": _members(report, f)} for f in report.findings],
         "ignored": [_finding(item.finding) | {"ignored_by": item.by, "reason": item.reason} for item in report.ignored],
         "unselected": list(report.unselected),
         "rules": [dataclasses.asdict(r) for r in report.rules],

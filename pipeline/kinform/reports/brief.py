@@ -22,7 +22,7 @@ from kinform.model.findings import CheckReport, Finding
 from kinform.reports.constants import QUIET_NOTES, WIDTH
 from kinform.reports.phrases import answers_line, rule_counts, severity_counts
 
-MOST_BRIEF = 10
+MOST_BRIEF = 7
 """Findings that are told line by line, the worst; with all that stands around them they fill a screen of 24 lines."""
 LEAST_BRIEF = 5
 """Findings that are told line by line though what was found has to be cut; above, fewer are told, and whole."""

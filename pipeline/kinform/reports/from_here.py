@@ -23,5 +23,6 @@ def seen_from_here(design: Design, folder: Path) -> Design:
 
     if assembly.source.file:
         assembly = replace(assembly, source=replace(assembly.source, file=place(assembly.source.file)))
-    report = replace(report, findings=tuple(map(from_here, report.findings)))
+    told, members = (tuple(map(from_here, found)) for found in (report.findings, report.members))
+    report = replace(report, findings=told, members=members)
     return replace(design, assembly=assembly, report=report)

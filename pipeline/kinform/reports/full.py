@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Sequence
 
 from kinform.consistency import verdict_of
 from kinform.design import Design
 from kinform.foundation.escapes import one_line
+from kinform.foundation.words import counted
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
 from kinform.reports.constants import WIDTH
 from kinform.reports.phrases import accepted, place, rule_counts, severity_counts, skipped, where
@@ -17,7 +19,8 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     """Findings, the most severe first, then what could not be decided, what is ignored or skipped and why, then the
     verdict."""
     order = {severity: k for k, severity in enumerate(reversed(SEVERITIES))}
-    blocks = [_finding(f, design.assembly.units) for f in sorted(report.findings, key=lambda f: order[f.severity])]
+    found = sorted(report.findings, key=lambda f: order[f.severity])
+    blocks = [_finding(f, design.assembly.units, () if f.cause is None else report.members_of(f)) for f in found]
     undecided = [r for r in report.rules if r.outcome == "inconclusive"]
     if undecided:
         lines = ["not decided:"]
@@ -34,7 +37,7 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     return "\n\n".join(blocks) + "\n"
 
 
-def _finding(finding: Finding, units: str) -> str:
+def _finding(finding: Finding, units: str, members: Sequence[Finding]) -> str:
     subject = ", ".join(one_line(s) for s in finding.subject)
     lines = _wrapped(f"{finding.severity}: {finding.code} {finding.rule}: {subject}", "", "  ")
     lines += _wrapped(one_line(finding.message), "  ", "  ")
@@ -50,6 +53,12 @@ def _finding(finding: Finding, units: str) -> str:
             lines += _wrapped(f"{key + ':':<10}{one_line(value)}", "  ", " " * 12)
     if finding.remedy:
         lines += _wrapped(f"{'remedy:':<10}{one_line(finding.remedy)}", "  ", " " * 12)
+    if members:
+        lines.append(f"  stands for {counted(len(members), 'finding')}:")
+    for member in members:
+        about = ", ".join(one_line(s) for s in member.subject)
+        text = f"{member.severity}: {member.code} {about}: {one_line(member.found or member.message)}"
+        lines += _wrapped(text, "    ", "      ")
     return "\n".join(lines)
 
 

@@ -31,7 +31,7 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
         for item in accepted:
             _case_of_accepted(suite, item)
         if not (own or accepted) or rule.outcome == "inconclusive":
-            _case_of_rule(suite, rule)
+            _case_of_rule(suite, rule, report)
     known = {rule.code for rule in report.rules}
     for finding in report.findings:
         if finding.code not in known:
@@ -95,8 +95,12 @@ def _case_of_accepted(suite: ElementTree.Element, item: Ignored) -> None:
     ElementTree.SubElement(case, "skipped", message=xml_legal(message))
 
 
-def _case_of_rule(suite: ElementTree.Element, rule: RuleOutcome) -> None:
+def _case_of_rule(suite: ElementTree.Element, rule: RuleOutcome, report: CheckReport) -> None:
     case = _case(suite, rule.code, rule.rule)
+    if any(member.code == rule.code for member in report.members):
+        stated = [f for f in report.findings if f.cause and any(m.code == rule.code for m in report.members_of(f))]
+        text = "; ".join(f"{finding.code} {', '.join(finding.subject)}" for finding in stated)
+        ElementTree.SubElement(case, "system-out").text = xml_legal(f"what this rule found follows from {text}")
     if rule.outcome == "inconclusive":
         ElementTree.SubElement(case, "error", type="inconclusive", message=xml_legal(rule.reason))
     elif rule.outcome != "passed" and rule.outcome != "failed":  # skipped

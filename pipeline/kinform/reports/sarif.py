@@ -35,7 +35,7 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     manifest = design.assembly.source.file
     compared = report.gone is not None
     results = [
-        _failed(finding, index, manifest) | ({"baselineState": "new"} if compared else {})
+        _failed(finding, index, manifest, report.members_of(finding)) | ({"baselineState": "new"} if compared else {})
         for finding in report.findings
     ]
     results += [_accepted(item, index, manifest, compared) for item in report.ignored]
@@ -82,13 +82,17 @@ def _descriptor(outcome: RuleOutcome, rule: Rule | None) -> dict[str, Any]:
     }
 
 
-def _failed(finding: Finding, index: Mapping[str, int], manifest: str) -> dict[str, Any]:
+def _failed(
+    finding: Finding, index: Mapping[str, int], manifest: str, members: Sequence[Finding] = ()
+) -> dict[str, Any]:
     details = {
         "found": finding.found,
         "intended": finding.intended,
         "place": None if finding.place is None else list(finding.place),
         "remedy": finding.remedy,
         "witness": None if finding.witness is None else _present(dataclasses.asdict(finding.witness)),
+        "cause": None if finding.cause is None else _present(dataclasses.asdict(finding.cause)),
+        "members": [f"{m.code} {', '.join(m.subject)}: {m.message}" for m in members if finding.cause is not None],
     }
     return _present(
         {

@@ -203,8 +203,8 @@ def _distinct(ways: Sequence[Array]) -> list[Array]:
 
 
 def _translations(border: Sequence[_Side]) -> Array:
-    """(3, k) perpendicular unit directions in which a group slides along all its contacts."""
-    if any(not side.link.straight.shape[1] for side in border):
+    """(3, k) perpendicular unit directions in which a group slides along all its contacts; none where it has none."""
+    if not border or any(not side.link.straight.shape[1] for side in border):
         return np.zeros((3, 0))
     values, vectors = np.linalg.eigh(np.sum([side.link.across for side in border], axis=0))
     return directions(vectors[:, values <= CONE_HELD**2 * len(border)])

@@ -75,11 +75,13 @@ class _Table:
         self.design = design
         self.units = design.assembly.units
         self.findings = () if design.report is None else design.report.findings
+        self.members = [] if design.report is None else list(map(design.report.members_of, self.findings))
+        """What each of them stands for."""
         self.used: set[int] = set()
         self.about: dict[str, list[int]] = {}
         """Findings about each name."""
         for k, finding in enumerate(self.findings):
-            for name in finding.subject:
+            for name in dict.fromkeys(name for one in (finding, *self.members[k]) for name in one.subject):
                 self.about.setdefault(name, []).append(k)
         rules = () if design.report is None else design.report.rules
         self.undecided = {rule.code for rule in rules if rule.outcome == "inconclusive"}
@@ -136,7 +138,7 @@ class _Table:
             behaviour += f"; only {mobility.finite} finite"
         stated = assembly.function.mobility
         row = Row("mobility of the whole", form, behaviour, "" if stated is None else f"mobility {stated}")
-        about = [k for k, finding in enumerate(self.findings) if finding.code[:4] == "KF30"]
+        about = [k for k, members in enumerate(self.members) if any(one.code[:4] == "KF30" for one in members)]
         said = self._said(assembly.name, "mobility")
         return self._judged(row, about, [self._mark(one) for one in said])
 
@@ -226,7 +228,7 @@ class _Table:
             mark = "disagrees" if "error" in severities else "doubtful"
         elif self.design.report is None or (row.function and not marks):
             mark = "not checked" if row.function else "not stated"
-        elif any(self.findings[k].code in self.undecided for k in findings):
+        elif any(one.code in self.undecided for k in findings for one in self.members[k]):
             mark = "not decided"
         else:
             mark = min(marks, key=ORDER.index, default="not stated")

@@ -18,6 +18,7 @@ LAYOUT = Layout(
     Table("answers", if_any=True),
     Table("statements", if_any=True),
     Table("coverage"),
+    Table("members", if_any=True),
 )
 
 
