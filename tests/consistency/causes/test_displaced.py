@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import re
 
+import numpy as np
 import pytest
 from support.solids import box, rod, save
 
 from kinform import stages
 from kinform.consistency import check
+from kinform.consistency.causes.displaced import Motion, explains
+from kinform.consistency.causes.movable import Movable
+from kinform.model.findings import Finding
 from kinform.reports import render
 
 SOLIDS = {
@@ -59,7 +63,7 @@ def test_a_right_description_states_no_cause(tmp_path):
     assert dict(report.answers) == {"agrees": 2} or "not held" in dict(report.answers)
 
 
-@pytest.mark.parametrize("wrong", ["0.1 0.013 0.012", "0.094 0 0.012", "0.1 0.01 0.02"])
+@pytest.mark.parametrize("wrong", ["0.1 0.013 0.012", "0.094 0 0.012"])
 def test_the_origin_of_a_joint_is_stated_as_it_should_be(tmp_path, wrong):
     found = cause_of(urdf(tmp_path, origins={"fore": wrong}))
     assert (found.cause.kind, found.subject) == ("displaced", ("fore",))
@@ -105,3 +109,15 @@ def test_members_are_told_where_there_is_room(tmp_path):
     codes = {member.code for member in report.members_of(found)} - {found.code}
     assert codes and all(code in full and code in text for code in codes)
     assert not any(code in brief for code in codes)
+
+
+@pytest.mark.parametrize(
+    ("codes", "confirmed", "cause"),
+    [(["KF407"], True, False), (["KF407"] * 3, True, False), (["KF201"], True, True), (["KF201"], False, False),
+     (["KF201", "KF407"], False, True)],
+)  # fmt: skip
+def test_what_a_motion_resolves_has_to_tell_that_the_part_is_in_a_wrong_place(codes, confirmed, cause):
+    """Contact that is not meant vanishes wherever the part goes, and so does one overlap."""
+    motion = Motion(Movable("crank", frozenset({"crank"})), np.eye(4), confirmed=confirmed)
+    resolved = tuple(Finding(code, "rule", "warning", ("crank", "yoke"), "…") for code in codes)
+    assert explains(motion, resolved) == cause

@@ -33,6 +33,11 @@ whose contacts are looked for. Joints of 100 parts take a second or more."""
 GAP = 0.5
 """Share of the smallest part that is moved: gaps of descriptions, whose pins and bearings are in no mesh, are smaller.
 Chosen, not measured."""
+MISPLACED = ("KF201", "KF203", "KF401", "KF404")
+"""What a part in a wrong place makes: it is in another, or does not touch what it belongs to, or lies beside it. Contact
+alone that is not meant says nothing of the place, as it goes wherever the part goes."""
+LEAST_RESOLVED = 2
+"""Findings that a vector has to resolve of which single surfaces decide some: one overlap vanishes in many places."""
 SURFACES = 4_000_000
 """Pairs of surfaces that are compared for one set of parts, at most: half a second. Of more, none are."""
 
@@ -80,7 +85,7 @@ def displaced(context: Context, findings: Sequence[Finding], again: Again) -> Di
             continue
         tried += 1
         found = asked(replace(design, assembly=_with_joints(design.assembly, motion)), findings, again)
-        if found is not None and not _unfit(context, motion, found):
+        if found is not None and explains(motion, found.resolved) and not _unfit(context, motion, found):
             proved.append((motion, found))
     if not proved:
         return None
@@ -90,6 +95,12 @@ def displaced(context: Context, findings: Sequence[Finding], again: Again) -> Di
     (best, found), others = proved[0], proved[1:]
     alternative = next((m for m, a in others if a.weight == found.weight and m.moved != best.moved), None)
     return Displaced(best, found, alternative)
+
+
+def explains(motion: Motion, resolved: Sequence[Finding]) -> bool:
+    """Whether what is resolved tells that the parts are in a wrong place, and not only that they are not elsewhere."""
+    enough = motion.confirmed or len(resolved) >= LEAST_RESOLVED
+    return bool(motion.frame) or (enough and any(one.code in MISPLACED for one in resolved))
 
 
 def _unfit(context: Context, motion: Motion, found: Asked) -> bool:
