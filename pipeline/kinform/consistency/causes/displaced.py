@@ -34,7 +34,7 @@ GAP = 0.5
 """Share of the smallest part that is moved: gaps of descriptions, whose pins and bearings are in no mesh, are smaller.
 Chosen, not measured."""
 MISPLACED = ("KF201", "KF203", "KF401", "KF404")
-"""What a part in a wrong place makes: it is in another, or does not touch what it belongs to, or lies beside it. Contact
+"""What a part in a wrong place makes: it is in another, or does not touch what it belongs to, or is beside it. Contact
 alone that is not meant says nothing of the place, as it goes wherever the part goes."""
 LEAST_RESOLVED = 2
 """Findings that a vector has to resolve of which single surfaces decide some: one overlap vanishes in many places."""
