@@ -29,7 +29,8 @@ def is_error(finding):
 
 
 def with_witness(design, finding, witness):
-    return replace(design, report=replace(design.report, findings=(replace(finding, witness=witness),), ignored=()))
+    alone = replace(finding, witness=witness, cause=None)
+    return replace(design, report=replace(design.report, findings=(alone,), members=(), ignored=()))
 
 
 def changes(witness):

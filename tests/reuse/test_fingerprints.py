@@ -89,8 +89,9 @@ def _imports(package: str) -> set[str]:
 def test_the_version_of_all_code_that_a_stage_imports_is_in_its_fingerprint(stage: str) -> None:
     counted = set(dependence.CODE[stage])
     for package in counted:
-        # tables of the manifest, which `requirements` imports from there, decide what is read: the assembly shows it
-        assert _imports(package) - ({"form"} if package == "requirements" else set()) <= counted
+        # tables of the manifest and elements of files decide what is read: the assembly shows it, and its fingerprint
+        shown = {"requirements": {"form"}, "consistency": {"formats"}}.get(package, set())
+        assert _imports(package) - shown <= counted
 
 
 @SETTINGS

@@ -144,6 +144,20 @@ def limited(limits):
     return made
 
 
+def followed(folder, derive):
+    """A finger that follows another one backwards, with the limits of that one."""
+    limited('<limit lower="0" upper="0.5" effort="1" velocity="1"/>')(folder, derive)
+    text = (folder / "r.urdf").read_text()
+    other = (
+        '<link name="other"><visual><origin xyz="0 0 -0.1"/><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
+        "</link>\n"
+        '<joint name="k" type="revolute">\n<parent link="base"/><child link="other"/>\n<axis xyz="0 0 1"/>\n'
+        '<limit lower="0" upper="0.5" effort="1" velocity="1"/>\n<mimic joint="j" multiplier="-1"/>\n</joint>\n</robot>'
+    )
+    (folder / "r.urdf").write_text(text.replace("</robot>", other))
+    return whole(folder / "r.urdf")
+
+
 def sub_assembly(folder, derive):
     found = derive(FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml")
     subs = tuple(replace(one, mobility=2) for one in found.assembly.subassemblies)
@@ -299,6 +313,7 @@ ERRING = {
     "KF414": fixture("broken", "four_bar_missing_pin", "four_bar_missing_pin.toml"),
     "KF415": limited('<limit lower="1.57" upper="-1.57" effort="1" velocity="1"/>'),
     "KF417": pinned,
+    "KF418": followed,
     "KF421": required(lambda _: requiring(gimbal(), "reach", part="inner", direction=[1.0, 0, 0], region=POLES)),
     "KF422": required(lambda _: requiring(wheel(RUN), "follow", rows=circle(shift=0.002), **POINT)),
     "KF423": required(lambda _: requiring(

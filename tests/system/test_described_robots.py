@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.support.assemblies import assembly
 from tests.support.walkers import Box, Link, Walker
 
 from kinform import form, run
 from kinform.consistency import RULES
+from kinform.consistency.causes.grouping import by_cause
 from kinform.consistency.context import Context
 from kinform.consistency.control import apply
 from kinform.consistency.outcome import decided
@@ -319,7 +322,7 @@ def overlaps(folder, widths):
         middle = sign * (0.5 * (low + high) - 0.13)
         walker.links[f"{side}_thigh"].boxes[0] = Box((0.05, high - low, 0.20), (0.0, middle, -0.10))
     (folder / "walker.urdf").write_text(walker.text())
-    return [f for f in run(folder / "walker.urdf").findings if f.code == "KF201"]
+    return [f for f in run(folder / "walker.urdf").report.singles if f.code == "KF201"]
 
 
 def test_links_that_a_joint_joins_may_overlap_a_little_and_not_deeply(tmp_path):
@@ -331,11 +334,18 @@ def test_of_many_warnings_on_a_description_the_first_are_told_and_the_others_nam
     rule = next(rule for rule in RULES if rule.code == "KF201")
     warnings = [rule.at("warning").finding([f"a{k}", f"b{k}"], f"overlap {k}") for k in range(9)]
     description = CheckSettings(profile="description")
-    told = apply(rule, decided(warnings), description).findings
-    assert [f.subject for f in told[:3]] == [(f"a{k}", f"b{k}") for k in range(3)] and len(told) == 4
-    assert set(told[3].subject) == {f"{letter}{k}" for letter in "ab" for k in range(3, 9)}
-    assert len(apply(rule, decided(warnings), CheckSettings(profile="design")).findings) == 9
-    assert len(apply(rule, decided(warnings[:6]), description).findings) == 6
+
+    def told(settings, many):
+        found = apply(rule, decided(warnings[:many]), settings).findings
+        context = Context(Design(replace(assembly(), check=settings)))
+        return by_cause(context, found, lambda *_: ())
+
+    first, members = told(description, 9)
+    rest, *single = first
+    assert [f.subject for f in single] == [(f"a{k}", f"b{k}") for k in range(3)]
+    assert set(rest.subject) == {f"{letter}{k}" for letter in "ab" for k in range(3, 9)} and len(members) == 6
+    assert len(told(CheckSettings(profile="design"), 9)[0]) == 9
+    assert len(told(description, 6)[0]) == 6
 
 
 SDF = """<sdf version="1.9"><model name="m">

@@ -55,7 +55,7 @@ def test_hostile_names_change_no_code_and_no_line(hostile, format, capsys):
         assert all(line.startswith(("::error ", "::warning ", "::notice ")) for line in lines[:-1])
         assert not lines[-1].startswith("::")
     elif format == "concise":
-        assert all(line.startswith("m [1].toml:") for line in lines[:-1])
+        assert all(line.startswith("m [1].toml:") for line in lines[:-2])
     else:
         assert all(line.isprintable() for line in lines)
 

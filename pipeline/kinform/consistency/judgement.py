@@ -240,7 +240,7 @@ def _not_checked(statements: Sequence[Statement]) -> Iterator[str]:
     reasons: dict[str, Counter[str]] = {}
     for s in statements:
         if s.outcome == "not checked":
-            what = f"{LIMITS.get(s.of, s.of)} limit" if s.kind == "limit" else s.kind
+            what = f"{LIMITS.get(s.of, s.of)} limit".strip() if s.kind == "limit" else s.kind
             reasons.setdefault(s.reason, Counter())[what] += 1
     for reason, found in reasons.items():
         yield f"{listed([_plural(many, what) for what, many in found.items()])} not checked: {reason}"

@@ -51,6 +51,10 @@ Equation = Literal[
 """What a computed witness may be recomputed by, each in one way that is not the finder's (`kinform.replays`)."""
 
 
+PUSHES_MOST = 1e4
+"""Pushes over the wrench that they leave, above which they balance up to rounding."""
+
+
 @dataclass(frozen=True)
 class Witness:
     """The proof of a finding: what another method can repeat without the one that found it. World frame, SI, radians.

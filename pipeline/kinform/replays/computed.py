@@ -14,7 +14,7 @@ import numpy as np
 
 from kinform.frozen import dataclass
 from kinform.model.arrays import Array, Ints
-from kinform.model.findings import Witness
+from kinform.model.findings import PUSHES_MOST, Witness
 from kinform.replays.geometric import Sides
 from kinform.replays.outcome import NotReplayed, Outcome, held, refuted
 
@@ -28,8 +28,6 @@ RANK_SHARE = 1e-7
 """Share of the largest singular value up to which one is zero."""
 BODIES_MOST = 150
 """Bodies of a graph of which the constraints are decomposed: some seconds."""
-PUSHES_MOST = 1e4
-"""Pushes over the wrench that they leave, above which they balance up to rounding."""
 MESH_BYTES = 256 << 20
 """Of a mesh file that is read again: five million facets."""
 SURFACE_OFF = 5e-3

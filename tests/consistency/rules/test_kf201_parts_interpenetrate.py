@@ -24,7 +24,7 @@ def severities(folder, joints):
     path.write_text(f'<robot name="r">{links}{"".join(JOINT.format(*joint) for joint in joints)}</robot>')
     design = stages.mass(stages.joints(stages.contacts(stages.import_(path))))
     report = stages.check(stages.simulate(design, ranges=False)).report
-    return [f.severity for f in report.findings if f.code == "KF201" and set(f.subject) == {"arm.stl", "foot.stl"}]
+    return [f.severity for f in report.singles if f.code == "KF201" and set(f.subject) == {"arm.stl", "foot.stl"}]
 
 
 @pytest.mark.parametrize(

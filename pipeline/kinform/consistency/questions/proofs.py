@@ -16,10 +16,9 @@ from kinform.kinematics.mobility.guides import joint_twist, preserved, span_alon
 from kinform.mechanism.joint_graph import JointGraph
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
-from kinform.model.findings import Witness, between, computed
+from kinform.model.findings import PUSHES_MOST, Witness, between, computed
 from kinform.model.kinematics import Body, Joint
 from kinform.model.names import PartName
-from kinform.replays.computed import PUSHES_MOST
 
 SAMPLES_MOST = 300
 """Samples of contact that a witness holds: those of a few patches; of more, every second, third, …"""

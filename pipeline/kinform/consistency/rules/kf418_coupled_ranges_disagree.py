@@ -24,7 +24,7 @@ from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, number
-from kinform.model.findings import Finding, Witness
+from kinform.model.findings import Finding, Witness, stated
 from kinform.model.function import Coupling, IntendedJoint
 
 ROUNDED = 0.01
@@ -79,7 +79,6 @@ def _of_pair(context: Context, coupling: Coupling, follower: IntendedJoint, lead
         remedy += (
             f", or '{leader.name}' {range_as_written(context, leader, usable) or _between(context, leader, usable)}"
         )
-    witness = Witness("textual", source_file=leader.file, source_line=leader.line) if stuck else None
     yield RULE.at("error" if stuck else "warning").finding(
         coupling.joints, text,
         found=limits,
@@ -87,8 +86,15 @@ def _of_pair(context: Context, coupling: Coupling, follower: IntendedJoint, lead
         place=follower.point,
         declared=coupling,
         remedy=remedy + ".",
-        witness=witness,
+        witness=_witness(context, leader) if stuck else None,
     )  # fmt: skip
+
+
+def _witness(context: Context, leader: IntendedJoint) -> Witness | None:
+    """That the limits of the leader stand where it is stated."""
+    described = (j.limits for d in context.assembly.descriptions for j in d.joints if j.name == leader.name)
+    limits = next(described, None) or ()
+    return stated(leader, leader.name.rpartition("/")[2], *(repr(end) for end in limits if end is not None))
 
 
 def _ends(one: float, other: float) -> tuple[float, float]:
