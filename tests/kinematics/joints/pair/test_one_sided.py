@@ -112,6 +112,12 @@ def test_a_knee_flush_on_its_hip_is_guided_by_a_long_fence_and_a_short_one_may_e
     changes_once(answer, 0.006, 0.06, ("prismatic", "ambiguous", "planar"), ("prismatic", "determined", None))
 
 
+@pytest.mark.parametrize("half", [0.004, 0.02])
+def test_a_short_ridge_holds_in_both_senses_and_is_a_guide(half):
+    sides = [plane((0, 0.01 * sign, 0.005), (0.0, sign * 0.8, 0.6), (2 * half, 0.01)) for sign in (1.0, -1.0)]
+    assert types(decision([plane((0, 0, 0), Z, (0.05, 0.05)), *sides])) == ("prismatic", "determined", None)
+
+
 def test_a_stepped_shaft_leaves_its_steps_when_it_slides_and_is_no_piston():
     steps = [cylinder(0.008, 0.006, point=(0, 0, 0.03)), cylinder(0.007, 0.003)]
     assert types(decision([*steps, disc((0, 0, -0.0015), outer=0.006)])) == ("revolute", "determined", None)

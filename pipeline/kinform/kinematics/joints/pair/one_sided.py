@@ -148,8 +148,11 @@ def short_faces(pair: AtRest) -> Iterator[Suspect]:
         keep = np.array([abs(float(item.patch.axis @ normal)) > ONE_WAY for item in items])
         if keep.all() or not pair.cone.opened[~keep].all():
             continue
+        side = cross(normal, axis)
         wide, long = (np.concatenate([i.points for i in pair.evidence.chosen(of)]) for of in (keep, ~keep))
-        if _extent(long, axis) < SLIDES_FROM * _extent(wide, cross(normal, axis)):
+        facing = np.array([float(i.normals[0] @ side) for i in pair.evidence.chosen(~keep)])
+        one_way = not facing.min() < 0.0 < facing.max()  # a ridge holds in both senses
+        if one_way and _extent(long, axis) < SLIDES_FROM * _extent(wide, side):
             yield suspect(~keep, "stop")
 
 
