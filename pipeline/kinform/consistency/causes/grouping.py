@@ -35,6 +35,9 @@ last."""
 OF_CONTACT = ("KF20", "KF21", "KF3", "KF40", "KF414", "KF417", "KF90")
 """What follows from contacts, by how codes begin."""
 
+OF_PLACES = ("KF110", "KF124", "KF201", "KF203", "KF401")
+"""What parts in wrong places, or of wrong sizes, make: without any of these no motion and no factor is looked for, as
+that takes seconds. An axis beside the stated one alone (KF404) is a matter of what is stated."""
 PROVED = ("frame", "displaced", "scaled")
 """Causes that are at least a warning."""
 
@@ -80,6 +83,8 @@ def _geometric(
             return
     _duplicated(context, again, put, left)
     if len(left()) > MOST_FINDINGS or not context.design.surfaces or context.design.contacts is None:
+        return
+    if not any(finding.code in OF_PLACES for finding in left()):
         return
     found = scaled(context, left(), again)
     if found is not None:
