@@ -56,7 +56,7 @@ __all__ = [
     "stated_proposals",
 ]
 
-CODE_VERSION = 62
+CODE_VERSION = 63
 """Bumped when the results of this stage change for the same input."""
 
 __getattr__ = lazy_attributes(

@@ -16,7 +16,7 @@ from kinform.foundation.rounding import SINGLE, TINY
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 
-NORMAL_SECTORS = 8
+NORMAL_SECTORS = 16
 """Sectors of normals about the axis of a curved patch with many samples; of each its ends are kept. Chosen, not
 measured."""
 FIRST_SECTOR = 0.2
